@@ -32,7 +32,7 @@ from semmap.nodes.extern.fleet.query import sparql as ask_mirror
 from semmap.nodes.extern.fleet.server import SparqlServer
 from semmap.nodes.extern.testing import free_endpoint
 from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.kb_node.storage.seed import seed
 from semmap.ontology import HOUSEHOLD_TTL
@@ -67,7 +67,7 @@ class Robot:
         seed(folder, HOUSEHOLD_TTL, None)
         self._journal = Journal(folder / "journal.sqlite")
         self.map = SemanticMap(self._journal)
-        self._past = Past(self._journal)
+        self._past = HistoryReader(self._journal)
         self._dice, self._size = random.Random(number), size
         self._lock = threading.Lock()
         self.stamps: dict[int, float] = {}

@@ -90,7 +90,7 @@ def test_compacting_a_system_that_goes_on(tmp_path, monkeypatch):
         assert [commit.seq for commit in history] == list(range(compacted.first - 1, last + 1))
         assert history[0].reason.startswith("the history begins here, with ")
         assert {entity.name for entity in client.list()} == before
-        with pytest.raises(errors.Refused, match="has been compacted: the history begins with the map as it"):
+        with pytest.raises(errors.Refused, match="have been compacted: the history begins with the map at"):
             client.list(as_of=compacted.first - 2)
         with pytest.raises(errors.Refused, match="cannot be undone: it has been compacted"):
             client.undo(compacted.first - 2)

@@ -68,5 +68,5 @@ def test_ways_in_words_in_python_and_when_a_door_is_shut(system):
         assert client.route("bathroom1", "studio1", as_of=1).closed == ()
         with pytest.raises(errors.Refused, match="it is outside every place of the map"):
             client.route("bathroom1", (50.0, 50.0))
-        with pytest.raises(errors.UnknownName, match="nothing is named or called 'atlantis'"):
+        with pytest.raises(errors.UnknownName, match="no entity has the name, label or class 'atlantis'"):
             client.route("bathroom1", "atlantis")

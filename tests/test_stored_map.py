@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 from semmap.nodes.kb_node.undo import undo
 from semmap.schemas import errors
@@ -57,7 +57,7 @@ def test_its_entities_are_there(opened):
 
 
 def test_its_history_is_told_and_the_past_is_as_it_was(opened):
-    past = Past(opened[1])
+    past = HistoryReader(opened[1])
     told = past.history(History())
     assert [commit.verb for commit in told] == [
         "",

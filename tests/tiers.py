@@ -27,7 +27,7 @@ STARTERS = frozenset(
         *("semmap.nodes.kb_node.answers.map_then.ask_then", "semmap.nodes.kb_node.answers.answers.check"),
         *(
             "semmap.nodes.kb_node.owlrl.consistency_check.find_owlrl_faults",
-            "semmap.nodes.kb_node.relations.facts.ahead.Ahead",
+            "semmap.nodes.kb_node.relations.facts.precomputation.Precomputation",
         ),
     }
 )

@@ -17,7 +17,7 @@ import pyoxigraph
 
 from benchmarks.kb import big_files
 from benchmarks.kb.made import timed
-from semmap.nodes.kb_node.storage.encoding import dense
+from semmap.nodes.kb_node.storage.encoding import body_encoding
 from semmap.ontology import stars
 from semmap.ontology import vocabulary as v
 from semmap.schemas import codec, scene_files
@@ -57,7 +57,7 @@ def measure(folder: Path, size: int, turtle: Path, scene: Path | None) -> Limits
         messages_s += _cpu_s(lambda m=change: codec.decode(codec.encode(m), Transaction))  # type: ignore[misc]
         messages_s += _cpu_s(lambda m=page: codec.decode(codec.encode(m), Snapshot))  # type: ignore[misc]
     compress_s, packed = 0.0, bytearray()
-    deflate = zlib.compressobj(dense.DENSITY)
+    deflate = zlib.compressobj(body_encoding.COMPRESSION_LEVEL)
     for triples in _parts(triple for thing in big_files.things(size) for triple in _star(thing)):
         body = codec.encode(triples)
         compress_s += _cpu_s(lambda body=body: packed.extend(deflate.compress(body)))  # type: ignore[misc]

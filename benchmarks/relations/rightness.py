@@ -15,8 +15,8 @@ from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.entities import entity_reading
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.relations.facts.contradictions import PROPERTIES, fact_of
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
-from semmap.nodes.kb_node.relations.facts.said import PROPERTIES, fact_of
 from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
 from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds

@@ -49,7 +49,7 @@ def journal_copy(
     """
     extras.require(what, "kb")
     from semmap.nodes.kb_node.storage.journal import FILENAME
-    from semmap.nodes.kb_node.storage.replay.copying import copy
+    from semmap.nodes.kb_node.storage.replay.journal_copy import copy
 
     with private_folder() as folder:
         path = folder / FILENAME

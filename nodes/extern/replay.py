@@ -51,7 +51,7 @@ def replay(
         *(["record"] if record else []),
         *([] if web is None else ["web"]),
     )
-    from semmap.nodes.kb_node.storage.replay.preparing import prepare
+    from semmap.nodes.kb_node.storage.replay.preparation import prepare
     from semmap.nodes.supervisor.up import up
 
     with private_folder() as folder:

@@ -27,7 +27,7 @@ def restore(
     `replace` is not set, or if the disk is full; then nothing has changed. Requires the extra `semmap[kb]`.
     """
     extras.require("semmap restore", "kb")
-    from semmap.nodes.kb_node.storage.backup.restoring import restore as restore_journal
+    from semmap.nodes.kb_node.storage.backup.restore import restore as restore_journal
     from semmap.nodes.supervisor.privacy import UMASK, make_private
     from semmap.nodes.supervisor.up import alone
 

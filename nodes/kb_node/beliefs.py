@@ -16,10 +16,10 @@ from semmap.nodes.kb_node.progress import parts
 from semmap.nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner.explain import sentences
 from semmap.nodes.kb_node.reasoner.explanations import Explanation
-from semmap.nodes.kb_node.relations.facts.computed import Computed, Known, Step
+from semmap.nodes.kb_node.relations.facts.computed_facts import ComputedFacts, Known, Step
+from semmap.nodes.kb_node.relations.facts.contradictions import PROPERTIES, fact_of
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.facts.rules import COMPUTED
-from semmap.nodes.kb_node.relations.facts.said import PROPERTIES, fact_of
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.ontology import stars
 from semmap.ontology import vocabulary as v
@@ -69,7 +69,7 @@ class Beliefs:
         """`reasoner` holds what is asserted; `progress` is called between the steps of long work."""
         self._reasoner = reasoner
         self._progress = progress
-        self.computed = Computed(_declared(reasoner), limits)
+        self.computed = ComputedFacts(_declared(reasoner), limits)
         self.withheld: dict[Triple, Explanation] = {}
         """Facts that contradict the rest, and how."""
         self._rests: dict[Triple, set[Triple]] = {}
@@ -239,7 +239,7 @@ class Beliefs:
         if self.computed.is_idle:
             return frozenset()
         step = self.computed.after(changed, removed, before, retracted, inserted)
-        if not self.computed.facts.are_worked_out:  # and what comes may have been there before the start
+        if not self.computed.facts.is_complete:  # and what comes may have been there before the start
             step = step._replace(come={t for t in step.come if not self._reasoner.is_computed(t)})
         self._carry_out(step, retracted)
         return frozenset(self._moved)
@@ -260,7 +260,7 @@ class Beliefs:
     def placing(self, entities: Mapping[str, Entity]) -> Iterator[None]:
         """The first half of `filling`: where everything is, between whose steps nothing changes."""
         if not self.computed.is_idle:
-            yield from self.computed.facts.placing(entities.values())
+            yield from self.computed.facts.insert_steps(entities.values())
             self.computed.placed()
 
     def comparing(self, entities: Mapping[str, Entity]) -> Iterator[None]:
@@ -271,7 +271,7 @@ class Beliefs:
         """
         if self.computed.is_idle:
             return
-        yield from self.computed.facts.working_out()
+        yield from self.computed.facts.compute_steps()
         said = self._said_of_places()
         if self.is_compared_in_steps(said):
             for names in parts(tuple(entities), _STEP, self._progress):

@@ -15,10 +15,10 @@ from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.places import Places
 from semmap.nodes.kb_node.progress import parts, steadily
 from semmap.nodes.kb_node.reasoner import Reasoner
-from semmap.nodes.kb_node.relations.facts.ahead import Ahead
-from semmap.nodes.kb_node.relations.facts.foreseen import Foreseen
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.facts.precomputation import Precomputation
+from semmap.nodes.kb_node.relations.facts.precompute_messages import PrecomputeRequest
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.runtime import gc_pause
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -130,9 +130,9 @@ class MapState:
         self.believe_places()
         return self.beliefs.all()
 
-    def placed(self) -> tuple[Placed, ...]:
+    def placed(self) -> tuple[PlacedEntity, ...]:
         """Where everything is."""
-        return tuple(map(Placed.of, self.by_name.values()))
+        return tuple(map(PlacedEntity.of, self.by_name.values()))
 
     def has(self, triple: Triple) -> bool:
         """Is it asserted?"""
@@ -199,7 +199,9 @@ class MapState:
         """The sentences on crowds, if relations are computed."""
         if not self.follows or names is None:
             self.follow_places()
-        return [] if self.beliefs.computed.is_idle else self.beliefs.computed.facts.space.crowds(names)
+        return (
+            [] if self.beliefs.computed.is_idle else self.beliefs.computed.facts.space.describe_crowds(names)
+        )
 
     def _facts(self) -> Facts | None:
         """The relations that are computed, if any are, with their solids."""
@@ -215,18 +217,18 @@ class MapState:
         try:
             yield
         finally:
-            computed.facts.give_up_ahead()
+            computed.facts.discard_precomputation()
 
     def _foresee(self, transaction: Transaction) -> None:
         coming, facts = foreseeing.coming(transaction, self.classes), self.beliefs.computed.facts
         if coming is not None and len(self) <= len(coming):
-            foreseen = Foreseen(facts.space.limits, self.placed(), coming)
+            foreseen = PrecomputeRequest(facts.space.limits, self.placed(), coming)
             with suppress(OSError):  # then it is worked out here
-                facts.work_ahead(Ahead(foreseen, self.progress))
+                facts.set_precomputation(Precomputation(foreseen, self.progress))
 
     def tidy(self) -> None:
         """What a commit leaves to be done when nobody waits for it."""
-        self.beliefs.computed.facts.forget()
+        self.beliefs.computed.facts.clear_caches()
 
     # Changing
 

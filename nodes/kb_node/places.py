@@ -15,14 +15,14 @@ from semmap.nodes.kb_node.entities import entity_changes, entity_reading
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.preconditions import subjects
 from semmap.nodes.kb_node.reasoner import Reasoner
-from semmap.nodes.kb_node.relations.carrying import Loads
+from semmap.nodes.kb_node.relations.contents import Contents
+from semmap.nodes.kb_node.relations.facts.asserted_locations import AssertedLocations, filter_location_triples
+from semmap.nodes.kb_node.relations.facts.contradictions import fact_of, find_contradiction
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.kb_node.relations.facts.rules import RULES, About
-from semmap.nodes.kb_node.relations.facts.said import denial, fact_of
-from semmap.nodes.kb_node.relations.facts.sayings import Sayings, of_places
+from semmap.nodes.kb_node.relations.lazy_space import LazySpace
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
-from semmap.nodes.kb_node.relations.surroundings import Surroundings
 from semmap.ontology import stars
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors, wording
@@ -61,18 +61,18 @@ class Places:
         asserted: Callable[[Term], Iterable[Triple]],
         limits: Callable[[], Thresholds],
         facts: Callable[[], Facts | None] = lambda: None,
-        told_crowds: Callable[[Collection[str] | None], Iterable[str]] = lambda _: (),
+        describe_crowds: Callable[[Collection[str] | None], Iterable[str]] = lambda _: (),
     ) -> None:
         """`entities` by name, as they change; `asserted(property)` are the triples of one.
 
         `limits()` are the thresholds of the TBox, `facts()` the relations, if somebody keeps them, and
-        `told_crowds(names)` has a sentence on each crowd, of which these names are.
+        `describe_crowds(names)` has a sentence on each crowd, of which these names are.
         """
         self._facts = facts
-        self._told_crowds = told_crowds
+        self._told_crowds = describe_crowds
         self._entities = entities
-        self._surroundings = Surroundings(in_order, entities.get, limits)
-        self._sayings = Sayings(asserted)
+        self._surroundings = LazySpace(in_order, entities.get, limits)
+        self._sayings = AssertedLocations(asserted)
 
     def space(self) -> Space:
         """The solids as they are now."""
@@ -82,7 +82,7 @@ class Places:
     def upward(self, names: Iterable[str]) -> Collection[str]:
         """These, what is on, inside or in them, and what is on or inside that; all, where nothing is kept."""
         facts = self._facts()
-        return self._entities.keys() if facts is None else facts.upward(names)
+        return self._entities.keys() if facts is None else facts.with_contents(names)
 
     def about(self, name: str) -> Iterator[About]:
         """What a thing is inside, on, in and attached to, what counts most first; nothing of a place."""
@@ -100,13 +100,13 @@ class Places:
         """
         return tuple(islice(self._told_crowds(names), _FEW))
 
-    def loads(self) -> Loads:
+    def loads(self) -> Contents:
         """What things bear now."""
-        return Loads(self.space(), self._facts())
+        return Contents(self.space(), self._facts())
 
     def take(self, names: Iterable[str], gone: Collection[Triple], come: Collection[Triple]) -> None:
         """A commit touched these entities, and triples went and came."""
-        self._surroundings.touch(names)
+        self._surroundings.mark_changed(names)
         self._sayings.change(gone, come)
 
     def load_of(self, edit: Edit, edits: Iterable[Edit]) -> list[Edit]:
@@ -145,7 +145,7 @@ class Places:
             raise errors.Refused(f"{name} is a place, which carries nothing; move the things in it")
         if entity.pose is None:
             raise errors.Refused(f"{name} has no position yet, so nothing stands on it to be carried")
-        return self.loads().all_of(name, {*leave, *besides})
+        return self.loads().find_all(name, {*leave, *besides})
 
     def taken_back(
         self, reasoner: Reasoner, classes: ClassTable, gone: Collection[Triple], come: Collection[Triple]
@@ -161,9 +161,9 @@ class Places:
         space = self.space()
         triples: list[Triple] = []
         notes: dict[str, None] = {}
-        with space.supposing(moved.values()):
+        with space.with_changes(moved.values()):
             for triple, fact in said.items():
-                if (relation := denial(space, fact)) is not None:
+                if (relation := find_contradiction(space, fact)) is not None:
                     triples.append(triple)
                     notes[f"taken back: {relation.text}"] = None
         return TakenBack(tuple(triples), at_most(notes))
@@ -177,10 +177,10 @@ class Places:
         notes = (note for name in islice(names, _MANY) for note in self._left_by(name, loads, leaving))
         return tuple(islice(notes, _FEW))
 
-    def _left_by(self, name: str, loads: Loads, leaving: Collection[str]) -> Iterator[str]:
+    def _left_by(self, name: str, loads: Contents, leaving: Collection[str]) -> Iterator[str]:
         inside: dict[str, None] = {}
         on: dict[str, None] = {}
-        for other, bearer in loads.directly_on(name):
+        for other, bearer in loads.find_direct(name):
             (inside if bearer.is_inside else on)[other] = None
         for thing, relation, other in self._sayings.about([name]).values():
             if other == name and relation != "isLocatedIn" and not {thing} & (inside.keys() | on.keys()):
@@ -192,13 +192,13 @@ class Places:
 
     def doubts(self, commit: Commit) -> tuple[str, ...]:
         """What a commit says of places that geometry denies as things stand after it; the first of it."""
-        said = of_places(commit.inserted)
+        said = filter_location_triples(commit.inserted)
         if not said:
             return ()
         facts = dict.fromkeys(fact for triple in said if (fact := fact_of(triple)) is not None)
         space = self.space()
-        with space.supposing(commit.changed, (gone.name for gone in commit.removed)):
-            relations = (denial(space, fact) for fact in facts)
+        with space.with_changes(commit.changed, (gone.name for gone in commit.removed)):
+            relations = (find_contradiction(space, fact) for fact in facts)
             return at_most(dict.fromkeys(r.text for r in relations if r is not None))
 
 

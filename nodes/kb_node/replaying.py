@@ -15,7 +15,7 @@ from msgspec import structs
 from semmap.nodes.kb_node.config import Replay
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import Journal
-from semmap.nodes.kb_node.storage.replay.preparing import SOURCE
+from semmap.nodes.kb_node.storage.replay.preparation import SOURCE
 from semmap.nodes.runtime import playback_clock
 from semmap.nodes.runtime.loop import Node
 from semmap.schemas import errors, keys

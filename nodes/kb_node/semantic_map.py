@@ -72,7 +72,7 @@ class SemanticMap(MapState):
         verify(journal, progress)
         start = journal.last_checkpoint(progress)
         tbox = self.tbox_at(start.seq)
-        super().__init__(tbox, reasoner or closure_cache.reasoner(tbox, journal.path.parent), progress)
+        super().__init__(tbox, reasoner or closure_cache.load_reasoner(tbox, journal.path.parent), progress)
         self._applier = Applier(self)
         self._schedule = CheckpointSchedule(journal, start.seq)
         self.foretell: Callable[[Commit], Callable[[], None]] = lambda _: lambda: None
@@ -147,14 +147,14 @@ class SemanticMap(MapState):
         commit = planning.signed(transaction, plan, self.seq + 1)
         if self._look is not None:
             return self._taken(apply(commit, self._write, self._noted))
-        give_up, begun = self.foretell(commit), commit_encoding.early(commit, self.digest)
+        give_up, begun = self.foretell(commit), commit_encoding.begin_body(commit, self.digest)
         write, noted = partial(self._write, begun=begun), partial(self._noted, begun=begun)
         try:
             return self._taken(apply(commit, write, noted))
         except BaseException:
             give_up()
             if begun is not None:
-                begun.give_up()
+                begun.discard()
             raise
 
     def _noted(self, commit: Commit, *, begun: commit_encoding.EarlyBody | None = None) -> Commit:
@@ -234,7 +234,7 @@ class SemanticMap(MapState):
         self._applier.believed.clear()
         results: list[Commit | errors.SemmapError | None] = []
         try:
-            with self._journal.together():
+            with self._journal.batch():
                 for transaction in transactions:
                     try:
                         results.append(self.commit(transaction))
@@ -289,14 +289,14 @@ class SemanticMap(MapState):
     def picture(self) -> Checkpoint:
         """The map as it is now, to be written down while it goes on changing. Takes some 0.2 us a triple."""
         self.believe_places()
-        self._schedule.pictured()
+        self._schedule.mark_snapshot()
         columns = self.reasoner.columns(self.tbox)
         return Checkpoint(
             seq=self.seq,
             triples=tuple(self.reasoner.suppressed() if columns is not None else self.abox()),
             columns=columns,
             entities=tuple(self.by_name.values()),
-            read_by=conclusions_format.mark(),
+            read_by=conclusions_format.format_mark(),
         )
 
     def checkpoint(self) -> None:
@@ -310,15 +310,15 @@ class SemanticMap(MapState):
 
     def written(self, seq: int) -> None:
         """There is a checkpoint of the map after commit `seq`, made of the last picture."""
-        self._schedule.written(seq)
+        self._schedule.mark_written(seq)
 
     def _replay(self, start: Checkpoint) -> None:
-        is_ours = start.read_by == conclusions_format.mark()
+        is_ours = start.read_by == conclusions_format.format_mark()
         if start.columns is not None and is_ours and self.reasoner.fill(start.columns):
             self.reasoner.update_computed(suppress=start.triples)
             self.believes = True
         else:
-            self._applier.change(insert=tuple(start.said()), lenient=True)
+            self._applier.change(insert=tuple(start.all_triples()), lenient=True)
         self.seq, self.digest = start.seq, self._journal.digest(start.seq).hex()
         if start.seq == 0:
             self.show(entity_reading.of_the_tbox(self.reasoner, self.classes))
@@ -337,7 +337,7 @@ class SemanticMap(MapState):
                 raise errors.Refused(f"commit {commit.seq} no longer fits its TBox: {error.text}") from None
             self._taken(made)
             self.progress()
-        if self.seq > start.seq or start.read_by != conclusions_format.mark():
+        if self.seq > start.seq or start.read_by != conclusions_format.format_mark():
             self.follow_places()  # else the entities have the classes that they have by their places
 
 

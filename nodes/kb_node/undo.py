@@ -56,7 +56,9 @@ def undo(
 
 def _reverse(semantic_map: SemanticMap, journal: Journal, command: TakeBack, target: Commit) -> Commit | None:
     later = _later(journal, target)
-    _require_in_force(target, later if target.names else map(journal.commit, journal.undoing(target.seq)))
+    _require_in_force(
+        target, later if target.names else map(journal.commit, journal.list_undo_commits(target.seq))
+    )
     settling = [commit for commit in _in_force(later) if _is_settling(commit)]
     undone = [target, *reversed(settling)]
     retract, insert = _net(undone)

@@ -43,7 +43,7 @@ def seed(settings: Settings) -> None:
 
     Without the knowledge base there is no journal, and nothing is printed.
     """
-    from semmap.nodes.kb_node.storage.existing_map import existing_map
+    from semmap.nodes.kb_node.storage.existing_map import describe_existing_map
 
     if settings.sim and Path(settings.world) not in (FLAT_WORLD, EMPTY_WORLD):
         from semmap.nodes.sim_node.models.sources import Models
@@ -65,7 +65,7 @@ def seed(settings: Settings) -> None:
     if (replay := settings.replay) is not None:
         print(f"replay of {replay.of}, from commit {replay.since} to {replay.until}; read-only")
         return
-    if not settings.fresh and (summary := existing_map(Path(settings.data))) is not None:
+    if not settings.fresh and (summary := describe_existing_map(Path(settings.data))) is not None:
         print(summary)
         return
     from semmap.nodes.coordinator.files.content import kind_of

@@ -5,8 +5,8 @@ from benchmarks.relations.speed import rooms
 from benchmarks.relations.watched import at_rest
 from benchmarks.table import Row, as_json
 from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.relations.facts.contradictions import PROPERTIES, fact_of
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
-from semmap.nodes.kb_node.relations.facts.said import PROPERTIES, fact_of
 from semmap.ontology import FLAT_TTL
 from tests.benchmarks.noisy_looks import gone
 

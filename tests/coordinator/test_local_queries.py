@@ -7,7 +7,7 @@ from msgspec import structs
 
 from semmap.nodes.coordinator.local_queries import LocalQueries
 from semmap.schemas.entities import BodyState
-from tests.kb_node.relations.made import thing
+from tests.kb_node.relations.entities import thing
 
 BODY = SimpleNamespace(size_m=(0.3, 0.3, 0.3))
 

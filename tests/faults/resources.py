@@ -80,7 +80,7 @@ def damaged_journal(ground: Ground) -> None:
     repair = [_BIN / "semmap", "repair", "--data", ground.data]
     told = subprocess.run(repair, capture_output=True, text=True, timeout=90)
     assert told.returncode == 0, told
-    assert f"(commit {seq} is damaged; what it changed is known from the checkpoint" in told.stdout, told
+    assert f"(commit {seq} is damaged; its changes were restored from the checkpoint" in told.stdout, told
     ground.start()
 
 

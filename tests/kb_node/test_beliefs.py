@@ -11,7 +11,7 @@ from semmap.nodes.kb_node.reasoner.fastpaths import paths
 from semmap.nodes.kb_node.sparql.triples.consequences import Consequences, inferred
 from semmap.nodes.kb_node.sparql.triples.dataset import ASSERTED, DENIED, INFERRED, Dataset, Delta
 from tests.kb_node.reasoner import graphs
-from tests.kb_node.relations.made import thing
+from tests.kb_node.relations.entities import thing
 
 NAMES = ["room1", "flat1", "shelf1", "cup1", "cup2", "book1"]
 TBOX = graphs.triples("""

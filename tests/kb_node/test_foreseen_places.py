@@ -9,8 +9,8 @@ import pytest
 from semmap.nodes.kb_node import map_state
 from semmap.nodes.kb_node.answers import trials
 from semmap.nodes.kb_node.entities import foreseeing
-from semmap.nodes.kb_node.relations.facts.ahead import Ahead
-from semmap.nodes.kb_node.relations.facts.foreseen import WorkedOut
+from semmap.nodes.kb_node.relations.facts.precomputation import Precomputation
+from semmap.nodes.kb_node.relations.facts.precompute_messages import PrecomputeResult
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.ontology import stars
 from semmap.ontology import vocabulary as v
@@ -69,14 +69,14 @@ def few_are_many(monkeypatch):
 def helped(monkeypatch, few_are_many):
     """How often the other process worked it out, as it turned out to be."""
     came = []
-    if_came = WorkedOut.if_came
+    match = PrecomputeResult.match
 
     def counted(found, entities):
-        facts = if_came(found, entities)
+        facts = match(found, entities)
         came.append(facts is not None)
         return facts
 
-    monkeypatch.setattr(WorkedOut, "if_came", counted)
+    monkeypatch.setattr(PrecomputeResult, "match", counted)
     return came
 
 
@@ -137,7 +137,7 @@ def test_where_more_is_there_than_comes_nothing_is_foreseen(new_map, helped):
 
 
 def test_few_need_no_process(new_map, monkeypatch):
-    monkeypatch.setattr(map_state, "Ahead", None)
+    monkeypatch.setattr(map_state, "Precomputation", None)
     semantic_map = new_map()
     assert semantic_map.commit(wanted(things())).changed
     assert semantic_map.commit(said(things(100, first=1000), "second")).changed
@@ -155,15 +155,15 @@ def test_a_guess_that_was_wrong_is_worked_out_here(new_map, helped, monkeypatch)
 
 
 def test_a_process_that_dies_costs_nothing_but_time(new_map, few_are_many, monkeypatch, caplog):
-    monkeypatch.setattr(map_state, "Ahead", partial(Ahead, command=DIES))
+    monkeypatch.setattr(map_state, "Precomputation", partial(Precomputation, command=DIES))
     semantic_map, load = new_map(), wanted(things())
     there = seen(semantic_map, semantic_map.commit(load))
-    assert "working out ahead" in caplog.text
+    assert "precomputes facts failed" in caplog.text
     assert there == alone(monkeypatch, new_map(), load)
 
 
 def test_one_that_does_not_start_is_done_without(new_map, few_are_many, monkeypatch):
-    monkeypatch.setattr(map_state, "Ahead", partial(Ahead, command=["/nowhere/python"]))
+    monkeypatch.setattr(map_state, "Precomputation", partial(Precomputation, command=["/nowhere/python"]))
     semantic_map, load = new_map(), wanted(things())
     there = seen(semantic_map, semantic_map.commit(load))
     assert there == alone(monkeypatch, new_map(), load)
@@ -173,10 +173,10 @@ def test_a_load_that_is_refused_leaves_no_process_and_nothing_behind(new_map, fe
     processes = []
 
     def kept(*args):
-        processes.append(Ahead(*args))
+        processes.append(Precomputation(*args))
         return processes[-1]
 
-    monkeypatch.setattr(map_state, "Ahead", kept)
+    monkeypatch.setattr(map_state, "Precomputation", kept)
     semantic_map = new_map()
     before = set(semantic_map.reasoner.given())
     again = [*things(), next(things())]

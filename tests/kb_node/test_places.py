@@ -7,9 +7,9 @@ import pytest
 
 from semmap.nodes.kb_node.answers import trials
 from semmap.nodes.kb_node.documents import rdf
-from semmap.nodes.kb_node.relations.facts.said import denial
-from semmap.nodes.kb_node.relations.facts.sayings import Sayings
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.relations.facts.asserted_locations import AssertedLocations
+from semmap.nodes.kb_node.relations.facts.contradictions import find_contradiction
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.undo import undo
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -117,7 +117,7 @@ def test_a_move_takes_back_what_geometry_then_denies(room):
     before = home.state(room)[1:]
     made = move(room, "cup1", (0.0, 2.0, 0.0))
     assert (v.entity_iri("cup1"), v.dm("isOn"), v.entity_iri("table1")) in made.retracted
-    assert stands(made.notes) == ["taken back: cup1 was said to be on table1; it stands"]
+    assert stands(made.notes) == ["taken back: cup1 was asserted to be on table1; it stands"]
     assert (said(room), said(room, "isLocatedIn")) == (set(), {("cup1", "kitchen1")})
     assert room.entity("cup1").properties == {"isLocatedIn": ("kitchen1",)}
     take_back(room)
@@ -128,7 +128,7 @@ def test_a_move_takes_back_what_geometry_then_denies(room):
 def test_so_does_the_move_of_the_other_one_and_what_is_said_the_other_way_round(room):
     say(room, "table1", "supports", "cup1")
     made = move(room, "table1", (-3.0, 0.0, 0.0))
-    assert stands(made.notes) == ["taken back: cup1 was said to be on table1; it stands"]
+    assert stands(made.notes) == ["taken back: cup1 was asserted to be on table1; it stands"]
     assert said(room, "supports") == set()
 
 
@@ -150,13 +150,13 @@ def test_what_still_holds_stays(room):
 
 def test_what_is_said_against_geometry_stays_and_is_noted(room):
     made = say(room, "cup1", "isOn", "table2")
-    assert stands(made.notes) == ["cup1 was said to be on table2; it stands"]
+    assert stands(made.notes) == ["cup1 was asserted to be on table2; it stands"]
     assert said(room) == {("cup1", "table2")}
     stays = move(room, "apple1", (0.1, 0.01, TOP + 0.04))
     assert not stays.notes
     assert said(room) == {("cup1", "table2")}
     made = move(room, "cup1", (-0.1, 0.0, TOP + 0.02))
-    assert made.notes[0].startswith("taken back: cup1 was said to be on table2")
+    assert made.notes[0].startswith("taken back: cup1 was asserted to be on table2")
     assert said(room) == set()
 
 
@@ -165,15 +165,15 @@ def test_what_one_commit_says_it_does_not_take_back(room):
     edit = Edit(name="cup1", at=(3.0, 3.0, 0.0), set=(Statement(property="isOn", values=("table2",)),))
     made = commit(room, edit=(edit,))
     assert stands(made.notes) == [
-        "taken back: cup1 was said to be on table1; it stands",
-        "cup1 was said to be on table2; it stands",
+        "taken back: cup1 was asserted to be on table1; it stands",
+        "cup1 was asserted to be on table2; it stands",
     ]
     assert said(room) == {("cup1", "table2")}
 
 
 def test_what_came_with_an_addition_is_noted(room):
     made = commit(room, add=(new("book1", "Book", (5.0, 0.0, 0.0), on="table2"),))
-    assert stands(made.notes) == ["book1 was said to be on table2; it stands"]
+    assert stands(made.notes) == ["book1 was asserted to be on table2; it stands"]
 
 
 def test_nothing_is_denied_that_is_not_known(room):
@@ -202,7 +202,7 @@ def test_a_dry_run_shows_it_and_does_nothing(room):
     before = home.state(room)
     wanted = Transaction(id="dry", source="operator", edit=(Edit(name="cup1", at=(0.0, 2.0, 0.0)),))
     tried = trials.of(room, lambda: room.commit(wanted))
-    assert stands(tried.notes) == ["taken back: cup1 was said to be on table1; it stands"]
+    assert stands(tried.notes) == ["taken back: cup1 was asserted to be on table1; it stands"]
     assert home.state(room) == before
     assert said(room) == {("cup1", "table1")}
 
@@ -271,7 +271,7 @@ def test_it_is_the_same_after_a_restart(room):
     room._journal = again._journal
     assert home.state(again) == before
     assert again._journal.commit(made.seq).notes == made.notes
-    logged = Past(again._journal).history(History(name="cup1"))[-1]
+    logged = HistoryReader(again._journal).history(History(name="cup1"))[-1]
     assert logged.notes == made.notes
     assert [change.text for change in logged.changes][1] == "isOn: - table1"
 
@@ -282,7 +282,7 @@ def test_undo_of_what_took_back_after_more_was_said(room):
     say(room, "cup1", "isOn", "table2")
     back = take_back(room, moved.seq)
     assert said(room) == {("cup1", "table1")}
-    assert stands(back.notes) == ["taken back: cup1 was said to be on table2; it stands"]
+    assert stands(back.notes) == ["taken back: cup1 was asserted to be on table2; it stands"]
 
 
 def test_carry(room):
@@ -391,8 +391,8 @@ def test_laws(room, seed):
         own = set(made.inserted)
         for triple, (thing, relation, other) in room.places._sayings.about(moved).items():
             if triple not in own:
-                assert denial(room.places.space(), (thing, relation, other)) is None
-        fresh = Sayings(lambda p: room.reasoner.asserted(None, p, None))
+                assert find_contradiction(room.places.space(), (thing, relation, other)) is None
+        fresh = AssertedLocations(lambda p: room.reasoner.asserted(None, p, None))
         assert fresh.about(room.names) == room.places._sayings.about(room.names)
         if dice.random() < 0.5:
             take_back(room, made.seq)

@@ -10,7 +10,7 @@ from semmap.nodes.kb_node.answers.standing_places import StandingPlaces
 from semmap.nodes.kb_node.answers.whereabouts import Now
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
 from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
@@ -69,7 +69,7 @@ def test_what_comes_into_a_crowd_is_told_so(flat):
     cups = tuple(NewEntity(name=f"cup{k}", class_iri=v.bare(v.dm("Cup")), pose=pose) for k in range(50, 250))
     commit = flat.commit(Transaction(id="cups", source="operator", add=cups))
     (note,) = commit.notes
-    assert note.endswith("what they are on, inside or beside is looked for among the 100 largest")
+    assert note.endswith("relations (on, inside, beside) are computed only with the 100 largest")
     assert flat.places.crowds() == (note,)
     assert {on(f"cup{k}", "coffee_table1") for k in range(50, 250)} <= set(flat.inferred())
     elsewhere = flat.commit(moved(flat, "apple1", (8.2, 2.2, 0.74)))
@@ -103,7 +103,7 @@ def test_undo_and_the_past_and_a_restart_give_what_was(flat, tmp_path):
         flat.commit(moved(flat, dice.choice(movable), dice.choice(spots)))
         states[flat.seq] = state(flat)
     last = flat.seq
-    past = Past(flat._journal)
+    past = HistoryReader(flat._journal)
     for seq in dice.sample(sorted(states), 4):
         assert {e.name: e.types for e in past.entities(seq, None, ())} == states[seq][2]
     undo.undo(flat, flat._journal, TakeBack(id="back", source="operator", commit=last))
@@ -217,7 +217,7 @@ def test_a_dry_run_of_another_tbox_notes_what_it_would_withhold(flat):
 def test_what_is_said_to_be_in_itself_is_noted(flat):
     said = (v.entity_iri("kitchen1"), v.dm("isLocatedIn"), v.entity_iri("kitchen1"))
     commit = flat.commit(Transaction(id="self", source="operator", insert=(said,)))
-    note = "kitchen1 was said to be in kitchen1; nothing is on, in or inside itself"
+    note = "kitchen1 was asserted to be in kitchen1; an object cannot be on, in or inside itself"
     assert commit.notes == (note,)
     assert [relation.text for relation in Now(flat).denied()] == [note]
 

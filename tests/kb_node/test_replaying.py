@@ -10,7 +10,7 @@ import pytest
 from semmap.nodes.kb_node.config import Replay
 from semmap.nodes.kb_node.replaying import CHANGES, Player, missing, refusing
 from semmap.nodes.kb_node.storage.journal import FILENAME
-from semmap.nodes.kb_node.storage.replay.preparing import SOURCE
+from semmap.nodes.kb_node.storage.replay.preparation import SOURCE
 from semmap.schemas import errors
 from semmap.schemas.commits import NewEntity, Transaction
 from semmap.schemas.replies import NodeStatus, SystemStatus

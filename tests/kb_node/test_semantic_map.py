@@ -249,7 +249,7 @@ def test_a_checkpoint_of_other_code_is_read_again(semantic_map, monkeypatch):
     before = semantic_map.snapshot()
     assert [e.provenance.commit for e in before.entities] == [2]
     with monkeypatch.context() as other:
-        other.setattr(conclusions_format, "mark", lambda: b"other")
+        other.setattr(conclusions_format, "format_mark", lambda: b"other")
         semantic_map.show([structs.replace(entity, class_="Stool") for entity in semantic_map.entities()])
         semantic_map.checkpoint()
     again = home.reopened(semantic_map)

@@ -15,7 +15,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from semmap.nodes.extern.movie.film import Film
 from semmap.nodes.extern.movie.storyboard import Scene, interpolate, scenes, steps, total_s
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.kb_node.storage.replay.spans import span_of
 from semmap.nodes.sim_node.vision.offscreen_scene import OffscreenScene
@@ -37,7 +37,7 @@ def render_video(journal: Journal, file: Path, wanted: Film, tell: Callable[[str
     and for a video of more than an hour. Raises BadFile for a world or a file that cannot be used.
     """
     span = span_of(journal, wanted.since, wanted.until)
-    past = Past(journal)
+    past = HistoryReader(journal)
     start = {entity.name: entity for entity in past.entities(span.since)}
     commits = past.commits(range(span.since + 1, span.until + 1))
     is_compacted = span.since == journal.beginning.seq

@@ -9,7 +9,7 @@ from semmap.nodes.kb_node.answers import answers
 from semmap.nodes.kb_node.answers.inventories import LARGEST, Inventories
 from semmap.nodes.kb_node.answers.sightings import Sightings
 from semmap.nodes.kb_node.answers.whereabouts import Now
-from semmap.nodes.kb_node.relations.selection import only_meant
+from semmap.nodes.kb_node.relations.selection import resolve_single
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.language import nouns
 from semmap.nodes.language.telling import account
@@ -36,7 +36,7 @@ class Accounts:
         """A text of the map, a place or a thing. Raises UnknownName, BadRequest for an ambiguous word."""
         name = query.name
         if name is not None and self._map.find(name) is None:
-            name = only_meant(tuple(self._map.entities()), name)
+            name = resolve_single(tuple(self._map.entities()), name)
         told = self._told(name, query.words)
         words = told.text.split()  # what was quoted may have had lines of its own
         if len(words) > query.words:  # as the label of a class may have

@@ -14,9 +14,9 @@ from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.documents.abox_document import undeclared_classes
 from semmap.nodes.kb_node.owlrl.consistency_check import find_owlrl_faults
 from semmap.nodes.kb_node.reasoner import GivenFacts, Inconsistent, Reasoner
-from semmap.nodes.kb_node.relations.facts import said
-from semmap.nodes.kb_node.relations.facts.beside import MIRRORED, Beside
-from semmap.nodes.kb_node.relations.facts.derived import Derived
+from semmap.nodes.kb_node.relations.facts import contradictions
+from semmap.nodes.kb_node.relations.facts.pair_facts import MIRRORED, PairFacts
+from semmap.nodes.kb_node.relations.facts.pair_properties import PairProperties
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.semantic_map import SemanticMap
@@ -96,14 +96,14 @@ def pairs_of(
     tbox: Collection[Triple], entities: Iterable[Entity]
 ) -> Callable[[Space, str | None], Iterator[Triple]]:
     """Measures pairs of these entities, of all or (given a name) of one, as triples."""
-    derived = Derived(tbox)
+    derived = PairProperties(tbox)
     iris = {entity.name: v.iri(entity.iri) for entity in entities}
 
     def measured(space: Space, name: str | None) -> Iterator[Triple]:
         if not derived.sources:
             return
-        pairs = Beside(space)
-        found = pairs.ask(MIRRORED, ()) if name is None else pairs.ask((), [name])
+        pairs = PairFacts(space)
+        found = pairs.set_scope(MIRRORED, ()) if name is None else pairs.set_scope((), [name])
         for fact in found.come:
             yield from derived.triples(fact, iris)
 
@@ -125,11 +125,11 @@ def worth_saying(triples: Iterable[Triple]) -> Iterator[Triple]:
 def said_of_place(semantic_map: SemanticMap, entity: Entity | None = None) -> Iterator[Fact]:
     """What is asserted of where an entity is, or all entities are."""
     iri = None if entity is None else v.iri(entity.iri)
-    for property_, (_, is_inverse) in said.PROPERTIES.items():
+    for property_, (_, is_inverse) in contradictions.PROPERTIES.items():
         for triple in semantic_map.reasoner.asserted(
             None if is_inverse else iri, property_, iri if is_inverse else None
         ):
-            if (fact := said.fact_of(triple)) is not None:
+            if (fact := contradictions.fact_of(triple)) is not None:
                 yield fact
 
 

@@ -16,12 +16,12 @@ from msgspec import Struct
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.facts.rules import RULES
 from semmap.nodes.kb_node.relations.geometry.opening import positions_of
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.ontology.model_shapes import own_size_m
 from semmap.schemas.entities import Entity, Pose, Size, Stated
@@ -44,10 +44,10 @@ class _Stood(Struct, frozen=True):
     properties: dict[str, Stated] = {}
 
     @property
-    def placed(self) -> Placed:
+    def placed(self) -> PlacedEntity:
         stated = self.properties.get(EXTENT) if self.place else None
         held_by = self.properties.get(IS_GRASPED_BY)
-        return Placed(
+        return PlacedEntity(
             name=self.name,
             iri=self.iri,
             pose=self.pose,
@@ -87,9 +87,11 @@ class Beginnings(NamedTuple):
         return f"since commit {latest}" if latest else f"since before commit {self.first}"
 
 
-def looked_up(journal: Journal, past: Past, facts: Collection[Fact], limits: Thresholds) -> Beginnings:
+def looked_up(
+    journal: Journal, past: HistoryReader, facts: Collection[Fact], limits: Thresholds
+) -> Beginnings:
     """Since when each fact has held without a break."""
-    found = beginnings(journal.outlines(Moves), past.at_the_beginning().values(), facts, limits)
+    found = beginnings(journal.decode_partially(Moves), past.initial_entities().values(), facts, limits)
     return Beginnings(found, journal.first)
 
 
@@ -119,7 +121,7 @@ def spells(
     that it is in; with `in_any_place` also in all that this is a part of,
     and a place in those that it is within.
     """
-    there = {entity.name: Placed.of(entity) for entity in first}
+    there = {entity.name: PlacedEntity.of(entity) for entity in first}
     by_name = groupby(sorted(facts), key=lambda fact: fact[0])
     spots = [_Spot(name, frozenset(about), limits, there, in_any_place) for name, about in by_name]
     found: dict[Fact, list[tuple[int, int | None]]] = {fact: [] for fact in facts}
@@ -155,7 +157,7 @@ class _Spot:
         name: str,
         facts: frozenset[Fact],
         limits: Thresholds,
-        there: dict[str, Placed],
+        there: dict[str, PlacedEntity],
         in_any_place: bool,
     ) -> None:
         """`facts` are about the thing; `there` is everybody, as they are at first."""
@@ -165,13 +167,15 @@ class _Spot:
         self._limits = limits
         self._begin(there)
 
-    def _begin(self, there: dict[str, Placed]) -> None:
+    def _begin(self, there: dict[str, PlacedEntity]) -> None:
         self._own = there.get(self._name)
         near = [placed for placed in there.values() if self._is_near(placed)]
         self._space = Space(near, self._limits)
 
     def follow(
-        self, shifted: dict[str, tuple[Placed | None, Placed | None]], there: dict[str, Placed]
+        self,
+        shifted: dict[str, tuple[PlacedEntity | None, PlacedEntity | None]],
+        there: dict[str, PlacedEntity],
     ) -> bool:
         """Take over who is somewhere else now; whether that matters here."""
         if self._name in shifted:
@@ -182,7 +186,7 @@ class _Spot:
             if self._is_near(was) or self._is_near(now):
                 matters = True
                 if now is None:
-                    self._space.take(name)
+                    self._space.remove(name)
                 else:
                     self._space.put(now)
         return matters
@@ -208,7 +212,7 @@ class _Spot:
         made = measures.within(solid, place, self._space.limits, also_places=True)
         return made is not None and made.holds
 
-    def _is_near(self, placed: Placed | None) -> bool:
+    def _is_near(self, placed: PlacedEntity | None) -> bool:
         own = self._own
         if placed is None or placed.pose is None or own is None or own.pose is None:
             return False
@@ -216,7 +220,7 @@ class _Spot:
         return apart <= _reach(placed) + _reach(own) + _MARGIN_M
 
 
-def _reach(placed: Placed) -> float:
+def _reach(placed: PlacedEntity) -> float:
     """How far from its position a thing may extend, however it is turned [m]."""
     size = placed.size_m or own_size_m(placed.model)
     return 0.0 if size is None else math.hypot(*size)

@@ -9,13 +9,13 @@ from typing import Final, get_args
 from semmap.nodes.kb_node.answers.beginnings import Moves
 from semmap.nodes.kb_node.answers.beginnings import spells as spells_of
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact, Facts
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring.phrases import SPOKEN
+from semmap.nodes.kb_node.relations.measuring.phrases import PHRASES
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
-from semmap.nodes.kb_node.relations.selection import is_in, is_on, only_meant
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.relations.selection import is_in, is_on, resolve_single
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.schemas import errors, wording
 from semmap.schemas.changes import Change, between, removed
@@ -29,7 +29,7 @@ _LONGEST = 10
 """How many spells are told one by one in words."""
 
 
-def difference(journal: Journal, past: Past, query: Diff, limits: Thresholds) -> Difference:
+def difference(journal: Journal, past: HistoryReader, query: Diff, limits: Thresholds) -> Difference:
     """What changed between `query.since` and `query.until`. Raises Refused, BadRequest."""
     first = past.commit_at(query.since)
     last = past.last if query.until is None else past.commit_at(query.until)
@@ -65,18 +65,18 @@ def _stamp_ns(journal: Journal, seq: int) -> int:
 
 
 def _said(relation: RelationName, came: bool, other: str) -> str:
-    words = SPOKEN[relation]
+    words = PHRASES[relation]
     return f"{words if came else words.replace('is ', 'is no longer ', 1)} {other}"
 
 
 def _facts(there: Iterable[Entity], limits: Thresholds) -> set[Fact]:
     facts = Facts(limits)
-    for _ in facts.filling(there):
+    for _ in facts.fill_steps(there):
         pass
     return set(facts)
 
 
-def spells(journal: Journal, past: Past, query: WasWhen, limits: Thresholds) -> Spells:
+def spells(journal: Journal, past: HistoryReader, query: WasWhen, limits: Thresholds) -> Spells:
     """When the relation held. Raises UnknownName, BadRequest for a word that several things have."""
     there = {entity.name: entity for entity in past.entities(past.last)} if past.last else {}
     one, other = (_name(word, there, past) for word in (query.name, query.other))
@@ -97,12 +97,12 @@ def spells(journal: Journal, past: Past, query: WasWhen, limits: Thresholds) -> 
 
 
 def _told(
-    one: str, relation: KeptRelation, other: str, journal: Journal, past: Past, limits: Thresholds
+    one: str, relation: KeptRelation, other: str, journal: Journal, past: HistoryReader, limits: Thresholds
 ) -> tuple[str, tuple[Spell, ...]]:
     """When a relation held, in words and as spells."""
     fact = (one, relation, other)
-    first = past.at_the_beginning().values()
-    found = spells_of(journal.outlines(Moves), first, [fact], limits, in_any_place=True)[fact]
+    first = past.initial_entities().values()
+    found = spells_of(journal.decode_partially(Moves), first, [fact], limits, in_any_place=True)[fact]
     told = tuple(
         Spell(
             since=since,
@@ -116,7 +116,7 @@ def _told(
 
 
 def _spoken(relation: KeptRelation) -> str:
-    return SPOKEN[relation].removeprefix("is ")
+    return PHRASES[relation].removeprefix("is ")
 
 
 def _borne_by(
@@ -125,10 +125,10 @@ def _borne_by(
     """What a thing is on or inside now, where that is in turn on or inside the other; else None."""
     if relation not in ("isOn", "isInside"):
         return None
-    space = Space(map(Placed.of, there.values()), limits)
+    space = Space(map(PlacedEntity.of, there.values()), limits)
     if (solid := space.solids.get(one)) is None:
         return None
-    container, supports, _ = space.whereabouts(solid)
+    container, supports, _ = space.spatial_relations(solid)
     below: list[tuple[KeptRelation, Solid]] = [("isOn", support) for support, _ in supports]
     if container is not None:
         below.insert(0, ("isInside", container[0]))
@@ -139,11 +139,11 @@ def _borne_by(
     return None
 
 
-def _name(word: str, there: Mapping[str, Entity], past: Past) -> str:
+def _name(word: str, there: Mapping[str, Entity], past: HistoryReader) -> str:
     """The entity that a word names: by its name, now or ever, else by reference or class."""
     if word in there or past.knows(word):
         return word
-    return only_meant(tuple(there.values()), word)
+    return resolve_single(tuple(there.values()), word)
 
 
 def _in_words(name: str, where: str, told: Sequence[Spell], now_ns: int) -> str:

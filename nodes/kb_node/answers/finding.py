@@ -8,11 +8,11 @@ from msgspec import structs
 
 from semmap.nodes.kb_node.answers.speakable import item, terms
 from semmap.nodes.kb_node.entities.class_table import ClassTable
-from semmap.nodes.kb_node.relations.asked import Asked
-from semmap.nodes.kb_node.relations.measuring.phrases import SPOKEN
+from semmap.nodes.kb_node.relations.measuring.phrases import PHRASES
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.viewing import View
-from semmap.nodes.kb_node.relations.selection import is_in, is_on, only_meant
+from semmap.nodes.kb_node.relations.relation_cache import RelationCache
+from semmap.nodes.kb_node.relations.selection import is_in, is_on, resolve_single
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.language.finding import asking_back, telling
 from semmap.nodes.language.finding.finding import find
@@ -50,8 +50,8 @@ class Finding:
         """What is described. Raises BadRequest, UnknownName for an asker or viewer that is not there."""
         space = self._map.places.space()
         asker = None if query.asker is None else self._named(query.asker)
-        around = Asked(space, self._view(query, space), self._map.beliefs.left_out)
-        with space.remembering():
+        around = RelationCache(space, self._view(query, space), self._map.beliefs.left_out)
+        with space.caching():
             answer = find(query.text, self.known(), around, asker)
             found = telling.told(answer)
         return Sought(structs.replace(found, seq=self._map.seq), missing(answer))
@@ -59,9 +59,9 @@ class Finding:
     def described(self, text: str) -> tuple[str, ...]:
         """The entities that a text describes, by name; none where that cannot be said."""
         space = self._map.places.space()
-        around = Asked(space, None, self._map.beliefs.left_out)
+        around = RelationCache(space, None, self._map.beliefs.left_out)
         try:
-            with space.remembering():
+            with space.caching():
                 found = find(text, self.known(), around)
         except errors.BadRequest:
             return ()
@@ -77,15 +77,15 @@ class Finding:
 
     def where(self, thing: str) -> str:
         """What a thing is on, inside or in: `on desk1`; "" for nothing."""
-        around = Asked(self._map.places.space(), None, self._map.beliefs.left_out)
-        relation, other = next(iter(around.whereabouts(thing)), (None, ""))
-        return f"{SPOKEN[relation].removeprefix('is ')} {other}" if relation else ""
+        around = RelationCache(self._map.places.space(), None, self._map.beliefs.left_out)
+        relation, other = next(iter(around.spatial_relations(thing)), (None, ""))
+        return f"{PHRASES[relation].removeprefix('is ')} {other}" if relation else ""
 
     def question(self, names: tuple[str, ...], language: Language) -> str:
         """What to ask back to learn which of several entities is meant."""
         space = self._map.places.space()
-        around = Asked(space, None, self._map.beliefs.left_out)
-        with space.remembering():
+        around = RelationCache(space, None, self._map.beliefs.left_out)
+        with space.caching():
             return asking_back.question(names, Resolver(self.known(), around, language))
 
     def known(self) -> Known:
@@ -111,4 +111,4 @@ class Finding:
         return View.of(viewer)
 
     def _named(self, word: str) -> str:
-        return word if self._map.find(word) is not None else only_meant(tuple(self._map.entities()), word)
+        return word if self._map.find(word) is not None else resolve_single(tuple(self._map.entities()), word)

@@ -9,9 +9,9 @@ from typing import Final
 
 from semmap.nodes.kb_node.answers.differences import spells
 from semmap.nodes.kb_node.answers.speakable import item
-from semmap.nodes.kb_node.relations.measuring.phrases import SPOKEN
+from semmap.nodes.kb_node.relations.measuring.phrases import PHRASES
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.language.finding.missing import Missing
 from semmap.schemas import errors
@@ -24,7 +24,7 @@ _LOOKED_AT: Final = 200
 
 
 def gone(
-    journal: Journal, past: Past, sought: Missing, there: Set[str], limits: Thresholds
+    journal: Journal, past: HistoryReader, sought: Missing, there: Set[str], limits: Thresholds
 ) -> tuple[str, ...]:
     """Sentences on when it was last there, the newest first; for any thread. there: who is there now."""
     removed = islice(_removed(journal, past, sought, there), _MOST)
@@ -32,7 +32,7 @@ def gone(
     return (*removed, *moved)
 
 
-def _removed(journal: Journal, past: Past, sought: Missing, there: Set[str]) -> Iterator[str]:
+def _removed(journal: Journal, past: HistoryReader, sought: Missing, there: Set[str]) -> Iterator[str]:
     """Those of that kind that somebody took out of the map."""
     touched = [(seq, name) for name, seq in journal.last_touches(past.last) if name not in there]
     for seq, name in sorted(touched, reverse=True)[:_LOOKED_AT]:
@@ -44,13 +44,13 @@ def _removed(journal: Journal, past: Past, sought: Missing, there: Set[str]) -> 
             yield f"{name} was there until commit {seq}, {_at(journal, seq)}"
 
 
-def _moved(journal: Journal, past: Past, sought: Missing, limits: Thresholds) -> Iterator[str]:
+def _moved(journal: Journal, past: HistoryReader, sought: Missing, limits: Thresholds) -> Iterator[str]:
     """Those that are there, and were where they were said to be."""
     for name, relation, other in sought.pairs:
         asked = WasWhen(name=name, relation=relation, other=other)
         held = spells(journal, past, asked, limits).spells
         if held and (until := held[-1].until) is not None:
-            where = SPOKEN[relation].removeprefix("is ")
+            where = PHRASES[relation].removeprefix("is ")
             yield f"{name} was {where} {other} until commit {until}, {_at(journal, until)}"
 
 

@@ -154,7 +154,7 @@ def _around(space: Space, name: str) -> str | None:
     solid = space.solids.get(name)
     if solid is None:
         return None
-    place = space.whereabouts(solid).place
+    place = space.spatial_relations(solid).place
     return None if place is None or place[0].volume <= solid.volume else place[0].name
 
 

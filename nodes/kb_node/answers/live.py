@@ -39,7 +39,7 @@ class LiveEntities:
         if not elsewhere:
             yield
             return
-        with self._map.places.space().supposing(elsewhere):
+        with self._map.places.space().with_changes(elsewhere):
             yield
 
     def _elsewhere(self) -> Iterator[Entity]:

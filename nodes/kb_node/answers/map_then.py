@@ -10,14 +10,14 @@ from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.documents.abox_document import undeclared_classes
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.sparql.protocol import Surrounded
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.storage import closure_cache
-from semmap.nodes.kb_node.storage.compaction.compaction import asserted_after
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.compaction.compaction import collect_asserted
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.ontology import prefixes
 from semmap.ontology import vocabulary as v
@@ -35,17 +35,17 @@ class MapThen(NamedTuple):
     seq: int
     asserted: tuple[Triple, ...]
     believed: Believed = UNCHANGED
-    placed: tuple[Placed, ...] = ()
+    placed: tuple[PlacedEntity, ...] = ()
     limits: Thresholds | None = None
 
 
-def map_then(journal: Journal, past: Past, seq: int, *, inferred: bool) -> MapThen:
+def map_then(journal: Journal, past: HistoryReader, seq: int, *, inferred: bool) -> MapThen:
     """The map after a commit; with `inferred` also what was computed, worked out again."""
-    asserted = asserted_after(journal, seq)
+    asserted = collect_asserted(journal, seq)
     if not inferred:
         return MapThen(seq, tuple(asserted))
     held = _held(journal, past, seq, asserted)
-    placed = tuple(map(Placed.of, held.there.values()))
+    placed = tuple(map(PlacedEntity.of, held.there.values()))
     return MapThen(seq, tuple(asserted), held.beliefs.all(), placed, held.classes.limits)
 
 
@@ -60,9 +60,9 @@ class _Held(NamedTuple):
     there: dict[str, Entity]
 
 
-def _held(journal: Journal, past: Past, seq: int, asserted: set[Triple]) -> _Held:
+def _held(journal: Journal, past: HistoryReader, seq: int, asserted: set[Triple]) -> _Held:
     tbox = frozenset(rdf.parse(journal.tbox(seq), f"the TBox in {journal.path}"))
-    reasoner = closure_cache.reasoner(tbox, journal.path.parent, of_the_past=True)
+    reasoner = closure_cache.load_reasoner(tbox, journal.path.parent, of_the_past=True)
     classes = ClassTable(reasoner)
     beliefs = Beliefs(reasoner, classes.limits)
     beliefs.change((), asserted - tbox, lenient=True)
@@ -71,7 +71,7 @@ def _held(journal: Journal, past: Past, seq: int, asserted: set[Triple]) -> _Hel
     return _Held(tbox, asserted - tbox, reasoner, classes, beliefs, there)
 
 
-def export_then(journal: Journal, past: Past, query: Export) -> Document:
+def export_then(journal: Journal, past: HistoryReader, query: Export) -> Document:
     """The map as of `query.as_of`, as a document; it was checked when it was committed.
 
     With `inferred` what followed and was measured then is worked out again, by the rules of today. Raises
@@ -81,10 +81,10 @@ def export_then(journal: Journal, past: Past, query: Export) -> Document:
         raise errors.InternalError("the question names no moment")
     seq = past.commit_at(query.as_of)
     if query.inferred:
-        held = _held(journal, past, seq, asserted_after(journal, seq))
+        held = _held(journal, past, seq, collect_asserted(journal, seq))
         return answers.document(_picture(held, seq), query.format)
     tbox = frozenset(rdf.parse(journal.tbox(seq), f"the TBox in {journal.path}"))
-    abox = sorted(asserted_after(journal, seq) - tbox)
+    abox = sorted(collect_asserted(journal, seq) - tbox)
     used = prefixes.used_by(abox, prefixes.WELL_KNOWN)
     return answers.document(answers.Picture([], abox, seq, used), query.format)
 
@@ -96,12 +96,12 @@ def _picture(then: _Held, seq: int) -> answers.Picture:
     declared = [(c, v.RDF_TYPE, v.OWL_CLASS) for c in undeclared_classes(abox, then.classes)]
     written = [*abox, *following, *declared]
     measures = answers.pairs_of(then.tbox, then.there.values())
-    space = Space(tuple(map(Placed.of, then.there.values())), then.classes.limits)
+    space = Space(tuple(map(PlacedEntity.of, then.there.values())), then.classes.limits)
     used = prefixes.used_by(written, prefixes.WELL_KNOWN)
     return answers.Picture([], written, seq, used, lambda: measures(space, None))
 
 
-def ask_then(journal: Journal, past: Past, query: Sparql) -> SparqlResult:
+def ask_then(journal: Journal, past: HistoryReader, query: Sparql) -> SparqlResult:
     """The answer of a query about the map as of `query.as_of`, from a process of its own.
 
     Raises the query's error; Refused when there was no map, BadRequest for what is no moment.

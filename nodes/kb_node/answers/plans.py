@@ -22,9 +22,9 @@ def plan_of(entities: Iterable[Entity], walls: tuple[Outline, ...] | None) -> Pl
             continue
         if not entity.place:
             parts = tuple(
-                Outline(corners=tuple(part.shadow), low=part.low[2], high=part.high[2])
+                Outline(corners=tuple(part.projection), low=part.low[2], high=part.high[2])
                 for part in solid.parts
-                if len(part.shadow) > 2
+                if len(part.projection) > 2
             )
             is_door = "Door" in entity.types
             things.append(

@@ -11,7 +11,7 @@ from typing import Final
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.storage.history import Past, sighting
+from semmap.nodes.kb_node.storage.history import HistoryReader, sighting
 from semmap.schemas import wording
 from semmap.schemas.entities import Entity, Provenance
 from semmap.schemas.perception import DISPLACED, MISSING, Observations
@@ -23,7 +23,7 @@ _JUST_NOW_S: Final = 10.0
 class Sightings:
     """What is known of when things were seen. `see`, `is_gone` and `there` are for the node's thread."""
 
-    def __init__(self, past: Past) -> None:
+    def __init__(self, past: HistoryReader) -> None:
         self._past = past
         self._seen_ns: dict[str, int] = {}
 

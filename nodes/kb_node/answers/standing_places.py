@@ -12,11 +12,11 @@ from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.geometry.solids import solid_of
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.selection import (
-    Meant,
-    chosen,
+    Targets,
+    filter_entities,
+    require_complete,
     require_possible,
-    require_whole,
-    resolved,
+    resolve_words,
 )
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.sparql.protocol import News
@@ -42,7 +42,7 @@ class _Standing:
     where: Where
     lease_s: float
     ends: float
-    meant: Meant
+    meant: Targets
     found: dict[str, Row]
     """Those that are there, by name."""
     seq: int
@@ -70,11 +70,11 @@ class StandingPlaces:
         if len(self._standing) >= STANDING:
             raise errors.Refused(f"there are {STANDING} standing queries already; end one first")
         where = command.where or Where()
-        require_whole(where)
+        require_complete(where)
         class_name = None
         if command.class_ is not None:
             class_name = v.local_name(asked_terms.class_(self._map, command.class_))
-        those = resolved(where, tuple(self._map.entities()))
+        those = resolve_words(where, tuple(self._map.entities()))
         require_possible(self._map.places.space(), those, where.within)
         if not self._standing:
             self._known = {entity.name: entity for entity in self._map.entities()}
@@ -150,7 +150,7 @@ class StandingPlaces:
                 if solid is not None:
                     found.update(other.name for other in space.around(solid))
         loads = self._map.places.loads()
-        return found.union(*(loads.all_of(name) for name in found))
+        return found.union(*(loads.find_all(name) for name in found))
 
     def _tell(self, standing: _Standing, concerned: set[str], touched: set[str], seq: int) -> None:
         candidates = concerned | standing.found.keys()
@@ -180,15 +180,15 @@ class StandingPlaces:
         class_name = standing.class_name
         candidates = [e for e in found if e is not None and (class_name is None or class_name in e.types)]
         space: Space = self._map.places.space()
-        there = chosen(space, candidates, standing.where, standing.meant, self._map.beliefs.left_out)
+        there = filter_entities(space, candidates, standing.where, standing.meant, self._map.beliefs.left_out)
         return {entity.name: (v.iri(entity.iri),) for entity in there}
 
-    def _meant(self, where: Where) -> Meant:
+    def _meant(self, where: Where) -> Targets:
         """Who is meant now; nobody by a word that nobody is called any more."""
         try:
-            return resolved(where, tuple(self._map.entities()))
+            return resolve_words(where, tuple(self._map.entities()))
         except errors.UnknownName:
-            return Meant(*(None if word is None else frozenset() for word in where.words))
+            return Targets(*(None if word is None else frozenset() for word in where.words))
 
     def _drop(self, standing: _Standing) -> None:
         del self._standing[standing.watch]

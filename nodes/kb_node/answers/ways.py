@@ -7,9 +7,9 @@ from concurrent.futures import Future
 from typing import Protocol, TypeVar
 
 from semmap.nodes.kb_node.answers.plans import plan_of
-from semmap.nodes.kb_node.relations.selection import only_meant
+from semmap.nodes.kb_node.relations.selection import resolve_single
 from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.navigation.path_planning import find_path, parse_position
 from semmap.schemas.bridge import PlanOf, WayOf
 from semmap.schemas.entities import Entity
@@ -30,7 +30,7 @@ class Aside(Protocol):
 class Ways:
     """Owned by the node's thread; `aside` works beside it."""
 
-    def __init__(self, semantic_map: SemanticMap, past: Past, aside: Aside) -> None:
+    def __init__(self, semantic_map: SemanticMap, past: HistoryReader, aside: Aside) -> None:
         self._map = semantic_map
         self._past = past
         self._aside = aside
@@ -65,4 +65,4 @@ class Ways:
 
 def _named(there: Sequence[Entity], word: str) -> str:
     """The name that a word means. Raises UnknownName, BadRequest for an ambiguous one."""
-    return word if any(entity.name == word for entity in there) else only_meant(there, word)
+    return word if any(entity.name == word for entity in there) else resolve_single(there, word)

@@ -9,16 +9,21 @@ from msgspec import structs
 
 from semmap.nodes.kb_node.answers import answers, questions
 from semmap.nodes.kb_node.answers.beginnings import Beginnings
+from semmap.nodes.kb_node.relations.facts.contradictions import (
+    PROPERTIES,
+    fact_of,
+    find_contradiction,
+    find_contradictions,
+)
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.facts.rules import COMPUTED
-from semmap.nodes.kb_node.relations.facts.said import PROPERTIES, denial, denied, fact_of
-from semmap.nodes.kb_node.relations.measuring.phrases import SPOKEN
+from semmap.nodes.kb_node.relations.measuring.phrases import PHRASES
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.selection import only_meant, selected
-from semmap.nodes.kb_node.relations.support import on_nothing
-from semmap.nodes.kb_node.relations.telling import explained, relations, whereabouts
+from semmap.nodes.kb_node.relations.relation_reports import explain_relation, list_locations, list_relations
+from semmap.nodes.kb_node.relations.selection import resolve_single, select_entities
+from semmap.nodes.kb_node.relations.support import describe_unsupported
 from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.bridge import Entities
@@ -28,7 +33,7 @@ from semmap.schemas.explanations import Explanation, Term, Triple
 from semmap.schemas.relations import Described, Relation, RelationName
 
 _MEASURED: Final[dict[Term, tuple[RelationName, bool]]] = {
-    **{v.dm(name): (name, False) for name in SPOKEN},
+    **{v.dm(name): (name, False) for name in PHRASES},
     **PROPERTIES,
 }
 """The properties that `explain` has measured; of the inverse ones the object is the thing."""
@@ -65,7 +70,7 @@ class Now:
         if query.where is None:
             return found
         return tuple(
-            selected(
+            select_entities(
                 self._map.places.space(), found, query.where, self._map.entities(), self._map.beliefs.left_out
             )
         )
@@ -85,23 +90,25 @@ class Now:
 
     def _with_where(self, entity: Entity) -> Described:
         space = self._map.places.space()
-        wrong = denied(space, answers.said_of_place(self._map, entity))
+        wrong = find_contradictions(space, answers.said_of_place(self._map, entity))
         left_out = self._map.beliefs.left_out
-        there = (r for r in whereabouts(space, entity.name) if _fact(r) not in left_out)
+        there = (r for r in list_locations(space, entity.name) if _fact(r) not in left_out)
         withheld = tuple(answers.withheld(self._map, entity))
         return Described.of(entity, tuple(there), tuple(wrong), withheld)
 
     def denied(self) -> tuple[Relation, ...]:
         """What was said of where things are and is not so."""
         space = self._map.places.space()
-        return tuple(denied(space, filter(None, map(fact_of, sorted(self._map.reasoner.suppressed())))))
+        return tuple(
+            find_contradictions(space, filter(None, map(fact_of, sorted(self._map.reasoner.suppressed()))))
+        )
 
     def relations(self, query: Relations) -> tuple[Relation, ...]:
         """Where a thing is relative to others. Raises UnknownName; BadRequest for an ambiguous word."""
         named = _named(query, self._map.find, lambda: tuple(self._map.entities()))
         left_out = self._map.beliefs.left_out
         is_fixed = self._map.entity(named.name).fixed
-        found = relations(self._map.places.space(), named, is_fixed=is_fixed)
+        found = list_relations(self._map.places.space(), named, is_fixed=is_fixed)
         return tuple(_as_left_out(r) if left_out and _fact(r) in left_out else r for r in found)
 
     def measured(self, query: Explain) -> Explanation | None:
@@ -109,7 +116,7 @@ class Now:
 
         Raises Refused when it does not hold, UnknownName.
         """
-        relation = next((name for name in SPOKEN if name == query.predicate), None)
+        relation = next((name for name in PHRASES if name == query.predicate), None)
         if relation is None or self._map.classes.property_names.find(relation) is not None:
             return None
         if query.negated:
@@ -119,7 +126,7 @@ class Now:
         for name in ends:
             if name not in space.solids:
                 raise errors.Refused(f"{name} has no position, so it is in no relation to anything")
-        seen = explained(space, ends[0], relation, ends[1])
+        seen = explain_relation(space, ends[0], relation, ends[1])
         if seen is None:
             raise errors.InternalError(f"the relation '{relation}' is not computed")
         if not seen.holds:
@@ -164,7 +171,7 @@ class Now:
         """What geometry says against a fact about a place, as a clause; None where it says nothing."""
         if (fact := fact_of(triple)) is None:
             return None
-        found = denial(self._map.places.space(), fact)
+        found = find_contradiction(self._map.places.space(), fact)
         return None if found is None else found.text.partition("; ")[2]
 
     def _seen(self, triple: Triple) -> Relation | None:
@@ -179,7 +186,7 @@ class Now:
                 return None
         if is_inverse:
             ends.reverse()
-        return explained(self._map.places.space(), ends[0], relation, ends[1])
+        return explain_relation(self._map.places.space(), ends[0], relation, ends[1])
 
     def _is_place(self, name: str) -> bool:
         return self._map.entity(name).place
@@ -194,14 +201,14 @@ class Now:
         """A computed fact, and what was measured of it."""
         relation = COMPUTED[fact[1]]
         name, other = v.entity_name(fact[0]), v.entity_name(fact[2])
-        seen = explained(self._map.places.space(), name, relation, other)
+        seen = explain_relation(self._map.places.space(), name, relation, other)
         return (name, relation, other), v.spoken(fact) if seen is None else seen.text
 
 
 class Then:
     """The map as of `query.as_of`, read from the journal; for any thread."""
 
-    def __init__(self, semantic_map: SemanticMap, past: Past) -> None:
+    def __init__(self, semantic_map: SemanticMap, past: HistoryReader) -> None:
         self._map = semantic_map
         self._past = past
 
@@ -213,7 +220,7 @@ class Then:
         if query.where is None:
             return found
         everyone = self._past.entities(query.as_of, None, ())
-        return tuple(selected(self._space(everyone), found, query.where, everyone))
+        return tuple(select_entities(self._space(everyone), found, query.where, everyone))
 
     def entity(self, query: Get) -> Described:
         """See `Now.entity`; what was wrongly said is not looked for."""
@@ -223,7 +230,7 @@ class Then:
         if not query.where:
             return Described.of(entity)
         space = self._space(self._past.entities(query.as_of, None, ()))
-        there = tuple(whereabouts(space, entity.name))
+        there = tuple(list_locations(space, entity.name))
         return Described.of(entity, there, on_nothing=_on_nothing(space, entity))
 
     def relations(self, query: Relations) -> tuple[Relation, ...]:
@@ -234,7 +241,7 @@ class Then:
         there = {entity.name: entity for entity in everyone}
         named = _named(query, there.get, lambda: everyone)
         is_fixed = named.name in there and there[named.name].fixed
-        return tuple(relations(self._space(everyone), named, is_fixed=is_fixed))
+        return tuple(list_relations(self._space(everyone), named, is_fixed=is_fixed))
 
     def _space(self, entities: Iterable[Entity]) -> Space:
         return Space(entities, self._map.classes.limits)
@@ -247,7 +254,7 @@ def _fact(relation: Relation) -> Fact:
 def _on_nothing(space: Space, entity: Entity) -> str:
     """How high it hovers, or "" for what something bears, or need bear nothing."""
     solid = None if entity.fixed else space.solids.get(entity.name)
-    found = None if solid is None else on_nothing(space, solid)
+    found = None if solid is None else describe_unsupported(space, solid)
     return "" if found is None else found.text
 
 
@@ -262,7 +269,7 @@ def _named(
 ) -> Relations:
     """The query with the names of those whom its words mean: a name, else a reference, else a class."""
     names = {
-        field: only_meant(everyone(), word)
+        field: resolve_single(everyone(), word)
         for field in ("name", "other", "viewer")
         if (word := getattr(query, field)) is not None and find(word) is None
     }

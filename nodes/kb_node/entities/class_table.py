@@ -89,7 +89,9 @@ class ClassTable:
         self.fixed: frozenset[Term] = frozenset(
             c for c in self.names if (self._nearest(c, v.FIXED) or str(c in built_in).lower()) == "true"
         )
-        self.limits = thresholds.of_tbox(lambda p, a: (o for _, _, o in reasoner.asserted(p, a, None)))
+        self.limits = thresholds.read_thresholds(
+            lambda p, a: (o for _, _, o in reasoner.asserted(p, a, None))
+        )
         """When the spatial relations hold."""
         self._spoken: dict[frozenset[Term], tuple[str, ...]] = {}
         self._kinds: dict[tuple[frozenset[Term], frozenset[Term]], Kind | None] = {}

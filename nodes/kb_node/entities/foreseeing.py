@@ -11,7 +11,11 @@ from typing import Final
 
 from semmap.nodes.kb_node.by_property import by_property
 from semmap.nodes.kb_node.entities.class_table import ClassTable
-from semmap.nodes.kb_node.relations.facts.foreseen import Arrival, Coming, Look
+from semmap.nodes.kb_node.relations.facts.precompute_messages import (
+    ClassModel,
+    ExpectedEntities,
+    ExpectedEntity,
+)
 from semmap.ontology import vocabulary as v
 from semmap.schemas.commits import NewEntity, Transaction
 from semmap.schemas.explanations import Term, Triple
@@ -30,7 +34,7 @@ _Said = Mapping[Term, Sequence[Triple]]
 """By property."""
 
 
-def coming(transaction: Transaction, classes: ClassTable) -> Coming | None:
+def coming(transaction: Transaction, classes: ClassTable) -> ExpectedEntities | None:
     """The entities that a transaction adds; None where they are few or too many, or it is not so plain."""
     if transaction.remove or transaction.edit or transaction.retract or classes.alignments:
         return None
@@ -41,21 +45,21 @@ def coming(transaction: Transaction, classes: ClassTable) -> Coming | None:
     return None
 
 
-def _wanted(add: Sequence[NewEntity], classes: ClassTable) -> Coming | None:
+def _wanted(add: Sequence[NewEntity], classes: ClassTable) -> ExpectedEntities | None:
     class_of = {new.class_iri: v.iri(new.class_iri) for new in add}
     if any(new.set for new in add) or not classes.spatial.issuperset(class_of.values()):
         return None
     looks, rows = _looks(class_of.values(), classes)
     row = {iri: rows[c] for iri, c in class_of.items()}
     arrivals = [
-        Arrival(v.entity_iri(n.name), row[n.class_iri], pose.position_m, pose.orientation_wxyz, n.size)
+        ExpectedEntity(v.entity_iri(n.name), row[n.class_iri], pose.position_m, pose.orientation_wxyz, n.size)
         for n in add
         if (pose := n.pose) is not None
     ]
-    return Coming(looks, arrivals)
+    return ExpectedEntities(looks, arrivals)
 
 
-def _said(insert: Iterable[Triple], classes: ClassTable) -> Coming | None:
+def _said(insert: Iterable[Triple], classes: ClassTable) -> ExpectedEntities | None:
     said = by_property(insert)
     at = {s: o for s, _, o in said.get(v.HAS_POSITION, ())}
     if not MANY <= len(at) <= MOST or not said.keys().isdisjoint(_SHAPING):
@@ -73,7 +77,7 @@ def _said(insert: Iterable[Triple], classes: ClassTable) -> Coming | None:
     looks, rows = _looks(class_of.values(), classes)
     look = map(rows.__getitem__, map(class_of.__getitem__, things))
     numbers = (zip(*columns, strict=True) for columns in (position, turn, size))
-    return Coming(looks, list(map(Arrival, things, look, *numbers)))
+    return ExpectedEntities(looks, list(map(ExpectedEntity, things, look, *numbers)))
 
 
 def _objects(said: _Said, property_: Term, subjects: Sequence[Term]) -> list[Term | None]:
@@ -85,7 +89,7 @@ def _objects(said: _Said, property_: Term, subjects: Sequence[Term]) -> list[Ter
     return [found.get(s) for s in subjects]
 
 
-def _looks(classes_of: Iterable[Term], classes: ClassTable) -> tuple[list[Look], dict[Term, int]]:
+def _looks(classes_of: Iterable[Term], classes: ClassTable) -> tuple[list[ClassModel], dict[Term, int]]:
     """How those of some classes look, and which of these looks is that of each."""
     rows = {c: row for row, c in enumerate(dict.fromkeys(classes_of))}
-    return [Look(classes.models[c], c in classes.places) for c in rows], rows
+    return [ClassModel(classes.models[c], c in classes.places) for c in rows], rows

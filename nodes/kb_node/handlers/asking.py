@@ -99,7 +99,7 @@ class Asking:
         self._sparql = sparql
         self._standing_places = standing_places
         self._journal = journal
-        self._past = history.Past(journal)
+        self._past = history.HistoryReader(journal)
         self._pages = Pages(semantic_map)
         self._now = whereabouts.Now(semantic_map)
         self.live = LiveEntities(semantic_map)

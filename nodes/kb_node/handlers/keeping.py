@@ -8,9 +8,9 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from datetime import datetime
 from typing import Final
 
-from semmap.nodes.kb_node.storage.backup import backing_up
+from semmap.nodes.kb_node.storage.backup import backup_parts
 from semmap.nodes.kb_node.storage.compaction import compaction, leftovers
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.schemas import errors, wording
 from semmap.schemas.backups import BackupPart
@@ -28,7 +28,7 @@ class Keeping:
     def __init__(self, journal: Journal) -> None:
         self._journal = journal
         self._beside = ThreadPoolExecutor(max_workers=1, thread_name_prefix="keeping")
-        if leftovers.are_there(journal):
+        if leftovers.exist(journal):
             self._beside.submit(leftovers.delete, journal)
 
     def handlers(self) -> dict[str, Handler]:
@@ -37,7 +37,7 @@ class Keeping:
 
     def on_backup(self, query: Backup) -> Future[BackupPart]:
         """A part of a backup."""
-        return self._beside.submit(backing_up.part, self._journal, query.at)
+        return self._beside.submit(backup_parts.read_part, self._journal, query.at)
 
     def on_compact(self, command: Compact) -> Future[Compacted]:
         """One at a time."""
@@ -48,7 +48,7 @@ class Keeping:
         share = compaction.share(journal, keep_ns=keep_ns, now_ns=time.time_ns())
         before = journal.size_bytes
         if share.commits and not command.dry_run:
-            compaction.compact(journal, Past(journal), share.last)
+            compaction.compact(journal, HistoryReader(journal), share.last)
         return Compacted(
             commits=share.commits,
             first=share.last + 1,
@@ -70,7 +70,7 @@ def _age_ns(text: str) -> int:
     return int(age[1]) * _SECONDS[age[2]] * 1_000_000_000
 
 
-def _told(journal: Journal, share: compaction.Share, command: Compact) -> str:
+def _told(journal: Journal, share: compaction.CompactedRange, command: Compact) -> str:
     first = share.last + 1
     begins = f"commit {first} of {datetime.fromtimestamp(journal.stamps.of(first) / 1e9):%Y-%m-%d %H:%M:%S}"
     if not share.commits:

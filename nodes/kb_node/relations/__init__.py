@@ -1,1 +1,1 @@
-"""Where things are, in words: relations worked out from poses, sizes and shapes."""
+"""Spatial relations between entities, computed from poses, sizes and shapes."""

@@ -1,42 +1,57 @@
-"""Why a relation does not hold of two things: what was measured, and what it would take."""
+"""Explanations of why a relation between two objects does not hold, with the measured values and limits."""
 
 from __future__ import annotations
 
 from semmap.nodes.geometry.polygons import distance
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import measures
-from semmap.nodes.kb_node.relations.measuring.arrangement import attached, between, next_to
-from semmap.nodes.kb_node.relations.measuring.phrases import SIDES, height_over, metres, spoken, why
+from semmap.nodes.kb_node.relations.measuring.arrangement import (
+    find_between,
+    measure_attachment,
+    measure_next_to,
+)
+from semmap.nodes.kb_node.relations.measuring.phrases import (
+    SIDES,
+    explain_measure,
+    format_height,
+    format_length,
+    phrase_relation,
+)
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.measuring.viewing import own_sides
+from semmap.nodes.kb_node.relations.measuring.viewing import list_intrinsic_sides
 from semmap.schemas.relations import RelationName
 
 _OF_SIZES = frozenset(
     {"isOn", "isInside", "isAttachedTo", "isUnder", "isAbove", "touches", "isNear", "isNextTo"}
 )
-"""The relations of which nothing can be said where a size is not known."""
+"""The relations that require known sizes."""
 
 
-def why_not(space: Space, relation: RelationName, solid: Solid, other: Solid) -> str:
-    """Why a relation that was found not to hold does not, as a clause."""
+_UNSUPPORTED = "has no known support"
+
+
+def explain_absence(space: Space, relation: RelationName, solid: Solid, other: Solid) -> str:
+    """Return why a relation that does not hold does not, as a clause."""
     if solid is other:
-        return "nothing is so of itself"
+        return "an object has no relation to itself"
     if relation == "isLocatedIn":
         return _why_not_in(space, solid, other)
     if relation == "isBetween":
-        return "that takes two others; relations of a thing lists what it is between"
+        return "isBetween needs two other objects; semmap relations NAME lists what an object is between"
     if relation in SIDES:
-        if borne := _rests(space, solid, other) or _by_way_of(space, solid, other):
-            return f"{borne}, and what bears a thing is on no side of it"
-        found = [spoken(side.relation).removeprefix("is ") for side in own_sides(solid, other)]
-        where = f"it is {' and '.join(found)} it" if found else "it is neither beside it nor before it"
-        return f"by the front of {other.name}, {where}"
+        if support := _rests(space, solid, other) or _by_way_of(space, solid, other):
+            return f"{support}; side relations are not defined between an object and its support"
+        found = [
+            phrase_relation(side.relation).removeprefix("is ") for side in list_intrinsic_sides(solid, other)
+        ]
+        where = f"it is {' and '.join(found)} it" if found else "their centres are too close to each other"
+        return f"relative to the front of {other.name}, {where}"
     for one in (solid, other):
         if one.is_place:
-            return f"{one.name} is a place, and that is said of things only"
+            return f"{one.name} is a place, and this relation holds between objects only"
     for one in (solid, other):
         if relation in _OF_SIZES and not one.is_measured:
-            return f"the size of {one.name} is not known"
+            return f"the size of {one.name} is unknown"
     match relation:
         case "isOn":
             return _why_not_on(space, solid, other)
@@ -56,38 +71,38 @@ def why_not(space: Space, relation: RelationName, solid: Solid, other: Solid) ->
         case "isNextTo":
             return _why_not_next_to(space, solid, other)
     made = measures.near(solid, other, space.limits)
-    return "they are apart" if made is None else why("isNear", solid, other, made)
+    return "they are apart" if made is None else explain_measure("isNear", solid, other, made)
 
 
 def _rests(space: Space, solid: Solid, other: Solid) -> str | None:
-    """That one is on or inside the other, as a clause; None where it is not."""
+    """Return the clause that one of two objects is on or inside the other, or None."""
     for upper, lower, subject, object_ in (
         (solid, other, "it", other.name),
         (other, solid, other.name, "it"),
     ):
-        container, supports, _ = space.whereabouts(upper)
+        container, supports, _ = space.spatial_relations(upper)
         if container is not None and container[0] is lower:
             return f"{subject} is inside {object_}"
-        if any(bearer is lower for bearer, _ in supports):
+        if any(support is lower for support, _ in supports):
             return f"{subject} is on {object_}"
     return None
 
 
-def stance(space: Space, solid: Solid) -> str:
-    """What a thing is inside or on, as a predicate: "is inside bowl1", "stands on nothing known"."""
-    container, supports, place = space.whereabouts(solid)
+def describe_support(space: Space, solid: Solid) -> str:
+    """Return what an object is inside or on, as a predicate: "is inside bowl1"."""
+    container, supports, place = space.spatial_relations(solid)
     if container is not None:
         return f"is inside {container[0].name}"
     if supports:
-        return f"is on {' and '.join(bearer.name for bearer, _ in supports)}"
+        return f"is on {' and '.join(support.name for support, _ in supports)}"
     if place is not None and stands_on_floor(space, solid):
         return f"is on the floor of {place[0].name}"
-    return "is on nothing that is known"
+    return _UNSUPPORTED
 
 
 def stands_on_floor(space: Space, solid: Solid) -> bool:
-    """Whether a thing is in and on nothing but the floor of its place."""
-    container, supports, place = space.whereabouts(solid)
+    """Return whether an object is in and on nothing but the floor of its place."""
+    container, supports, place = space.spatial_relations(solid)
     if container is not None or supports or place is None:
         return False
     return abs(solid.bottom - place[0].bottom) <= space.limits.gap_m
@@ -98,42 +113,46 @@ def _why_not_on(space: Space, solid: Solid, other: Solid) -> str:
         return by
     limits = space.limits
     if not other.supports:
-        return f"{other.name} has no surface to stand on; it {stance(space, solid)}"
+        return f"{other.name} has no supporting surface; it {describe_support(space, solid)}"
     made = measures.over(solid, other, limits)
     if made is None:
         apart = measures.gap(solid, other)
-        where = f"{metres(apart)} apart" if apart > 0.0 else "one beside or within the other"
-        return f"it is over no surface of {other.name} (they are {where}); it {stance(space, solid)}"
-    where = f"its bottom is {height_over(made.gap_m)} the nearest surface of {other.name}"
+        where = f"{format_length(apart)} apart" if apart > 0.0 else "touching or overlapping"
+        return (
+            f"it is over no surface of {other.name} (they are {where}); it {describe_support(space, solid)}"
+        )
+    where = f"its bottom is {format_height(made.gap_m)} the nearest surface of {other.name}"
     if abs(made.gap_m) > limits.gap_m:
-        return f"{where}, at {metres(made.height_m)} (on is up to {metres(limits.gap_m)})"
+        return f"{where}, at {format_length(made.height_m)} (isOn allows up to {format_length(limits.gap_m)})"
     if made.share < limits.base_share:
-        return f"{where}, but only {made.share:.0%} of its base is over that; it {stance(space, solid)}"
-    return f"{where}, but {_passed_over(space, solid, other) or f'it {stance(space, solid)}'}"
+        return (
+            f"{where}, but only {made.share:.0%} of its base is over it; it {describe_support(space, solid)}"
+        )
+    return f"{where}, but {_passed_over(space, solid, other) or f'it {describe_support(space, solid)}'}"
 
 
 def _passed_over(space: Space, solid: Solid, other: Solid) -> str | None:
-    """That the other one is not looked at for what bears or holds the solid, as a clause; None if it is."""
-    if not space.is_crowded(solid) or other in space.bearers_around(solid):
+    """Return the clause that `other` was not considered as a support because of a crowd, or None."""
+    if not space.is_crowded(solid) or other in space.supporters_around(solid):
         return None
-    return f"more things are in this spot than are compared, and {other.name} is not one of the larger ones"
+    return f"too many objects are here to compare all of them, and {other.name} is not among the largest"
 
 
 def _by_way_of(space: Space, solid: Solid, other: Solid) -> str | None:
-    """That it is borne by the other through what is between them, or is inside it; None where it is not."""
-    container, supports, _ = space.whereabouts(solid)
+    """Return the clause that `other` supports or contains the solid, directly or not, or None."""
+    container, supports, _ = space.spatial_relations(solid)
     if container is not None and container[0] is other:
-        return f"it is inside {other.name}, and what is inside a thing is not also on it"
-    first = [bearer for bearer, _ in (*filter(None, (container,)), *supports)]
+        return f"it is inside {other.name}, and an object inside another is not also on it"
+    first = [support for support, _ in (*filter(None, (container,)), *supports)]
     seen = {solid, *first}
-    for bearer in first:
-        chain, waiting = [bearer], [bearer]
+    for support in first:
+        chain, waiting = [support], [support]
         while waiting:
             upper = waiting.pop()
-            container, supports, _ = space.whereabouts(upper)
+            container, supports, _ = space.spatial_relations(upper)
             below = [lower for lower, _ in (*filter(None, (container,)), *supports)]
             if other in below:
-                chain = [bearer] if upper is bearer else [bearer, upper]
+                chain = [support] if upper is support else [support, upper]
                 return f"it {_clause(space, solid, chain, other)}"
             waiting += [lower for lower in below if lower not in seen]
             seen.update(below)
@@ -144,65 +163,70 @@ def _clause(space: Space, solid: Solid, chain: list[Solid], other: Solid) -> str
     first, last = chain[0], chain[-1]
     text = f"is {_how(space, solid, first)} {first.name}, which"
     if last is not first:
-        text += f" is borne by {last.name}, which"
+        text += f" is supported by {last.name}, which"
     return f"{text} is {_how(space, last, other)} {other.name}"
 
 
-def _how(space: Space, solid: Solid, bearer: Solid) -> str:
-    container = space.whereabouts(solid).container
-    return "inside" if container is not None and container[0] is bearer else "on"
+def _how(space: Space, solid: Solid, support: Solid) -> str:
+    container = space.spatial_relations(solid).container
+    return "inside" if container is not None and container[0] is support else "on"
 
 
 def _why_not_inside(space: Space, solid: Solid, other: Solid) -> str:
     if not other.hollows:
-        return f"{other.name} has no hollow that is known"
+        return f"{other.name} has no known hollow"
     if solid.volume >= other.volume:
-        return f"it is as large as {other.name}, or larger"
+        return f"it is not smaller than {other.name}"
     made = measures.inside(solid, other, space.limits)
     if made is None or made.share == 0.0:
         apart = measures.gap(solid, other)
-        return f"none of its volume is within a hollow of {other.name}; they are {metres(apart)} apart"
+        return f"none of its volume is within a hollow of {other.name}; they are {format_length(apart)} apart"
     if not made.holds:
-        least = f"inside is from {space.limits.inside_share:.0%} on"
-        return f"{why('isInside', solid, other, made)} ({least})"
-    return _passed_over(space, solid, other) or f"it {stance(space, solid)}, which is the smaller hollow"
+        least = f"isInside requires at least {space.limits.inside_share:.0%}"
+        return f"{explain_measure('isInside', solid, other, made)} ({least})"
+    return (
+        _passed_over(space, solid, other)
+        or f"it {describe_support(space, solid)}, which is the smaller hollow"
+    )
 
 
 def _why_not_in(space: Space, solid: Solid, other: Solid) -> str:
     if not other.is_place:
         return f"{other.name} is not a place"
     if solid.is_place:
-        return "it is a place itself, and places are in one another only where that is asserted"
+        return "it is a place itself, and relations between places are only asserted, never computed"
     if not other.is_measured:
-        return f"the extent of {other.name} is not known"
+        return f"the extent of {other.name} is unknown"
     made = measures.within(solid, other, space.limits)
     apart = measures.gap(solid, other)
     if made is None or apart > space.limits.touch_m:
-        return f"it is {metres(apart)} from it"
+        return f"it is {format_length(apart)} from it"
     if made.share == 0.0:
-        return f"nothing of its footprint is within {other.name}"
+        return f"none of its footprint is within {other.name}"
     if not made.holds:
-        return f"{why('isLocatedIn', solid, other, made)} (in is from {made.limit:.0%} on)"
-    return why("isLocatedIn", solid, other, made)
+        least = f"isLocatedIn requires at least {made.limit:.0%}"
+        return f"{explain_measure('isLocatedIn', solid, other, made)} ({least})"
+    return explain_measure("isLocatedIn", solid, other, made)
 
 
 def _why_not_attached(space: Space, solid: Solid, other: Solid) -> str:
-    bears = stance(space, solid)
-    if "nothing" not in bears:
-        return f"it {bears}, so it does not hang"
-    made = attached(space, solid, other)
+    support = describe_support(space, solid)
+    if support != _UNSUPPORTED:
+        return f"it {support}, so it is not attached to a side"
+    made = measure_attachment(space, solid, other)
     if made is None:
-        return f"it does not hang beside {other.name}; they are {metres(measures.gap(solid, other))} apart"
-    limit = metres(space.limits.attached_m)
+        apart = format_length(measures.gap(solid, other))
+        return f"it is not against a side of {other.name}; they are {apart} apart"
+    limit = f"isAttachedTo allows up to {format_length(space.limits.attached_m)}"
     if made.gap_m > made.limit:
-        return f"it is {metres(made.gap_m)} from the side of {other.name} (attached is up to {limit})"
+        return f"it is {format_length(made.gap_m)} from the side of {other.name} ({limit})"
     return f"only {made.share:.0%} of its height is against {other.name}"
 
 
 def _why_not_touching(space: Space, solid: Solid, other: Solid) -> str:
-    apart, limit = measures.gap(solid, other), metres(space.limits.contact_m)
+    apart, limit = measures.gap(solid, other), format_length(space.limits.contact_m)
     if apart > space.limits.contact_m:
-        return f"they are {metres(apart)} apart (touching is up to {limit})"
+        return f"they are {format_length(apart)} apart (touches allows up to {limit})"
     return f"no part of one is within {limit} of a part of the other, although their boxes are"
 
 
@@ -212,12 +236,12 @@ def _why_not_beneath(space: Space, lower: Solid, upper: Solid) -> str:
     if made is not None:
         return (
             f"{upper.name} is over only {made.share:.0%} of the smaller footprint of the two"
-            f" (under is from {limits.beneath_share:.0%} on)"
+            f" (isUnder requires at least {limits.beneath_share:.0%})"
         )
     apart = distance(lower.outline, upper.outline)
     if apart > 0.0:
-        return f"seen from above, they are {metres(apart)} apart"
-    return f"nothing of {upper.name} is above the top of {lower.name}, at {metres(lower.top)}"
+        return f"seen from above, they are {format_length(apart)} apart"
+    return f"no part of {upper.name} is above the top of {lower.name}, at {format_length(lower.top)}"
 
 
 def _why_not_next_to(space: Space, solid: Solid, other: Solid) -> str:
@@ -225,13 +249,13 @@ def _why_not_next_to(space: Space, solid: Solid, other: Solid) -> str:
     if rests := _rests(space, solid, other):
         return rests
     if near is None or not near.holds:
-        return "they are apart" if near is None else why("isNear", solid, other, near)
-    made = next_to(space, solid, other)
-    apart = f"they are {metres(near.gap_m)} apart"
+        return "they are apart" if near is None else explain_measure("isNear", solid, other, near)
+    made = measure_next_to(space, solid, other)
+    apart = f"they are {format_length(near.gap_m)} apart"
     if made is not None and made.share == 0.0:
-        ours, theirs = stance(space, solid), stance(space, other)
+        ours, theirs = describe_support(space, solid), describe_support(space, other)
         if ours == theirs:
-            return f"{apart}, but neither stands on anything that is known"
+            return f"{apart}, but neither has a known support"
         return f"{apart}, but {solid.name} {ours} and {other.name} {theirs}"
-    names = [third.name for third in between(space, solid, other)]
+    names = [third.name for third in find_between(space, solid, other)]
     return f"{apart}, but between them {'is' if len(names) == 1 else 'are'} {' and '.join(names)}"

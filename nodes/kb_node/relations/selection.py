@@ -1,4 +1,4 @@
-"""Which entities are where: on, in, near, within, nearest."""
+"""Selection of entities by location: on, in, near, within, nearest."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Sequence, Set
 from functools import partial
 from typing import Final, NamedTuple
 
-from semmap.nodes.kb_node.relations.facts.beside import are_near
+from semmap.nodes.kb_node.relations.facts.pair_facts import are_near
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
 from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.space import Space
@@ -18,12 +18,12 @@ from semmap.schemas.entities import Entity, Pose, Size
 from semmap.schemas.relations import Where, position_in
 
 _POINT: Final[Size] = (1e-6, 1e-6, 1e-6)
-"""The size of a position [m], which is to have none."""
+"""The size that stands for a position without extent [m]."""
 _ARTICLES: Final = frozenset(("the", "a", "an", "il", "lo", "la", "i", "gli", "le", "un", "uno", "una"))
 
 
-class Meant(NamedTuple):
-    """The names of those that the words of a `Where` mean; None where there is no word, or a position."""
+class Targets(NamedTuple):
+    """The entity names that each word of a `Where` resolves to. None if the word is missing or a position."""
 
     on: frozenset[str] | None
     in_: frozenset[str] | None
@@ -31,60 +31,54 @@ class Meant(NamedTuple):
     to: frozenset[str] | None
 
 
-def selected(
+def select_entities(
     space: Space,
     entities: Sequence[Entity],
     where: Where,
-    everyone: Iterable[Entity],
+    candidates: Iterable[Entity],
     left_out: Set[Fact] = frozenset(),
 ) -> list[Entity]:
-    """Those of `entities` that are where it is asked; the nearest first, if that is asked.
+    """Return those of `entities` that satisfy `where`, nearest first if that is requested.
 
-    `everyone` is who may be meant by a word; what is `left_out` does not count.
-    Raises UnknownName for a word that means nobody, BadRequest, Refused for what nothing can be on or in.
+    Words are resolved among `candidates`. Facts in `left_out` do not count. Raises UnknownName, BadRequest,
+    and Refused if nothing can be on or in the targets.
     """
-    require_whole(where)
-    those = resolved(where, tuple(everyone))
+    require_complete(where)
+    those = resolve_words(where, tuple(candidates))
     require_possible(space, those, where.within)
-    return chosen(space, entities, where, those, left_out)
+    return filter_entities(space, entities, where, those, left_out)
 
 
-def require_whole(where: Where) -> None:
-    """Raises BadRequest for conditions that make no sense by themselves."""
+def require_complete(where: Where) -> None:
+    """Raise BadRequest for conditions that need another one."""
     if where.within is not None and where.near is None and where.to is None:
-        raise errors.BadRequest(
-            "within (--within) goes with something to be within reach of: near (--near NAME)"
-        )
+        raise errors.BadRequest("within (--within) requires near (--near NAME)")
     if where.near is not None and where.within is None and position_in(where.near) is not None:
-        raise errors.BadRequest(
-            f"say how far from there: --near {where.near} --within M (only things are near without that)"
-        )
+        raise errors.BadRequest(f"--near with a position requires a distance: --near {where.near} --within M")
     if (where.nearest is None) != (where.to is None):
         raise errors.BadRequest("nearest and to (--nearest N, --to NAME) go together: the N nearest to NAME")
 
 
-def require_possible(space: Space, those: Meant, within_m: float | None = None) -> None:
-    """Raises Refused where nothing can be on, in or near any of those that are meant, as far as is known."""
+def require_possible(space: Space, those: Targets, within_m: float | None = None) -> None:
+    """Raise Refused if nothing can be on, in or near any of the targets."""
     _require_bearing(_placed(space, those.on, "on"))
     _require_holding(_placed(space, those.in_, "in"))
     near = _placed(space, those.near, "near")
     if near and within_m is None and all(solid.is_place for solid in near):
         raise errors.Refused(
-            f"{_are_places(near)}: only things are near one another; use in (--in) for what is in there, or"
-            " say how far from it (--near PLACE --within M)"
+            f"{_are_places(near)}: near holds between objects only; use in (--in) for what is in there, or"
+            " give a distance (--near PLACE --within M)"
         )
 
 
 def _placed(space: Space, names: Iterable[str] | None, how: str) -> list[Solid]:
-    """Those that have a position, by name; none if nobody is meant. Raises Refused if none has one."""
+    """Return the solids of those targets that have a position, by name. Raises Refused if none has one."""
     if names is None:
         return []
     found = [space.solids[name] for name in sorted(names) if name in space.solids]
     if not found:
         has = "has" if len(those := sorted(names)) == 1 else "have"
-        raise errors.Refused(
-            f"{wording.few(those, 6)} {has} no position, so what is {how} there is not known"
-        )
+        raise errors.Refused(f"{wording.few(those, 5)} {has} no position, so what is {how} there is unknown")
     return found
 
 
@@ -92,10 +86,10 @@ def _require_bearing(solids: Sequence[Solid]) -> None:
     if not solids:
         return
     if all(solid.is_place for solid in solids):
-        raise errors.Refused(f"{_are_places(solids)}: things are in a place, and not on it; use in (--in)")
+        raise errors.Refused(f"{_are_places(solids)}: objects are in a place, not on it; use in (--in)")
     if not any(solid.has_parts for solid in solids):
         raise errors.Refused(
-            f"the size of {_few(solids)} is not known, so neither is what is on it; give it one:"
+            f"the size of {_few(solids)} is unknown, so what is on it is unknown; set a size:"
             " semmap update NAME --size X Y Z"
         )
 
@@ -104,28 +98,26 @@ def _require_holding(solids: Sequence[Solid]) -> None:
     if not solids or any(solid.hollows or (solid.is_place and solid.is_measured) for solid in solids):
         return
     if all(solid.is_place for solid in solids):
-        raise errors.Refused(f"the extent of {_few(solids)} is not known, so neither is what is in there")
-    raise errors.Refused(
-        f"nothing can be in {_few(solids)}: that has no hollow that is known, and is no place"
-    )
+        raise errors.Refused(f"the extent of {_few(solids)} is unknown, so what is in there is unknown")
+    raise errors.Refused(f"nothing can be in {_few(solids)}: it has no known hollow and is not a place")
 
 
 def _few(solids: Sequence[Solid]) -> str:
-    return wording.few([solid.name for solid in solids], 6)
+    return wording.few([solid.name for solid in solids], 5)
 
 
 def _are_places(solids: Sequence[Solid]) -> str:
     return f"{_few(solids)} {'is a place' if len(solids) == 1 else 'are places'}"
 
 
-def chosen(
+def filter_entities(
     space: Space,
     entities: Sequence[Entity],
     where: Where,
-    those: Meant,
+    those: Targets,
     left_out: Set[Fact] = frozenset(),
 ) -> list[Entity]:
-    """Those of `entities` that are where it is asked; what is `left_out` does not count."""
+    """Return those of `entities` that satisfy `where`. Facts in `left_out` do not count."""
     found = [entity for entity in entities if entity.name in space.solids]
     if those.on is not None:
         carriers = those.on
@@ -144,78 +136,87 @@ def chosen(
 
 
 def _ends(space: Space, word: str | None, names: Iterable[str] | None) -> list[Solid] | None:
-    """Those that a word means and that have a position, by name; or a point at the position that it is."""
+    """Return the solids of the targets by name, or a point if the word is a position."""
     if word is not None and (at := position_in(word)) is not None:
-        point = Placed(name="", iri="", pose=Pose(position_m=at), size_m=_POINT, place=False, model="")
+        point = PlacedEntity(name="", iri="", pose=Pose(position_m=at), size_m=_POINT, place=False, model="")
         return [found] if (found := solid_of(point)) is not None else []
     if names is None:
         return None
     return [space.solids[name] for name in sorted(names) if name in space.solids]
 
 
-def resolved(where: Where, everyone: Sequence[Entity]) -> Meant:
-    """Whom the words mean. Raises UnknownName."""
+def resolve_words(where: Where, candidates: Sequence[Entity]) -> Targets:
+    """Return the targets of all words. Raises UnknownName."""
     on, in_, near, to = where.words
-    return Meant(
-        None if on is None else meant(everyone, on),
-        None if in_ is None else meant(everyone, in_),
-        *(None if word is None or position_in(word) else meant(everyone, word) for word in (near, to)),
+    return Targets(
+        None if on is None else resolve_word(candidates, on),
+        None if in_ is None else resolve_word(candidates, in_),
+        *(
+            None if word is None or position_in(word) else resolve_word(candidates, word)
+            for word in (near, to)
+        ),
     )
 
 
-def meant(everyone: Sequence[Entity], word: str) -> frozenset[str]:
-    """The entities that a word means: that name, else that reference, else that class. Raises UnknownName.
+def resolve_word(candidates: Sequence[Entity], word: str) -> frozenset[str]:
+    """Return the entities that a word refers to: by name, else by label, else by class. Raises UnknownName.
 
-    A class that is written as it is (`Table`) comes before a reference (`table`). An article before it does
-    not count, unless something is called so with it.
+    A class in its exact spelling (`Table`) takes precedence over a label (`table`). A leading article is
+    ignored unless it is part of a label.
     """
-    if not any(word == e.name for e in everyone) and (names := [e.name for e in everyone if word in e.types]):
+    if not any(word == e.name for e in candidates) and (
+        names := [e.name for e in candidates if word in e.types]
+    ):
         return frozenset(names)
     folded = word.casefold().replace("_", " ")
-    for called in (
+    for words_of in (
         lambda e: (e.name,),
         lambda e: tuple(filter(None, (e.preferred_reference, *e.alternative_references))),
         lambda e: e.types,
     ):
-        names = [e.name for e in everyone if any(folded == w.casefold().replace("_", " ") for w in called(e))]
+        names = [
+            e.name for e in candidates if any(folded == w.casefold().replace("_", " ") for w in words_of(e))
+        ]
         if names:
             return frozenset(names)
     article, _, noun = folded.partition(" ")
     if article in _ARTICLES and noun:
-        return meant(everyone, noun)
-    called_so = sorted({word for e in everyone for word in (e.name, e.preferred_reference or "", e.class_)})
-    known = {word.casefold(): word for word in called_so}.values()  # of Table and table, table
-    raise errors.UnknownName(f"nothing is named or called '{word}'{errors.did_you_mean(word, known)}")
+        return resolve_word(candidates, noun)
+    all_words = sorted({word for e in candidates for word in (e.name, e.preferred_reference or "", e.class_)})
+    known = {word.casefold(): word for word in all_words}.values()  # of Table and table, table
+    raise errors.UnknownName(
+        f"no entity has the name, label or class '{word}'{errors.did_you_mean(word, known)}"
+    )
 
 
-def only_meant(everyone: Sequence[Entity], word: str) -> str:
-    """The one entity that a word means. Raises UnknownName, BadRequest where it may be several."""
-    names = sorted(meant(everyone, word))
+def resolve_single(candidates: Sequence[Entity], word: str) -> str:
+    """Return the one entity that a word refers to. Raises UnknownName, BadRequest for several."""
+    names = sorted(resolve_word(candidates, word))
     if len(names) > 1:
-        raise errors.BadRequest(f"'{word}' may mean {wording.few(names, 6)}; name one of them")
+        raise errors.BadRequest(f"'{word}' is ambiguous: {wording.few(names, 5)}; name one of them")
     return names[0]
 
 
 def is_on(space: Space, solid: Solid, carriers: Set[str], left_out: Set[Fact]) -> bool:
-    """On one of them, or on or inside what is on one of them, and so on: SPARQL's (isOn|isInside)*/isOn."""
+    """Return whether a solid is on a carrier, directly or not: the SPARQL path `(isOn|isInside)*/isOn`."""
     seen, waiting = {solid}, [solid]
     while waiting:
         upper = waiting.pop()
-        container, supports, _ = space.whereabouts(upper)
+        container, supports, _ = space.spatial_relations(upper)
         if left_out:
             supports = tuple(s for s in supports if (upper.name, "isOn", s[0].name) not in left_out)
             if container is not None and (upper.name, "isInside", container[0].name) in left_out:
                 container = None
-        if any(bearer.name in carriers for bearer, _ in supports):
+        if any(support.name in carriers for support, _ in supports):
             return True
-        below = [bearer for bearer, _ in (*filter(None, (container,)), *supports) if bearer not in seen]
+        below = [support for support, _ in (*filter(None, (container,)), *supports) if support not in seen]
         waiting += below
         seen.update(below)
     return False
 
 
 def is_in(space: Space, solid: Solid, holders: Set[str], left_out: Set[Fact]) -> bool:
-    """In one of these places, or inside one of these containers, or inside what is inside one."""
+    """Return whether a solid is in one of these places or, at any depth, inside one of these containers."""
     for name in holders:
         other = space.solids.get(name)
         if other is not None and other.is_place and other is not solid:
@@ -223,7 +224,9 @@ def is_in(space: Space, solid: Solid, holders: Set[str], left_out: Set[Fact]) ->
             if made is not None and made.holds and (solid.name, "isLocatedIn", name) not in left_out:
                 return True
     seen = {solid.name}
-    while (container := space.whereabouts(solid).container) is not None and container[0].name not in seen:
+    while (container := space.spatial_relations(solid).container) is not None and container[
+        0
+    ].name not in seen:
         if (solid.name, "isInside", container[0].name) in left_out:
             return False
         solid = container[0]
@@ -238,7 +241,7 @@ def _within(metres: float) -> Callable[[Solid, Solid], bool]:
 
 
 def _nearest(space: Space, found: list[Entity], targets: list[Solid], where: Where) -> list[Entity]:
-    """By the distance of the boxes; places do not count as near to anything."""
+    """Return the entities nearest to the targets by the distance of their boxes, without places."""
     to = {target.name for target in targets}
     if not targets:
         raise errors.Refused(f"{where.to} has no position")

@@ -1,4 +1,4 @@
-"""What bears a thing and what it bears, and of what hovers how high that is."""
+"""Supports and contents of an object, and the height of an object that nothing supports."""
 
 from __future__ import annotations
 
@@ -6,30 +6,33 @@ from collections.abc import Iterator
 
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import measures
-from semmap.nodes.kb_node.relations.measuring.arrangement import attachments, is_borne
-from semmap.nodes.kb_node.relations.measuring.phrases import height_over, metres
+from semmap.nodes.kb_node.relations.measuring.arrangement import find_attachments, is_supported
+from semmap.nodes.kb_node.relations.measuring.phrases import format_height, format_length
 from semmap.nodes.kb_node.relations.measuring.space import Found, Space
 from semmap.schemas.relations import Relation, RelationName
 
 
-def bearers(space: Space, solid: Solid) -> set[Solid]:
-    """What it is on or inside, and what that is on or inside, and so on down."""
+def find_supporters(space: Space, solid: Solid) -> set[Solid]:
+    """Return what an object is on or inside, directly or through other objects."""
     found, waiting = set[Solid](), [solid]
     while waiting:
-        container, supports, _ = space.whereabouts(waiting.pop())
-        below = {bearer for bearer, _ in (*filter(None, (container,)), *supports)} - found
+        container, supports, _ = space.spatial_relations(waiting.pop())
+        below = {support for support, _ in (*filter(None, (container,)), *supports)} - found
         found |= below
         waiting += below
     return found
 
 
-def borne(space: Space, solid: Solid) -> Iterator[tuple[RelationName, Solid, Found]]:
-    """What is inside a thing or on it itself, by name; in a crowd the largest. Nothing for a place."""
+def find_contents(space: Space, solid: Solid) -> Iterator[tuple[RelationName, Solid, Found]]:
+    """Yield what is directly inside an object or on it, ordered by name.
+
+    In a crowd only the largest are considered. A place has no contents.
+    """
     if solid.is_place:
         return
-    around = (o for o in space.counted_around(solid) if not o.is_place and space.may_bear(solid, o))
+    around = (o for o in space.counted_around(solid) if not o.is_place and space.may_support(solid, o))
     for upper in sorted(around, key=lambda other: other.name):
-        container, supports, _ = space.whereabouts(upper)
+        container, supports, _ = space.spatial_relations(upper)
         if container is not None and container[0] is solid:
             yield "isInside", upper, container
         for support in supports:
@@ -37,42 +40,45 @@ def borne(space: Space, solid: Solid) -> Iterator[tuple[RelationName, Solid, Fou
                 yield "isOn", upper, support
 
 
-def on_nothing(space: Space, solid: Solid) -> Relation | None:
-    """How high a thing is that nothing bears, as `isOn` of nothing that does not hold; None of any other.
+def describe_unsupported(space: Space, solid: Solid) -> Relation | None:
+    """Return a negative `isOn` relation with the height of an unsupported object, else None.
 
-    Of a thing of unknown size it is said that its size is missing. On a plan nothing is known of heights.
+    An object of unknown size yields a relation whose text asks for the size. A flat map has no height
+    information.
     """
     if solid.is_place:
         return None
     if not solid.is_measured:
         reason = (
-            "neither the map nor a model says how large it is, so only its place can be told;"
-            f" give it a size: semmap update {solid.name} --size X Y Z"
+            "its size is unknown, so only its place can be computed;"
+            f" set a size: semmap update {solid.name} --size X Y Z"
         )
-        return _told(solid, f"{solid.name} is on nothing that is known: {reason}")
-    if space.is_flat or space.is_crowded(solid) or is_borne(space, solid):
+        return _make_relation(solid, f"{solid.name} has no known support: {reason}")
+    if space.is_flat or space.is_crowded(solid) or is_supported(space, solid):
         return None
-    if next(attachments(space, solid), None) is not None:
+    if next(find_attachments(space, solid), None) is not None:
         return None
-    _, _, place = space.whereabouts(solid)
+    _, _, place = space.spatial_relations(solid)
     floor_m = solid.bottom - (0.0 if place is None else place[0].bottom)
     if place is None and abs(floor_m) <= space.limits.gap_m:
-        return None  # the ground, as far as anybody knows
+        return None  # assumed to be the ground
     if (nearest := _nearest_surface(space, solid, floor_m)) is not None:
         other, made = nearest
-        reason = f"its bottom is {height_over(made.gap_m)} a surface of {other.name}"
+        reason = f"its bottom is {format_height(made.gap_m)} a surface of {other.name}"
         if made.gap_m <= space.limits.gap_m:
-            reason += f", but {made.share:.0%} of its base is over that"
-        return _told(solid, f"{solid.name} is on nothing: {reason}", made.gap_m, made.share)
+            reason += f", but {made.share:.0%} of its base is over it"
+        return _make_relation(solid, f"{solid.name} is on nothing: {reason}", made.gap_m, made.share)
     if place is None:
-        reason = f"its bottom is at a height of {metres(floor_m)}, and it is in no place that has a floor"
+        reason = (
+            f"its bottom is at a height of {format_length(floor_m)}, and it is not in a place with a floor"
+        )
     else:
-        reason = f"its bottom is {height_over(floor_m)} the floor of {place[0].name}"
-    return _told(solid, f"{solid.name} is on nothing: {reason}", floor_m)
+        reason = f"its bottom is {format_height(floor_m)} the floor of {place[0].name}"
+    return _make_relation(solid, f"{solid.name} is on nothing: {reason}", floor_m)
 
 
 def _nearest_surface(space: Space, solid: Solid, floor_m: float) -> Found | None:
-    """The surface that is nearest to its bottom, beneath it or within it; None if the floor is nearer."""
+    """Return the surface nearest to the bottom of an object, or None if the floor is nearer."""
     found: Found | None = None
     nearest = abs(floor_m)
     for other in space.counted_around(solid):
@@ -82,7 +88,7 @@ def _nearest_surface(space: Space, solid: Solid, floor_m: float) -> Found | None
     return found
 
 
-def _told(solid: Solid, text: str, gap_m: float = 0.0, share: float = 0.0) -> Relation:
+def _make_relation(solid: Solid, text: str, gap_m: float = 0.0, share: float = 0.0) -> Relation:
     return Relation(
         relation="isOn",
         subject=solid.name,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from msgspec import Raw, Struct, msgpack
 
 from semmap.nodes.kb_node.beliefs import UNCHANGED, Believed
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.sparql.triples.dataset import Delta
 from semmap.schemas import codec
@@ -20,7 +20,7 @@ NOTHING = Raw(msgpack.encode(None))
 class Surrounded(Struct, frozen=True, kw_only=True, tag=True):
     """Where everything is: what a question may need to have measured. Commits tell the rest from then on."""
 
-    placed: tuple[Placed, ...]
+    placed: tuple[PlacedEntity, ...]
     limits: Thresholds
 
 
@@ -57,7 +57,7 @@ class Committed(Struct, frozen=True, kw_only=True, tag=True):
     delta: Delta
     believed: Believed = UNCHANGED
     """What it changes of what is computed and set aside, if what follows is wanted."""
-    placed: tuple[Placed, ...] = ()
+    placed: tuple[PlacedEntity, ...] = ()
     """The entities that it changes, and the names of those that went, after `Surrounded`."""
     removed: tuple[str, ...] = ()
 

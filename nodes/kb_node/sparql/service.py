@@ -20,8 +20,8 @@ from typing import Any, overload
 from msgspec import msgpack
 
 from semmap.nodes.kb_node.beliefs import UNCHANGED, Believed
-from semmap.nodes.kb_node.relations.facts.derived import Derived
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.facts.pair_properties import PairProperties
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.sparql.lanes import Lanes
 from semmap.nodes.kb_node.sparql.protocol import (
     Answered,
@@ -165,7 +165,7 @@ class SparqlService:
                 Committed(
                     delta=delta_of(commit),
                     believed=believed if self._infers else UNCHANGED,
-                    placed=tuple(map(Placed.of, commit.changed)) if self._measures else (),
+                    placed=tuple(map(PlacedEntity.of, commit.changed)) if self._measures else (),
                     removed=tuple(gone.name for gone in commit.removed) if self._measures else (),
                 )
             )
@@ -207,7 +207,7 @@ class SparqlService:
         asserted = tuple(self._asserted())
         surrounded = None
         if self._infers and self._surrounded is not None:
-            self._measured = frozenset(map(v.local_name, Derived(asserted).sources))
+            self._measured = frozenset(map(v.local_name, PairProperties(asserted).sources))
             if self._measures:
                 surrounded = self._surrounded()
         worker.send(

@@ -22,7 +22,7 @@ from typing import Any, Final
 
 from msgspec import msgpack, structs
 
-from semmap.nodes.kb_node.relations.facts.derived import Derived
+from semmap.nodes.kb_node.relations.facts.pair_properties import PairProperties
 from semmap.nodes.kb_node.sparql.protocol import (
     Answered,
     Asked,
@@ -64,7 +64,7 @@ class Worker:
         self._lanes = lanes
         self._dataset = Dataset(0, ())
         self._consequences: Consequences | None = None
-        self._derived = Derived()
+        self._derived = PairProperties()
         self._measured: Measured | None = None
         self._needed: dict[Needs, float] = {}
         """By whom it was asked: until when it is kept [s, monotonic]."""
@@ -131,7 +131,7 @@ class Worker:
         self._consequences = (
             Consequences(load.asserted, self._dataset, load.believed) if load.infers else None
         )
-        self._derived = Derived(load.asserted if load.infers else ())
+        self._derived = PairProperties(load.asserted if load.infers else ())
         self._measured = None
         if load.surrounded is not None:
             self._measured = Measured(self._derived, self._dataset, load.surrounded)

@@ -1,6 +1,6 @@
-"""What survives a restart: the journal, and what is made of it.
+"""Persistent storage: the journal, and what is derived from it.
 
-`journal/` is the file itself, `encoding/` the layout of what is in it. `history.py` reads the past from it,
-`seed.py` begins a new one; `backup/`, `compaction/` and `repair/` are what `semmap backup`, `compact` and
-`repair` do.
+`journal/` is the file itself, `encoding/` the layout of its contents. `history.py` reads the past from it,
+and `seed.py` starts a new one. `backup/`, `compaction/` and `repair/` implement `semmap backup`, `compact`
+and `repair`.
 """

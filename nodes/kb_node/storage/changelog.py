@@ -1,4 +1,4 @@
-"""What commits changed, from what was to what is: read off the commits, those of older versions too."""
+"""The changes of commits, from old to new values. Commits of older versions are supported."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from semmap.schemas.entities import Entity, Stated
 from semmap.schemas.explanations import Term
 
 FEW = 20
-"""Entities of a commit that are looked at."""
+"""Entities of a commit that are listed."""
 _KEPT = 4
 
 
 class Changelog:
-    """Reads the changes of commits that come in order; it remembers the entities that it has met."""
+    """A reader of the changes of successive commits, which remembers the entities it has read."""
 
     def __init__(self, journal: Journal, first: Callable[[], Mapping[str, Entity]]) -> None:
-        """`first()` gives the entities before commit 1."""
+        """`first()` returns the entities before commit 1."""
         self._journal = journal
         self._first = first
-        self._met: dict[str, Entity | None] = {}
+        self._known: dict[str, Entity | None] = {}
         self._commits: OrderedDict[int, dict[str, Entity]] = OrderedDict()
 
     def of(self, commit: Commit, only: str | None = None) -> tuple[Change, ...]:
-        """What was and what is, of the first entities that `commit` touched or of one of them."""
+        """Return the changes of the first entities that `commit` touched, or of `only` one."""
         changes: list[Change] = []
         stated = _stated(commit)
         changed = [entity for entity in commit.changed if only in (None, entity.name)][:FEW]
@@ -42,24 +42,27 @@ class Changelog:
                 changes += between(None, entity)
             else:
                 changes += between(_bare(was), _bare(entity))
-                said = stated.get(v.iri(entity.iri), ())
-                changes += of_properties(entity.name, (_in_full(*one, was, entity) for one in said))
-            self._met[entity.name] = entity
+                properties = stated.get(v.iri(entity.iri), ())
+                changes += of_properties(entity.name, (_in_full(*one, was, entity) for one in properties))
+            self._known[entity.name] = entity
         for gone in commit.removed:
-            self._met[gone.name] = None
+            self._known[gone.name] = None
             if only in (None, gone.name) and len(changes) < FEW:
                 changes.append(removed(gone.name, gone.types[0] if gone.types else ""))
         return tuple(changes)
 
     def _before(self, name: str, seq: int) -> Entity | None:
-        """The entity as it was before commit `seq`."""
-        if name in self._met:
-            return self._met[name]
+        """Return an entity as it was before commit `seq`."""
+        if name in self._known:
+            return self._known[name]
         touching = self._journal.touching(name, until=seq - 1)
         return self._after(touching[-1]).get(name) if touching else self._first().get(name)
 
     def _after(self, seq: int) -> dict[str, Entity]:
-        """The entities that a commit changed; those of a few commits are kept, because a load has many."""
+        """Return the entities that a commit changed.
+
+        A few commits are cached, because a load changes many.
+        """
         if seq not in self._commits:
             self._commits[seq] = {entity.name: entity for entity in self._journal.commit(seq).changed}
             if len(self._commits) > _KEPT:
@@ -69,12 +72,12 @@ class Changelog:
 
 
 def _bare(entity: Entity) -> Entity:
-    """Without its properties, which commits of older versions do not have: the triples tell of them."""
+    """Return an entity without properties, which older commits lack. Their triples are used instead."""
     return structs.replace(entity, properties={})
 
 
 def _stated(commit: Commit) -> dict[Term, list[tuple[str, Stated | None, Stated | None]]]:
-    """Of each individual: its properties, with the values that went and those that came."""
+    """Return the properties of each individual, with old and new values."""
     if len(commit.retracted) + len(commit.inserted) > FEW * 50:
         return {}
     found: dict[tuple[Term, Term], tuple[list[Term], list[Term]]] = {}
@@ -82,19 +85,19 @@ def _stated(commit: Commit) -> dict[Term, list[tuple[str, Stated | None, Stated 
         for s, p, o in triples:
             if p not in STRUCTURAL:
                 found.setdefault((s, p), ([], []))[i].append(o)
-    said: dict[Term, list[tuple[str, Stated | None, Stated | None]]] = {}
+    found_changes: dict[Term, list[tuple[str, Stated | None, Stated | None]]] = {}
     for (s, p), (gone, come) in sorted(found.items()):
-        said.setdefault(s, []).append((v.local_name(p), _values(gone), _values(come)))
-    return said
+        found_changes.setdefault(s, []).append((v.local_name(p), _values(gone), _values(come)))
+    return found_changes
 
 
 def _in_full(
     name: str, gone: Stated | None, come: Stated | None, was: Entity, now: Entity
 ) -> tuple[str, Stated | None, Stated | None]:
-    """What a property was and is: all its values where both are known, else those that went and came."""
-    called = {known for known in (*was.properties, *now.properties) if known.rpartition(":")[2] == name}
-    if len(called) == 1:  # with its prefix, if others are called alike
-        name = called.pop()
+    """Return a property with all its old and new values if they are known, else the changed ones."""
+    matching = {known for known in (*was.properties, *now.properties) if known.rpartition(":")[2] == name}
+    if len(matching) == 1:  # with its prefix, if others have the same name
+        name = matching.pop()
     before, after = was.properties.get(name), now.properties.get(name)
     if isinstance(before, tuple) or isinstance(after, tuple):
         return name, before, after

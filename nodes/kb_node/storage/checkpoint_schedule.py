@@ -1,4 +1,4 @@
-"""When the whole map is to be written down, so that the next start has little to replay."""
+"""The schedule of checkpoints, which limit what the next start must replay."""
 
 from __future__ import annotations
 
@@ -9,31 +9,31 @@ from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.schemas.commits import Commit
 
 CHECKPOINT_EVERY: Final = 5000
-"""Commits, in a quiet moment."""
+"""Commits between checkpoints when idle."""
 CHECKPOINT_AT_LATEST: Final = 20_000
 CHECKPOINT_EVERY_TRIPLES: Final = 100_000
-"""Triples that changed; at once if they are half of the map."""
+"""Changed triples between checkpoints when idle, or immediately if they are half of the map."""
 
 
 class CheckpointSchedule:
-    """Counts what has changed since the last checkpoint."""
+    """A counter of changes since the last checkpoint."""
 
     def __init__(self, journal: Journal, checkpointed: int) -> None:
         """`checkpointed` is the last commit of the newest checkpoint."""
         self._journal = journal
         self._checkpointed = checkpointed
         self._changed = self._changed_then = 0
-        """Triples that changed, and those of them that are in the checkpoint."""
-        self._changed_in_picture = 0
+        """Triples changed, and those of them that are in the checkpoint."""
+        self._changed_in_snapshot = 0
 
     def count(self, commit: Commit) -> None:
-        """There is one more commit, or one that was there has been taken back."""
+        """Count a new or undone commit."""
         self._changed += len(commit.inserted) + len(commit.retracted)
 
     def is_due(self, seq: int, *, quiet: bool) -> bool:
-        """Would a start after commit `seq` have much to replay? Unless it is `quiet`, very much?
+        """Return whether a start after commit `seq` would have much to replay, or very much unless `quiet`.
 
-        Another TBox is much.
+        A new TBox counts as much.
         """
         if quiet and self._changed - self._changed_then > CHECKPOINT_EVERY_TRIPLES:
             return True
@@ -42,18 +42,18 @@ class CheckpointSchedule:
         return seq - self._checkpointed >= (CHECKPOINT_EVERY if quiet else CHECKPOINT_AT_LATEST)
 
     def is_urgent(self, triples: Sized) -> bool:
-        """Would the next start have to replay most of a map of these triples?"""
+        """Return whether the next start would have to replay most of a map with these triples."""
         changed = self._changed - self._changed_then
         return changed > CHECKPOINT_EVERY_TRIPLES and 2 * changed >= len(triples)
 
     def is_written(self, seq: int) -> bool:
-        """Is there a checkpoint of the map after commit `seq`?"""
+        """Return whether there is a checkpoint after commit `seq`."""
         return seq == self._checkpointed
 
-    def pictured(self) -> None:
-        """The picture is taken that the next checkpoint is made of."""
-        self._changed_in_picture = self._changed
+    def mark_snapshot(self) -> None:
+        """Record that the snapshot for the next checkpoint was taken."""
+        self._changed_in_snapshot = self._changed
 
-    def written(self, seq: int) -> None:
-        """There is a checkpoint of the map after commit `seq`, made of the last picture."""
-        self._checkpointed, self._changed_then = seq, self._changed_in_picture
+    def mark_written(self, seq: int) -> None:
+        """Record a checkpoint after commit `seq`, made from the last snapshot."""
+        self._checkpointed, self._changed_then = seq, self._changed_in_snapshot

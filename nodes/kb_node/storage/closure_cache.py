@@ -1,4 +1,4 @@
-"""The closure of a TBox, kept beside the journal so that a start need not work it out again."""
+"""A cache of the closure of a TBox, stored beside the journal for a fast start."""
 
 from __future__ import annotations
 
@@ -19,32 +19,32 @@ _SUFFIX = ".closure"
 _DIGEST_BYTES = 16
 
 
-def reasoner(tbox: Collection[Triple], folder: Path, *, of_the_past: bool = False) -> Reasoner:
-    """A reasoner with the TBox. Raises Inconsistent.
+def load_reasoner(tbox: Collection[Triple], folder: Path, *, of_the_past: bool = False) -> Reasoner:
+    """Return a reasoner with the TBox. Raises Inconsistent.
 
-    What is in `folder` counts only for the same triples and the same format, and if it is not damaged. The
-    closure of a TBox `of_the_past` is not written down: the next start needs the present one's.
+    A cached closure is used only for the same triples and format, and if it is not damaged. The closure of
+    a TBox `of_the_past` is not stored, because the next start needs the current one.
     """
     closed = _read(_path(tbox, folder))
     found = Reasoner(tbox, closed=closed)
     if closed is None and not of_the_past:
-        keep(found.closed, tbox, folder)
+        save(found.closed, tbox, folder)
     return found
 
 
-def keep(closed: Facts | None, tbox: Collection[Triple], folder: Path) -> None:
-    """Write down the closure of a TBox, if it has one of its own and the folder takes it."""
+def save(closed: Facts | None, tbox: Collection[Triple], folder: Path) -> None:
+    """Store the closure of a TBox, if it has its own and the folder is writable."""
     if closed is None:
         return
     body = zlib.compress(pack(closed), 1)
-    with suppress(OSError):  # then the next start works it out again
+    with suppress(OSError):  # then the next start computes it again
         for old in folder.glob(f"*{_SUFFIX}"):
             old.unlink(missing_ok=True)
         _path(tbox, folder).write_bytes(_digest(body) + body)
 
 
 def _path(tbox: Collection[Triple], folder: Path) -> Path:
-    name = hashlib.blake2b(conclusions_format.mark(), digest_size=_DIGEST_BYTES)
+    name = hashlib.blake2b(conclusions_format.format_mark(), digest_size=_DIGEST_BYTES)
     for triple in sorted(tbox):
         name.update("\n".join(triple).encode())
     return folder / f"{name.hexdigest()}{_SUFFIX}"

@@ -1,8 +1,8 @@
-"""The format of the conclusions that are kept on disk: a TBox's closure, a checkpoint's entities and columns.
+"""The format version of stored inferences: the closure of a TBox, the entities and columns of a checkpoint.
 
-Conclusions of another format are not read but worked out again from the triples, which remain the truth. The
-number grows whenever the same triples may lead to other conclusions, or these are laid out otherwise: a test
-holds digests of rules, layouts and examples beside it.
+Inferences of another format are not read but computed again from the triples, which are the source of
+truth. Increase the number whenever the same triples may lead to other inferences or to another layout. A
+test compares digests of rules, layouts and examples.
 """
 
 from __future__ import annotations
@@ -10,6 +10,6 @@ from __future__ import annotations
 FORMAT = 6
 
 
-def mark() -> bytes:
-    """What conclusions are marked with that are kept."""
+def format_mark() -> bytes:
+    """Return the mark that is stored with inferences."""
     return f"conclusions {FORMAT}".encode()

@@ -1,4 +1,4 @@
-"""Whether a data folder already has a map; separate from `seed.py`, which takes long to import."""
+"""Detection of an existing map in a data folder. Separate from `seed.py`, whose import is slow."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from pathlib import Path
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 
 
-def existing_map(data: Path) -> str | None:
-    """What to report of the map in folder `data`; None if there is none.
+def describe_existing_map(data: Path) -> str | None:
+    """Return the notice about the map in folder `data`, or None if there is none.
 
     Raises InUse, or Refused if it cannot be read.
     """

@@ -1,7 +1,7 @@
-"""What the journal tells of the past. Reads only, so it may run beside the node's own work.
+"""The history of a map, read from its journal. It never writes, so it may run beside other work.
 
-Each commit holds the entities that it changed as they were after it. So the map at commit n is, for each
-name, what the last commit up to n that touched it says: nothing needs to be replayed or inferred again.
+Each commit holds the entities that it changed, as they were after it. Thus the state of an entity at commit
+n is in the last commit up to n that touched it. Nothing needs to be replayed or inferred again.
 """
 
 from __future__ import annotations
@@ -26,36 +26,36 @@ from semmap.schemas.moments import When, read_moment
 from semmap.schemas.replies import LoggedCommit, Sighting
 
 
-class Past:
-    """The past of the map in a journal."""
+class HistoryReader:
+    """The history of the map in a journal."""
 
     def __init__(self, journal: Journal) -> None:
         self._journal = journal
         self._first: tuple[int, dict[str, Entity]] | None = None
 
     def history(self, query: History) -> tuple[LoggedCommit, ...]:
-        """The commits of a span of time, newest last. Raises UnknownName, BadRequest.
+        """Return the commits of a time span, newest last. Raises UnknownName, BadRequest.
 
-        Times are compared with the commits' own stamps, which the clock may have been set back between. What
-        the history begins with is told as a commit, too, if it was compacted.
+        Times are compared with the stamps of commits, between which the clock may have been set back. After
+        compaction, the start of the history is returned as a commit, too.
         """
         if query.name is not None:
             self._require_known(query.name)
         seqs = self._of_span(query)
         beginning = self._journal.beginning.seq
-        told = [seq for seq in seqs if seq > beginning]
-        if beginning in seqs and (query.name is None or query.name in self.at_the_beginning()):
-            told.insert(0, beginning)
-        changes = Changelog(self._journal, self.at_the_beginning)
+        shown = [seq for seq in seqs if seq > beginning]
+        if beginning in seqs and (query.name is None or query.name in self.initial_entities()):
+            shown.insert(0, beginning)
+        changes = Changelog(self._journal, self.initial_entities)
         return tuple(
             _beginning(self._journal)
             if seq == beginning
             else _logged(commit := self._journal.commit(seq), changes.of(commit, query.name))
-            for seq in told[-query.limit :]
+            for seq in shown[-query.limit :]
         )
 
     def _of_span(self, query: History) -> Sequence[int]:
-        """The numbers of the commits that are asked for, in order."""
+        """Return the numbers of the requested commits, in order."""
         since, until = (None if when is None else read_moment(when) for when in (query.since, query.until))
         first = since.commit if since is not None and since.commit is not None else 0
         last = until.commit if until is not None and until.commit is not None else self._journal.last
@@ -71,18 +71,18 @@ class Past:
         return seqs
 
     def commits(self, seqs: Iterable[int]) -> tuple[Commit, ...]:
-        """These commits, whole; without those that there never were."""
+        """Return these commits, without those that do not exist."""
         last = self._journal.last
         return tuple(self._journal.commit(seq) for seq in seqs if self._journal.first <= seq <= last)
 
     def entities(
         self, when: When, class_name: str | None = None, known: Iterable[str] = ()
     ) -> tuple[Entity, ...]:
-        """The map as it was, or those of a class by the types of then; `known` are the classes of today.
+        """Return the map at a time, or the entities of a class by their types at that time.
 
-        Raises Refused when there was no map, UnknownClass, BadRequest.
+        `known` are the current classes. Raises Refused if there was no map, UnknownClass, BadRequest.
         """
-        there = self._there(self.commit_at(when))
+        there = self._list_entities(self.commit_at(when))
         if class_name is None:
             return there
         classes = {t for entity in there for t in entity.types}.union(known)
@@ -92,9 +92,9 @@ class Past:
             )
         return tuple(entity for entity in there if class_name in entity.types)
 
-    def _there(self, seq: int) -> tuple[Entity, ...]:
-        """The entities after a commit, in the order of names."""
-        there = dict(self.at_the_beginning())
+    def _list_entities(self, seq: int) -> tuple[Entity, ...]:
+        """Return the entities after a commit, ordered by name."""
+        there = dict(self.initial_entities())
         names_by_seq: dict[int, list[str]] = {}
         for name, touched in self._journal.last_touches(seq):
             names_by_seq.setdefault(touched, []).append(name)
@@ -106,13 +106,13 @@ class Past:
         return tuple(there[name] for name in sorted(there))
 
     def entity(self, name: str, when: When) -> Entity:
-        """One entity as it was. Raises UnknownName, Refused when there was no map, BadRequest."""
+        """Return an entity at a time. Raises UnknownName, Refused if there was no map, BadRequest."""
         seq = self.commit_at(when)
         touching = self._journal.touching(name, until=seq)
         if touching:
             entity = _entities_after(self._journal.commit(touching[-1])).get(name)
         else:
-            entity = self.at_the_beginning().get(name)
+            entity = self.initial_entities().get(name)
         if entity is None:
             known = [there for there, _ in self._journal.last_touches(seq)]
             hint = errors.did_you_mean(name, known) if name not in known else ""
@@ -120,7 +120,7 @@ class Past:
         return entity
 
     def last_seen(self, name: str) -> Sighting:
-        """Where an entity was last, and by whose word. Raises UnknownName."""
+        """Return the last pose of an entity and its provenance. Raises UnknownName."""
         self._require_known(name)
         removed: Provenance | None = None
         for seq in reversed(self._journal.touching(name)):
@@ -129,10 +129,10 @@ class Past:
             if entity is not None:
                 return sighting(entity, removed)
             removed = commit.provenance
-        return sighting(self.at_the_beginning()[name], removed)
+        return sighting(self.initial_entities()[name], removed)
 
     def in_conflict_since(self, entity: Entity) -> Provenance:
-        """The commit by which the conflict that an entity has was stated."""
+        """Return the commit that stated the current conflict of an entity."""
         stated = entity.pose_provenance
         for seq in reversed(self._journal.touching(entity.name)):
             commit = self._journal.commit(seq)
@@ -144,12 +144,12 @@ class Past:
 
     @property
     def last(self) -> int:
-        """The number of the last commit, 0 before the first."""
+        """Return the number of the last commit, 0 before the first."""
         return self._journal.last
 
     def knows(self, name: str) -> bool:
-        """Whether an entity was ever named so, as far as the history goes back."""
-        return name in self.at_the_beginning() or bool(self._journal.touching(name))
+        """Return whether an entity ever had this name, within the stored history."""
+        return name in self.initial_entities() or bool(self._journal.touching(name))
 
     def _require_known(self, name: str) -> None:
         if not self.knows(name):
@@ -161,17 +161,19 @@ class Past:
 
     @property
     def _compacted(self) -> int:
-        """The last commit that is part of the snapshot which the history begins with; 0 if there is none."""
+        """Return the last commit that is part of the snapshot, or 0."""
         return self._journal.beginning.seq
 
-    def at_the_beginning(self) -> Mapping[str, Entity]:
-        """The entities of the snapshot that the history begins with, else those that the first TBox says."""
+    def initial_entities(self) -> Mapping[str, Entity]:
+        """Return the entities of the snapshot that starts the history, else those of the first TBox."""
         if self._first is None or self._first[0] != self._compacted:
-            said = self._journal.snapshot().entities if self._compacted else self._said_by_the_first_tbox()
-            self._first = (self._compacted, {entity.name: entity for entity in said})
+            entities = (
+                self._journal.snapshot().entities if self._compacted else self._read_first_tbox_entities()
+            )
+            self._first = (self._compacted, {entity.name: entity for entity in entities})
         return self._first[1]
 
-    def _said_by_the_first_tbox(self) -> Iterable[Entity]:
+    def _read_first_tbox_entities(self) -> Iterable[Entity]:
         tbox = rdf.parse(self._journal.tbox(0), "the first TBox")
         if not tbox_validation.has_individuals(tbox):
             return ()
@@ -179,21 +181,21 @@ class Past:
         return entity_reading.of_the_tbox(reasoner, ClassTable(reasoner))
 
     def commit_at(self, when: When) -> int:
-        """The commit after which the map was as then. Raises Refused for the future and before it all."""
+        """Return the last commit at a time. Raises Refused for the future and before the history."""
         moment, last = read_moment(when), self._journal.last
         if moment.first_ns > max(time.time_ns(), self._journal.stamps.latest() if moment.first_ns else 0):
-            raise errors.Refused(f"that is in the future; the last commit so far is {last}")
+            raise errors.Refused(f"the time is in the future; the last commit is {last}")
         seq = self._journal.stamps.seq_at(moment.last_ns) if moment.commit is None else moment.commit
         if seq > last:
             raise errors.Refused(f"there is no commit {seq} yet; the last one is {last}")
         if seq < self._compacted:
             raise errors.Refused(
-                f"what was before commit {self._compacted}{_at(self._journal.beginning.stamp_ns)} has been"
-                " compacted: the history begins with the map as it was then"
+                f"commits before {self._compacted}{_at(self._journal.beginning.stamp_ns)} have been"
+                " compacted: the history begins with the map at that commit"
             )
         if seq == 0:
             begun = "" if last == 0 else _at(self._journal.stamps.of(1))
-            raise errors.Refused(f"there was no map then; it begins with commit 1{begun}")
+            raise errors.Refused(f"there was no map at that time; it begins with commit 1{begun}")
         return seq
 
 
@@ -202,7 +204,7 @@ def _at(stamp_ns: int) -> str:
 
 
 def _beginning(journal: Journal) -> LoggedCommit:
-    """What the history of a compacted journal begins with, told as if it were a commit."""
+    """Return the start of a compacted history, represented as a commit."""
     there = journal.beginning
     return LoggedCommit(
         seq=there.seq,
@@ -225,12 +227,12 @@ def _beginning(journal: Journal) -> LoggedCommit:
 
 
 def _entities_after(commit: Commit) -> dict[str, Entity]:
-    """Those that the commit changed and did not remove, by name."""
+    """Return the entities that the commit changed and did not remove, by name."""
     return {entity.name: entity for entity in commit.changed}
 
 
 def sighting(entity: Entity, removed: Provenance | None) -> Sighting:
-    """Where an entity was, and what removed it."""
+    """Return the last pose of an entity, and what removed it."""
     return Sighting(name=entity.name, pose=entity.pose, provenance=entity.pose_provenance, removed=removed)
 
 

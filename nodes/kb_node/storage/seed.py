@@ -1,4 +1,4 @@
-"""A new journal from ontology files, checked before anything on disk is touched."""
+"""Creation of a journal from ontology files, which are checked before anything on disk changes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.sparql.triples.kept import forget
 from semmap.nodes.kb_node.storage import closure_cache
-from semmap.nodes.kb_node.storage.existing_map import existing_map
+from semmap.nodes.kb_node.storage.existing_map import describe_existing_map
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 from semmap.nodes.kb_node.storage.journal.sqlite_file import InUse
 from semmap.ontology import vocabulary as v
@@ -36,16 +36,16 @@ def seed(
     spatial_root: Sequence[str] = (),
     fresh: bool = False,
 ) -> str:
-    """Make the journal of folder `data` from a TBox and an ABox file; say what was done.
+    """Create the journal of folder `data` from a TBox and an ABox file, and return a summary.
 
-    The TBox may be in several files and folders; `imports` says in which file an imported ontology is,
-    `spatial_root` which of its classes are of things in space, where that is not known by itself.
-    A journal that is there already wins and stays as it is, unless `fresh`: then it is moved to
-    `data/kept/<time>/`. Raises BadFile, UnknownClass or Inconsistent with existing data untouched.
+    The TBox may consist of several files and folders. `imports` maps imported ontologies to files.
+    `spatial_root` names the classes of spatial things, if they cannot be detected. An existing journal is
+    kept and used, unless `fresh`: then it is moved to `data/kept/<time>/`. Raises BadFile, UnknownClass or
+    Inconsistent, with existing data unchanged.
     """
     path = data / FILENAME
-    if not fresh and (told := existing_map(data)) is not None:
-        return told  # an unreadable one is reported before anything starts
+    if not fresh and (notice := describe_existing_map(data)) is not None:
+        return notice  # an unreadable journal is reported before anything starts
     tboxes = (tbox,) if isinstance(tbox, Path) else tuple(tbox)
     name = ", ".join(map(str, tboxes))
     gathered = ontology_files.gather(tboxes, imports)
@@ -53,13 +53,13 @@ def seed(
         gathered.triples, of_file=gathered.prefixes, spatial_root=spatial_root
     )
     reasoner = tbox_validation.compiled(tbox_triples, name)
-    closed = reasoner.closed  # as it is before the ABox may add to the schema
+    closed = reasoner.closed  # before the ABox may add to the schema
     abox_triples = [(v.ABOX_ONTOLOGY, v.RDF_TYPE, v.OWL_ONTOLOGY), *tbox_validation.imports(tbox_triples)]
     notes: list[str] = []
     if abox is not None:
-        said = ontology_files.read(abox, "a")
+        document = ontology_files.read(abox, "a")
         try:
-            sorted_out = abox_document.sort_out(said, ClassTable(reasoner), skip_unknown=False)
+            sorted_out = abox_document.sort_out(document, ClassTable(reasoner), skip_unknown=False)
         except errors.UnknownClass as error:
             text = error.text.removesuffix(errors.SKIP_UNKNOWN)
             raise type(error)(
@@ -83,18 +83,21 @@ def seed(
         require_unused(path)
         new = path.with_name(f"new-{FILENAME}")
         size = _make(new, tbox_triples, reasoner, transaction)
-        put_in_place(new, path)
-        closure_cache.keep(closed, tbox_triples, data)
+        install_journal(new, path)
+        closure_cache.save(closed, tbox_triples, data)
     except (errors.Inconsistent, errors.BadRequest) as error:
         raise type(error)(f"{abox or name}: {error.text}", explanation=error.explanation) from None
     except OSError as error:
-        raise errors.Refused(f"cannot keep a map in {data}: {error.strerror}") from None
+        raise errors.Refused(f"cannot create a map in {data}: {error.strerror}") from None
     return "; note: ".join((f"{wording.entities(size)}{source}", *notes))
 
 
 def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Transaction) -> int:
-    """A journal at `path` with one commit; how many entities that makes. After an error nothing is there."""
-    remove(path)
+    """Create a journal at `path` with one commit, and return the number of entities.
+
+    Nothing is left after an error.
+    """
+    delete_journal(path)
     try:
         journal = Journal.create(path, rdf.serialise(tbox, "ntriples"))
         try:
@@ -104,13 +107,13 @@ def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Trans
         finally:
             journal.close()
     except errors.SemmapError:
-        remove(path)
+        delete_journal(path)
         raise
     return len(semantic_map)
 
 
 def require_unused(path: Path) -> None:
-    """Raises Refused when a knowledge base is at work on the journal; a damaged one may be set aside."""
+    """Raise Refused if a knowledge base uses the journal. A damaged one may be replaced."""
     if path.exists():
         try:
             Journal(path).close()
@@ -120,16 +123,16 @@ def require_unused(path: Path) -> None:
             return
 
 
-def put_in_place(new: Path, path: Path) -> Path | None:
-    """Let the journal `new` take the place of the one at `path`; where that is kept now, if there was one."""
-    kept = set_aside(path.parent)
+def install_journal(new: Path, path: Path) -> Path | None:
+    """Replace the journal at `path` by `new`, and return where the old one is kept, if there was one."""
+    kept = archive_journal(path.parent)
     new.rename(path)
     _sync(path.parent)
     return kept
 
 
 def _sync(folder: Path) -> None:
-    """Make a renaming in `folder` durable."""
+    """Make a rename in `folder` durable."""
     descriptor = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(descriptor)
@@ -137,8 +140,8 @@ def _sync(folder: Path) -> None:
         os.close(descriptor)
 
 
-def set_aside(data: Path) -> Path | None:
-    """Move a present journal out of the way, for whoever may want it back; where to."""
+def archive_journal(data: Path) -> Path | None:
+    """Move an existing journal to a folder for old ones, and return that folder."""
     present = [p for p in data.glob(f"{FILENAME}*") if p.is_file()]
     if not present:
         return None
@@ -150,7 +153,7 @@ def set_aside(data: Path) -> Path | None:
     return kept
 
 
-def remove(path: Path) -> None:
-    """Delete a journal that is not used yet."""
+def delete_journal(path: Path) -> None:
+    """Delete a journal that is not in use."""
     for p in path.parent.glob(f"{path.name}*"):
         p.unlink()

@@ -102,7 +102,7 @@ def _quality(item: Item, of: str, resolver: Resolver) -> str:
 def _where(*relations: str) -> Callable[[Item, Resolver], _Told]:
     def told(item: Item, resolver: Resolver) -> _Told:
         describing = resolver.known.nouns[resolver.language].describing
-        for relation, other in resolver.around.whereabouts(item.name):
+        for relation, other in resolver.around.spatial_relations(item.name):
             if relation in relations and other in resolver.known.items:
                 called = resolver.known.spoken(resolver.known.items[other], resolver.language)
                 return describing.wording[relation].format(describing.the(called)), False

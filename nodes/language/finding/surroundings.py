@@ -44,5 +44,5 @@ class Surroundings(Protocol):
     def is_on_floor(self, name: str) -> bool:
         """Whether a thing stands on the floor of its place, and in or on nothing else."""
 
-    def whereabouts(self, name: str) -> tuple[tuple[RelationName, str], ...]:
+    def spatial_relations(self, name: str) -> tuple[tuple[RelationName, str], ...]:
         """What a thing is inside, what it is on, and in which place, those that it has."""

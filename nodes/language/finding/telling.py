@@ -199,5 +199,5 @@ def _nearest(part: Resolved, resolver: Resolver) -> Iterator[Candidate]:
 
 
 def _whereabouts(name: str, resolver: Resolver) -> Iterator[str]:
-    for relation, other in resolver.around.whereabouts(name)[:1]:
+    for relation, other in resolver.around.spatial_relations(name)[:1]:
         yield f"{_SPOKEN[relation]} {other}"

@@ -98,7 +98,7 @@ def test_cycles_and_unknown_frames_are_rejected_with_a_reason(system):
         assert client.get("fridge1", frame="dock").pose is not None
         with pytest.raises(errors.UnknownName, match=r"unknown frame 'dok'.*did you mean dock"):
             client.get("fridge1", frame="dok")
-        with pytest.raises(errors.BadRequest, match="say how far from there"):
+        with pytest.raises(errors.BadRequest, match="--near with a position requires a distance"):
             client.list(near="1,2,0")
         client.withdraw_frame("hook")
         until(lambda: "hook" not in [f.name for f in client.frames()], "that it is gone")

@@ -7,7 +7,7 @@ from semmap.nodes.kb_node.answers.accounts import Accounts
 from semmap.nodes.kb_node.answers.sightings import Sightings
 from semmap.nodes.kb_node.answers.whereabouts import Now
 from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commands import Tell
@@ -49,7 +49,7 @@ def semantic_map(tmp_path):
 
 @pytest.fixture
 def accounts(semantic_map):
-    return Accounts(semantic_map, Now(semantic_map), Sightings(Past(semantic_map._journal)))
+    return Accounts(semantic_map, Now(semantic_map), Sightings(HistoryReader(semantic_map._journal)))
 
 
 @pytest.fixture
@@ -132,12 +132,12 @@ def test_of_a_large_map_only_numbers_are_told(accounts, room, monkeypatch):
 def test_the_empty_map_and_who_is_not_there(accounts, semantic_map):
     told = accounts.tell(Tell())
     assert structs.asdict(told) == {"text": "The map is empty.", "words": 4, "left_out": 0, "commit": 0}
-    with pytest.raises(errors.UnknownName, match="nothing is named or called 'cup1'"):
+    with pytest.raises(errors.UnknownName, match="no entity has the name, label or class 'cup1'"):
         accounts.tell(Tell(name="cup1"))
 
 
 def test_a_word_that_may_mean_several_is_refused(accounts, room):
-    with pytest.raises(errors.BadRequest, match="'cup' may mean cup1 and cup2; name one of them"):
+    with pytest.raises(errors.BadRequest, match="'cup' is ambiguous: cup1 and cup2; name one of them"):
         accounts.tell(Tell(name="cup"))
 
 
@@ -145,7 +145,7 @@ def test_what_was_wrongly_said_is_not_said_again(accounts, room):
     said = Statement(property="isOn", values=("table1",))
     room(2, edit=(Edit(name="chair3", set=(said,)),))
     told = accounts.tell(Tell(name="chair3")).text
-    assert "Not as it should be: chair3 was said to be on table1; it stands" in told
+    assert "Not as it should be: chair3 was asserted to be on table1; it stands" in told
     assert "It is on table1" not in told
 
 

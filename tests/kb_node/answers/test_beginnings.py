@@ -11,7 +11,7 @@ from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.schemas import codec
 from semmap.schemas.commits import Commit, Departed
 from semmap.schemas.entities import Pose
-from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
+from tests.kb_node.relations.entities import CORNER, ROOM, TABLE, TOP, thing
 
 FIRST = [ROOM, CORNER, TABLE, thing("table2", (1.7, 0.2, 0.0)), thing("bowl1", (0.0, -0.4, TOP))]
 SPOTS = [(0.0, 0.0, TOP), (0.0, -0.4, TOP + 0.02), (1.7, 0.2, TOP), (2.0, 2.0, 0.0), (0.0, 0.0, TOP + 0.03)]

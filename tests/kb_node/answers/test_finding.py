@@ -5,7 +5,7 @@ from msgspec import structs
 
 from semmap.nodes.kb_node.answers.finding import Finding
 from semmap.nodes.kb_node.answers.gone import gone
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.ontology import stars
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -202,9 +202,9 @@ def test_what_stands_beside_and_what_leads_where(flat, text, meant):
 def test_who_looks_and_who_asks_must_be_there(flat):
     with pytest.raises(errors.UnknownName):
         Finding(flat).find(Find(text="my cup", asker="nobody"))
-    with pytest.raises(errors.BadRequest, match="depend on who looks"):
+    with pytest.raises(errors.BadRequest, match="require a viewpoint"):
         Finding(flat).find(Find(text="the leftmost book"))
-    with pytest.raises(errors.BadRequest, match="'chair' may mean"):
+    with pytest.raises(errors.BadRequest, match="'chair' is ambiguous"):
         Finding(flat).find(Find(text="the leftmost book", viewer="chair"))
 
 
@@ -224,7 +224,7 @@ def test_what_is_gone_is_told_with_when(flat):
     flat.commit(Transaction(id="1", source="operator", insert=tuple(spoon)))
     flat.commit(Transaction(id="2", source="operator", retract=tuple(spoon)))
     sought = finding.find(Find(text="the spoon"))
-    past = Past(flat._journal)
+    past = HistoryReader(flat._journal)
     told = gone(flat._journal, past, sought.missing, frozenset(flat.names), flat.classes.limits)
     assert len(told) == 1
     assert told[0].startswith("spoon1 was there until commit 3, ")
@@ -243,7 +243,11 @@ def test_what_has_been_moved_is_told_with_when_it_was_there(flat):
     flat.commit(Transaction(id="1", source="operator", retract=tuple(before), insert=tuple(after)))
     sought = finding.find(Find(text="the apple in the bowl"))
     told = gone(
-        flat._journal, Past(flat._journal), sought.missing, frozenset(flat.names), flat.classes.limits
+        flat._journal,
+        HistoryReader(flat._journal),
+        sought.missing,
+        frozenset(flat.names),
+        flat.classes.limits,
     )
     assert sought.found.outcome == "none"
     assert len(told) == 1

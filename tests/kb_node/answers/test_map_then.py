@@ -7,7 +7,7 @@ from semmap.nodes.kb_node.answers.map_then import ask_then, export_then, map_the
 from semmap.nodes.kb_node.beliefs import Believed
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.ontology import FLAT_TTL
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -42,7 +42,9 @@ def flat(tmp_path_factory):
 
 
 def asked(flat, when, query=ON_COUNTER, *, inferred=True):
-    found = ask_then(flat._journal, Past(flat._journal), Sparql(query=query, as_of=when, inferred=inferred))
+    found = ask_then(
+        flat._journal, HistoryReader(flat._journal), Sparql(query=query, as_of=when, inferred=inferred)
+    )
     return found.seq, [v.entity_name(row[0]) for row in found.rows]
 
 
@@ -67,14 +69,14 @@ def test_what_is_measured_on_demand_is_measured_then(flat):
 
 
 def test_the_last_commit_is_the_map_as_it_is(flat):
-    then = map_then(flat._journal, Past(flat._journal), 5, inferred=True)
+    then = map_then(flat._journal, HistoryReader(flat._journal), 5, inferred=True)
     assert set(then.asserted) == set(flat.reasoner.asserted())
     now = flat.all_believed()
     assert Believed(*map(set, then.believed)) == Believed(*map(set, now))
 
 
 def test_before_the_first_commit_there_was_no_map(flat):
-    with pytest.raises(errors.Refused, match="there was no map then"):
+    with pytest.raises(errors.Refused, match="there was no map at that time"):
         asked(flat, 0)
     with pytest.raises(errors.Refused, match="there is no commit 9 yet"):
         asked(flat, 9)
@@ -82,7 +84,7 @@ def test_before_the_first_commit_there_was_no_map(flat):
 
 def exported(flat, when, **others):
     query = Export(format="turtle", as_of=when, **others)
-    document = export_then(flat._journal, Past(flat._journal), query)
+    document = export_then(flat._journal, HistoryReader(flat._journal), query)
     return document, set(rdf.parse(document.content, "export.ttl"))
 
 

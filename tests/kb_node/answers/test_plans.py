@@ -7,7 +7,7 @@ from msgspec import structs
 
 from semmap.nodes.kb_node.answers.plans import plan_of
 from semmap.schemas.plans import Outline
-from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
+from tests.kb_node.relations.entities import CORNER, ROOM, TABLE, TOP, thing
 
 SQUARE = "POLYGON ((0 0, 4 0, 4 2, 0 2, 0 0), (1 0.5, 1 1.5, 2 1.5, 2 0.5, 1 0.5))"
 WALL = Outline(corners=((0.0, 0.0), (1.0, 0.0), (1.0, 0.1)), low=0.0, high=2.5)

@@ -6,7 +6,7 @@ import time
 import pytest
 
 from semmap.nodes.kb_node.answers.sightings import Sightings
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.schemas import errors
 from semmap.schemas.commits import Edit
 from semmap.schemas.entities import Pose
@@ -34,7 +34,7 @@ def semantic_map(tmp_path):
 
 @pytest.fixture
 def sightings(semantic_map):
-    return Sightings(Past(semantic_map._journal))
+    return Sightings(HistoryReader(semantic_map._journal))
 
 
 def look(name, stamp_ns):

@@ -7,7 +7,7 @@ from semmap.nodes.kb_node.answers.speakable import item, terms
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
 from tests.kb_node.reasoner.graphs import household
-from tests.kb_node.relations.made import ROOM, TABLE
+from tests.kb_node.relations.entities import ROOM, TABLE
 
 
 def test_an_entity_is_spoken_of_by_its_references_and_the_values_of_its_properties():

@@ -6,7 +6,7 @@ import time
 import pytest
 
 from semmap.nodes.kb_node.answers.standing_places import StandingPlaces
-from semmap.nodes.kb_node.relations.selection import selected
+from semmap.nodes.kb_node.relations.selection import select_entities
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commands import Renew, Watch
@@ -180,7 +180,7 @@ def test_what_is_told_is_what_asking_again_finds(room, wanted):
         made = random_commit(room, dice, things)
         if made is not None:
             watched.after(made)
-        asked = selected(room.places.space(), tuple(room.entities()), where, tuple(room.entities()))
+        asked = select_entities(room.places.space(), tuple(room.entities()), where, tuple(room.entities()))
         assert watched.now == {entity.name for entity in asked}
 
 

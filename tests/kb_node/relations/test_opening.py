@@ -1,4 +1,4 @@
-"""Relations know how doors, lids and drawers stand: what lies on them, and what is carried by them."""
+"""Relations depend on the state of doors, lids and drawers."""
 
 import math
 
@@ -6,13 +6,13 @@ import pytest
 from msgspec import structs
 
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
-from semmap.nodes.kb_node.relations.geometry.fitting import fitted
-from semmap.nodes.kb_node.relations.geometry.opening import opened, positions_of
+from semmap.nodes.kb_node.relations.geometry.fitting import fit_model
+from semmap.nodes.kb_node.relations.geometry.opening import open_shape, positions_of
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.telling import relations
+from semmap.nodes.kb_node.relations.relation_reports import list_relations
 from semmap.ontology.model_shapes import own_size_m, shapes
 from semmap.schemas.commands import Relations
-from tests.kb_node.relations.made import ROOM, thing
+from tests.kb_node.relations.entities import ROOM, thing
 
 CHEST = thing("chest1", (0.0, 0.0, 0.0), "drawer")
 TRAVEL = shapes()["drawer"].leaves[-1].limits[1]
@@ -38,7 +38,7 @@ def pulled(entity, by):
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.5, 1.0])
 @pytest.mark.parametrize("yaw", [0.0, 0.7, math.pi / 2])
-def test_what_is_in_a_drawer_is_in_it_however_far_it_is_pulled_out(share, yaw):
+def test_contents_of_a_drawer_move_with_it(share, yaw):
     x, _, z = IN_THE_DRAWER
     out = x + share * TRAVEL
     chest = standing(thing("chest1", (1.0, 1.0, 0.0), "drawer", yaw=yaw), f"drawer_1={share * TRAVEL:.3f}")
@@ -48,14 +48,14 @@ def test_what_is_in_a_drawer_is_in_it_however_far_it_is_pulled_out(share, yaw):
     assert ("apple1", "isOn", "chest1") not in found
 
 
-def test_in_front_of_a_shut_drawer_nothing_is_in_it():
+def test_an_object_before_a_closed_drawer_is_not_in_it():
     apple = pulled(thing("apple1", IN_THE_DRAWER), TRAVEL)
     assert ("apple1", "isInside", "chest1") in facts_of(standing(CHEST, f"drawer_1={TRAVEL}"), apple)
     for chest in (CHEST, standing(CHEST, "drawer_1=0"), standing(CHEST, f"drawer_2={TRAVEL}")):
         assert ("apple1", "isInside", "chest1") not in facts_of(chest, apple)
 
 
-def test_a_drawer_and_what_is_in_it_come_and_go_in_one_map():
+def test_drawer_and_contents_are_added_and_removed():
     facts, apple = Facts(), thing("apple1", IN_THE_DRAWER)
     said = ("apple1", "isInside", "chest1")
     facts.update([ROOM, CHEST, apple])
@@ -67,7 +67,7 @@ def test_a_drawer_and_what_is_in_it_come_and_go_in_one_map():
     assert set(facts) == facts_of(standing(CHEST, "drawer_1=0"), apple)
 
 
-def test_what_was_said_in_rough_is_so_too():
+def test_a_coarse_assertion_agrees_with_a_drawer():
     apple = pulled(thing("apple1", IN_THE_DRAWER), TRAVEL)
     for said in ({"isOpen": True}, {"openness": 1.0, "isOpen": True}):
         assert ("apple1", "isInside", "chest1") in facts_of(structs.replace(CHEST, properties=said), apple)
@@ -75,9 +75,9 @@ def test_what_was_said_in_rough_is_so_too():
     assert ("apple1", "isInside", "chest1") not in facts_of(structs.replace(CHEST, properties=said), apple)
 
 
-def test_what_lies_on_the_door_of_an_open_oven_is_on_it():
+def test_an_object_on_an_open_oven_door_is_on_the_oven():
     door = shapes()["oven"].leaves[0]
-    top = max(part.centre[2] for part in opened(shapes()["oven"], (math.pi / 2,)).parts[-1:]) + 0.01
+    top = max(part.centre[2] for part in open_shape(shapes()["oven"], (math.pi / 2,)).parts[-1:]) + 0.01
     plate = thing("plate1", (door.anchor[0] + 0.22, 0.0, top))
     open_ = standing(OVEN, f"door={math.pi / 2:.4f}")
     assert ("plate1", "isOn", "oven1") in facts_of(open_, plate)
@@ -88,7 +88,7 @@ def test_what_lies_on_the_door_of_an_open_oven_is_on_it():
 
 @pytest.mark.parametrize("angle", [0.0, 0.5, 1.0, 1.745])
 @pytest.mark.parametrize("y", [-0.3, 0.0, 0.3, 0.6])
-def test_what_stands_before_an_open_fridge_is_not_in_it(angle, y):
+def test_an_object_before_an_open_fridge_is_not_in_it(angle, y):
     fridge = standing(thing("fridge1", (0.0, 0.0, 0.0)), f"door={angle} freezer=0")
     milk = thing("carton1", (0.5, y, 0.0))
     shelf = thing("carton2", (-0.1, 0.0, shapes()["fridge"].surfaces[3].height))
@@ -98,18 +98,18 @@ def test_what_stands_before_an_open_fridge_is_not_in_it(angle, y):
     assert ("carton2", "isInside", "fridge1") in found
 
 
-def test_what_leans_on_an_open_door_touches_the_fridge():
+def test_an_object_against_an_open_door_touches_the_fridge():
     fridge = thing("fridge1", (0.0, 0.0, 0.0))
     open_ = standing(fridge, "door=1.5708 freezer=0")  # along the x axis, at y = 0.294
     poster = thing("poster1", (0.7, 0.294 + 0.0105, 0.5), "", size=(0.2, 0.02, 0.3))
     for one, holds in ((open_, True), (fridge, False)):
-        found = relations(Space([one, poster]), Relations(name="poster1", other="fridge1"))
+        found = list_relations(Space([one, poster]), Relations(name="poster1", other="fridge1"))
         found = {r.relation: r for r in found}
         assert ("touches" in found and found["touches"].holds) is holds
         assert (found["isNear"].gap_m < 0.001) is holds
 
 
-def test_how_it_stands_is_said_with_what_was_measured():
+def test_explanations_include_the_joint_state():
     apple = pulled(thing("apple1", IN_THE_DRAWER), 0.5 * TRAVEL)
     chest = standing(CHEST, f"drawer_1={0.5 * TRAVEL:.3f}")
     carton = thing("carton1", (3.0 - 0.1, 0.0, 0.867))
@@ -117,7 +117,7 @@ def test_how_it_stands_is_said_with_what_was_measured():
     space = Space([ROOM, chest, apple, fridge, carton])
 
     def said(name, other):
-        found = {r.relation: r.text for r in relations(space, Relations(name=name, other=other))}
+        found = {r.relation: r.text for r in list_relations(space, Relations(name=name, other=other))}
         return found["isInside"]
 
     assert said("apple1", "chest1") == (
@@ -129,7 +129,7 @@ def test_how_it_stands_is_said_with_what_was_measured():
     )
 
 
-def test_positions_are_within_limits_and_play_is_none():
+def test_joint_positions_are_clamped_and_play_is_ignored():
     size = own_size_m("drawer")
     assert positions_of("drawer", size, {"jointPositions": "drawer_1=0.001"}) == ()
     found = positions_of("drawer", size, {"jointPositions": "drawer_1=9 drawer_9=1 nonsense"})
@@ -140,23 +140,25 @@ def test_positions_are_within_limits_and_play_is_none():
     assert positions_of("drawer", None, {"isOpen": True}) == ()
 
 
-def test_a_larger_chest_has_drawers_that_come_out_further():
+def test_a_larger_chest_has_longer_drawer_travel():
     size = tuple(2.0 * extent for extent in own_size_m("drawer"))
     (*_, most) = positions_of("drawer", size, {"openness": 1.0})
     assert most == pytest.approx(2.0 * TRAVEL)
-    wide = opened(fitted("drawer", (0.8, 0.45, 0.9)), (0.0, 0.0, 0.0, 0.3))  # long where it was wide: turned
-    shut = fitted("drawer", (0.8, 0.45, 0.9))
+    wide = open_shape(
+        fit_model("drawer", (0.8, 0.45, 0.9)), (0.0, 0.0, 0.0, 0.3)
+    )  # long where it was wide: turned
+    shut = fit_model("drawer", (0.8, 0.45, 0.9))
     assert wide.parts[-1].centre[1] == pytest.approx(shut.parts[-1].centre[1] - 0.3)
 
 
 @pytest.mark.parametrize("model", sorted(name for name, shape in shapes().items() if shape.leaves))
-def test_what_moves_keeps_its_size_and_shut_it_is_as_it_was(model):
+def test_opening_keeps_sizes_and_closing_restores_the_shape(model):
     shape = shapes()[model]
     ends = tuple(leaf.limits[1] for leaf in shape.leaves)
-    moved = opened(shape, ends)
+    moved = open_shape(shape, ends)
     still = set(range(len(shape.parts))) - {k for leaf in shape.leaves for k in leaf.parts}
     for k, (was, now) in enumerate(zip(shape.parts, moved.parts, strict=True)):
         for before, after in zip(was.straight, now.straight, strict=True):
             assert math.hypot(*after) == pytest.approx(math.hypot(*before))
         assert (was == now) == (k in still)
-    assert opened(shape, (0.0,) * len(shape.leaves)) == shape
+    assert open_shape(shape, (0.0,) * len(shape.leaves)) == shape

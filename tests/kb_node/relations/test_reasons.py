@@ -1,13 +1,13 @@
-"""Why a relation does not hold, for each that there is."""
+"""Explanations of why a relation does not hold."""
 
 import pytest
 
-from semmap.nodes.kb_node.relations.measuring.phrases import SPOKEN
+from semmap.nodes.kb_node.relations.measuring.phrases import PHRASES
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.telling import explained, relations
+from semmap.nodes.kb_node.relations.relation_reports import explain_relation, list_relations
 from semmap.schemas import errors
 from semmap.schemas.commands import Relations
-from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
+from tests.kb_node.relations.entities import CORNER, ROOM, TABLE, TOP, thing
 
 FRIDGE = thing("fridge1", (2.0, -2.0, 0.0))
 TRAY = thing("tray1", (0.0, 0.0, TOP))
@@ -31,7 +31,7 @@ MAP = [
 
 
 def told(name, relation, other):
-    return explained(Space(MAP), name, relation, other)
+    return explain_relation(Space(MAP), name, relation, other)
 
 
 @pytest.mark.parametrize(
@@ -39,38 +39,38 @@ def told(name, relation, other):
     [
         ("apple1", "isOn", "table1", "it is inside bowl1, which is on table1"),
         ("cup1", "isOn", "table1", "it is on tray1, which is on table1"),
-        ("milk1", "isOn", "fridge1", "it is inside fridge1, and what is inside a thing is not also on it"),
+        ("milk1", "isOn", "fridge1", "it is inside fridge1, and an object inside another is not also on it"),
         ("cup1", "isOn", "cup2", "it is over no surface of cup2"),
         ("cup3", "isOn", "table1", "cm above the nearest surface of table1"),
         ("box1", "isOn", "table1", "cm below the nearest surface of table1"),
         ("cup1", "isOn", "kitchen1", "kitchen1 is a place"),
-        ("thing1", "isOn", "table1", "the size of thing1 is not known"),
-        ("apple1", "isInside", "table1", "table1 has no hollow"),
+        ("thing1", "isOn", "table1", "the size of thing1 is unknown"),
+        ("apple1", "isInside", "table1", "table1 has no known hollow"),
         ("cup1", "isInside", "bowl1", "none of its volume is within a hollow of bowl1"),
         ("cup1", "isLocatedIn", "table1", "table1 is not a place"),
         ("cup1", "isLocatedIn", "corner1", "m from it"),
-        ("cup1", "isAttachedTo", "table1", "it is on tray1, so it does not hang"),
-        ("cup1", "touches", "cup2", "apart (touching is up to 1.5 mm)"),
-        ("cup1", "isUnder", "table1", "nothing of table1 is above the top of cup1"),
+        ("cup1", "isAttachedTo", "table1", "it is on tray1, so it is not attached to a side"),
+        ("cup1", "touches", "cup2", "apart (touches allows up to 1.5 mm)"),
+        ("cup1", "isUnder", "table1", "no part of table1 is above the top of cup1"),
         ("cup1", "isUnder", "shelf1", "seen from above, they are"),
-        ("table1", "isAbove", "cup1", "nothing of table1 is above the top of cup1"),
+        ("table1", "isAbove", "cup1", "no part of table1 is above the top of cup1"),
         ("cup2", "isUnder", "table1", "it is on table1"),
-        ("cup1", "isNear", "shelf1", "near is up to"),
-        ("cup1", "isNextTo", "shelf1", "near is up to"),
+        ("cup1", "isNear", "shelf1", "isNear allows up to"),
+        ("cup1", "isNextTo", "shelf1", "isNear allows up to"),
         ("plate1", "isNextTo", "cup1", "but plate1 is on table1 and cup1 is on tray1"),
-        ("cup1", "isLeftOf", "shelf1", "by the front of shelf1, it is in front of it"),
+        ("cup1", "isLeftOf", "shelf1", "relative to the front of shelf1, it is in front of it"),
         ("shelf1", "isVisibleFrom", "cup1", "0% of the lines of sight reach it"),
-        ("cup1", "isOn", "cup1", "nothing is so of itself"),
+        ("cup1", "isOn", "cup1", "an object has no relation to itself"),
     ],
 )
-def test_why_not(name, relation, other, reason):
+def test_explanations_of_absent_relations(name, relation, other, reason):
     found = told(name, relation, other)
     assert not found.holds
     assert reason in found.text
     assert found.text.startswith(f"{name} ")
 
 
-@pytest.mark.parametrize("relation", SPOKEN)
+@pytest.mark.parametrize("relation", PHRASES)
 def test_there_is_a_reason_for_each_relation(relation):
     for other in ("table1", "kitchen1", "apple1", "thing1", "cup1"):
         found = told("cup1", relation, other)
@@ -78,51 +78,53 @@ def test_there_is_a_reason_for_each_relation(relation):
         assert found.text
 
 
-def test_what_is_on_a_thing_touches_it_whoever_is_asked():
-    """Within what a pose is worth: the cup is 2 cm above the table in the map."""
+def test_a_supported_object_touches_in_both_directions():
+    """Within the pose tolerance: the cup is 2 cm above the table in the map."""
     assert told("cup2", "touches", "table1").text.startswith(
         "cup2 touches table1, because cup2 is on table1:"
     )
     assert told("table1", "touches", "cup2").holds
-    pair = relations(Space(MAP), Relations(name="table1", other="cup2"))
+    pair = list_relations(Space(MAP), Relations(name="table1", other="cup2"))
     assert "touches" in {relation.relation for relation in pair if relation.holds}
     assert not told("apple1", "touches", "table1").holds
 
 
-def test_no_pair_of_one():
-    with pytest.raises(errors.BadRequest, match="name two different things"):
-        list(relations(Space(MAP), Relations(name="cup1", other="cup1")))
+def test_an_object_has_no_relation_to_itself():
+    with pytest.raises(errors.BadRequest, match="name two different objects"):
+        list(list_relations(Space(MAP), Relations(name="cup1", other="cup1")))
 
 
-def test_of_two_that_hang_neither_stands():
+def test_two_attached_objects_have_no_support():
     hanging = [thing(f"cup{n}", (0.09 * n, 3.0, 1.4 + 0.06 * n)) for n in (1, 2)]
-    found = explained(Space([ROOM, *hanging]), "cup1", "isNextTo", "cup2")
-    assert "neither stands on anything that is known" in found.text
+    found = explain_relation(Space([ROOM, *hanging]), "cup1", "isNextTo", "cup2")
+    assert "neither has a known support" in found.text
 
 
-def test_no_length_of_nothing():
-    assert explained(Space([TABLE, thing("cup1", (0.0, 0.0, TOP))]), "cup1", "touches", "table1").text == (
-        "cup1 touches table1: they meet"
-    )
+def test_no_length_of_zero_is_printed():
+    assert explain_relation(
+        Space([TABLE, thing("cup1", (0.0, 0.0, TOP))]), "cup1", "touches", "table1"
+    ).text == ("cup1 touches table1: they meet")
 
 
-def test_of_what_is_not_compared_in_a_crowd_that_is_said():
+def test_a_crowd_is_named_as_the_reason():
     cans = [thing(f"can{k}", (0.0, 0.0, TOP)) for k in range(150)]
     upper = thing("can999", (0.0, 0.0, TOP + cans[0].size_m[2]))
     crowd = Space([ROOM, TABLE, *cans, upper])
     assert not crowd.counts(crowd.solids["can999"])
-    found = explained(crowd, "can999", "isOn", "can1")
+    found = explain_relation(crowd, "can999", "isOn", "can1")
     assert not found.holds
     assert found.text.endswith(
-        "more things are in this spot than are compared, and can1 is not one of the larger ones"
+        "too many objects are here to compare all of them, and can1 is not among the largest"
     )
-    assert explained(crowd, "can149", "isOn", "table1").holds
-    assert explained(Space([TABLE, cans[1], upper]), "can999", "isOn", "can1").holds
+    assert explain_relation(crowd, "can149", "isOn", "table1").holds
+    assert explain_relation(Space([TABLE, cans[1], upper]), "can999", "isOn", "can1").holds
 
 
-def test_what_is_on_a_thing_is_on_no_side_of_it():
+def test_a_supported_object_has_no_side():
     space = Space([TABLE, thing("cup1", (0.2, 0.2, TOP))])
     for name, other, borne in (("cup1", "table1", "it is on table1"), ("table1", "cup1", "cup1 is on it")):
-        found = explained(space, name, "isLeftOf", other)
+        found = explain_relation(space, name, "isLeftOf", other)
         assert not found.holds
-        assert found.text.endswith(f"{borne}, and what bears a thing is on no side of it")
+        assert found.text.endswith(
+            f"{borne}; side relations are not defined between an object and its support"
+        )

@@ -1,11 +1,11 @@
 import pytest
 
-from semmap.nodes.kb_node.relations.facts.beside import Beside
+from semmap.nodes.kb_node.relations.facts.pair_facts import PairFacts
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.selection import meant, only_meant, selected
+from semmap.nodes.kb_node.relations.selection import resolve_single, resolve_word, select_entities
 from semmap.schemas import errors
 from semmap.schemas.relations import Where
-from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
+from tests.kb_node.relations.entities import CORNER, ROOM, TABLE, TOP, thing
 
 MAP = [
     ROOM,
@@ -22,10 +22,10 @@ MAP = [
 
 
 def names(**where):
-    return [e.name for e in selected(Space(MAP), MAP, Where(**where), MAP)]
+    return [e.name for e in select_entities(Space(MAP), MAP, Where(**where), MAP)]
 
 
-def test_on_is_also_on_what_is_on_it():
+def test_on_is_transitive():
     assert names(on="table1") == ["tray1", "cup1", "cup2", "bowl1", "apple1"]
     assert names(on="tray1") == ["cup1"]
     assert names(on="bowl1") == []
@@ -47,14 +47,14 @@ def test_near_within_and_nearest():
     assert names(nearest=9, to="lamp2", within=1.0) == []
 
 
-def test_a_distance_includes_what_is_exactly_so_far_away():
+def test_a_distance_is_inclusive():
     boxes = [
         thing("box1", (1.0, 0.0, 0.0), size=(1.0, 1.0, 1.0)),
         thing("box2", (4.0, 0.0, 0.0), size=(2.0, 1.0, 1.0)),
     ]
 
     def found(**where):
-        return [e.name for e in selected(Space(boxes), boxes, Where(**where), boxes)]
+        return [e.name for e in select_entities(Space(boxes), boxes, Where(**where), boxes)]
 
     assert found(near="box1", within=1.5) == ["box2"]
     assert found(near="box1", within=1.49) == []
@@ -76,35 +76,35 @@ def test_near_and_nearest_to_a_position():
         names(near="20000,0,0", within=1.0)
 
 
-def test_all_that_is_asked_must_hold():
+def test_all_conditions_must_hold():
     assert names(on="table1", near="cup2", within=0.02) == []
     assert names(on="kitchen table", in_="kitchen") == names(on="table1")
 
 
 def test_words():
-    assert meant(MAP, "my cup") == {"cup1"}
-    assert meant(MAP, "Cup") == {"cup1", "cup2"}
+    assert resolve_word(MAP, "my cup") == {"cup1"}
+    assert resolve_word(MAP, "Cup") == {"cup1", "cup2"}
     with pytest.raises(errors.UnknownName, match="did you mean table1"):
-        meant(MAP, "tabel1")
+        resolve_word(MAP, "tabel1")
 
 
-def test_a_class_as_it_is_written_is_not_one_thing_that_is_called_so():
+def test_an_exact_class_takes_precedence_over_a_label():
     called = thing("table7", (5.0, 5.0, 0.0), ref="table")
-    assert meant([*MAP, called], "Table") == {"table1", "table7"}
-    assert meant([*MAP, called], "table") == {"table7"}
+    assert resolve_word([*MAP, called], "Table") == {"table1", "table7"}
+    assert resolve_word([*MAP, called], "table") == {"table7"}
 
 
-def test_a_word_that_means_one_only():
-    assert only_meant(MAP, "my cup") == "cup1"
-    assert only_meant(MAP, "kitchen") == "kitchen1"
-    with pytest.raises(errors.BadRequest, match="'Cup' may mean cup1 and cup2; name one of them"):
-        only_meant(MAP, "Cup")
+def test_a_word_for_a_single_entity():
+    assert resolve_single(MAP, "my cup") == "cup1"
+    assert resolve_single(MAP, "kitchen") == "kitchen1"
+    with pytest.raises(errors.BadRequest, match="'Cup' is ambiguous: cup1 and cup2; name one of them"):
+        resolve_single(MAP, "Cup")
     with pytest.raises(errors.UnknownName):
-        only_meant(MAP, "nobody")
+        resolve_single(MAP, "missing")
 
 
 @pytest.mark.parametrize("where", [{"within": 1.0}, {"nearest": 2}, {"to": "cup1"}])
-def test_what_does_not_go_alone(where):
+def test_incomplete_conditions_are_rejected(where):
     with pytest.raises(errors.BadRequest, match="--"):
         names(**where)
 
@@ -112,28 +112,28 @@ def test_what_does_not_go_alone(where):
 @pytest.mark.parametrize(
     ("where", "reason"),
     [
-        ({"on": "kitchen1"}, "kitchen1 is a place: things are in a place, and not on it"),
+        ({"on": "kitchen1"}, "kitchen1 is a place: objects are in a place, not on it"),
         ({"in_": "table1"}, "nothing can be in table1"),
     ],
 )
-def test_what_nothing_can_be_on_or_in(where, reason):
+def test_impossible_targets_are_rejected(where, reason):
     with pytest.raises(errors.Refused, match=reason):
         names(**where)
 
 
 def test_a_place_of_unknown_extent():
     nowhere = thing("k1", (0.0, 0.0, 0.0), place=True)
-    with pytest.raises(errors.Refused, match="the extent of k1 is not known"):
-        selected(Space([*MAP, nowhere]), MAP, Where(in_="k1"), [*MAP, nowhere])
+    with pytest.raises(errors.Refused, match="the extent of k1 is unknown"):
+        select_entities(Space([*MAP, nowhere]), MAP, Where(in_="k1"), [*MAP, nowhere])
 
 
-def test_near_is_the_fact_that_a_query_sees():
+def test_near_agrees_with_the_fact():
     space = Space(MAP)
-    pairs = Beside(Space(MAP))
-    pairs.ask(("isNear",), ())
+    pairs = PairFacts(Space(MAP))
+    pairs.set_scope(("isNear",), ())
     for entity in MAP:
         if not entity.place:
-            found = selected(space, MAP, Where(near=entity.name), MAP)
+            found = select_entities(space, MAP, Where(near=entity.name), MAP)
             assert [e.name for e in found] == [
                 e.name for e in MAP if pairs.holds(e.name, "isNear", entity.name)
             ]
@@ -142,23 +142,23 @@ def test_near_is_the_fact_that_a_query_sees():
 @pytest.mark.parametrize(
     ("where", "reason"),
     [
-        ({"near": "kitchen1"}, r"kitchen1 is a place: only things are near one another; use in \(--in\)"),
-        ({"on": "ghost1"}, "ghost1 has no position, so what is on there is not known"),
-        ({"near": "ghost1"}, "ghost1 has no position, so what is near there is not known"),
-        ({"on": "relic1"}, "the size of relic1 is not known, so neither is what is on it"),
+        ({"near": "kitchen1"}, r"kitchen1 is a place: near holds between objects only; use in \(--in\)"),
+        ({"on": "ghost1"}, "ghost1 has no position, so what is on there is unknown"),
+        ({"near": "ghost1"}, "ghost1 has no position, so what is near there is unknown"),
+        ({"on": "relic1"}, "the size of relic1 is unknown, so what is on it is unknown"),
     ],
 )
-def test_what_is_not_known_is_no_empty_list(where, reason):
+def test_unknown_locations_are_rejected(where, reason):
     everyone = [*MAP, thing("ghost1", None), thing("relic1", (1.0, 1.0, 0.0))]
     with pytest.raises(errors.Refused, match=reason):
-        selected(Space(everyone), everyone, Where(**where), everyone)
+        select_entities(Space(everyone), everyone, Where(**where), everyone)
 
 
-def test_how_far_from_a_place_can_be_asked():
+def test_a_distance_from_a_place():
     assert names(near="corner1", within=0.1) == ["lamp1"]
 
 
-def test_who_asks_for_a_thing_by_several_words_is_told_of_what_the_last_of_them_names():
+def test_an_unknown_name_of_several_words_gets_a_suggestion():
     everyone = [ROOM, CORNER, thing("table1", (0.0, 0.0, 0.0), ref="table")]
     with pytest.raises(errors.UnknownName, match="did you mean table, kitchen or"):
-        meant(everyone, "kitchen table")
+        resolve_word(everyone, "kitchen table")

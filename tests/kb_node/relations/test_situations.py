@@ -1,11 +1,11 @@
-"""Sixty situations made by hand: what is computed is what a person would say."""
+"""Sixty situations written by hand, whose relations match human judgement."""
 
 import pytest
 
 from benchmarks.relations.situations import SITUATIONS, TABLE, TOP, about_y, on_table
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.telling import relations
+from semmap.nodes.kb_node.relations.relation_reports import list_relations
 from semmap.schemas.commands import Relations
 
 
@@ -15,7 +15,7 @@ def test_there_are_sixty():
 
 
 @pytest.mark.parametrize("situation", SITUATIONS, ids=lambda situation: situation.title)
-def test_what_a_person_would_say(situation):
+def test_relations_match_human_judgement(situation):
     facts = Facts()
     facts.update(situation.things)
     assert set(facts) == situation.said
@@ -23,7 +23,7 @@ def test_what_a_person_would_say(situation):
     told = {
         (r.subject, r.relation, r.object)
         for thing in situation.things
-        for r in relations(space, Relations(name=thing.name))
+        for r in list_relations(space, Relations(name=thing.name))
     }
     assert situation.also <= told
     assert not situation.never & told
@@ -31,7 +31,7 @@ def test_what_a_person_would_say(situation):
 
 @pytest.mark.parametrize("off_m", [-0.05, -0.02, 0.0, 0.02, 0.05])
 @pytest.mark.parametrize("lean_deg", [0.0, 5.0])
-def test_a_pose_may_be_off_by_as_much_as_the_keeper_tolerates(off_m, lean_deg):
+def test_relations_hold_within_the_pose_tolerance(off_m, lean_deg):
     facts = Facts()
     facts.update([TABLE, on_table("can1", z=off_m, turn=about_y(lean_deg))])
     lowest = facts.space.solids["can1"].bottom - TOP

@@ -5,8 +5,8 @@ import random
 
 import pytest
 
-from semmap.nodes.kb_node.relations.facts.beside import beside
-from semmap.nodes.kb_node.relations.telling import explained
+from semmap.nodes.kb_node.relations.facts.pair_facts import measure_pair
+from semmap.nodes.kb_node.relations.relation_reports import explain_relation
 from semmap.nodes.kb_node.sparql.protocol import Surrounded
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.ontology import vocabulary as v
@@ -40,11 +40,11 @@ def told(flat, wanted):
     space, found = flat.places.space(), set()
     iris = {entity.name: v.iri(entity.iri) for entity in flat.entities()}
     things = [solid for solid in space.solids.values() if not solid.is_place]
-    with space.remembering():
+    with space.caching():
         for solid in things:
             for other in space.around(solid, space.limits.near_most_m):
                 if not other.is_place and any(
-                    made.holds for _, made in beside(space, solid, other, frozenset({wanted}))
+                    made.holds for _, made in measure_pair(space, solid, other, frozenset({wanted}))
                 ):
                     found.add((iris[solid.name], iris[other.name]))
     if wanted not in ("isUnder", "isAbove"):
@@ -85,7 +85,7 @@ def test_a_query_sees_what_relations_tells(flat, service, name):
     space, by_iri = flat.places.space(), {v.iri(entity.iri): entity.name for entity in flat.entities()}
     for s, o in list(rows)[:20]:
         if name != "touches":  # what is on another touches it, too, and may be told with a gap
-            assert explained(space, by_iri[s], name, by_iri[o]).holds
+            assert explain_relation(space, by_iri[s], name, by_iri[o]).holds
 
 
 def test_it_is_the_truth_of_each_commit(flat, service):

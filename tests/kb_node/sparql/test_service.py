@@ -24,7 +24,7 @@ from semmap.schemas.commands import Renew, Sparql, Watch
 from semmap.schemas.commits import Commit, Departed
 from semmap.schemas.entities import Pose
 from tests.kb_node import home
-from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
+from tests.kb_node.relations.entities import ROOM, TABLE, TOP, thing
 
 WAIT_S = 60.0
 FOR_EVER = "SELECT (COUNT(*) AS ?n) { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i . ?j ?k ?l FILTER(?a < ?l) }"

@@ -1,4 +1,4 @@
-"""What commits changed, read off a journal."""
+"""The changes of commits, read from a journal."""
 
 from msgspec import structs
 
@@ -12,15 +12,15 @@ from tests.kb_node.stating import TBOX, adding, edited, stated, statement, unsta
 
 
 def told(journal, only=None, since=1):
-    """The changes of the commits in words."""
+    """Return the changes of the commits as text."""
     query = History(name=only, since=since)
     return [
         [f"{change.name} {change.text}" for change in commit.changes]
-        for commit in history.Past(journal).history(query)
+        for commit in history.HistoryReader(journal).history(query)
     ]
 
 
-def test_history_says_what_was_and_what_is(stateful_map):
+def test_history_contains_old_and_new_values(stateful_map):
     edited(stateful_map, at=(3.0, 2.0, 0.0))
     edited(stateful_map, ref="seat")
     stated(stateful_map, "isOpen", "false")
@@ -42,13 +42,13 @@ def test_history_says_what_was_and_what_is(stateful_map):
     ]
 
 
-def test_the_history_of_one_entity_is_about_it(stateful_map):
+def test_the_history_of_an_entity_is_filtered(stateful_map):
     stateful_map.commit(transaction("go", remove=["kitchen1"]))
     stateful_map.commit(adding("stool1"))
     assert told(stateful_map._journal, "kitchen1") == [["kitchen1 added as Kitchen"], ["kitchen1 removed"]]
 
 
-def test_a_part_of_the_history_knows_what_was_before(stateful_map):
+def test_a_part_of_the_history_has_old_values(stateful_map):
     edited(stateful_map, at=(3.0, 2.0, 0.0))
     stateful_map.commit(transaction("go", remove=["chair1"]))
     stateful_map.commit(adding("chair1"))
@@ -57,7 +57,7 @@ def test_a_part_of_the_history_knows_what_was_before(stateful_map):
     assert told(stateful_map._journal, since=4) == [["chair1 added as Chair"], ["chair1 placed at (5, 2, 0)"]]
 
 
-def test_journals_without_properties_tell_of_them_by_their_triples(stateful_map, monkeypatch):
+def test_older_journals_derive_properties_from_triples(stateful_map, monkeypatch):
     stated(stateful_map, "isOpen", "false")
     stated(stateful_map, "isOpen", "true")
     commit_ = Journal.commit
@@ -74,7 +74,7 @@ def test_journals_without_properties_tell_of_them_by_their_triples(stateful_map,
     ]
 
 
-def test_of_a_large_commit_some_are_told(stateful_map):
+def test_changes_of_a_large_commit_are_limited(stateful_map):
     new = tuple(adding(f"stool{i}").add[0] for i in range(100))
     made = stateful_map.commit(transaction("many", add=new))
     changes = Changelog(stateful_map._journal, dict).of(made)
@@ -83,7 +83,7 @@ def test_of_a_large_commit_some_are_told(stateful_map):
     assert len(Changelog(stateful_map._journal, dict).of(gone)) == changelog.FEW
 
 
-def test_a_property_that_others_are_called_like_has_its_prefix(tmp_path):
+def test_ambiguous_properties_have_a_prefix(tmp_path):
     other = home.turtle("@prefix lab: <http://lab.org/lab#> . lab:hasColor a owl:ObjectProperty .")
     semantic_map = home.new_map(tmp_path, [*TBOX, *other])
     semantic_map.commit(transaction("begin", home.chair()))

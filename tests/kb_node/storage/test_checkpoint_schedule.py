@@ -1,7 +1,7 @@
 from tests.kb_node.home import chair, transaction
 
 
-def test_a_checkpoint_waits_for_a_quiet_moment_but_not_for_ever(semantic_map, monkeypatch):
+def test_a_checkpoint_waits_for_idle_time_up_to_a_limit(semantic_map, monkeypatch):
     monkeypatch.setattr("semmap.nodes.kb_node.storage.checkpoint_schedule.CHECKPOINT_EVERY", 2)
     monkeypatch.setattr("semmap.nodes.kb_node.storage.checkpoint_schedule.CHECKPOINT_AT_LATEST", 3)
     due = []
@@ -13,7 +13,7 @@ def test_a_checkpoint_waits_for_a_quiet_moment_but_not_for_ever(semantic_map, mo
     assert not semantic_map.checkpoint_is_due(quiet=True)
 
 
-def test_a_checkpoint_is_due_after_many_triples_in_a_quiet_moment(semantic_map, monkeypatch):
+def test_a_checkpoint_is_due_after_many_triples_when_idle(semantic_map, monkeypatch):
     monkeypatch.setattr("semmap.nodes.kb_node.storage.checkpoint_schedule.CHECKPOINT_EVERY_TRIPLES", 10)
     semantic_map.commit(transaction(1, chair("chair1")))
     assert not semantic_map.checkpoint_is_due(quiet=True)

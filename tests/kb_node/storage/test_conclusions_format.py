@@ -1,4 +1,4 @@
-"""Whoever changes what is concluded, or how it is laid out, must let the format's number grow."""
+"""The format number must grow with every change of inferences or of their layout."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ DIGESTS = {
     "entities": "1600f749a51e3eda",
     "columns": "5be64fedcc6339af",
 }
-"""Those of the format. When one of them is another: add 1 to FORMAT, and write down the new ones."""
+"""The digests of the current format. If one of them changes, add 1 to FORMAT and store the new digests."""
 
 PREFIXES = """
 @prefix : <http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_1#> .
@@ -62,7 +62,7 @@ _BLANK = re.compile(r"_:\w+")
 BY = Provenance(commit=1, stamp_ns=1, source="file")
 
 
-def test_the_format_grows_with_what_is_concluded_and_how_it_is_kept():
+def test_the_format_changes_with_inferences_and_layout():
     reasoner = Reasoner(rdf.parse(TBOX.encode(), "t.ttl", label_prefix="t"))
     assert reasoner.closed is not None
     closed = sorted(_unlabelled(" ".join(fact)) for fact in reasoner.closed.facts)
@@ -91,7 +91,7 @@ def digest(lines):
 
 
 def stored(columns):
-    """What columns hold: nodes with their classes, and edges with where they come from."""
+    """Return the contents of columns: nodes with their classes, and edges with their sources."""
     for term, number in zip(columns.terms, columns.kind, strict=True):
         classes = sorted(_unlabelled(columns.classes[cls]) for cls in columns.kinds[number].classes)
         if term and columns.kinds[number].excluded is None:
@@ -103,5 +103,5 @@ def stored(columns):
 
 
 def layout(struct):
-    """The fields of a struct with their types, as they are written."""
+    """Return the fields of a struct with their types."""
     return " ".join(f"{name}:{kind}" for name, kind in struct.__annotations__.items())

@@ -1,4 +1,4 @@
-"""Maps begin with TBoxes as other people write them: small ones of our own in each one's manner."""
+"""Maps can use TBoxes written in the style of other projects. Each is represented by a small example."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def opened(data):
 
 
 @pytest.mark.parametrize("manner", MANNERS)
-def test_a_map_begins_with_it_and_goes_on(tmp_path, manner):
+def test_a_map_can_be_created_and_continued(tmp_path, manner):
     (tmp_path / "o.ttl").write_text(TURTLE + MANNERS[manner])
     seed(tmp_path / "data", tmp_path / "o.ttl", None)
     semantic_map = opened(tmp_path / "data")
@@ -87,7 +87,7 @@ def test_a_map_begins_with_it_and_goes_on(tmp_path, manner):
     again._journal.close()
 
 
-def test_missing_imports_are_known_after_a_restart(tmp_path):
+def test_missing_imports_are_kept_after_a_restart(tmp_path):
     (tmp_path / "o.ttl").write_text(TURTLE + MANNERS["SSN: a slash and a Vocabulary"])
     seed(tmp_path / "data", tmp_path / "o.ttl", None)
     for _ in range(2):
@@ -107,7 +107,7 @@ def test_missing_imports_are_known_after_a_restart(tmp_path):
         ("bfo/bfo-2.0.owl", "http://purl.obolibrary.org/obo/BFO_0000030"),
     ],
 )
-def test_a_map_begins_with_a_real_one_and_goes_on(tmp_path, file, class_):
+def test_a_map_with_a_real_tbox_can_be_created_and_continued(tmp_path, file, class_):
     path = data_folder() / "ontologies" / file
     if not path.exists():
         pytest.skip(f"there is no {path}")

@@ -2,7 +2,7 @@ from datetime import datetime
 
 import pytest
 
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.ontology import stars
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -25,7 +25,7 @@ A, B, C = (1.0, 2.0, 0.0), (3.0, 2.0, 0.0), (4.0, 2.0, 0.0)
 
 @pytest.fixture
 def seen(tmp_path):
-    """A map with a past, and each of its snapshots by commit."""
+    """A map with a history, and its snapshots by commit."""
     semantic_map = home.new_map(tmp_path, TBOX_WITH_SINK)
     snapshots = {}
     for step in (
@@ -38,7 +38,7 @@ def seen(tmp_path):
     ):
         semantic_map.commit(step)
         snapshots[semantic_map.seq] = semantic_map.snapshot().entities
-    yield Past(semantic_map._journal), snapshots
+    yield HistoryReader(semantic_map._journal), snapshots
     home.close(semantic_map)
 
 
@@ -67,12 +67,12 @@ def test_the_map_as_it_was_at_a_time(seen):
     assert past.entity("chair1", now).pose.position_m == C
 
 
-def test_a_time_is_as_long_as_it_is_written(seen, monkeypatch):
+def test_a_time_has_the_precision_of_its_text(seen, monkeypatch):
     past, snapshots = seen
     second_ns = int(datetime(2026, 3, 1, 12, 30, 5).timestamp()) * 10**9
     stamps = dict(enumerate((-1, 0, 999_999_999, 10**9, 55 * 10**9 - 1, 55 * 10**9), start=1))
     monkeypatch.setattr(past._journal.stamps, "of", lambda seq: second_ns + stamps[seq])
-    monkeypatch.setattr(past._journal.stamps, "_so_far", lambda: [second_ns + s for s in stamps.values()])
+    monkeypatch.setattr(past._journal.stamps, "_read_all", lambda: [second_ns + s for s in stamps.values()])
     for when, seqs in {
         "2026-03-01T12:30:04": [1],
         "2026-03-01T12:30:05": [2, 3],
@@ -92,19 +92,19 @@ def test_a_time_is_as_long_as_it_is_written(seen, monkeypatch):
     ("when", "text"),
     [
         (7, "there is no commit 7 yet; the last one is 6"),
-        (0, "there was no map then; it begins with commit 1 at 20"),
-        ("2001-01-01", "there was no map then; it begins with commit 1 at 20"),
-        (4e9, "that is in the future"),
+        (0, "there was no map at that time; it begins with commit 1 at 20"),
+        ("2001-01-01", "there was no map at that time; it begins with commit 1 at 20"),
+        (4e9, "the time is in the future"),
     ],
 )
-def test_the_future_and_what_was_before_it_all_are_refused(seen, when, text):
+def test_times_outside_the_history_are_rejected(seen, when, text):
     past, _ = seen
     for ask in (lambda: past.entities(when), lambda: past.entity("chair1", when)):
         with pytest.raises(errors.Refused, match=text):
             ask()
 
 
-def test_who_was_not_there_then_is_named(seen):
+def test_an_absent_entity_is_named(seen):
     past, _ = seen
     with pytest.raises(errors.UnknownName, match=r"no entity was named 'chair2' after commit 5$"):
         past.entity("chair2", 5)
@@ -115,7 +115,7 @@ def test_who_was_not_there_then_is_named(seen):
     assert past.entity("sink", 1).class_ == "Door"
 
 
-def test_history_tells_who_when_why_and_what(seen):
+def test_history_contains_provenance_and_changes(seen):
     past, _ = seen
     commits = past.history(History())
     assert [c.seq for c in commits] == [1, 2, 3, 4, 5, 6]
@@ -150,7 +150,7 @@ def test_history_of_an_entity_and_of_a_span_of_time(seen, query, seqs):
     assert [c.seq for c in past.history(query)] == seqs
 
 
-def test_history_of_nobody_is_refused(seen):
+def test_history_of_an_unknown_name_is_rejected(seen):
     past, _ = seen
     with pytest.raises(errors.UnknownName, match=r"no entity was ever named 'chair3'; did you mean chair"):
         past.history(History(name="chair3"))
@@ -168,14 +168,14 @@ def test_last_seen_is_the_last_commit_that_touched_the_pose(seen):
         past.last_seen("chair9")
 
 
-def test_where_the_clock_was_set_back_commits_are_found_by_their_stamps(tmp_path, monkeypatch):
-    """Two o'clock, four, and then three, half past three, five."""
+def test_commits_are_found_after_a_clock_change(tmp_path, monkeypatch):
+    """The stamps are two, four, three, half past three and five o'clock."""
     semantic_map = home.new_map(tmp_path)
     start_ns = 1_700_000_000 * 10**9
     for number, hour in enumerate((2.0, 4.0, 3.0, 3.5, 5.0), start=1):
         monkeypatch.setattr("time.time_ns", lambda hour=hour: start_ns + int(hour * 3600e9))
         semantic_map.commit(transaction(number, chair(f"chair{number}")))
-    past = Past(semantic_map._journal)
+    past = HistoryReader(semantic_map._journal)
 
     def at(hour):
         return start_ns / 1e9 + hour * 3600
@@ -192,6 +192,6 @@ def test_where_the_clock_was_set_back_commits_are_found_by_their_stamps(tmp_path
     assert [len(past.entities(at(hour))) for hour in (2.5, 3.2, 3.8, 4.5, 5.0)] == [1, 3, 4, 4, 5]
     monkeypatch.setattr("time.time_ns", lambda: start_ns + int(3.6 * 3600e9))  # set back again
     assert len(past.entities(at(5.0))) == 5
-    with pytest.raises(errors.Refused, match="that is in the future"):
+    with pytest.raises(errors.Refused, match="the time is in the future"):
         past.entities(at(5.1))
     home.close(semantic_map)

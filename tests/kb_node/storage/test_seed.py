@@ -32,7 +32,7 @@ def data(tmp_path):
 
 
 def read(data):
-    """The names in the map, and the map's triples, as a knowledge base finds them at its start."""
+    """Return the names and triples of the map, as read at a start."""
     journal = Journal(data / FILENAME)
     semantic_map = SemanticMap(journal)
     journal.close()
@@ -43,7 +43,7 @@ def contents(folder):
     return {p.relative_to(folder): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
-def test_a_map_is_begun_from_two_files(data, files):
+def test_a_map_is_created_from_two_files(data, files):
     assert seed(data, *files) == "1 entity from my abox.ttl"
     names, triples = read(data)
     assert names == ["chair1"]
@@ -51,19 +51,19 @@ def test_a_map_is_begun_from_two_files(data, files):
     assert not any(p == v.RDFS_SUB_CLASS_OF for _, p, _ in triples)
 
 
-def test_a_map_may_begin_empty(data, files):
+def test_a_map_may_be_empty(data, files):
     assert seed(data, files[0], None) == "0 entities"
     assert read(data)[0] == []
 
 
-def test_a_map_that_is_there_wins(data, files):
+def test_an_existing_map_is_kept(data, files):
     seed(data, *files)
     before = contents(data)
     assert seed(data, files[0], None).startswith("continuing with the map in ")
     assert contents(data) == before
 
 
-def test_fresh_keeps_the_old_map_aside(data, files):
+def test_fresh_archives_the_old_map(data, files):
     seed(data, *files)
     for _ in range(2):
         seed(data, files[0], None, fresh=True)
@@ -72,7 +72,7 @@ def test_fresh_keeps_the_old_map_aside(data, files):
     assert [read(folder)[0] for folder in kept] == [["chair1"], []]
 
 
-def test_fresh_sets_a_damaged_journal_aside_too(data, files):
+def test_fresh_archives_a_damaged_journal(data, files):
     data.mkdir()
     (data / FILENAME).write_bytes(b"no database " * 99)
     seed(data, *files, fresh=True)
@@ -80,7 +80,7 @@ def test_fresh_sets_a_damaged_journal_aside_too(data, files):
     assert len(list((data / KEPT).iterdir())) == 1
 
 
-def test_the_journal_of_a_running_knowledge_base_is_left_alone(data, files):
+def test_a_journal_in_use_is_not_changed(data, files):
     seed(data, *files)
     running = Journal(data / FILENAME)
     before = contents(data)
@@ -116,7 +116,7 @@ def test_the_journal_of_a_running_knowledge_base_is_left_alone(data, files):
     ],
 )
 @pytest.mark.parametrize("fresh", [False, True])
-def test_what_cannot_begin_a_map_leaves_the_old_data_alone(data, files, tbox, abox, error, text, fresh):
+def test_invalid_files_leave_the_old_data_unchanged(data, files, tbox, abox, error, text, fresh):
     if fresh:
         seed(data, *files)
     before = contents(data)
@@ -129,7 +129,7 @@ def test_what_cannot_begin_a_map_leaves_the_old_data_alone(data, files, tbox, ab
     assert contents(data) == before
 
 
-def test_what_the_disk_does_not_take_is_no_fault_of_the_files(data, files, monkeypatch):
+def test_a_write_error_does_not_blame_the_files(data, files, monkeypatch):
     def refuse(path, tbox):
         raise errors.Refused(f"cannot create a journal at {path}: disk full")
 
@@ -138,7 +138,7 @@ def test_what_the_disk_does_not_take_is_no_fault_of_the_files(data, files, monke
         seed(data, *files)
 
 
-def test_a_tbox_may_be_a_folder_and_imports_may_be_said(data, files, tmp_path):
+def test_a_tbox_may_be_a_folder_with_imports(data, files, tmp_path):
     (tmp_path / "own").mkdir()
     (tmp_path / "own" / "stools.ofn").write_text(
         "Ontology(<http://o.org/stools> Import(<http://o.org/home>)"
@@ -154,6 +154,6 @@ def test_a_tbox_may_be_a_folder_and_imports_may_be_said(data, files, tmp_path):
         seed(data, files[0], tmp_path / "own", fresh=True)
 
 
-def test_a_file_is_no_data_folder(files):
-    with pytest.raises(errors.Refused, match=r"cannot keep a map in .*: File exists"):
+def test_a_file_as_data_folder_is_rejected(files):
+    with pytest.raises(errors.Refused, match=r"cannot create a map in .*: File exists"):
         seed(files[1], files[0], None)

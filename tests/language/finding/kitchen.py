@@ -105,7 +105,7 @@ class Written:
     def is_on_floor(self, name):
         return AT[name][2] == 0
 
-    def whereabouts(self, name):
+    def spatial_relations(self, name):
         return tuple((r, other) for r, one, other in sorted(HOLDS) if one == name and other != "kitchen1")
 
 

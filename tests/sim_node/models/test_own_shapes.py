@@ -5,7 +5,7 @@ import pytest
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.sim_node.models.write_shapes import own_shapes, write_own
 from semmap.ontology import model_shapes
-from tests.kb_node.relations.made import thing
+from tests.kb_node.relations.entities import thing
 
 PLINTH = """<mujoco><worldbody>
   <body>

@@ -1,1 +1,1 @@
-"""Which relations are facts of the map, kept in step with where things are."""
+"""Relations stored as computed facts of the map, and updated with it."""

@@ -1,7 +1,7 @@
-"""Which relations hold in a map, kept in step with it for whoever a change concerns.
+"""The computed facts of a map, updated incrementally with it.
 
-What is kept is a function of the poses alone (`rules`), so that a restart, another order of commits and a
-past moment give the same.
+They are a function of the poses alone (`rules`), so that a restart, another order of commits, or a past
+state gives the same facts.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from itertools import chain, islice
 from typing import NamedTuple
 
 from semmap.nodes.kb_node.progress import parts
-from semmap.nodes.kb_node.relations.facts.ahead import Ahead
-from semmap.nodes.kb_node.relations.facts.foreseen import Found
+from semmap.nodes.kb_node.relations.facts.precomputation import Precomputation
+from semmap.nodes.kb_node.relations.facts.precompute_messages import FactsByName
 from semmap.nodes.kb_node.relations.facts.rules import RULES, About, Rule
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
-from semmap.nodes.kb_node.relations.measuring.broad_phase import by_place
+from semmap.nodes.kb_node.relations.measuring.broad_phase import sort_by_place
 from semmap.nodes.kb_node.relations.measuring.space import MANY, Space
 from semmap.nodes.kb_node.relations.measuring.survey import Survey
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
@@ -26,76 +26,76 @@ from semmap.schemas.relations import RelationName
 Fact = tuple[str, RelationName, str]
 """Name, relation, name: ("cup1", "isOn", "table1")."""
 _STEP = 1000
-"""Entities that are worked out in some tens of milliseconds."""
+"""Entities per step of some tens of milliseconds."""
 _MOST_AT_ONCE = 16_000
-"""So many are surveyed together where nobody waits: those around them are looked up less often."""
-_FORGOTTEN = 8
-"""Solids for each that an update touches."""
-_MOST_TO_FORGET = 1000
-_BEARING: frozenset[RelationName] = frozenset({"isOn", "isInside", "isLocatedIn"})
-"""Along these `upward` goes."""
+"""Entities surveyed together if nothing waits. Larger groups need fewer neighbour searches."""
+_CLEARED_PER_CHANGE = 8
+"""Solids whose caches are cleared for each one that an update touches."""
+_MOST_TO_CLEAR = 1000
+_CONTAINING: frozenset[RelationName] = frozenset({"isOn", "isInside", "isLocatedIn"})
+"""The relations that `with_contents` follows."""
 
 
 class Changed(NamedTuple):
-    """Which facts no longer hold, and which do now."""
+    """The facts that no longer hold, and those that newly hold."""
 
     gone: set[Fact]
     come: set[Fact]
 
 
 class Facts:
-    """The facts that hold in a map, by their subject, and whom else they speak of."""
+    """The facts of a map, indexed by subject and by object."""
 
     def __init__(self, limits: Thresholds | None = None, rules: Sequence[Rule] = RULES) -> None:
         self.space = Space(limits=limits)
-        self._kept = [_Kept(rule) for rule in rules]
+        self._kept = [_RuleFacts(rule) for rule in rules]
         self._margin_m = max(rule.margin_m(self.space.limits) for rule in rules)
         self._in_turn: Iterator[Solid] = iter(())
-        self._to_forget = 0
+        self._to_clear = 0
         self._waiting: dict[str, Solid] = {}
-        """While `filling`: those that have been placed, and nothing else."""
-        self._ahead: Ahead | None = None
+        """During `fill_steps`: the solids whose facts have not been computed."""
+        self._precomputation: Precomputation | None = None
         self.shifted: frozenset[str] = frozenset()
-        """Who came to count in a crowd by the last update, or does not any more, because of others."""
+        """Objects that the last update made count, or no longer count, because of others in a crowd."""
 
-    def work_ahead(self, ahead: Ahead) -> None:
-        """The next update is about those who are foreseen, and `ahead` works out what will hold."""
-        self._ahead = ahead
+    def set_precomputation(self, ahead: Precomputation) -> None:
+        """Use the result of `ahead` in the next update, which adds the expected entities."""
+        self._precomputation = ahead
 
-    def give_up_ahead(self) -> None:
-        """That update does not come."""
-        ahead, self._ahead = self._ahead, None
+    def discard_precomputation(self) -> None:
+        """Stop the precomputation, because the expected update does not come."""
+        ahead, self._precomputation = self._precomputation, None
         if ahead is not None:
-            ahead.give_up()
+            ahead.discard()
 
-    def by_rule(self) -> tuple[Found, ...]:
-        """All that hold, by rule and name."""
+    def by_rule(self) -> tuple[FactsByName, ...]:
+        """Return all facts, by rule and name."""
         return tuple(kept.of for kept in self._kept)
 
     def __iter__(self) -> Iterator[Fact]:
-        """All that hold."""
+        """Yield all facts."""
         for kept in self._kept:
             yield from kept.all()
 
     def holds(self, fact: Fact) -> bool:
-        """Whether one of them does."""
+        """Return whether a fact holds."""
         name, relation, other = fact
         return any((relation, other) in kept.of.get(name, ()) for kept in self._kept)
 
     def of(self, name: str) -> Iterator[About]:
-        """What holds of a thing; of what it is on and inside, what counts most comes first."""
+        """Yield the facts of an object. Of several supports the most important one comes first."""
         for kept in self._kept:
             yield from kept.of.get(name, ())
 
     def about(self, name: str) -> set[str]:
-        """Of whom a fact holds that speaks of a thing."""
+        """Return the subjects of the facts about an object."""
         return {other for kept in self._kept for other in kept.about.get(name, ())}
 
-    def upward(self, names: Iterable[str]) -> set[str]:
-        """These things, what is on, inside or in them, and what is on or inside that."""
+    def with_contents(self, names: Iterable[str]) -> set[str]:
+        """Return these objects, and everything on, inside or in them, at any depth."""
         found = set(names)
         waiting = list(found)
-        bearing = [kept for kept in self._kept if not _BEARING.isdisjoint(kept.rule.relations)]
+        bearing = [kept for kept in self._kept if not _CONTAINING.isdisjoint(kept.rule.relations)]
         while waiting:
             name = waiting.pop()
             for kept in bearing:
@@ -105,112 +105,112 @@ class Facts:
                         waiting.append(above)
         return found
 
-    def filling(self, entities: Iterable[Entity | Placed]) -> Iterator[None]:
-        """Begin with these, in steps of some tens of milliseconds."""
-        yield from self.placing(entities)
-        yield from self.working_out()
+    def fill_steps(self, entities: Iterable[Entity | PlacedEntity]) -> Iterator[None]:
+        """Start with these entities, in steps of some tens of milliseconds."""
+        yield from self.insert_steps(entities)
+        yield from self.compute_steps()
 
-    def placing(self, entities: Iterable[Entity | Placed]) -> Iterator[None]:
-        """The first half of `filling`, between whose steps nothing changes."""
+    def insert_steps(self, entities: Iterable[Entity | PlacedEntity]) -> Iterator[None]:
+        """Insert the entities. The map must not change between these steps."""
         for _ in self.space.put_all(entities):
             yield
-        self.space.shifted()
-        self._waiting = {solid.name: solid for solid in self._things(self.space.solids)}
+        self.space.pop_shifted()
+        self._waiting = {solid.name: solid for solid in self._find_objects(self.space.solids)}
 
-    def working_out(self) -> Iterator[None]:
-        """The second half, between whose steps there may be updates: these see to what they concern first."""
-        for some in parts(by_place(list(self._waiting.values())), _STEP, _nothing):
-            self._work_out_those(solid for solid in some if self._waiting.get(solid.name) is solid)
+    def compute_steps(self) -> Iterator[None]:
+        """Compute the facts. Updates between these steps first compute the facts that they affect."""
+        for some in parts(sort_by_place(list(self._waiting.values())), _STEP, _nothing):
+            self._compute_waiting(solid for solid in some if self._waiting.get(solid.name) is solid)
             yield
         for solids in parts(tuple(self.space.solids.values()), _STEP, _nothing):
             for solid in solids:
-                solid.forget()
+                solid.clear_cache()
             if len(solids) == _STEP:
                 yield
 
     @property
-    def are_worked_out(self) -> bool:
-        """Whether nobody is left who has only been placed."""
+    def is_complete(self) -> bool:
+        """Return whether all facts have been computed."""
         return not self._waiting
 
-    def _work_out_those(self, waiting: Iterable[Solid]) -> None:
-        """Work out the facts of some whom nobody has looked at since they were placed."""
+    def _compute_waiting(self, waiting: Iterable[Solid]) -> None:
+        """Compute the facts of solids that have only been inserted."""
         solids = list(waiting)
-        for _ in self._working_out(solids, set(), set(), _STEP):
+        for _ in self._compute_in_steps(solids, set(), set(), _STEP):
             pass
         for solid in solids:
             del self._waiting[solid.name]
 
-    def _see_to_those_concerned(self, changed: Sequence[Entity | Placed], removed: Sequence[str]) -> None:
-        """While they are being worked out: of whom a change may speak is worked out as it is before that."""
+    def _compute_affected(self, changed: Sequence[Entity | PlacedEntity], removed: Sequence[str]) -> None:
+        """Compute the waiting facts that a change may affect, as they are before it."""
         waiting, space = self._waiting, self.space
         if len(changed) + len(removed) >= MANY:
-            self._work_out_those(list(waiting.values()))
+            self._compute_waiting(list(waiting.values()))
             return
         names = (*removed, *(entity.name for entity in changed))
         concerned = dict.fromkeys(names)
         for solid in (*map(space.solids.get, names), *map(solid_of, changed)):
             if solid is not None:
                 concerned.update((other.name, None) for other in space.around(solid, self._margin_m))
-        self._work_out_those([waiting[name] for name in concerned if name in waiting])
+        self._compute_waiting([waiting[name] for name in concerned if name in waiting])
 
-    def _things(self, names: Iterable[str]) -> list[Solid]:
-        """Those that are there and are no places."""
+    def _find_objects(self, names: Iterable[str]) -> list[Solid]:
+        """Return the solids of these names that exist and are not places."""
         solids = self.space.solids
         return [solid for name in names if (solid := solids.get(name)) is not None and not solid.is_place]
 
-    def _working_out(
+    def _compute_in_steps(
         self, solids: Sequence[Solid], gone: set[Fact], come: set[Fact], step: int
     ) -> Iterator[None]:
-        """Work out the facts of many, `step` at a time, and add what is otherwise to `gone` and `come`."""
+        """Compute the facts of many solids, `step` at a time, and add differences to `gone` and `come`."""
         space = self.space
-        for some in parts(by_place(solids) if len(solids) > step else solids, step, _nothing):
+        for some in parts(sort_by_place(solids) if len(solids) > step else solids, step, _nothing):
             survey = Survey(space, some) if len(some) >= MANY else None
-            with space.remembering():
+            with space.caching():
                 for kept in self._kept:
                     if survey is None:
-                        kept.work_out(space, [solid.name for solid in some], gone, come)
+                        kept.compute(space, [solid.name for solid in some], gone, come)
                     else:
-                        kept.take(space, some, kept.rule.of_many(survey), gone, come)
+                        kept.set_facts(space, some, kept.rule.of_many(survey), gone, come)
             yield
 
-    def _worked_out_ahead(self, came: Iterable[Entity | Placed]) -> Sequence[Found] | None:
-        ahead, self._ahead = self._ahead, None
+    def _take_precomputed(self, came: Iterable[Entity | PlacedEntity]) -> Sequence[FactsByName] | None:
+        ahead, self._precomputation = self._precomputation, None
         return None if ahead is None else ahead.facts(came)
 
-    def forget(self) -> None:
-        """Let some solids, in turn, forget what can be worked out again: more of them than updates touched.
+    def clear_caches(self) -> None:
+        """Clear the caches of some solids in turn, more than updates touched.
 
-        Nobody need wait for that; only where it is not called for long, `update` does it.
+        Call it when idle. `update` calls it only if it has not been called for long.
         """
-        count, self._to_forget = self._to_forget, 0
+        count, self._to_clear = self._to_clear, 0
         forgot = 0
         for solid in islice(self._in_turn, count):
-            solid.forget()
+            solid.clear_cache()
             forgot += 1
         if forgot < count:
             self._in_turn = iter(tuple(self.space.solids.values()))
 
     def _counted(self, name: str) -> Solid | None:
-        """One that others look at."""
+        """Return a solid that is counted as a neighbour, or None."""
         solid = self.space.solids.get(name)
         return solid if solid is not None and self.space.counts(solid) else None
 
-    def update(self, changed: Iterable[Entity | Placed], removed: Iterable[str] = ()) -> Changed:
-        """Some entities came or are otherwise now, others went."""
+    def update(self, changed: Iterable[Entity | PlacedEntity], removed: Iterable[str] = ()) -> Changed:
+        """Apply added, changed and removed entities."""
         changed, removed = list(changed), list(removed)
         if not (changed or removed):
             self.shifted = frozenset()
             return Changed(set(), set())
         if self._waiting:
-            self._see_to_those_concerned(changed, removed)
+            self._compute_affected(changed, removed)
         space = self.space
         moved: dict[str, None] = {}
         left: list[Solid] = []
         for name in removed:
             moved[name] = None
             left += filter(None, (self._counted(name),))
-            space.take(name)
+            space.remove(name)
         for entity in changed:
             moved[entity.name] = None
             if space.solids:
@@ -219,37 +219,37 @@ class Facts:
             fresh = [solid for entity in changed if (solid := space.put(entity)) is not None]
         else:
             fresh = list(chain.from_iterable(space.put_all(changed)))
-        shifted = space.shifted()
+        shifted = space.pop_shifted()
         fresh = [*filter(space.counts, fresh), *shifted]
         for solid in shifted:
             moved[solid.name] = None
         gone: set[Fact] = set()
         come: set[Fact] = set()
-        with space.remembering(of_few=True):
-            concerned = self._concerned(moved, (*fresh, *left))
+        with space.caching(of_few=True):
+            concerned = self._affected(moved, (*fresh, *left))
             if len(concerned) < MANY:
                 for kept in self._kept:
-                    kept.work_out(space, concerned, gone, come)
+                    kept.compute(space, concerned, gone, come)
         if len(concerned) >= MANY:
-            things = self._things(concerned)
-            if len(things) < len(concerned):
-                left_over = concerned.keys() - {solid.name for solid in things}
+            objects = self._find_objects(concerned)
+            if len(objects) < len(concerned):
+                left_over = concerned.keys() - {solid.name for solid in objects}
                 for kept in self._kept:
-                    kept.work_out(space, left_over, gone, come)
-            if (found := self._worked_out_ahead(changed)) is None:
-                for _ in self._working_out(things, gone, come, _MOST_AT_ONCE):
+                    kept.compute(space, left_over, gone, come)
+            if (found := self._take_precomputed(changed)) is None:
+                for _ in self._compute_in_steps(objects, gone, come, _MOST_AT_ONCE):
                     pass
             else:
                 for kept, of in zip(self._kept, found, strict=True):
-                    kept.take(space, things, [of.get(solid.name, ()) for solid in things], gone, come)
-        self._to_forget = min(self._to_forget + _FORGOTTEN * len(moved), len(space.solids))
-        if self._to_forget > _MOST_TO_FORGET:
-            self.forget()
+                    kept.set_facts(space, objects, [of.get(solid.name, ()) for solid in objects], gone, come)
+        self._to_clear = min(self._to_clear + _CLEARED_PER_CHANGE * len(moved), len(space.solids))
+        if self._to_clear > _MOST_TO_CLEAR:
+            self.clear_caches()
         self.shifted = frozenset([solid.name for solid in shifted])
         return Changed(gone, come)
 
-    def _concerned(self, moved: dict[str, None], solids: Sequence[Solid]) -> dict[str, None]:
-        """Of whom something else may hold now: those who moved, and others by how `solids` were or are."""
+    def _affected(self, moved: dict[str, None], solids: Sequence[Solid]) -> dict[str, None]:
+        """Return the names whose facts may change: moved ones, and neighbours of `solids`."""
         space, found = self.space, dict(moved)
         for kept in self._kept:
             if kept.about:
@@ -258,13 +258,13 @@ class Facts:
         if found.keys() >= space.solids.keys():
             return found
         if len(solids) >= MANY:
-            found.update((solid.name, None) for solid in space.beside(solids, self._margin_m))
+            found.update((solid.name, None) for solid in space.find_nearby(solids, self._margin_m))
             return found
         for solid in solids:
-            self._add_whom_it_concerns(solid, found)
+            self._add_affected_by(solid, found)
         return found
 
-    def _add_whom_it_concerns(self, solid: Solid, found: dict[str, None]) -> None:
+    def _add_affected_by(self, solid: Solid, found: dict[str, None]) -> None:
         space = self.space
         for other in space.around(solid, self._margin_m):
             if other.is_place or other.name in found:
@@ -279,22 +279,22 @@ def _nothing() -> None:
     pass
 
 
-class _Kept:
+class _RuleFacts:
     """The facts of one rule."""
 
     def __init__(self, rule: Rule) -> None:
         self.rule = rule
         self.of: dict[str, tuple[About, ...]] = {}
-        """What holds of a thing."""
+        """By subject."""
         self.about: dict[str, dict[str, None]] = {}
-        """Of whom a fact holds that speaks of a thing."""
+        """By object, the subjects."""
 
     def all(self) -> Iterator[Fact]:
         for name, found in self.of.items():
             for relation, other in found:
                 yield name, relation, other
 
-    def take(
+    def set_facts(
         self,
         space: Space,
         solids: Sequence[Solid],
@@ -302,7 +302,7 @@ class _Kept:
         gone: set[Fact],
         come: set[Fact],
     ) -> None:
-        """Have what was found of some, and add what is otherwise to `gone` and `come`; None is measured."""
+        """Store facts of solids and add differences to `gone` and `come`. None means to measure."""
         facts, of, about = self.rule.facts, self.of, self.about
         if not of and found.count(()) == len(found):
             return
@@ -323,15 +323,15 @@ class _Kept:
                 else:
                     about[other] = {name: None}
 
-    def work_out(self, space: Space, names: Iterable[str], gone: set[Fact], come: set[Fact]) -> None:
-        """Work out the facts of some, and add what is otherwise to `gone` and `come`."""
+    def compute(self, space: Space, names: Iterable[str], gone: set[Fact], come: set[Fact]) -> None:
+        """Compute the facts of these names and add differences to `gone` and `come`."""
         for name in names:
             before = self.of.get(name, ())
-            now = self._work_out(space, name)
+            now = self._compute(space, name)
             if now != before:
                 self._replace(name, before, now, gone, come)
 
-    def _work_out(self, space: Space, name: str) -> tuple[About, ...]:
+    def _compute(self, space: Space, name: str) -> tuple[About, ...]:
         solid = space.solids.get(name)
         if solid is None or solid.is_place:
             return ()

@@ -1,7 +1,7 @@
-"""Which relations are kept as facts of the map: a table, one row for those that are worked out together.
+"""The relations that are stored as facts: a table, with a row for those computed together.
 
-A further relation is a further row. What a row yields must be a function of the solids around a thing alone,
-so that a restart, another order of commits and a past moment give the same facts.
+A new relation is a new row. Its facts must depend only on the solids around an object, so that a restart,
+another order of commits, or a past state gives the same facts.
 """
 
 from __future__ import annotations
@@ -10,47 +10,47 @@ from collections.abc import Callable, Iterator
 from typing import Final, NamedTuple
 
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring.arrangement import attachments
+from semmap.nodes.kb_node.relations.measuring.arrangement import find_attachments
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.measuring.survey import NOBODY, Survey
+from semmap.nodes.kb_node.relations.measuring.survey import NO_ROW, Survey
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Term
 from semmap.schemas.relations import RelationName
 
 About = tuple[RelationName, str]
-"""What a fact says of its subject: ("isOn", "table1")."""
+"""The part of a fact without its subject: ("isOn", "table1")."""
 
 
-_WHEREABOUTS: Final[tuple[RelationName, RelationName, RelationName]] = ("isInside", "isOn", "isLocatedIn")
+_SPATIAL: Final[tuple[RelationName, RelationName, RelationName]] = ("isInside", "isOn", "isLocatedIn")
 _ROUNDING = 1e-6
-"""What is asked for here may be asked for in vain."""
+"""Tolerance of the pre-check, which may accept too much."""
 
 
 class Rule(NamedTuple):
-    """How some relations are worked out, and when they have to be worked out again."""
+    """How some relations are computed, and when they must be computed again."""
 
     relations: tuple[RelationName, ...]
-    """Each is a property of its name in the namespace of the household TBox."""
+    """Each is a property with this name in the namespace of the household TBox."""
     facts: Callable[[Space, Solid], Iterator[About]]
-    """What holds of a thing. It is not asked of places."""
+    """Yields the facts of an object. It is not called for places."""
     of_many: Callable[[Survey], list[tuple[About, ...] | None]]
-    """The same for each of those who were surveyed; None where `facts` has to be asked."""
+    """The same for each surveyed object. None means that `facts` must be called."""
     concerns: Callable[[Space, Solid, Solid], bool]
-    """Whether something may come to hold of the second, or cease to, because of the first, who is new there
-    or went, and of whom it need not speak.
+    """Whether a new or removed first solid may change facts of the second, even facts not about the first.
 
-    It must be quick, and may say yes too often: then all rules are asked anew. It is asked of those whose
-    bounds are within the margins. What speaks of somebody who moved or went is worked out again in any case.
+    It must be fast and may return True too often. Then all rules are evaluated again. It is called for
+    solids whose bounds are within the margins. Facts about a moved or removed object are always computed
+    again.
     """
     margin_m: Callable[[Thresholds], float] = lambda limits: 0.0
-    """Between the bounds of two whom the relations may join [m]."""
+    """The greatest distance between the bounds of two related objects [m]."""
 
 
-def _whereabouts(space: Space, solid: Solid) -> Iterator[About]:
-    if solid.name in space.held:
-        return  # where that is which grasps it
-    container, supports, place = space.whereabouts(solid)
+def _spatial_facts(space: Space, solid: Solid) -> Iterator[About]:
+    if solid.name in space.holders:
+        return  # it is where its holder is
+    container, supports, place = space.spatial_relations(solid)
     if container is not None:
         yield "isInside", container[0].name
     for support, _ in supports:
@@ -59,33 +59,35 @@ def _whereabouts(space: Space, solid: Solid) -> Iterator[About]:
         yield "isLocatedIn", place[0].name
 
 
-def _whereabouts_of_many(survey: Survey) -> list[tuple[About, ...] | None]:
+def _spatial_facts_of_many(survey: Survey) -> list[tuple[About, ...] | None]:
     rows = list(zip(survey.container.tolist(), survey.support.tolist(), survey.place.tolist(), strict=True))
     solids = survey.solids
     known = {
         some: tuple(
             (relation, solids[row].name)
-            for relation, row in zip(_WHEREABOUTS, some, strict=True)
-            if row != NOBODY
+            for relation, row in zip(_SPATIAL, some, strict=True)
+            if row != NO_ROW
         )
         for some in set(rows)
     }
     found: list[tuple[About, ...] | None] = [known[some] for some in rows]
     for row in survey.is_open.nonzero()[0].tolist():
         found[row] = None
-    return _of_nobody_held(survey, found)
+    return _without_attached(survey, found)
 
 
-def _of_nobody_held(survey: Survey, found: list[tuple[About, ...] | None]) -> list[tuple[About, ...] | None]:
-    if held := survey.held:
+def _without_attached(
+    survey: Survey, found: list[tuple[About, ...] | None]
+) -> list[tuple[About, ...] | None]:
+    if holders := survey.holders:
         for row, solid in enumerate(survey.solids):
-            if solid.name in held:
+            if solid.name in holders:
                 found[row] = ()
     return found
 
 
 def _attachments(space: Space, solid: Solid) -> Iterator[About]:
-    for other in attachments(space, solid):
+    for other in find_attachments(space, solid):
         yield "isAttachedTo", other.name
 
 
@@ -95,16 +97,16 @@ def _attachments_of_many(survey: Survey) -> list[tuple[About, ...] | None]:
         found[row] = None
     for row, others in survey.hangs_on.items():
         found[row] = tuple(("isAttachedTo", name) for name in sorted(survey.solids[k].name for k in others))
-    return _of_nobody_held(survey, found)
+    return _without_attached(survey, found)
 
 
-def _may_hold(space: Space, solid: Solid, other: Solid) -> bool:
-    """Whether the other may hang on the solid; who may not hang there any more is who that may bear."""
+def _may_attach(space: Space, solid: Solid, other: Solid) -> bool:
+    """Return whether `other` may be attached to `solid`. Loss of support is covered by `_may_support`."""
     return solid.is_place or solid.bottom < other.bottom <= solid.top + space.limits.gap_m
 
 
-def _may_bear(space: Space, solid: Solid, other: Solid) -> bool:
-    """Whether the other may be on the solid, inside it or in it."""
+def _may_support(space: Space, solid: Solid, other: Solid) -> bool:
+    """Return whether `other` may be on, inside or in `solid`."""
     if solid.is_place:
         return True
     limits = space.limits
@@ -117,11 +119,11 @@ def _may_bear(space: Space, solid: Solid, other: Solid) -> bool:
 
 
 RULES: Final[tuple[Rule, ...]] = (
-    Rule(_WHEREABOUTS, _whereabouts, _whereabouts_of_many, _may_bear),
+    Rule(_SPATIAL, _spatial_facts, _spatial_facts_of_many, _may_support),
     Rule(
-        ("isAttachedTo",), _attachments, _attachments_of_many, _may_hold, lambda limits: limits.attached_m
+        ("isAttachedTo",), _attachments, _attachments_of_many, _may_attach, lambda limits: limits.attached_m
     ),
 )  # fmt: skip
 
 COMPUTED: Final[dict[Term, RelationName]] = {v.dm(name): name for rule in RULES for name in rule.relations}
-"""The properties that are computed, where a TBox has them."""
+"""The properties that are computed if a TBox declares them."""

@@ -1,1 +1,1 @@
-"""The shapes of things as they stand: solids, their convex parts, outlines from above."""
+"""Shapes of entities in the map: solids, their convex parts, and outlines from above."""

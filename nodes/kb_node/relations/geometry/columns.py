@@ -16,21 +16,21 @@ from semmap.nodes.kb_node.relations.geometry.form_columns import (
     flat,
 )
 from semmap.nodes.kb_node.relations.geometry.forms import Form
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid, form_in, shape_of
 from semmap.schemas.entities import Entity, Vector
 
 _FAR_M = 2e4
-"""Beyond this, rounding is no longer far below all margins."""
+"""Beyond this distance rounding errors are no longer far below all thresholds."""
 _THIN_M = 1e-4
 
 
 class Columns:
-    """Solids as arrays, a row each, in the order given; lengths in metres in the map."""
+    """Solids as arrays, one row each, in the given order. Lengths in metres in the map frame."""
 
     def __init__(self, solids: Sequence[Solid]) -> None:
         self.solids: Final = solids
-        forms, row = _once([solid.form for solid in solids])
+        forms, row = _index_forms([solid.form for solid in solids])
         self.forms: Final = FormColumns(forms)
         self.form: Final = row
         """(N,) rows of `forms`."""
@@ -47,11 +47,11 @@ class Columns:
         """Whether it is near enough to the origin to be compared in arrays."""
         is_upright: Bools = self.forms.is_plumb & (self.forms.size.min(axis=1, initial=np.inf) > _THIN_M)
         self.is_sure: Final[Bools] = self.is_near & is_upright[self.form]
-        """Whether it also stands upright and has some size."""
+        """Whether it also stands upright and is not thin."""
 
 
-def solids_of(entities: Iterable[Entity | Placed]) -> list[Solid]:
-    """The solids of those entities that have a position: what `solid_of` makes of each."""
+def solids_of(entities: Iterable[Entity | PlacedEntity]) -> list[Solid]:
+    """Return the solids of the entities that have a position, as `solid_of` does for each."""
     names: list[str] = []
     positions: list[Vector] = []
     forms: list[Form] = []
@@ -66,7 +66,7 @@ def solids_of(entities: Iterable[Entity | Placed]) -> list[Solid]:
             forms.append(form_in(entity, pose, shape))
             are_places.append(entity.place)
             are_measured.append(shape[1] is not None)
-    each, row = _once(forms)
+    each, row = _index_forms(forms)
     reach = Extents(each)
     x, y, z = flat(positions, 3).T
     bounds = np.stack([x, y, x, y], axis=1) + reach.bounds[row]
@@ -76,7 +76,7 @@ def solids_of(entities: Iterable[Entity | Placed]) -> list[Solid]:
     return list(map(Solid, names, positions, forms, are_places, are_measured, extents))
 
 
-def _once(forms: Sequence[Form]) -> tuple[list[Form], Ints]:
-    """Each form once, and the rows in which they are."""
+def _index_forms(forms: Sequence[Form]) -> tuple[list[Form], Ints]:
+    """Return the distinct forms, and the row of each form."""
     rows = {form: row for row, form in enumerate(dict.fromkeys(forms))}
     return list(rows), np.fromiter(map(rows.__getitem__, forms), np.int64, len(forms))

@@ -1,14 +1,14 @@
-"""Convex parts in the map, how far apart two of them are, and which way.
+"""Convex parts in the map, with the signed distance and contact normal of two of them.
 
-Box, ball, cylinder and capsule are one and the same: a Minkowski sum, around a centre, of segments
-(`straight`), of an ellipsoid or a disc (`round`) and, for meshes, of the hull of some `points`. To turn or
-stretch a part is to turn or stretch its vectors, and how far it reaches along n has a closed form,
+Box, ball, cylinder and capsule have one representation. It is a Minkowski sum, around a centre, of segments
+(`straight`), of an ellipsoid or disc (`round`) and, for meshes, of the hull of `points`. A part is rotated
+or stretched by its vectors, and its support function along n has a closed form,
 
-    h(n) = n . centre + sum |n . straight_i| + sqrt(sum (n . round_j)^2) + max (n . point_k).
+h(n) = n . centre + sum |n . straight_i| + sqrt(sum (n . round_j)^2) + max (n . point_k).
 
-Along a unit vector n, a is -h_a(-n) - h_b(n) above b. The most of this over all n is their signed distance,
-and the n where it is found is the normal of their contact: the separating axis theorem (Gottschalk et al.
-1996), taken from boxes to what is round.
+Along a unit vector n, a is -h_a(-n) - h_b(n) above b. The maximum over all n is the signed distance, and
+the n of the maximum is the contact normal. This is the separating axis theorem (Gottschalk et al. 1996),
+extended from boxes to round shapes.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.geometry.polygons import Point, contains, hull
-from semmap.nodes.kb_node.relations.geometry.lazily import lazily
-from semmap.nodes.kb_node.relations.geometry.shadows import Shadow, depth, shadow_of
+from semmap.nodes.kb_node.relations.geometry.lazy_property import lazy_property
+from semmap.nodes.kb_node.relations.geometry.projections import Projection, overlap_depth, project
 from semmap.schemas.entities import Vector
 
 Floats = NDArray[np.float64]
 
 DEEPEST_M = 0.005
-"""What is further inside a flat top than this may be nearer to one of its sides."""
+"""A point deeper inside a flat top may be nearer to one of its sides."""
 
 
 @dataclass(eq=False)
 class Convex:
-    """A convex part in the map [m], and the box along the axes around it."""
+    """A convex part in the map frame [m], with its axis-aligned bounding box."""
 
     centre: Vector
     straight: tuple[Vector, ...]
@@ -42,14 +42,14 @@ class Convex:
     low: Vector
     high: Vector
 
-    @lazily
-    def met(self) -> dict[tuple[Convex, float], Contact]:
-        """Its contacts that were worked out: what lies in a heap is asked of again at every change of it."""
+    @lazy_property
+    def contacts(self) -> dict[tuple[Convex, float], Contact]:
+        """Return the cached contacts. Objects in a heap are compared again at every change of it."""
         return {}
 
-    @lazily
+    @lazy_property
     def lowest(self) -> Point:
-        """Where its lowest point is on the floor plan, the middle of that where it is flat below."""
+        """Return the position of the lowest point on the floor plan, or the centre of a flat underside."""
         x, y, _ = self.centre
         for vx, vy, vz in self.straight:
             if abs(vz) > _LEVEL:
@@ -63,33 +63,33 @@ class Convex:
             x, y = x + px, y + py
         return x, y
 
-    @lazily
+    @lazy_property
     def has_flat_top(self) -> bool:
-        """Whether its top is a level face, and all of its shadow."""
+        """Return whether the top is a level face that covers the whole projection."""
         upright = [v for v in self.straight if abs(v[2]) > _LEVEL]
         if len(upright) != 1 or self.points or any(abs(v[2]) > _LEVEL for v in self.round):
             return False
         return abs(upright[0][0]) < _LEVEL and abs(upright[0][1]) < _LEVEL
 
-    @lazily
-    def upright_shadow(self) -> Shadow | None:
-        """What is seen of it from above, if it is a box or a cylinder that stands upright."""
+    @lazy_property
+    def upright_projection(self) -> Projection | None:
+        """Return the projection of an upright box or cylinder, or None."""
         if not self.has_flat_top:
             return None
-        return shadow_of([v for v in self.straight if abs(v[2]) <= _LEVEL], self.round)
+        return project([v for v in self.straight if abs(v[2]) <= _LEVEL], self.round)
 
-    @lazily
+    @lazy_property
     def is_square(self) -> bool:
-        """Whether it is a box along the axes."""
+        """Return whether it is an axis-aligned box."""
         return (
             self.has_flat_top
             and not self.round
             and sum(abs(x) > _LEVEL for v in self.straight for x in v) == 3
         )
 
-    @lazily
-    def shadow(self) -> tuple[Point, ...]:
-        """Its outline on the floor plan, counterclockwise; what is round has eight corners."""
+    @lazy_property
+    def projection(self) -> tuple[Point, ...]:
+        """Return the outline on the floor plan, counterclockwise. Round shapes become octagons."""
         cx, cy, _ = self.centre
         flat = [v for v in self.straight if abs(v[0]) > _LEVEL or abs(v[1]) > _LEVEL]
         if len(flat) == 2 and not self.round and not self.points:
@@ -107,10 +107,10 @@ class Convex:
             if ax * by < ay * bx:
                 bx, by = -bx, -by
             return tuple((cx + c * ax + s * bx, cy + c * ay + s * by) for c, s in _OCTAGON)
-        return tuple(hull([self._reached(x, y) for x, y in _COMPASS]))
+        return tuple(hull([self._find_furthest(x, y) for x, y in _COMPASS]))
 
-    def _reached(self, nx: float, ny: float) -> Point:
-        """Its point on the floor plan that is furthest in a direction."""
+    def _find_furthest(self, nx: float, ny: float) -> Point:
+        """Return the point on the floor plan that is furthest in a direction."""
         x, y, _ = self.centre
         for vx, vy, _ in self.straight:
             side = nx * vx + ny * vy
@@ -127,43 +127,43 @@ class Convex:
 
 
 @dataclass(eq=False)
-class _Moved(Convex):
-    """Like another one, elsewhere."""
+class _Translated(Convex):
+    """A translated copy of a part."""
 
-    like: Convex
+    original: Convex
     x: float
     y: float
 
-    @lazily
+    @lazy_property
     def lowest(self) -> Point:
-        x, y = self.like.lowest
+        x, y = self.original.lowest
         return self.x + x, self.y + y
 
     @property
     def has_flat_top(self) -> bool:
-        return self.like.has_flat_top
+        return self.original.has_flat_top
 
     @property
-    def upright_shadow(self) -> Shadow | None:
-        return self.like.upright_shadow
+    def upright_projection(self) -> Projection | None:
+        return self.original.upright_projection
 
     @property
     def is_square(self) -> bool:
-        return self.like.is_square
+        return self.original.is_square
 
-    @lazily
-    def shadow(self) -> tuple[Point, ...]:
+    @lazy_property
+    def projection(self) -> tuple[Point, ...]:
         own_x, own_y = self.x, self.y
-        return tuple([(own_x + x, own_y + y) for x, y in self.like.shadow])
+        return tuple([(own_x + x, own_y + y) for x, y in self.original.projection])
 
 
-def moved(part: Convex, by: Vector) -> Convex:
-    """The part elsewhere."""
+def translate(part: Convex, by: Vector) -> Convex:
+    """Return the part translated by a vector."""
     x, y, z = by
     cx, cy, cz = part.centre
     x0, y0, z0 = part.low
     x1, y1, z1 = part.high
-    return _Moved(
+    return _Translated(
         (x + cx, y + cy, z + cz),
         part.straight,
         part.round,
@@ -179,12 +179,12 @@ def moved(part: Convex, by: Vector) -> Convex:
 _LEVEL = 1e-6
 _COMPASS = tuple((math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8))
 _EQUAL_AREA = math.sqrt(math.pi / (2.0 * math.sqrt(2.0)))
-"""An octagon whose corners are so much further out has a disc's area."""
+"""Scales the corners of an octagon so that it has the area of the disc."""
 _OCTAGON = tuple((_EQUAL_AREA * x, _EQUAL_AREA * y) for x, y in _COMPASS)
 
 
 class Contact(NamedTuple):
-    """How far two parts are apart [m], negative inside one another, and the unit normal between them."""
+    """The signed distance of two parts [m], negative if they overlap, and the unit contact normal."""
 
     distance: float
     normal: Vector
@@ -193,13 +193,13 @@ class Contact(NamedTuple):
 UP: Vector = (0.0, 0.0, 1.0)
 DOWN: Vector = (0.0, 0.0, -1.0)
 _SURE_M = 1e-6
-"""Depths that differ by less are taken for the same."""
+"""Smaller differences of depth are ignored."""
 
 
-def convex(
+def make_convex(
     centre: Vector, straight: tuple[Vector, ...], round_: tuple[Vector, ...], points: tuple[Vector, ...] = ()
 ) -> Convex:
-    """The part with its box."""
+    """Return a part with its bounding box."""
     cx, cy, cz = centre
     rx = ry = rz = 0.0
     for x, y, z in straight:
@@ -224,54 +224,58 @@ def convex(
 
 
 def over_flat_top(upper: Convex, lower: Convex) -> bool:
-    """Whether the lowest point of one is over the flat, level top of the other: then they meet upright."""
+    """Return whether the lowest point of one part is over the flat top of another.
+
+    Then the normal is vertical.
+    """
     if upper.low[2] < lower.high[2] - DEEPEST_M or not lower.has_flat_top:
         return False
     if not lower.is_square:
-        return contains(lower.shadow, upper.lowest)
+        return contains(lower.projection, upper.lowest)
     x, y = upper.lowest
     return lower.low[0] <= x <= lower.high[0] and lower.low[1] <= y <= lower.high[1]
 
 
 def contact(one: Convex, other: Convex, most: float = math.inf) -> Contact:
-    """The signed distance of two parts [m], and the normal that points from the other to the one.
+    """Return the signed distance of two parts [m], and the normal from `other` to `one`.
 
-    Of what is further apart than `most` only that is known.
+    If they are further apart than `most`, the distance is only a lower bound above `most`.
     """
     if one.is_square and other.is_square:
-        return _between_boxes(one, other)
-    if (upright := _one_above_the_other(one, other)) is not None:
+        return _compare_boxes(one, other)
+    if (upright := _find_vertical_contact(one, other)) is not None:
         return upright
-    known = one.met.get((other, most))
+    known = one.contacts.get((other, most))
     if known is None:
-        known = one.met[other, most] = _searched(one, other, most)
+        known = one.contacts[other, most] = _search_contact(one, other, most)
     return known
 
 
-def _one_above_the_other(one: Convex, other: Convex) -> Contact | None:
-    """The same of two that stand upright, where up is the way: the shadows are deeper in one another.
+def _find_vertical_contact(one: Convex, other: Convex) -> Contact | None:
+    """Return the contact of two upright parts if its normal is vertical, else None.
 
-    Along a normal that leans, prisms are apart by no more than a mean of what they are upright and level.
+    It is vertical if the projections overlap more deeply. For prisms, a tilted normal never gives a greater
+    distance than the vertical and the horizontal one.
     """
-    its, their = one.upright_shadow, other.upright_shadow
+    its, their = one.upright_projection, other.upright_projection
     if its is None or their is None:
         return None
     (x, y, z), (a, b, c) = one.centre, other.centre
     gap = one.low[2] - other.high[2] if z >= c else other.low[2] - one.high[2]
-    if depth(x - a, y - b, its, their) < max(-gap, 0.0) + _SURE_M:
+    if overlap_depth(x - a, y - b, its, their) < max(-gap, 0.0) + _SURE_M:
         return None
     return Contact(gap, UP if z >= c else DOWN)
 
 
-def _searched(one: Convex, other: Convex, most: float) -> Contact:
-    """The same of any two, by looking along ever more directions around the best so far."""
+def _search_contact(one: Convex, other: Convex, most: float) -> Contact:
+    """Return the contact of any two parts, by search along ever finer directions around the best one."""
     offset = np.subtract(one.centre, other.centre)
     straight = np.array([*one.straight, *other.straight]).reshape(-1, 3).T
     rounds = [np.array(r).T for r in (one.round, other.round) if r]
     hulls = [sign * np.array(p).T for sign, p in ((-1.0, one.points), (1.0, other.points)) if p]
 
     def apart(normals: Floats) -> Floats:
-        """(N, 3) unit normals to (N,) distances."""
+        """Return the (N,) distances along (N, 3) unit normals."""
         found: Floats = normals @ offset - np.abs(normals @ straight).sum(axis=1)
         for vectors in rounds:
             found -= np.sqrt(((normals @ vectors) ** 2).sum(axis=1))
@@ -286,7 +290,7 @@ def _searched(one: Convex, other: Convex, most: float) -> Contact:
     for width in _WIDTHS:
         if distance > most:
             break
-        tried = normal + width * (_PATCH @ _across(normal))
+        tried = normal + width * (_PATCH @ _perpendiculars(normal))
         tried /= np.sqrt((tried * tried).sum(axis=1))[:, None]
         distances = apart(tried)
         best = int(distances.argmax())
@@ -295,8 +299,8 @@ def _searched(one: Convex, other: Convex, most: float) -> Contact:
     return Contact(distance, (float(normal[0]), float(normal[1]), float(normal[2])))
 
 
-def _across(normal: Floats) -> Floats:
-    """Two unit vectors that are square to a unit normal and to each other: (2, 3)."""
+def _perpendiculars(normal: Floats) -> Floats:
+    """Return two unit vectors perpendicular to a unit normal and to each other: (2, 3)."""
     x, y, z = normal.tolist()
     if abs(x) <= abs(y) and abs(x) <= abs(z):
         ax, ay, az = 0.0, z, -y
@@ -309,8 +313,8 @@ def _across(normal: Floats) -> Floats:
     return np.array([(ax, ay, az), (y * az - z * ay, z * ax - x * az, x * ay - y * ax)])
 
 
-def _between_boxes(one: Convex, other: Convex) -> Contact:
-    """The same of two boxes along the axes: from corner to corner, or along the axis that separates best."""
+def _compare_boxes(one: Convex, other: Convex) -> Contact:
+    """Return the contact of two axis-aligned boxes."""
     (x0, y0, z0), (x1, y1, z1), (x, y, z) = one.low, one.high, one.centre
     (a0, b0, c0), (a1, b1, c1), (a, b, c) = other.low, other.high, other.centre
     dx, dy, dz = max(x0 - a1, a0 - x1), max(y0 - b1, b0 - y1), max(z0 - c1, c0 - z1)
@@ -327,7 +331,7 @@ def _between_boxes(one: Convex, other: Convex) -> Contact:
 
 
 def _exact_normals(one: Convex, other: Convex) -> Floats:
-    """Where flat faces and straight edges meet: normals of faces, and what is square to two edges; (N, 3)."""
+    """Return the candidate normals of faces and pairs of straight edges: (N, 3)."""
     first = [*_faces(one), *_faces(other), *((a, b) for a in one.straight for b in other.straight)]
     if not first:
         return _AXES
@@ -340,7 +344,7 @@ def _exact_normals(one: Convex, other: Convex) -> Floats:
 
 
 def _faces(part: Convex) -> list[tuple[Vector, Vector]]:
-    """Two vectors in each of its flat faces."""
+    """Return two vectors in each flat face."""
     if len(part.straight) == 3:
         a, b, c = part.straight
         return [(a, b), (b, c), (c, a)]
@@ -348,7 +352,7 @@ def _faces(part: Convex) -> list[tuple[Vector, Vector]]:
 
 
 def _sphere(count: int) -> Floats:
-    """Unit vectors spread evenly (a golden spiral): (count, 3)."""
+    """Return evenly spread unit vectors (golden spiral): (count, 3)."""
     k = np.arange(count)
     z = 1.0 - (2.0 * k + 1.0) / count
     turn = k * math.pi * (3.0 - math.sqrt(5.0))
@@ -358,7 +362,7 @@ def _sphere(count: int) -> Floats:
 
 _AXES = np.eye(3)
 _SPHERE = np.concatenate([_sphere(324), _AXES, -_AXES])
-"""Where the search for a normal starts: 11 degrees apart at most."""
+"""Start directions of the search, at most 11 degrees apart."""
 _WIDTHS = tuple(math.tan(math.radians(degrees)) for degrees in (8.0, 2.5, 0.8, 0.25, 0.08, 0.025))
-"""How far around the best normal so far is looked, in turn."""
+"""Successive search widths around the best normal."""
 _PATCH = np.array([(a / 3.0, b / 3.0) for a in range(-3, 4) for b in range(-3, 4)])

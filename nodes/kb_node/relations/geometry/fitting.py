@@ -1,4 +1,4 @@
-"""A model's shape at the size of an entity."""
+"""The shape of a model, stretched to the size of an entity."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from semmap.schemas.entities import Size, Vector
 
 
 @lru_cache(maxsize=8192)
-def fitted(model: str, size: Size) -> ModelShape:
-    """The shape of a model stretched to a size; the whole box of what has no model."""
-    own = own_shape(model)
+def fit_model(model: str, size: Size) -> ModelShape:
+    """Return the shape of a model stretched to a size. Without a model it is the whole box."""
+    own = model_shape(model)
     if own is None:
         return box(size)
-    if are_turned(own, np.array([size]))[0]:
-        own = quarter_turned(own)
+    if need_quarter_turn(own, np.array([size]))[0]:
+        own = turn_quarter(own)
     if own.size_m == size:
         return own
     fx, fy, fz = (mine / its for mine, its in zip(size, own.size_m, strict=True))
 
-    def stretched(vectors: tuple[Vector, ...]) -> tuple[Vector, ...]:
+    def stretch(vectors: tuple[Vector, ...]) -> tuple[Vector, ...]:
         return tuple((fx * x, fy * y, fz * z) for x, y, z in vectors)
 
     return ModelShape(
@@ -41,19 +41,19 @@ def fitted(model: str, size: Size) -> ModelShape:
             )
             for s in own.surfaces
         ),
-        interiors=tuple(_stretched(interior, (fx, fy, fz)) for interior in own.interiors),
-        parts=tuple(_mapped(part, stretched) for part in own.parts),
-        leaves=tuple(_fitted_leaf(leaf, (fx, fy, fz)) for leaf in own.leaves),
+        interiors=tuple(_stretch(interior, (fx, fy, fz)) for interior in own.interiors),
+        parts=tuple(_map_part(part, stretch) for part in own.parts),
+        leaves=tuple(_fit_leaf(leaf, (fx, fy, fz)) for leaf in own.leaves),
     )
 
 
-def _stretched(interior: Interior, factors: Vector) -> Interior:
+def _stretch(interior: Interior, factors: Vector) -> Interior:
     low, high = (tuple(map(mul, factors, corner)) for corner in (interior.low, interior.high))
     return structs.replace(interior, low=low, high=high)
 
 
-def _fitted_leaf(leaf: LeafShape, factors: Vector) -> LeafShape:
-    """A leaf of a stretched model: a hinge turns as far as before, a slide further or less far."""
+def _fit_leaf(leaf: LeafShape, factors: Vector) -> LeafShape:
+    """Return a leaf of a stretched model. A hinge keeps its angles, a slide changes its travel."""
     fx, fy, fz = factors
     (x, y, z), (a, b, c) = leaf.anchor, leaf.axis
     u, v, w = (fx * a, fy * b, fz * c) if leaf.kind == "slide" else (a, b, c)
@@ -65,17 +65,17 @@ def _fitted_leaf(leaf: LeafShape, factors: Vector) -> LeafShape:
         axis=(u / length, v / length, w / length),
         limits=None if leaf.limits is None else (travel * leaf.limits[0], travel * leaf.limits[1]),
         closed=None if leaf.closed is None else travel * leaf.closed,
-        interiors=tuple(_stretched(interior, factors) for interior in leaf.interiors),
+        interiors=tuple(_stretch(interior, factors) for interior in leaf.interiors),
     )
 
 
-def own_shape(model: str) -> ModelShape | None:
-    """The shape of a model at its own size; None for what has no model."""
+def model_shape(model: str) -> ModelShape | None:
+    """Return the shape of a model at its own size, or None without a model."""
     return shapes().get(model) if model else None
 
 
 def box(size: Size) -> ModelShape:
-    """A box carries things on all of its top."""
+    """Return a box whose whole top is a supporting surface."""
     x, y, z = (extent / 2 for extent in size)
     return ModelShape(
         size_m=size,
@@ -84,14 +84,14 @@ def box(size: Size) -> ModelShape:
     )
 
 
-def _mapped(part: ConvexPart, by: Callable[[tuple[Vector, ...]], tuple[Vector, ...]]) -> ConvexPart:
-    """A part whose centre and vectors are mapped alike, as turning and stretching do."""
+def _map_part(part: ConvexPart, by: Callable[[tuple[Vector, ...]], tuple[Vector, ...]]) -> ConvexPart:
+    """Return a part with its centre and vectors mapped, as for rotation and stretching."""
     (centre,) = by((part.centre,))
     return ConvexPart(centre=centre, straight=by(part.straight), round=by(part.round), points=by(part.points))
 
 
-def are_turned(shape: ModelShape, sizes: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """(N,) whether the simulator meets (N, 3) sizes by turning the model (sim_node/models/library.py)."""
+def need_quarter_turn(shape: ModelShape, sizes: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return (N,) whether the simulator turns the model to fit (N, 3) sizes (sim_node/models/library.py)."""
     own = shape.size_m
     longer, shorter = max(own[:2]), min(own[:2])
     may_turn = shape.turns and longer > 1.3 * shorter
@@ -99,8 +99,8 @@ def are_turned(shape: ModelShape, sizes: NDArray[np.float64]) -> NDArray[np.bool
     return turned & may_turn
 
 
-def quarter_turned(shape: ModelShape) -> ModelShape:
-    """The shape turned by -90 degrees about z: (x, y) becomes (y, -x)."""
+def turn_quarter(shape: ModelShape) -> ModelShape:
+    """Return the shape rotated by -90 degrees about z: (x, y) becomes (y, -x)."""
     x, y, z = shape.size_m
 
     def turned(vectors: tuple[Vector, ...]) -> tuple[Vector, ...]:
@@ -113,7 +113,7 @@ def quarter_turned(shape: ModelShape) -> ModelShape:
             for s in shape.surfaces
         ),
         interiors=tuple(map(_turned, shape.interiors)),
-        parts=tuple(_mapped(part, turned) for part in shape.parts),
+        parts=tuple(_map_part(part, turned) for part in shape.parts),
         leaves=tuple(
             structs.replace(leaf, anchor=anchor, axis=axis, interiors=tuple(map(_turned, leaf.interiors)))
             for leaf in shape.leaves

@@ -1,7 +1,7 @@
-"""Many forms at once, as arrays: what `Form` works out of one, for all of them in a few passes of NumPy.
+"""Many forms at once, as arrays: the properties of `Form`, computed in a few passes of NumPy.
 
-Forms of one model are stretched and turned together. Bounds, bottom and top come out as `Form` has them, to
-the last bit, because the operations are the same and in the same order.
+Forms of one model are stretched and turned together. Bounds, bottom and top equal those of `Form` to the
+last bit, because the operations and their order are the same.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from semmap.nodes.kb_node.relations.geometry.fitting import are_turned, box, own_shape, quarter_turned
+from semmap.nodes.kb_node.relations.geometry.fitting import box, model_shape, need_quarter_turn, turn_quarter
 from semmap.nodes.kb_node.relations.geometry.forms import LOWEST_M, Form
 from semmap.ontology.model_shapes import ConvexPart, Corner, ModelShape
 
@@ -25,37 +25,37 @@ Bools = NDArray[np.bool_]
 _UNIT = box((1.0, 1.0, 1.0))
 _LEVEL_M = 5e-7
 _STEEP_M = 2e-6
-"""What rises less than the first is level for whoever asks, and what rises more than the second is not."""
+"""A smaller rise than `_LEVEL_M` is level, and a greater one than this is not."""
 _BEYOND = 0.06
-"""The octagon that stands for a disc has corners a little further out than the disc reaches."""
+"""The octagon that represents a disc extends slightly beyond it."""
 
 
 @dataclass(frozen=True)
 class Parts:
-    """Convex parts, a row each; those of a form follow one another. Lengths [m] from the form's origin."""
+    """Convex parts, a row each, grouped by form. Lengths [m] from the form's origin."""
 
     first: Ints
     """(F,) the first row of each form."""
     count: Ints
-    """(F,) how many rows each form has."""
+    """(F,) the number of rows of each form."""
     low: Floats
-    """(K, 3) and `high`: the box along the axes around it."""
+    """(K, 3) and `high`: the axis-aligned bounding box."""
     high: Floats
     lowest: Floats
-    """(K, 2) where its lowest point is; NaN where that is a matter of rounding."""
+    """(K, 2) position of the lowest point, or NaN if rounding decides it."""
     centre: Floats
-    """(K, 2) of its flat, level top, (`u`, `v`) being half its sides or semi-axes; NaN where it has none."""
+    """(K, 2) centre of the flat, level top, with half its sides or semi-axes `u` and `v`. NaN without one."""
     u: Floats
     v: Floats
     is_disc: Floats
-    """(K,) 1 where that top is an ellipse, 0 where it is a parallelogram."""
+    """(K,) 1 if the top is an ellipse, 0 if it is a parallelogram."""
 
     SHAPES: ClassVar = ((3,), (3,), (2,), (2,), (2,), (2,), ())
 
 
 @dataclass(frozen=True)
 class Hollows:
-    """Interiors, a row each, as `Parts` has parts: floor and lid [m], and the parallelogram between walls."""
+    """Interiors, a row each, grouped as in `Parts`: floor and lid [m], and a parallelogram of walls."""
 
     first: Ints
     count: Ints
@@ -69,7 +69,7 @@ class Hollows:
 
 
 class Extents:
-    """How far forms reach, as arrays, a row each, in the order given; lengths in metres."""
+    """Extents of forms as arrays, a row each, in the given order. Lengths in metres."""
 
     def __init__(self, forms: Sequence[Form]) -> None:
         self.forms: Final = forms
@@ -94,7 +94,7 @@ class Extents:
         self.lowest_corner: Final[Floats] = np.minimum(base + i * 0.0, base + i * z)
 
     def bottoms(self) -> Floats:
-        """(F,) where the lowest point of each is: of its parts, or without any of its box."""
+        """Return (F,) the lowest point of the parts of each, or of its box without parts."""
         found = self.lowest_corner.copy()
         for shape, of in self._shapes():
             if shape.parts:
@@ -104,7 +104,7 @@ class Extents:
         return found
 
     def _shapes(self) -> Iterator[tuple[ModelShape, Ints]]:
-        """The shapes that forms have, and the rows of those that have each."""
+        """Yield each shape, and the rows of the forms that have it."""
         groups: dict[str, list[int]] = {}
         for row, form in enumerate(self.forms):
             if form.joints:
@@ -112,15 +112,15 @@ class Extents:
             elif form.model is not None:
                 groups.setdefault(form.model, []).append(row)
         for model, group in groups.items():
-            own, rows = own_shape(model) or _UNIT, np.array(group)
-            turned = are_turned(own, self.size[rows])
-            for shape, of in ((own, rows[~turned]), (quarter_turned(own), rows[turned])):
+            own, rows = model_shape(model) or _UNIT, np.array(group)
+            turned = need_quarter_turn(own, self.size[rows])
+            for shape, of in ((own, rows[~turned]), (turn_quarter(own), rows[turned])):
                 if len(of):
                     yield shape, of
 
 
 class FormColumns(Extents):
-    """Forms as arrays, a row each, in the order given; lengths in metres along the map's axes."""
+    """Forms as arrays, a row each, in the given order. Lengths in metres along the axes of the map."""
 
     def __init__(self, forms: Sequence[Form]) -> None:
         super().__init__(forms)
@@ -130,19 +130,19 @@ class FormColumns(Extents):
         self.volume: Final[Floats] = x * y * z
         is_box = np.array([form.region is None and not form.joints for form in forms], dtype=bool)
         self.is_plumb: Final[Bools] = (np.abs([c, f, g, h]).max(axis=0) < 1e-9) & (i > 0.0) & is_box
-        """Whether its z axis is that of the map, but for rounding; it is no polygon, and nothing is open."""
+        """Whether its z axis is that of the map except for rounding, without a polygon or open doors."""
         self.is_square: Final[Bools] = self.is_plumb & (
             (np.maximum(np.abs(b), np.abs(d)) < 1e-9) | (np.maximum(np.abs(a), np.abs(e)) < 1e-9)
         )
-        """Whether its outline is its bounds, too."""
+        """Whether its outline equals its bounds."""
         self.u: Final[Floats] = np.stack([a * x / 2, d * x / 2], axis=1)
         """(F, 2) and `v`: half the sides of its outline, if it is plumb."""
         self.v: Final[Floats] = np.stack([b * y / 2, e * y / 2], axis=1)
         self.bottom: Final[Floats] = self.lowest_corner.copy()
         self.base: Final[Floats] = np.zeros((len(forms), 4))
-        """(F, 4) bounds that what it stands on does not reach beyond."""
+        """(F, 4) bounds that contain its base."""
         self.footing: Final[Ints] = np.full(len(forms), -1)
-        """(F,) the row of the one part that it stands on; -1 where there are several."""
+        """(F,) the row of the only part that it stands on, or -1 if there are several."""
         self.parts, self.hollows = self._shaped()
 
     def _shaped(self) -> tuple[Parts, Hollows]:
@@ -156,7 +156,7 @@ class FormColumns(Extents):
         )
 
     def _add(self, shape: ModelShape, of: Ints, parts: _Rows, hollows: _Rows) -> None:
-        """The rows of those forms that have this shape, stretched and turned."""
+        """Add the rows of the forms with this shape, stretched and turned."""
         rotation = self.rotation[of]
         stretch = self.size[of] / np.array(shape.size_m)
         if shape.interiors:
@@ -177,12 +177,12 @@ class FormColumns(Extents):
 
 
 def flat(rows: Sequence[tuple[float, ...]], width: int) -> Floats:
-    """(N, width), faster than np.array has it."""
+    """Return an (N, width) array, faster than np.array does."""
     return np.fromiter(chain.from_iterable(rows), np.float64, width * len(rows)).reshape(-1, width)
 
 
 def _rotations(forms: Sequence[Form]) -> Floats:
-    """(F, 3, 3); most stand alike, so that each way to be turned is converted once."""
+    """Return (F, 3, 3). Each distinct rotation is converted once, because most are equal."""
     ways = {form.rotation: form.rotation for form in forms}
     rows = {rotation: row for row, rotation in enumerate(ways)}
     table = np.array(list(ways), dtype=np.float64).reshape(-1, 3, 3)
@@ -190,17 +190,17 @@ def _rotations(forms: Sequence[Form]) -> Floats:
 
 
 class _Rows:
-    """Several rows for each form, put one after the other."""
+    """Rows of several forms, several for each, concatenated."""
 
     def __init__(self, forms: int, shapes: Sequence[tuple[int, ...]]) -> None:
-        """`shapes` are those of a row in each column."""
+        """`shapes` are the shapes of a row in each column."""
         self.first = np.zeros(forms, dtype=np.int64)
         self.count = np.zeros(forms, dtype=np.int64)
         self._made: list[Sequence[Floats]] = [[np.zeros((0, *shape)) for shape in shapes]]
         self._length = 0
 
     def add(self, forms: Ints, columns: Sequence[Floats]) -> None:
-        """(N, M, ...) columns: M rows for each of N forms."""
+        """Add (N, M, ...) columns: M rows for each of N forms."""
         each = columns[0].shape[1]
         self.first[forms] = self._length + each * np.arange(len(forms))
         self.count[forms] = each
@@ -208,12 +208,12 @@ class _Rows:
         self._length += each * len(forms)
 
     def columns(self) -> Iterator[Floats]:
-        """All rows."""
+        """Return all rows."""
         return (np.concatenate(column) for column in zip(*self._made, strict=True))
 
 
 def _turned(vectors: Floats, rotation: Floats) -> Floats:
-    """(N, ..., 3) vectors of (N, 3, 3) forms' own frames, along the axes of the map."""
+    """Return (N, ..., 3) vectors of the frames of (N, 3, 3) forms along the axes of the map."""
     between = (1,) * (vectors.ndim - 2)
     (a, b, c), (d, e, f), (g, h, i) = np.moveaxis(rotation, 0, -1).reshape(3, 3, -1, *between)
     x, y, z = np.moveaxis(vectors, -1, 0)
@@ -225,7 +225,7 @@ def _turned(vectors: Floats, rotation: Floats) -> Floats:
 
 
 def _alike(parts: Sequence[ConvexPart]) -> list[list[ConvexPart]]:
-    """Those together that are named by as many vectors."""
+    """Group parts by the numbers of their vectors."""
     found: dict[tuple[int, int, int], list[ConvexPart]] = {}
     for part in parts:
         found.setdefault((len(part.straight), len(part.round), len(part.points)), []).append(part)
@@ -233,7 +233,7 @@ def _alike(parts: Sequence[ConvexPart]) -> list[list[ConvexPart]]:
 
 
 def _parts(alike: Sequence[ConvexPart], stretch: Floats, rotation: Floats) -> list[Floats]:
-    """(N, P, ...) columns of `Parts` for (N, 3) stretches of P parts that are named by as many vectors."""
+    """Return (N, P, ...) columns of `Parts` for (N, 3) stretches of P parts with equal numbers of vectors."""
 
     def placed(vectors: Sequence[Sequence[Corner]]) -> Floats:
         own = np.array(vectors).reshape(len(alike), -1, 3)
@@ -274,7 +274,7 @@ def _parts(alike: Sequence[ConvexPart], stretch: Floats, rotation: Floats) -> li
 
 
 def _lows(alike: Sequence[ConvexPart], stretch: Floats, up: Floats) -> Floats:
-    """(N, P) how high the box around each of P parts begins: what `_parts` has, to the last bit.
+    """Return (N, P) the bottom of the box around each part, equal to `_parts` to the last bit.
 
     `up` is (N, 3), the last row of each rotation.
     """
@@ -297,7 +297,10 @@ def _lows(alike: Sequence[ConvexPart], stretch: Floats, up: Floats) -> Floats:
 
 
 def _lowest(centre: Floats, straight: Floats, round_: Floats) -> tuple[Floats, Bools, Bools]:
-    """(N, P, 2) where the lowest point is, NaN if not for certain; whether it is; what is round is level."""
+    """Return (N, P, 2) lowest points, NaN if uncertain.
+
+    Also whether they are certain, and whether discs are level.
+    """
     rises = straight[:, :, :, 2:]
     away = np.where(np.abs(rises) > _STEEP_M, np.sign(rises) * straight[:, :, :, :2], 0.0)
     lowest = centre[:, :, :2] - _added(away)
@@ -312,12 +315,12 @@ def _lowest(centre: Floats, straight: Floats, round_: Floats) -> tuple[Floats, B
 
 
 def _added(few: Floats) -> Floats:
-    """(N, P, ...) sums along the third axis, which is short: NumPy's own take five times as long for that."""
+    """Return (N, P, ...) sums along the short third axis, five times as fast as np.sum."""
     return sum(np.moveaxis(few, 2, 0), start=np.zeros((*few.shape[:2], *few.shape[3:])))
 
 
 def _hollows(shape: ModelShape, stretch: Floats, rotation: Floats) -> list[Floats]:
-    """(N, H, ...) columns of `Hollows` for (N, 3) stretches of one shape."""
+    """Return (N, H, ...) columns of `Hollows` for (N, 3) stretches of one shape."""
     low = stretch[:, None, :] * np.array([hollow.low for hollow in shape.interiors])
     high = stretch[:, None, :] * np.array([hollow.high for hollow in shape.interiors])
     middle, half = (low + high) / 2, (high - low) / 2

@@ -1,4 +1,4 @@
-"""What all that are alike have in common: a shape at a size, turned some way."""
+"""Forms: a shape at a size and orientation, shared by all equal solids."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from typing import Final
 
 from semmap.nodes.geometry.polygons import Point, area, hull
 from semmap.nodes.geometry.regions import Region
-from semmap.nodes.kb_node.relations.geometry.convex import Convex, convex
-from semmap.nodes.kb_node.relations.geometry.fitting import fitted
-from semmap.nodes.kb_node.relations.geometry.lazily import lazily
-from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions, opened
+from semmap.nodes.kb_node.relations.geometry.convex import Convex, make_convex
+from semmap.nodes.kb_node.relations.geometry.fitting import fit_model
+from semmap.nodes.kb_node.relations.geometry.lazy_property import lazy_property
+from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions, open_shape
 from semmap.ontology.model_shapes import ModelShape
 from semmap.schemas import errors
 from semmap.schemas.entities import IDENTITY, Quaternion, Size, Vector
 from semmap.schemas.polygons import Polygon, read_wkt
 
 UPRIGHT = math.cos(math.radians(15.0))
-"""A thing that leans more has no level surfaces."""
+"""An object that leans more has no level surfaces."""
 LEVEL = math.cos(math.radians(0.2))
 LOWEST_M = 0.01
-"""Parts that end this near to the lowest point are what a thing stands on."""
+"""Parts that end this close to the lowest point form the base."""
 _BOX = ModelShape(size_m=(0.02, 0.02, 0.02))
-"""Of what nobody measured."""
+"""The box of objects without a known size."""
 
 Matrix = tuple[Vector, Vector, Vector]
 Bounds = tuple[float, float, float, float]
@@ -32,12 +32,11 @@ Bounds = tuple[float, float, float, float]
 
 
 class Form:
-    """A shape as it is turned, seen from the middle of its bottom [m]; the axes are those of the map.
+    """A shape at an orientation, relative to its bottom centre [m] and along the axes of the map.
 
-    Most things of a map stand upright like others of their model: what is worked out here is worked out once
-    for all of them, and not before somebody asks. Where a door stands open, `joints` says how far. It is a
-    part that collides, and within the bounds; size, outline, footprint and volume are those of what it is
-    fastened to.
+    Most objects stand upright like others of their model, so derived properties are computed lazily and
+    once for all of them. `joints` are the positions of doors and drawers. An open door is a colliding part
+    and within the bounds. Size, outline, footprint and volume are those of the closed object.
     """
 
     __slots__ = (
@@ -53,33 +52,33 @@ class Form:
         self.rotation: Final = _rotation(wxyz)
         """Map from body."""
         self.users = 0
-        """How many solids have it, or had it."""
+        """The number of solids that have or had it."""
         self.is_level: Final = self.rotation[2][2] >= LEVEL
         self.is_upright: Final = self.rotation[2][2] >= UPRIGHT
 
     region: Region | None = None
-    """What it covers, of a place whose extent is a polygon."""
+    """The area of a place whose extent is a polygon."""
 
     def is_of(self, model: str | None, size: Size, wxyz: Quaternion, joints: Positions = AS_DRAWN) -> bool:
-        """Whether it is the form of a model at a size, turned so, whose joints stand so."""
+        """Return whether it is the form of a model at this size, orientation and joint positions."""
         return (
             self.orientation == wxyz and self.size == size and self.model == model and self.joints == joints
         )
 
-    @lazily
+    @lazy_property
     def shape(self) -> ModelShape:
-        """The shape of its model at its size, in its own frame, with its joints where they stand."""
-        return _BOX if self.model is None else opened(fitted(self.model, self.size), self.joints)
+        """Return the shape of its model at its size and joint positions, in its own frame."""
+        return _BOX if self.model is None else open_shape(fit_model(self.model, self.size), self.joints)
 
     def turned(self, vector: Vector) -> Vector:
-        """A vector of its own frame along the axes of the map."""
+        """Return a vector of its own frame along the axes of the map."""
         x, y, z = vector
         (a, b, c), (d, e, f), (g, h, i) = self.rotation
         return a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z
 
-    @lazily
+    @lazy_property
     def corners(self) -> tuple[Vector, ...]:
-        """The eight corners; the four of its base first."""
+        """Return the eight corners, the four of the base first."""
         x, y, z = self.size
         return tuple(
             self.turned((sx * x / 2, sy * y / 2, level))
@@ -87,36 +86,36 @@ class Form:
             for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))
         )
 
-    @lazily
+    @lazy_property
     def lowest_corner(self) -> float:
-        """The height of its box's lowest corner."""
+        """Return the height of the lowest corner of the box."""
         return min(corner[2] for corner in self.corners)
 
-    @lazily
+    @lazy_property
     def bottom(self) -> float:
-        """The height of its lowest point."""
+        """Return the height of the lowest point."""
         return min([part.low[2] for part in self.parts]) if self.parts else self.lowest_corner
 
-    @lazily
+    @lazy_property
     def top(self) -> float:
-        """The height of its box's highest corner, or of what stands open above that."""
+        """Return the height of the highest corner of the box, or of an open part above it."""
         (_, _, (g, h, i)), (x, y, z) = self.rotation, self.size
         top = max(0.0, i * z) + (abs(g) * x + abs(h) * y) / 2
         return max([top, *(part.high[2] for part in self.parts)]) if self.joints else top
 
-    @lazily
+    @lazy_property
     def lowest_top(self) -> float:
-        """Where the first of its parts ends."""
+        """Return the height of the lowest top of a part."""
         return min([part.high[2] for part in self.parts], default=self.top)
 
-    @lazily
+    @lazy_property
     def highest_bottom(self) -> float:
-        """Where the last of its parts begins."""
+        """Return the height of the highest bottom of a part."""
         return max([part.low[2] for part in self.parts], default=self.bottom)
 
-    @lazily
+    @lazy_property
     def bounds(self) -> Bounds:
-        """Of its box, and of what stands open beyond that."""
+        """Return the bounds of the box and of open parts beyond it."""
         box = self._bounds_of_box()
         if not self.joints:
             return box
@@ -136,9 +135,9 @@ class Form:
         half_y = (abs(d) * x + abs(e) * y + abs(f) * z) / 2
         return mid_x - half_x, mid_y - half_y, mid_x + half_x, mid_y + half_y
 
-    @lazily
+    @lazy_property
     def is_square(self) -> bool:
-        """Whether its outline is its bounds."""
+        """Return whether the outline equals the bounds."""
         (a, b, _), (d, e, _), _ = self.rotation
         return (
             self.is_level
@@ -146,9 +145,9 @@ class Form:
             and (max(abs(b), abs(d)) < _EXACTLY or max(abs(a), abs(e)) < _EXACTLY)
         )
 
-    @lazily
+    @lazy_property
     def outline(self) -> list[Point]:
-        """Its shadow on the floor."""
+        """Return the projection of the box onto the floor."""
         if not self.is_level:
             return hull([(x, y) for x, y, _ in self.corners])
         (a, b, _), (d, e, _), _ = self.rotation
@@ -156,18 +155,20 @@ class Form:
         ax, ay, bx, by = a * x / 2, d * x / 2, b * y / 2, e * y / 2
         return [(-ax - bx, -ay - by), (ax - bx, ay - by), (ax + bx, ay + by), (-ax + bx, -ay + by)]
 
-    @lazily
+    @lazy_property
     def base(self) -> Sequence[Point]:
-        """The outline of its lowest parts."""
+        """Return the outline of the lowest parts."""
         parts = [part for part in self.parts if part.low[2] <= self.bottom + LOWEST_M]
-        return parts[0].shadow if len(parts) == 1 else hull([xy for part in parts for xy in part.shadow])
+        return (
+            parts[0].projection if len(parts) == 1 else hull([xy for part in parts for xy in part.projection])
+        )
 
-    @lazily
+    @lazy_property
     def parts(self) -> tuple[Convex, ...]:
-        """What of it collides."""
+        """Return the colliding parts."""
         turned = self.turned
         return tuple(
-            convex(
+            make_convex(
                 turned(part.centre),
                 tuple(map(turned, part.straight)),
                 tuple(map(turned, part.round)),
@@ -176,27 +177,27 @@ class Form:
             for part in self.shape.parts
         )
 
-    @lazily
+    @lazy_property
     def volume(self) -> float:
-        """Of its box [m^3]."""
+        """Return the volume of the box [m^3]."""
         x, y, z = self.size
         return x * y * z
 
-    @lazily
+    @lazy_property
     def footprint(self) -> float:
-        """Of its shadow [m^2]."""
+        """Return the area of the outline [m^2]."""
         return area(self.outline)
 
-    def forget(self) -> None:
-        """Drop what can be worked out again."""
+    def clear_cache(self) -> None:
+        """Drop all cached properties."""
         del self.__dict__
 
 
 _EXACTLY = 1e-9
 
 
-class Expanse(Form):
-    """A place whose extent is a polygon, seen from the middle of the upright box around it."""
+class RegionForm(Form):
+    """The form of a place whose extent is a polygon, relative to the centre of its upright bounding box."""
 
     def __init__(self, polygon: Polygon, size: Size, middle: Point) -> None:
         super().__init__(None, size, IDENTITY)
@@ -204,49 +205,49 @@ class Expanse(Form):
         self.region = Region([[(px - x, py - y) for px, py in ring] for ring in polygon.rings])
 
     def is_of(self, model: str | None, size: Size, wxyz: Quaternion, joints: Positions = AS_DRAWN) -> bool:
-        """Never: another place has another extent."""
+        """Return False, because each place has its own extent."""
         return False
 
-    def forget(self) -> None:
-        """Drop what can be worked out again, which the region cannot."""
+    def clear_cache(self) -> None:
+        """Drop all cached properties except the region, which cannot be computed again."""
         region = self.region
-        super().forget()
+        super().clear_cache()
         self.region = region
 
-    @lazily
+    @lazy_property
     def is_square(self) -> bool:
-        """Whether its outline is its bounds: that is for boxes to say."""
+        """Return False, because only a box can be square."""
         return False
 
-    @lazily
+    @lazy_property
     def outline(self) -> list[Point]:
-        """The convex hull of what it covers."""
+        """Return the convex hull of the area."""
         if self.region is None:
             raise errors.InternalError("the solid has no region")
         return hull([point for piece in self.region.pieces for point in piece.corners])
 
-    @lazily
+    @lazy_property
     def footprint(self) -> float:
-        """Of what it covers [m^2]."""
+        """Return the area [m^2]."""
         if self.region is None:
             raise errors.InternalError("the solid has no region")
         return self.region.area
 
-    @lazily
+    @lazy_property
     def volume(self) -> float:
-        """Of what it covers, as high as it is [m^3]."""
+        """Return the area times the height [m^3]."""
         return self.footprint * self.size[2]
 
 
 @lru_cache(maxsize=1024)
-def expanse(wkt: str, size: Size, middle: Point) -> Expanse:
-    """The form of a place with this extent, whose bounding box has this size and middle."""
-    return Expanse(read_wkt(wkt), size, middle)
+def region_form(wkt: str, size: Size, middle: Point) -> RegionForm:
+    """Return the form of a place with this extent, whose bounding box has this size and centre."""
+    return RegionForm(read_wkt(wkt), size, middle)
 
 
 @lru_cache(maxsize=4096)
 def form_of(model: str | None, size: Size, wxyz: Quaternion, joints: Positions = AS_DRAWN) -> Form:
-    """The form of a model at a size; None has no parts, and "" is a box."""
+    """Return the form of a model at a size. A model of None has no parts, and "" is a box."""
     return Form(model, size, wxyz, joints)
 
 

@@ -1,4 +1,4 @@
-"""Shapes whose doors, lids and drawers stand open: what joints move is where they have moved it."""
+"""Shapes with open doors, lids and drawers, at given joint positions."""
 
 from __future__ import annotations
 
@@ -7,65 +7,65 @@ from collections.abc import Callable, Iterator, Mapping
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.relations.geometry.fitting import fitted, own_shape
+from semmap.nodes.kb_node.relations.geometry.fitting import fit_model, model_shape
 from semmap.ontology.model_shapes import ConvexPart, Interior, LeafShape, ModelShape, Surface
 from semmap.schemas.entities import Size, Vector
 from semmap.schemas.joints import OPENING, Joint, stated
 
 Positions = tuple[float, ...]
-"""Where the leaves of a shape stand, in their order [rad, m]; () where all are as they are drawn."""
+"""Joint positions of the leaves of a shape, in their order [rad, m], or () if all are as drawn."""
 
 AS_DRAWN: Positions = ()
 _NEGLIGIBLE = 0.002
-"""A joint this near to where it is drawn stands there [rad, m]: that is its play."""
+"""A joint closer to its drawn position counts as there, because this is its play [rad, m]."""
 _NOWHERE: Vector = (0.0, 0.0, 0.0)
 _LEVEL = math.cos(math.radians(2.0))
 _LEAST_TOP = 0.02
-"""Of the footprint: what turns level and is smaller carries nothing."""
+"""As a share of the footprint. Smaller parts that turn level support nothing."""
 
 _Map = Callable[[Vector], Vector]
 
 
 def positions_of(model: str | None, size: Size | None, properties: Mapping[str, object]) -> Positions:
-    """Where the joints of a model at a size stand, as far as a map states it; within their limits."""
+    """Return the joint positions that a map states for a model at a size, within the joint limits."""
     if not model or size is None or properties.keys().isdisjoint(OPENING):
         return AS_DRAWN
-    own = own_shape(model)
+    own = model_shape(model)
     if own is None or not own.leaves:
         return AS_DRAWN
-    leaves = fitted(model, size).leaves
+    leaves = fit_model(model, size).leaves
     at = stated(map(_joint, leaves), properties) or {}
     found = tuple(_within(leaf, at.get(leaf.name, 0.0)) for leaf in leaves)
     return found if any(found) else AS_DRAWN
 
 
-def opened(shape: ModelShape, positions: Positions) -> ModelShape:
-    """A shape whose leaves stand at these positions. Its box, `size_m`, remains that of the shape as drawn.
+def open_shape(shape: ModelShape, positions: Positions) -> ModelShape:
+    """Return a shape with its leaves at these positions. Its box, `size_m`, remains as drawn.
 
-    The hollows of its frame stay, for a cabinet holds what is in it whether its door is open or not. What a
-    slide carries, surfaces and hollows, is shifted; a hinge carries things on what it turns level.
+    The hollows of the frame stay: a cabinet contains its contents whether its door is open or not. Surfaces
+    and hollows on a slide move with it. A hinge provides supporting surfaces where it turns parts level.
     """
     if not positions:
         return shape
     parts = list(shape.parts)
     surfaces: list[Surface | None] = list(shape.surfaces)
-    come: list[Surface] = []
+    opened: list[Surface] = []
     interiors = list(shape.interiors)
     for leaf, position in zip(shape.leaves, positions, strict=True):
         if not position:
             continue
         turned, there = _motion(leaf, position)
         for k in leaf.parts:
-            parts[k] = _moved(parts[k], turned, there)
+            parts[k] = _move_part(parts[k], turned, there)
         for k in leaf.surfaces:
             surface = surfaces[k]
-            surfaces[k] = _shifted(surface, there) if surface and leaf.kind == "slide" else None
+            surfaces[k] = _shift_surface(surface, there) if surface and leaf.kind == "slide" else None
         if leaf.kind == "slide":
-            interiors += (_carried(interior, leaf.name, there) for interior in leaf.interiors)
+            interiors += (_move_with_slide(interior, leaf.name, there) for interior in leaf.interiors)
         else:
             least = _LEAST_TOP * shape.size_m[0] * shape.size_m[1]
-            come += _level_tops((parts[k] for k in leaf.parts), least)
-    kept = (*filter(None, surfaces), *come)
+            opened += _level_tops((parts[k] for k in leaf.parts), least)
+    kept = (*filter(None, surfaces), *opened)
     return structs.replace(
         shape,
         parts=tuple(parts),
@@ -75,7 +75,7 @@ def opened(shape: ModelShape, positions: Positions) -> ModelShape:
 
 
 def joint_at(leaf: LeafShape, position: float) -> Joint:
-    """A leaf's joint as it stands."""
+    """Return the joint of a leaf at a position."""
     return structs.replace(_joint(leaf), position=position)
 
 
@@ -91,7 +91,7 @@ def _within(leaf: LeafShape, position: float) -> float:
 
 
 def _motion(leaf: LeafShape, position: float) -> tuple[_Map, _Map]:
-    """How a joint at a position turns directions, and where it takes points."""
+    """Return the maps of directions and of points for a joint position."""
     x, y, z = leaf.axis
     ax, ay, az = leaf.anchor
     if leaf.kind == "slide":
@@ -116,7 +116,7 @@ def _motion(leaf: LeafShape, position: float) -> tuple[_Map, _Map]:
     return turned, there
 
 
-def _moved(part: ConvexPart, turned: _Map, there: _Map) -> ConvexPart:
+def _move_part(part: ConvexPart, turned: _Map, there: _Map) -> ConvexPart:
     return ConvexPart(
         centre=there(part.centre),
         straight=tuple(map(turned, part.straight)),
@@ -125,20 +125,20 @@ def _moved(part: ConvexPart, turned: _Map, there: _Map) -> ConvexPart:
     )
 
 
-def _shifted(surface: Surface, there: _Map) -> Surface:
+def _shift_surface(surface: Surface, there: _Map) -> Surface:
     x0, y0, height = there((*surface.low, surface.height))
     x1, y1, _ = there((*surface.high, surface.height))
     return structs.replace(surface, height=height, low=(x0, y0), high=(x1, y1))
 
 
-def _carried(interior: Interior, by: str, there: _Map) -> Interior:
+def _move_with_slide(interior: Interior, by: str, there: _Map) -> Interior:
     return structs.replace(
         interior, low=there(interior.low), high=there(interior.high), behind=(), carried_by=by
     )
 
 
 def _level_tops(parts: Iterator[ConvexPart], least_m2: float) -> Iterator[Surface]:
-    """The tops of those boards that lie flat, along the axes of the model."""
+    """Yield the tops of boards that lie flat, along the axes of the model."""
     for part in parts:
         if len(part.straight) != 3 or part.round or part.points:
             continue

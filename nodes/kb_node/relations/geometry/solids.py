@@ -1,4 +1,4 @@
-"""An entity as a solid: an oriented box in the map, its supporting surfaces and its hollows."""
+"""Entities as solids: an oriented box in the map, with supporting surfaces and hollows."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from typing import Final
 
 from semmap.nodes.geometry.polygons import Point
-from semmap.nodes.kb_node.relations.geometry.convex import Convex, moved
-from semmap.nodes.kb_node.relations.geometry.forms import Bounds, Form, Matrix, expanse, form_of
-from semmap.nodes.kb_node.relations.geometry.lazily import lazily
+from semmap.nodes.kb_node.relations.geometry.convex import Convex, translate
+from semmap.nodes.kb_node.relations.geometry.forms import Bounds, Form, Matrix, form_of, region_form
+from semmap.nodes.kb_node.relations.geometry.lazy_property import lazy_property
 from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions
-from semmap.nodes.kb_node.relations.geometry.placed import Placed, extent_in, joints_in
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity, extent_in, joints_in
 from semmap.ontology.model_shapes import Interior, own_size_m
 from semmap.schemas.entities import Entity, Pose, Size, Vector
 
@@ -19,9 +19,9 @@ Shape = tuple[str | None, Size | None, Positions]
 Extent = tuple[Bounds, float, float]
 """Bounds, bottom and top."""
 UNMEASURED: Final[Size] = (0.02, 0.02, 0.02)
-"""The size of what has none: a point, nearly."""
+"""The size of entities without one, nearly a point."""
 SAMPLES = 5
-"""Points along each axis that stand for a volume."""
+"""Sample points along each axis of a volume."""
 
 
 @dataclass(frozen=True)
@@ -34,10 +34,10 @@ class Support:
 
 
 class Solid:
-    """A thing or place in the map: position [m] of its bottom centre, and its form as it is turned there.
+    """An object or place in the map: position [m] of its bottom centre, and its form.
 
-    `is_measured`: somebody gave it a size, or its model has one. What is not is a point, and claims nothing
-    but where its position is.
+    `is_measured` is True if the map or the model gives a size. Otherwise it is a point, whose only property
+    is its position.
     """
 
     __slots__ = (
@@ -54,7 +54,7 @@ class Solid:
         is_measured: bool,
         extent: Extent | None = None,
     ) -> None:
-        """`extent` is that of such a solid, where somebody has worked it out already."""
+        """`extent` is the bounds, bottom and top, if they are already known."""
         self.name: Final = name
         self.position: Final = position
         self.form: Final = form
@@ -62,14 +62,14 @@ class Solid:
         self.is_measured: Final = is_measured
         form.users += 1
         self.is_level: Final = form.is_level
-        """Whether it leans by less than a fifth of a degree."""
+        """Whether it is tilted by less than a fifth of a degree."""
         bounds, bottom, top = extent or self._extent()
         self.bounds: Final = bounds
         """Least x and y, greatest x and y [m]."""
         self.bottom: Final = bottom
-        """Its lowest point [m]."""
+        """The lowest point [m]."""
         self.top: Final = top
-        """Its highest point [m], that of its box."""
+        """The highest point [m] of its box."""
 
     def _extent(self) -> Extent:
         form, z = self.form, self.position[2]
@@ -78,69 +78,69 @@ class Solid:
 
     @property
     def has_parts(self) -> bool:
-        """Whether anything of it can be met: it is a thing, and its size is known."""
+        """Return whether it can collide: it is an object of known size."""
         return self.is_measured and not self.is_place
 
     @property
     def rotation(self) -> Matrix:
-        """Map from body."""
+        """Return the rotation from body to map."""
         return self.form.rotation
 
     @property
     def size(self) -> Size:
-        """Along its own axes [m]."""
+        """Return the size along its own axes [m]."""
         return self.form.size
 
     @property
     def is_upright(self) -> bool:
-        """Whether its z axis is up, within 15 degrees."""
+        """Return whether its z axis is up, within 15 degrees."""
         return self.form.is_upright
 
     @property
     def volume(self) -> float:
-        """Of its box [m^3]."""
+        """Return the volume of its box [m^3]."""
         return self.form.volume
 
     @property
     def footprint(self) -> float:
-        """Of its shadow [m^2]."""
+        """Return the area of its outline [m^2]."""
         return self.form.footprint
 
     @property
     def hollows(self) -> tuple[Interior, ...]:
-        """Its interiors, in its own frame."""
+        """Return its interiors, in its own frame."""
         return self.form.shape.interiors if self.is_measured else ()
 
     @property
     def lowest_top(self) -> float:
-        """Where the first of its parts ends [m]: what stands on it upright does not stand lower."""
+        """Return the lowest top of a part [m]. Nothing upright stands lower on it."""
         return self.position[2] + self.form.lowest_top if self.has_parts else self.top
 
     @property
     def highest_bottom(self) -> float:
-        """Where the last of its parts begins [m]: a bookshelf may rest on a table by one of its boards."""
+        """Return the highest bottom of a part [m]. A bookshelf may rest on a table by one of its boards."""
         return self.position[2] + self.form.highest_bottom if self.has_parts else self.bottom
 
-    @lazily
+    @lazy_property
     def outline(self) -> list[Point]:
-        """Its shadow on the floor."""
+        """Return its projection onto the floor."""
         px, py, _ = self.position
         return [(px + x, py + y) for x, y in self.form.outline]
 
-    @lazily
+    @lazy_property
     def base(self) -> Sequence[Point]:
-        """What it stands on: the outline of its lowest parts."""
+        """Return the outline of its lowest parts, on which it stands."""
         px, py, _ = self.position
         return [(px + x, py + y) for x, y in self.form.base] if self.parts else []
 
-    @lazily
+    @lazy_property
     def centre(self) -> Vector:
-        """The middle of its box, map frame [m]."""
+        """Return the centre of its box in the map frame [m]."""
         return self.to_map((0.0, 0.0, self.size[2] / 2))
 
-    @lazily
+    @lazy_property
     def supports(self) -> tuple[Support, ...]:
-        """The surfaces that carry things; the whole top of what has no model."""
+        """Return the supporting surfaces. Without a model it is the whole top."""
         if self.is_place or not self.is_measured or not self.is_upright:
             return ()
         return tuple(
@@ -160,43 +160,46 @@ class Solid:
             for surface in self.form.shape.surfaces
         )
 
-    @lazily
+    @lazy_property
     def parts(self) -> tuple[Convex, ...]:
-        """What of it collides, map frame; the whole box of what has no model, nothing of what has no size."""
+        """Return the colliding parts in the map frame.
+
+        Without a model it is the whole box, without a size none.
+        """
         if not self.has_parts:
             return ()
-        return tuple([moved(part, self.position) for part in self.form.parts])
+        return tuple([translate(part, self.position) for part in self.form.parts])
 
     @property
     def open_parts(self) -> list[Convex]:
-        """Those of its parts that a joint has moved from where they are drawn, map frame."""
+        """Return the parts that a joint has moved from their drawn position, in the map frame."""
         form = self.form
-        moved = [
+        opened = [
             k for leaf, at in zip(form.shape.leaves, form.joints, strict=False) if at for k in leaf.parts
         ]
-        return [self.parts[k] for k in moved] if self.has_parts else []
+        return [self.parts[k] for k in opened] if self.has_parts else []
 
-    def forget(self) -> None:
-        """Drop what can be worked out again, but where it is: of many solids that is most of the memory."""
+    def clear_cache(self) -> None:
+        """Drop cached properties except the location. For many solids they take most of the memory."""
         del self.__dict__
         if self.form.users <= 1:
-            self.form.forget()
+            self.form.clear_cache()
 
     def to_map(self, point: Vector) -> Vector:
-        """A point of its own frame in the map's."""
+        """Transform a point from its own frame to the map."""
         px, py, pz = self.position
         x, y, z = self.form.turned(point)
         return px + x, py + y, pz + z
 
     def to_own(self, point: Vector) -> Vector:
-        """A point of the map in its own frame."""
+        """Transform a point from the map to its own frame."""
         x, y, z = (p - o for p, o in zip(point, self.position, strict=True))
         (a, b, c), (d, e, f), (g, h, i) = self.rotation
         return (a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z)
 
-    @lazily
+    @lazy_property
     def samples(self) -> list[Vector]:
-        """Points spread evenly over its volume, map frame [m]."""
+        """Return points spread evenly over its volume, in the map frame [m]."""
         x, y, z = self.size
         shares = [(k + 0.5) / SAMPLES for k in range(SAMPLES)]
         return [
@@ -204,17 +207,17 @@ class Solid:
         ]
 
 
-def solid_of(entity: Entity | Placed, before: Solid | None = None) -> Solid | None:
-    """The solid of an entity; None without a position.
+def solid_of(entity: Entity | PlacedEntity, before: Solid | None = None) -> Solid | None:
+    """Return the solid of an entity, or None without a position.
 
-    `before` is the one that it replaces: what only moved keeps its form, and what stays at its height keeps
-    its bottom and top, for which the form's parts would have to be worked out.
+    `before` is the one that it replaces. A solid that only moved keeps its form. At the same height it also
+    keeps bottom and top, which are expensive to compute.
     """
     pose = entity.pose
     if pose is None:
         return None
     model, size, joints = shape_of(entity)
-    if entity.place and (form := _expanse(entity, pose.position_m, size)) is not None:
+    if entity.place and (form := _find_region_form(entity, pose.position_m, size)) is not None:
         return Solid(entity.name, pose.position_m, form, True, True)
     extent, turn = size or UNMEASURED, pose.orientation_wxyz
     if before is None or not before.form.is_of(model, extent, turn, joints):
@@ -228,18 +231,18 @@ def solid_of(entity: Entity | Placed, before: Solid | None = None) -> Solid | No
     return Solid(entity.name, pose.position_m, form, entity.place, size is not None, known)
 
 
-def form_in(entity: Entity | Placed, pose: Pose, shape: Shape) -> Form:
-    """The form of an entity that stands at `pose`, given `shape_of` it."""
+def form_in(entity: Entity | PlacedEntity, pose: Pose, shape: Shape) -> Form:
+    """Return the form of an entity at `pose`, given `shape_of` it."""
     model, size, joints = shape
-    found = _expanse(entity, pose.position_m, size) if entity.place else None
+    found = _find_region_form(entity, pose.position_m, size) if entity.place else None
     return found or form_of(model, size or UNMEASURED, pose.orientation_wxyz, joints)
 
 
-def _expanse(entity: Entity | Placed, position: Vector, size: Size | None) -> Form | None:
-    """The form of a place whose extent is a polygon; None for a box."""
+def _find_region_form(entity: Entity | PlacedEntity, position: Vector, size: Size | None) -> Form | None:
+    """Return the form of a place whose extent is a polygon, or None for a box."""
     if size is None or not (wkt := extent_in(entity)):
         return None
-    return expanse(wkt, size, position[:2])
+    return region_form(wkt, size, position[:2])
 
 
 def _bounds(form: Form, position: Vector) -> Bounds:
@@ -248,8 +251,8 @@ def _bounds(form: Form, position: Vector) -> Bounds:
     return x + low_x, y + low_y, x + high_x, y + high_y
 
 
-def shape_of(entity: Entity | Placed) -> Shape:
-    """What its form is of: its model, None without parts, its size, or that of its model [m], its joints."""
+def shape_of(entity: Entity | PlacedEntity) -> Shape:
+    """Return model (None without parts), size or that of the model [m], and joints of an entity."""
     size = entity.size_m
     if entity.place:
         return None, size, AS_DRAWN

@@ -1,1 +1,1 @@
-"""What holds of two things, by their shapes, with what was measured; who is near whom."""
+"""Measurement of relations between shapes, and search for neighbours."""

@@ -1,4 +1,4 @@
-"""Relations that depend on more than two: next to, between, attached to."""
+"""Relations that depend on more than two objects: next to, between, attached to."""
 
 from __future__ import annotations
 
@@ -12,30 +12,30 @@ from semmap.nodes.kb_node.relations.measuring.measures import Measure
 from semmap.nodes.kb_node.relations.measuring.space import Space
 
 _OPPOSITE = -math.cos(math.radians(60.0))
-"""What is between two sees them in directions this far from one another: 120 degrees or more."""
+"""An object between two others sees them in directions at least 120 degrees apart."""
 BESIDE_M = 0.2
-"""What is further from another thing is not beside it."""
+"""The largest horizontal distance at which an object can be attached [m]."""
 ALONGSIDE = 0.5
-"""Of the height of what hangs that is alongside what it hangs on."""
+"""The least share of the height of an attached object that is alongside what it is attached to."""
 
 
-def next_to(space: Space, one: Solid, other: Solid) -> Measure | None:
-    """Near, on the same support or floor, and nothing between the two; None for what is not near.
+def measure_next_to(space: Space, one: Solid, other: Solid) -> Measure | None:
+    """Return whether two objects are near, on the same support or floor, with nothing between them.
 
-    `holds` is False, and `share` 0, where the two stand on different things; `share` is 0.5 where something
-    is between them.
+    None if they are not near. Otherwise `holds` is False with `share` 0 on different supports, and with
+    `share` 0.5 if an object is between them.
     """
     made = measures.near(one, other, space.limits)
     if made is None or not made.holds:
         return None
-    if not _stand_alike(space, one, other):
+    if not _share_support(space, one, other):
         return made._replace(holds=False, share=0.0)
     is_free = next(_in_between(space, one, other), None) is None
     return made if is_free else made._replace(holds=False, share=0.5)
 
 
-def _stand_alike(space: Space, one: Solid, other: Solid) -> bool:
-    ours, theirs = space.whereabouts(one), space.whereabouts(other)
+def _share_support(space: Space, one: Solid, other: Solid) -> bool:
+    ours, theirs = space.spatial_relations(one), space.spatial_relations(other)
     if ours.container is not None or theirs.container is not None:
         return (
             ours.container is not None
@@ -47,8 +47,8 @@ def _stand_alike(space: Space, one: Solid, other: Solid) -> bool:
     return abs(one.bottom - other.bottom) <= space.limits.gap_m
 
 
-def between(space: Space, one: Solid, other: Solid) -> list[Solid]:
-    """What is between two things, by name: over or on the strip that joins them, at their height."""
+def find_between(space: Space, one: Solid, other: Solid) -> list[Solid]:
+    """Return the objects on the strip that joins two others, at their height, ordered by name."""
     return sorted(_in_between(space, one, other), key=lambda solid: solid.name)
 
 
@@ -60,7 +60,7 @@ def _in_between(space: Space, one: Solid, other: Solid) -> Iterator[Solid]:
         if third is other or third.is_place or not third.is_measured:
             continue
         if not measures.overlap(third.bounds, other.bounds, apart):
-            continue  # it is further from the other than the two are from one another
+            continue  # further from `other` than the two are apart
         if third.bottom >= high or third.top <= low + space.limits.contact_m:
             continue
         footprint = max(third.footprint, 1e-9)
@@ -73,31 +73,31 @@ def _in_between(space: Space, one: Solid, other: Solid) -> Iterator[Solid]:
             yield third
 
 
-def attached(space: Space, solid: Solid, other: Solid) -> Measure | None:
-    """Whether one hangs on the side of the other: nothing bears it, and it is against that, off the floor.
+def measure_attachment(space: Space, solid: Solid, other: Solid) -> Measure | None:
+    """Return whether an object without support is against a side of another one, off the floor.
 
-    None for what is not beside the other, or is borne.
+    None if it is not beside the other one, or is supported.
     """
     made = _against(space, solid, other)
-    return None if made is None or is_borne(space, solid) else made
+    return None if made is None or is_supported(space, solid) else made
 
 
-def attachments(space: Space, solid: Solid) -> Iterator[Solid]:
-    """What a thing hangs on."""
+def find_attachments(space: Space, solid: Solid) -> Iterator[Solid]:
+    """Yield the objects that an object is attached to."""
     margin = space.limits.attached_m
-    if not solid.is_measured or solid.name in space.held:
+    if not solid.is_measured or solid.name in space.holders:
         return
     highest = solid.bottom - space.limits.gap_m
     found = [
         other
-        for other in space.bearers_around(solid, margin)
+        for other in space.supporters_around(solid, margin)
         if other.top > solid.bottom
         and other.bottom < highest
         and not other.is_place
         and (made := _against(space, solid, other))
         and made.holds
     ]
-    if found and not is_borne(space, solid):
+    if found and not is_supported(space, solid):
         yield from sorted(found, key=lambda other: other.name)
 
 
@@ -115,11 +115,11 @@ def _against(space: Space, solid: Solid, other: Solid) -> Measure | None:
     return Measure(holds, apart, share, limit=limits.attached_m)
 
 
-def is_borne(space: Space, solid: Solid) -> bool:
-    """Whether something holds it: from below, were it the floor of its place, or in its grasp."""
-    if solid.name in space.held:
+def is_supported(space: Space, solid: Solid) -> bool:
+    """Return whether anything holds an object: a support, the floor of its place, or a holder."""
+    if solid.name in space.holders:
         return True
-    container, supports, place = space.whereabouts(solid)
+    container, supports, place = space.spatial_relations(solid)
     if container is not None or supports:
         return True
     return place is not None and abs(solid.bottom - place[0].bottom) <= space.limits.gap_m

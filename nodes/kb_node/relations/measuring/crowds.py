@@ -1,4 +1,4 @@
-"""Where very many things are in one spot: which of them count as neighbours, so that work stays bounded."""
+"""Crowds: limits on the neighbours considered where very many objects are in one spot."""
 
 from __future__ import annotations
 
@@ -9,18 +9,19 @@ from typing import Final
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 
 MOST: Final = 100
-"""Things in one cell of the grid that others look at; the rest bears, holds and is near nothing.
+"""The most objects in one grid cell that are considered as neighbours. Others support and contain nothing.
 
-And only what is larger bears or holds one of the rest, so that in a heap of things of one size not every one
-has to be compared with so many.
+Objects that are not counted are compared with larger ones only, so that a heap of equal objects stays
+cheap.
 """
-_WHAT: Final = "on, inside or beside"
+_WHAT: Final = "(on, inside, beside)"
 
 
 class Crowd:
-    """What is in one cell. The largest things count, of equal ones the first by name; places all do.
+    """The objects in one cell, of which the largest are counted.
 
-    So a table or a drawer that is full counts, and who counts is a function of the map alone.
+    Of equal ones the first by name is counted, and places always are. So a full table or drawer is counted,
+    and the result depends on the map alone.
     """
 
     def __init__(self, solids: Iterable[Solid]) -> None:
@@ -30,15 +31,15 @@ class Crowd:
         self.counted.update((self._solids[name], None) for _, name in self._ranked[:MOST])
 
     def __len__(self) -> int:
-        """How many things there are, whether they count or not."""
+        """Return the number of objects, counted or not."""
         return len(self._ranked)
 
     def has_any(self, names: Collection[str]) -> bool:
-        """Whether one of these is there, whether it counts or not."""
+        """Return whether one of these names is present, counted or not."""
         return not self._solids.keys().isdisjoint(names)
 
     def add(self, solid: Solid) -> Solid | None:
-        """One more; who does not count any more because of it."""
+        """Add a solid and return the one that is no longer counted because of it."""
         self._solids[solid.name] = solid
         if solid.is_place:
             self.counted[solid] = None
@@ -53,7 +54,7 @@ class Crowd:
         return left_out
 
     def remove(self, solid: Solid) -> Solid | None:
-        """One less; who counts now because of it."""
+        """Remove a solid and return the one that is now counted because of it."""
         del self._solids[solid.name]
         was_counted = solid in self.counted
         if was_counted:
@@ -70,13 +71,13 @@ class Crowd:
         return self._solids[self._ranked[rank][1]] if rank < len(self._ranked) else None
 
 
-def sentence(things: int, cell: tuple[int, int] | None, cell_m: float) -> str:
-    """What is to be said of so many in a cell; None is that of what is very large."""
+def describe_crowd(count: int, cell: tuple[int, int] | None, cell_m: float) -> str:
+    """Return the notice for a crowd in a cell. None is the list of very large objects."""
     where = "too large for the spatial index"
     if cell is not None:
         x, y = ((place + 0.5) * cell_m for place in cell)
         where = f"within {cell_m:g} m of ({x:g}, {y:g})"
-    return f"{things} things are {where}: what they are {_WHAT} is looked for among the {MOST} largest"
+    return f"{count} objects are {where}; relations {_WHAT} are computed only with the {MOST} largest"
 
 
 def _ranked(solid: Solid) -> tuple[float, str]:

@@ -1,4 +1,4 @@
-"""A spatial index: which solids are in which cells of a grid on the floor plan."""
+"""A spatial index of solids in the cells of a grid on the floor plan."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from semmap.nodes.kb_node.relations.measuring.crowds import Crowd
 
 CELL_M = 1.0
 MOST_CELLS = 1024
-"""What covers more is in no cell, but in a list that every question looks through."""
+"""Larger solids are in no cell, but in a list that every search reads."""
 
 Cell = tuple[int, int]
 _LARGE: Cell | None = None
-"""Stands for the list of what covers too many cells."""
+"""The key of the list of large solids."""
 
 
 class Grid:
-    """Solids by cell. A question costs as much as there is around the place that it asks about."""
+    """Solids by cell. The cost of a search depends on the number of solids around the place."""
 
     def __init__(self) -> None:
         self._cells: dict[Cell, dict[Solid, None]] = {}
         self._large: dict[Solid, None] = {}
         self.crowds: dict[Cell | None, Crowd] = {}
-        """The cells where there may be more than count; None stands for what is in no cell."""
+        """The cells with more solids than are counted. The key None is the list of large solids."""
         self.shifted: dict[Solid, None] = {}
-        """Whose place became a crowd or is none now, and who in a crowd counts, or does not any more."""
+        """Solids that started or stopped being counted, or whose cell became or stopped being a crowd."""
 
     def add(self, solid: Solid) -> None:
-        """File a solid under the cells that its bounds cover."""
+        """Add a solid to the cells that its bounds cover."""
         cells = _cells(solid.bounds)
         if cells is None:
             self._large[solid] = None
@@ -43,7 +43,7 @@ class Grid:
                 self._crowd(cell, there, solid)
 
     def add_to(self, cell: Cell, solids: Sequence[Solid]) -> None:
-        """File some under a cell that the bounds of each cover; `add` does so for all cells of one."""
+        """Add solids to a cell that all of them cover. `add` does this for all cells of one solid."""
         there = self._cells.get(cell)
         if there is None:
             there = self._cells[cell] = {}
@@ -57,7 +57,7 @@ class Grid:
                 self._crowd(cell, there, solid)
 
     def _crowd(self, cell: Cell | None, there: dict[Solid, None], solid: Solid) -> None:
-        """One more came where there are many."""
+        """Record a new solid in a cell that may be a crowd."""
         crowd = self.crowds.get(cell)
         if crowd is not None:
             left_out = crowd.add(solid)
@@ -68,9 +68,9 @@ class Grid:
             self.shifted.update(there)
 
     def remove(self, solid: Solid) -> None:
-        """Take it out; with the bounds that it was filed under."""
+        """Remove a solid, which must have the bounds with which it was added."""
         if self._large.pop(solid, self) is None:
-            self._thin_out(_LARGE, self._large, solid)
+            self._remove_from_crowd(_LARGE, self._large, solid)
             return
         for cell in _cells(solid.bounds) or ():
             there = self._cells[cell]
@@ -78,10 +78,10 @@ class Grid:
             if not there:
                 del self._cells[cell]
             if self.crowds:
-                self._thin_out(cell, there, solid)
+                self._remove_from_crowd(cell, there, solid)
 
-    def _thin_out(self, cell: Cell | None, there: dict[Solid, None], solid: Solid) -> None:
-        """One went where there may be many."""
+    def _remove_from_crowd(self, cell: Cell | None, there: dict[Solid, None], solid: Solid) -> None:
+        """Record a removed solid in a cell that may be a crowd."""
         crowd = self.crowds.get(cell)
         if crowd is not None:
             counts_now = crowd.remove(solid)
@@ -92,7 +92,7 @@ class Grid:
                 self.shifted.update(there)
 
     def around(self, bounds: Bounds, margin_m: float = 0.0, but: Solid | None = None) -> list[Solid]:
-        """Whose bounds meet these, or are within a margin of them; `but` one."""
+        """Return the solids whose bounds meet `bounds` or are within a margin of them, except `but`."""
         x0, y0, x1, y1 = bounds
         x0, y0, x1, y1 = x0 - margin_m, y0 - margin_m, x1 + margin_m, y1 + margin_m
         return [
@@ -106,7 +106,7 @@ class Grid:
         ]
 
     def counted_around(self, bounds: Bounds, margin_m: float = 0.0) -> list[Solid]:
-        """Those of them who count in a cell that they share with these bounds."""
+        """Return those that are counted in a cell that they share with `bounds`."""
         if not self.crowds:
             return self.around(bounds, margin_m)
         x0, y0, x1, y1 = bounds
@@ -123,15 +123,15 @@ class Grid:
             if (its := solid.bounds)[0] <= x1 and its[2] >= x0 and its[1] <= y1 and its[3] >= y0
         ]
 
-    def filed_in(self, cells: Iterable[Cell]) -> list[Solid]:
-        """Once each who is filed under some cells, or is in none."""
+    def find_in_cells(self, cells: Iterable[Cell]) -> list[Solid]:
+        """Return the solids in these cells and the large ones, once each."""
         found = dict(self._large)
         for cell in cells:
             found.update(self._cells.get(cell, {}))
         return list(found)
 
-    def counted_in(self, cells: Iterable[Cell], also: Iterable[Solid] = ()) -> list[Solid]:
-        """Once each: `also`, and who counts in some cells, or is in none."""
+    def find_counted_in(self, cells: Iterable[Cell], also: Iterable[Solid] = ()) -> list[Solid]:
+        """Return `also`, and the counted solids in these cells and large ones, once each."""
         found = dict.fromkeys(also)
         for cell in (_LARGE, *cells):
             crowd = self.crowds.get(cell)
@@ -142,20 +142,20 @@ class Grid:
         return list(found)
 
     def counts(self, solid: Solid) -> bool:
-        """Whether it does anywhere."""
+        """Return whether a solid is counted in any of its cells."""
         if not self.crowds:
             return True
         own = (self.crowds.get(cell) for cell in _cells(solid.bounds) or (_LARGE,))
         return any(crowd is None or solid in crowd.counted for crowd in own)
 
     def is_crowded(self, solid: Solid) -> bool:
-        """Whether it is in a crowd, which may have members that do not count."""
+        """Return whether a solid is in a crowd, which may have members that are not counted."""
         return bool(self.crowds) and not self.crowds.keys().isdisjoint(_cells(solid.bounds) or (_LARGE,))
 
-    def told_crowds(self, names: Collection[str] | None = None) -> list[str]:
-        """Where not all count, a sentence each, the most crowded first; with `names`, where one of these is.
+    def describe_crowds(self, names: Collection[str] | None = None) -> list[str]:
+        """Return a notice for each crowd, the largest first, or only for crowds with one of `names`.
 
-        What is beside a cell that is told of is left out.
+        Crowds next to a reported one are left out.
         """
         if not self.crowds:
             return []
@@ -164,14 +164,16 @@ class Grid:
             for cell, crowd in self.crowds.items()
             if len(crowd) > crowds.MOST and (names is None or crowd.has_any(names))
         ]
-        told: list[tuple[int, Cell, bool]] = []
+        reported: list[tuple[int, Cell, bool]] = []
         for count, cell, is_large in sorted(found):
-            if not any(_adjoin(cell, other) and is_large == large for _, other, large in told):
-                told.append((count, cell, is_large))
-        return [crowds.sentence(-count, None if large else cell, CELL_M) for count, cell, large in told]
+            if not any(_adjoin(cell, other) and is_large == large for _, other, large in reported):
+                reported.append((count, cell, is_large))
+        return [
+            crowds.describe_crowd(-count, None if large else cell, CELL_M) for count, cell, large in reported
+        ]
 
     def _filed(self, cells: list[Cell] | None) -> Iterable[Solid]:
-        """Once each who is filed under some cells; under all for None."""
+        """Yield the solids in these cells, once each, or all solids for None."""
         if cells is not None and len(cells) == 1 and not self._large:
             return self._cells.get(cells[0], ())
         found = self._large.copy()
@@ -186,7 +188,7 @@ def _adjoin(one: Cell, other: Cell) -> bool:
 
 
 def _cells(bounds: Bounds) -> list[Cell] | None:
-    """The cells that some bounds cover; None for too many."""
+    """Return the cells that bounds cover, or None if there are too many."""
     low_x, low_y, high_x, high_y = bounds
     x0, y0 = int(low_x // CELL_M), int(low_y // CELL_M)
     x1, y1 = int(high_x // CELL_M), int(high_y // CELL_M)

@@ -1,6 +1,7 @@
-"""What is measured between two solids, relation by relation. None where nothing can be measured.
+"""Measurement of relations between two solids. None means that a relation cannot be measured.
 
-*On* and *in* are grounded in support and containment, not in overlapping boxes (Richard-Bollans et al. 2019).
+*On* and *in* are grounded in support and containment, not in overlapping boxes (Richard-Bollans et al.
+2019).
 """
 
 from __future__ import annotations
@@ -18,13 +19,13 @@ from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.ontology.model_shapes import Interior
 
 _ROUNDING = 1e-9
-"""0.80 - 0.75 is more than 0.05 in floats."""
+"""Tolerance for rounding: 0.80 - 0.75 exceeds 0.05 in floats."""
 _SIDEWAYS = math.sin(math.radians(10.0))
-"""A normal nearer to the horizontal than this is that of two who stand side by side."""
+"""A contact normal closer to the horizontal than this means that two objects are side by side."""
 _FLAT = math.cos(math.radians(2.0))
-"""A normal this near to the vertical is that of a flat contact."""
+"""A contact normal this close to the vertical means a flat contact."""
 _FLOOR_M = 0.002
-"""Between the floor of a hollow and a top that is the floor."""
+"""Tolerance between the floor of a hollow and the top that forms it."""
 
 
 _Piece = tuple[Sequence[Point], float, float]
@@ -32,29 +33,29 @@ _Piece = tuple[Sequence[Point], float, float]
 
 
 class Measure(NamedTuple):
-    """Whether a relation holds between two solids, and the numbers behind it."""
+    """Whether a relation holds between two solids, with the measured values."""
 
     holds: bool
     gap_m: float = 0.0
-    """Between the two; of *on* how far the bottom is above the surface, negative below it."""
+    """Distance between the two. For *on*: height of the bottom above the surface, negative below it."""
     share: float = 1.0
-    """Of the first one's base, volume or footprint that the relation is about."""
+    """Share of the first one's base, volume or footprint, depending on the relation."""
     height_m: float = 0.0
-    """Of the surface, in the map."""
+    """Height of the surface in the map."""
     limit: float = 0.0
-    """Up to which gap, or from which share on, it holds."""
+    """The greatest gap, or least share, for which the relation holds."""
 
 
 def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
-    """How one rests on another: where they meet, or nearly do, along a normal that points up.
+    """Return how one solid rests on another: the contact, or near contact, along an upward normal.
 
-    None where they do not, or where the one's base is nowhere over the other. It does not hold of what only
-    leans there, along a steeper normal.
+    None if there is no contact or the base is not over the other solid. `holds` is False for a solid that
+    only leans on the other one, along a steeper normal.
     """
     reach = limits.gap_m + _ROUNDING
     if upper is lower or upper.bottom - lower.top > reach or not overlap(upper.bounds, lower.bounds):
         return None
-    # What is let down onto a thing does not end up lower than that: beside a thing one is not on it.
+    # An object put down on another does not end up lower than it: beside is not on.
     most = min(reach, upper.bottom - lower.bottom + limits.contact_m)
     is_level = upper.is_level and lower.is_level
     if is_level and (most < 0.0 or upper.highest_bottom - lower.lowest_top < -reach):
@@ -108,9 +109,10 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
 def _within_rim(
     upper: Solid, lower: Solid, rim: Measure, tops: Sequence[float], limits: Thresholds
 ) -> Measure | None:
-    """How one rests on the highest of the lower tops that is under enough of its base; None without one.
+    """Return how a solid rests on the highest lower top that is under enough of its base, or None.
 
-    A pose is worth less than a rim is wide: what stands in a tray may seem to reach over the edge of it.
+    The position tolerance is larger than a rim is wide, so an object in a tray may appear to overlap the
+    rim.
     """
     for height in tops:
         gap = upper.bottom - height
@@ -121,10 +123,10 @@ def _within_rim(
     return None
 
 
-def cradles(lower: Solid, upper: Solid, made: Measure) -> bool:
-    """Whether what is on another is so in an open hollow of it, as what stands in a tray is.
+def is_in_open_hollow(lower: Solid, upper: Solid, made: Measure) -> bool:
+    """Return whether a supported solid stands in an open hollow of its support, such as in a tray.
 
-    Most of the base is over the floor of the hollow, so that nothing below the other one can bear it.
+    Then most of its base is over the floor of the hollow, and nothing below the support can support it.
     """
     if not (lower.is_level and upper.volume < lower.volume):
         return False
@@ -143,7 +145,7 @@ def _least(pair: tuple[float, object, object]) -> float:
 
 
 def _covered(upper: Solid, lower: Solid, height: float) -> float:
-    """The share of a base that is over flat tops at a height."""
+    """Return the share of a base over flat tops at this height."""
     bearing = [p for p in lower.parts if p.has_flat_top and abs(p.high[2] - height) <= LOWEST_M]
     for part in bearing:
         if part.is_square and _is_amid(upper.bounds, (*part.low[:2], *part.high[:2])):
@@ -151,7 +153,7 @@ def _covered(upper: Solid, lower: Solid, height: float) -> float:
     if len(bearing) == len(upper.parts) == 1 and bearing[0].is_square and upper.parts[0].is_square:
         return _share_of_box(upper.parts[0], bearing[0])
     base = upper.base
-    tops = [part.shadow for part in bearing]
+    tops = [part.projection for part in bearing]
     for top in tops:
         if covers(top, base):
             return 1.0
@@ -160,7 +162,7 @@ def _covered(upper: Solid, lower: Solid, height: float) -> float:
 
 
 def _share_of_box(upper: Convex, lower: Convex) -> float:
-    """The share of one box, from above, that is over another; both are along the axes."""
+    """Return the share of an axis-aligned box that is over another one, seen from above."""
     (x0, y0, _), (x1, y1, _) = upper.low, upper.high
     (a0, b0, _), (a1, b1, _) = lower.low, lower.high
     wide, deep = min(x1, a1) - max(x0, a0), min(y1, b1) - max(y0, b0)
@@ -168,7 +170,7 @@ def _share_of_box(upper: Convex, lower: Convex) -> float:
 
 
 def is_balanced(upper: Solid, lower: Iterable[Solid], height: float) -> bool:
-    """Whether the middle of a base is over what bears it at a height, or between that."""
+    """Return whether the centre of a base is within the hull of its support areas at this height."""
     base = upper.base
     region = hull(
         [
@@ -176,7 +178,7 @@ def is_balanced(upper: Solid, lower: Iterable[Solid], height: float) -> bool:
             for other in lower
             for part in other.parts
             if part.has_flat_top and abs(part.high[2] - height) <= LOWEST_M
-            for corner in clipped(base, part.shadow)
+            for corner in clipped(base, part.projection)
         ]
     )
     x0, y0, x1, y1 = (limit(along) for limit in (min, max) for along in zip(*base, strict=True))
@@ -184,7 +186,7 @@ def is_balanced(upper: Solid, lower: Iterable[Solid], height: float) -> bool:
 
 
 def over(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
-    """How far above the best surface of the other one is, however far; None where it is over none of them."""
+    """Return the height of a solid above the nearest surface of another one, or None if it is over none."""
     if upper is lower or not upper.is_measured or not overlap(upper.bounds, lower.bounds):
         return None
     whole = area(upper.outline)
@@ -198,7 +200,10 @@ def over(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
 
 
 def inside(inner: Solid, outer: Solid, limits: Thresholds) -> Measure | None:
-    """The share of one's volume that is in a hollow of the other; None where that has none, or is smaller."""
+    """Return the share of a volume within a hollow of the other solid.
+
+    None without a hollow, or if that is smaller.
+    """
     if not outer.hollows or inner is outer or inner.is_place or not inner.is_measured:
         return None
     if inner.volume >= outer.volume or not overlap(inner.bounds, outer.bounds):
@@ -208,7 +213,7 @@ def inside(inner: Solid, outer: Solid, limits: Thresholds) -> Measure | None:
 
 
 def hollow_around(inner: Solid, outer: Solid) -> Interior:
-    """That hollow of the other, which has some, in which most of its volume is."""
+    """Return the hollow of `outer` that contains most of the volume. `outer` must have one."""
     return max(outer.hollows, key=lambda hollow: _share_in(inner, outer, hollow))
 
 
@@ -227,7 +232,7 @@ def _share_in(inner: Solid, outer: Solid, hollow: Interior) -> float:
 
 
 def touches(one: Solid, other: Solid, limits: Thresholds) -> Measure | None:
-    """How near what collides of the two is; None for what is further apart than counts."""
+    """Return the distance between the colliding parts of two solids, or None above the contact limit."""
     if one is other or not overlap(one.bounds, other.bounds, limits.contact_m):
         return None
     limit = limits.contact_m
@@ -250,9 +255,10 @@ def touches(one: Solid, other: Solid, limits: Thresholds) -> Measure | None:
 
 
 def within(solid: Solid, place: Solid, limits: Thresholds, *, also_places: bool = False) -> Measure | None:
-    """The share of one's footprint that is in a place; of what has no size, whether its position is.
+    """Return the share of a footprint within a place, or of a position if the size is unknown.
 
-    None where the other is no place with an extent, and of a place, unless with `also_places`.
+    None if `place` is not a place with an extent. None also if `solid` is a place, unless with
+    `also_places`.
     """
     if not place.is_place or not place.is_measured or (solid.is_place and not also_places):
         return None
@@ -278,7 +284,7 @@ def within(solid: Solid, place: Solid, limits: Thresholds, *, also_places: bool 
 
 
 def _share_in_region(solid: Solid, place: Solid, region: Region) -> float:
-    """The share of a footprint that a polygon covers; of what has no size, whether its position is in it."""
+    """Return the share of a footprint, or of a position without a size, that a polygon covers."""
     x, y, _ = place.position
     if not solid.is_measured:
         px, py, _ = solid.position
@@ -293,9 +299,9 @@ def _share_in_region(solid: Solid, place: Solid, region: Region) -> float:
 
 
 def gap(one: Solid, other: Solid) -> float:
-    """The distance of two boxes [m]; of leaning ones that of the upright prisms around them.
+    """Return the distance of two boxes [m]. Tilted ones are replaced by the upright prisms around them.
 
-    What stands open counts as a part of its own.
+    Open doors and drawers count as parts of their own.
     """
     if one.form.joints or other.form.joints:
         return min(_gap_of_pieces(a, b) for a in _pieces(one) for b in _pieces(other))
@@ -306,10 +312,10 @@ def gap(one: Solid, other: Solid) -> float:
 
 
 def _pieces(solid: Solid) -> Iterator[_Piece]:
-    """Its box, and what of it stands open."""
+    """Yield the box, and the parts that stand open."""
     yield solid.outline, solid.bottom, solid.top
     for part in solid.open_parts:
-        yield part.shadow, part.low[2], part.high[2]
+        yield part.projection, part.low[2], part.high[2]
 
 
 def _gap_of_pieces(one: _Piece, other: _Piece) -> float:
@@ -318,7 +324,7 @@ def _gap_of_pieces(one: _Piece, other: _Piece) -> float:
 
 
 def _apart_in_plan(one: Solid, other: Solid) -> float:
-    """The distance of two outlines, of which one is a place's and may be a polygon [m]."""
+    """Return the horizontal distance of a place, which may be a polygon, and a solid [m]."""
     for place, solid in ((one, other), (other, one)):
         if (region := place.form.region) is not None:
             return region.distance(solid.outline, place.position[:2])
@@ -326,7 +332,7 @@ def _apart_in_plan(one: Solid, other: Solid) -> float:
 
 
 def near(one: Solid, other: Solid, limits: Thresholds) -> Measure | None:
-    """A gap that is small beside the sizes of both, as Gapp (1994) scales distances; None without a size."""
+    """Return the gap relative to the sizes of both, as Gapp (1994) scales distances. None without a size."""
     if one is other or not (one.has_parts and other.has_parts):
         return None
     limit = near_limit(one, other, limits)
@@ -335,12 +341,15 @@ def near(one: Solid, other: Solid, limits: Thresholds) -> Measure | None:
 
 
 def near_limit(one: Solid, other: Solid, limits: Thresholds) -> float:
-    """Up to which gap two things are near to one another [m]."""
+    """Return the greatest gap for which two solids are near [m]."""
     return min(limits.near_most_m, limits.near_share * (max(one.size) + max(other.size)) / 2.0)
 
 
 def beneath(lower: Solid, upper: Solid, limits: Thresholds) -> Measure | None:
-    """Whether one is below a part of the other, as a box is under a table; None if nothing is over it."""
+    """Return how one solid is below a part of another, such as a box under a table.
+
+    None if nothing is above.
+    """
     if lower is upper or lower.is_place or upper.is_place or not (lower.is_measured and upper.is_measured):
         return None
     if not overlap(lower.bounds, upper.bounds):
@@ -359,12 +368,12 @@ def beneath(lower: Solid, upper: Solid, limits: Thresholds) -> Measure | None:
 
 
 def _is_amid(one: Bounds, other: Bounds) -> bool:
-    """Whether one rectangle along the axes is within another."""
+    """Return whether one axis-aligned rectangle is within another."""
     return one[0] >= other[0] and one[1] >= other[1] and one[2] <= other[2] and one[3] <= other[3]
 
 
 def overlap(one: Bounds, other: Bounds, margin_m: float = 0.0) -> bool:
-    """Whether two rectangles along the axes meet, or are within a margin."""
+    """Return whether two axis-aligned rectangles meet or are within a margin."""
     return (
         one[0] - margin_m <= other[2]
         and other[0] - margin_m <= one[2]

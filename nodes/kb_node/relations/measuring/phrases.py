@@ -1,4 +1,4 @@
-"""How relations and lengths are put into words, and the measurement behind a relation that holds."""
+"""Wording of relations and lengths, and of the measurement behind a relation that holds."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from semmap.nodes.kb_node.relations.measuring.measures import Measure, hollow_ar
 from semmap.schemas.joints import OPEN_FROM, Joint, in_words
 from semmap.schemas.relations import RelationName
 
-SPOKEN: Final[dict[RelationName, str]] = {
+PHRASES: Final[dict[RelationName, str]] = {
     "isOn": "is on",
     "isInside": "is inside",
     "isLocatedIn": "is in",
@@ -28,42 +28,42 @@ SPOKEN: Final[dict[RelationName, str]] = {
     "isVisibleFrom": "is visible from",
 }
 SIDES: Final[tuple[RelationName, ...]] = ("isLeftOf", "isRightOf", "isInFrontOf", "isBehind")
-"""Those on which side of another a thing is."""
+"""The relations that name a side of another object."""
 
 _LEVEL_M = 0.00005
-"""What would be 0.0 mm."""
+"""Smaller distances would be printed as 0.0 mm."""
 
 
-def spoken(relation: RelationName, holds: bool = True) -> str:
-    """A relation as a verb: "is on", "is not on", "does not touch"."""
+def phrase_relation(relation: RelationName, holds: bool = True) -> str:
+    """Return a relation as a verb phrase: "is on", "is not on", "does not touch"."""
     if holds:
-        return SPOKEN[relation]
-    return "does not touch" if relation == "touches" else SPOKEN[relation].replace("is ", "is not ", 1)
+        return PHRASES[relation]
+    return "does not touch" if relation == "touches" else PHRASES[relation].replace("is ", "is not ", 1)
 
 
-def metres(value: float) -> str:
-    """A length as a person reads it."""
+def format_length(value: float) -> str:
+    """Return a length in mm, cm or m."""
     if abs(value) < 0.01:
         return f"{1000.0 * value:.1f} mm"
     return f"{100.0 * value:.1f} cm" if abs(value) < 1.0 else f"{value:.2f} m"
 
 
-def height_over(gap_m: float) -> str:
-    """How far a bottom is above or below a surface, as an adverbial that "a surface" follows."""
+def format_height(gap_m: float) -> str:
+    """Return the height of a bottom relative to a surface, such as "3.0 cm above"."""
     if abs(gap_m) < _LEVEL_M:
         return "level with"
-    return f"{metres(abs(gap_m))} {'above' if gap_m > 0.0 else 'below'}"
+    return f"{format_length(abs(gap_m))} {'above' if gap_m > 0.0 else 'below'}"
 
 
-def why(relation: RelationName, solid: Solid, other: Solid, made: Measure) -> str:
-    """The measurement behind a relation, as a clause."""
+def explain_measure(relation: RelationName, solid: Solid, other: Solid, made: Measure) -> str:
+    """Return the measurement behind a relation, as a clause."""
     match relation:
         case "isOn" if made.holds and made.share == 0.0:
-            return f"nothing else bears it, and it rests against a steep side of {other.name}"
+            return f"it has no other support and leans against a steep side of {other.name}"
         case "isOn":
             return (
-                f"its bottom is {height_over(made.gap_m)} a surface of {other.name},"
-                f" at {metres(made.height_m)}, and {made.share:.0%} of its base is over it"
+                f"its bottom is {format_height(made.gap_m)} a surface of {other.name},"
+                f" at {format_length(made.height_m)}, and {made.share:.0%} of its base is over it"
             )
         case "isInside":
             return f"{made.share:.0%} of its volume is within {_hollow(solid, other)}"
@@ -72,22 +72,24 @@ def why(relation: RelationName, solid: Solid, other: Solid, made: Measure) -> st
             is_ = "is" if made.share > 0.0 else "is not"
             return f"{part} {is_} within {other.name}"
         case "isUnder":
-            return f"its top is {metres(made.gap_m)} below {other.name}, which is over {made.share:.0%} of it"
+            below = format_length(made.gap_m)
+            return f"its top is {below} below {other.name}, which is over {made.share:.0%} of it"
         case "isAbove":
-            return f"it is {metres(made.gap_m)} above {other.name}, and over {made.share:.0%} of that"
+            return f"it is {format_length(made.gap_m)} above {other.name}, and over {made.share:.0%} of that"
         case "isAttachedTo":
-            return f"nothing bears it, and it is {metres(made.gap_m)} from the side of {other.name}"
+            return f"it has no support and is {format_length(made.gap_m)} from the side of {other.name}"
         case "touches":
-            return f"they are {metres(made.gap_m)} apart" if made.gap_m > _LEVEL_M else "they meet"
+            return f"they are {format_length(made.gap_m)} apart" if made.gap_m > _LEVEL_M else "they meet"
         case "isNextTo":
-            return f"they are {metres(made.gap_m)} apart, stand on the same, and nothing is between them"
-    return (
-        f"they are {metres(made.gap_m)} apart (near is up to {metres(made.limit)} for things of their sizes)"
-    )
+            return (
+                f"they are {format_length(made.gap_m)} apart on the same support, with nothing between them"
+            )
+    limit = format_length(made.limit)
+    return f"they are {format_length(made.gap_m)} apart (isNear allows up to {limit} for their sizes)"
 
 
 def _hollow(solid: Solid, other: Solid) -> str:
-    """The hollow that most of a thing is in; where something of it stands open, also how that stands."""
+    """Return the hollow that holds most of an object, with the state of its doors or drawer."""
     positions = other.form.joints
     if not positions or not other.hollows:
         return f"a hollow of {other.name}"
@@ -97,13 +99,13 @@ def _hollow(solid: Solid, other: Solid) -> str:
     }
     hollow = hollow_around(solid, other)
     if (drawer := hollow.carried_by) in joints:
-        return f"{drawer} of {other.name}, which is {_stands(joints[drawer])}"
-    doors = [f"{name}, which is {_stands(joints[name])}" for name in hollow.behind if name in joints]
+        return f"{drawer} of {other.name}, which is {_describe_joint(joints[drawer])}"
+    doors = [f"{name}, which is {_describe_joint(joints[name])}" for name in hollow.behind if name in joints]
     return f"a hollow of {other.name}{', behind ' if doors else ''}{', and '.join(doors)}"
 
 
-def _stands(joint: Joint) -> str:
-    """How a joint stands, as an adjective: "closed", "open to 50%"."""
+def _describe_joint(joint: Joint) -> str:
+    """Return the state of a joint as an adjective: "closed", "open to 50%"."""
     share = joint.openness
     if share is None:
         return f"at {in_words(joint).rpartition(' at ')[2]}"

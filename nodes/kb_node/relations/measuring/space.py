@@ -1,4 +1,4 @@
-"""All solids of a map and the relations between them: a function of poses and shapes, without a memory."""
+"""All solids of a map and their spatial relations, as a function of current poses and shapes only."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from typing import Final, NamedTuple
 from semmap.nodes.kb_node.progress import parts
 from semmap.nodes.kb_node.relations.geometry.columns import solids_of
 from semmap.nodes.kb_node.relations.geometry.forms import Bounds
-from semmap.nodes.kb_node.relations.geometry.placed import Placed, holder_in
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity, holder_in
 from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
 from semmap.nodes.kb_node.relations.measuring import measures
-from semmap.nodes.kb_node.relations.measuring.broad_phase import beside, file
+from semmap.nodes.kb_node.relations.measuring.broad_phase import add_to_grid, find_nearby
 from semmap.nodes.kb_node.relations.measuring.grid import Grid
 from semmap.nodes.kb_node.relations.measuring.measures import Measure
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
@@ -21,49 +21,51 @@ from semmap.schemas.entities import Entity
 
 Found = tuple[Solid, Measure]
 _STEP = 2000
-"""Entities."""
+"""Entities per step."""
 MANY: Final = 100
-"""So many are put, and worked out, in arrays; for fewer these take longer."""
+"""From this number on, solids are added and relations computed in arrays. Fewer are faster one by one."""
 
 
-class Whereabouts(NamedTuple):
-    """What a thing is inside, what it is on, and in which place; what it is inside it is not on."""
+class SpatialRelations(NamedTuple):
+    """What an object is inside, what it is on, and its place. What it is inside, it is not on."""
 
     container: Found | None
     supports: tuple[Found, ...]
-    """Several of what bridges or leans; the one that counts most first."""
+    """Several if the object bridges or leans. The most important one comes first."""
     place: Found | None
 
 
 class Space:
-    """The solids of a map, found by where they are."""
+    """The solids of a map in a spatial index."""
 
-    def __init__(self, entities: Iterable[Entity | Placed] = (), limits: Thresholds | None = None) -> None:
+    def __init__(
+        self, entities: Iterable[Entity | PlacedEntity] = (), limits: Thresholds | None = None
+    ) -> None:
         self.limits = limits or Thresholds()
         self.solids: dict[str, Solid] = {}
         self.grid: Final = Grid()
         self._raised: set[str] = set()
-        """The things that are above the floor or of a size of their own."""
-        self.held: Final[dict[str, str]] = {}
-        """What is grasped, and by what: nothing else bears it, but for a tray that is itself carried."""
-        self.memory: Memory | None = None
-        """What need not be worked out again, while `remembering`."""
+        """The objects above the floor or with a size of their own."""
+        self.holders: Final[dict[str, str]] = {}
+        """Attached objects and their holders. Only a tray that is itself carried can also support them."""
+        self.cache: SpaceCache | None = None
+        """Results that stay valid while `caching`."""
         for _ in self.put_all(entities):
             pass
 
-    def put_all(self, entities: Iterable[Entity | Placed]) -> Iterator[list[Solid]]:
-        """`put` many, some thousand at a time; the solids of each step."""
+    def put_all(self, entities: Iterable[Entity | PlacedEntity]) -> Iterator[list[Solid]]:
+        """Add or replace many entities in steps, and yield the solids of each step."""
         for some in parts(entities, _STEP, _nothing):
             if len(some) < MANY:
                 yield [solid for entity in some if (solid := self.put(entity)) is not None]
                 continue
             newest = {entity.name: entity for entity in some}
             for name in newest.keys() & self.solids.keys() if self.solids else ():
-                self.take(name)
-            self.held.update((name, by) for name, entity in newest.items() if (by := holder_in(entity)))
+                self.remove(name)
+            self.holders.update((name, by) for name, entity in newest.items() if (by := holder_in(entity)))
             solids = solids_of(newest.values())
             self.solids.update((solid.name, solid) for solid in solids)
-            file(self.grid, solids)
+            add_to_grid(self.grid, solids)
             self._raised.update(
                 solid.name
                 for solid in solids
@@ -71,56 +73,61 @@ class Space:
             )
             yield solids
 
-    def put(self, entity: Entity | Placed) -> Solid | None:
-        """Add an entity, or have it where it is now; its solid, if it has a position."""
-        solid = solid_of(entity, self.take(entity.name))
+    def put(self, entity: Entity | PlacedEntity) -> Solid | None:
+        """Add or replace an entity. Returns its solid, or None without a position."""
+        solid = solid_of(entity, self.remove(entity.name))
         if solid is not None:
             self._add(solid)
             if by := holder_in(entity):
-                self.held[solid.name] = by
+                self.holders[solid.name] = by
             if not solid.is_place and (solid.position[2] != 0.0 or entity.size_m is not None):
                 self._raised.add(solid.name)
         return solid
 
     @property
     def is_flat(self) -> bool:
-        """Whether no thing has a height or a size of its own: a plan tells nothing of what is on what."""
+        """Return whether no object has a height or size of its own.
+
+        Such a plan says nothing about supports.
+        """
         return not self._raised
 
-    def take(self, name: str) -> Solid | None:
-        """Take an entity out, if it is there; its solid."""
+    def remove(self, name: str) -> Solid | None:
+        """Remove an entity and return its solid, or None if it is not there."""
         solid = self.solids.pop(name, None)
         if solid is not None:
             self.grid.remove(solid)
             self._raised.discard(name)
-            self.held.pop(name, None)
+            self.holders.pop(name, None)
         return solid
 
     @contextmanager
-    def supposing(self, entities: Iterable[Entity | Placed], without: Iterable[str] = ()) -> Iterator[None]:
-        """Within, these entities are as given here, and those without are not there."""
+    def with_changes(
+        self, entities: Iterable[Entity | PlacedEntity], without: Iterable[str] = ()
+    ) -> Iterator[None]:
+        """Apply changes for the duration of a `with`: these entities as given, `without` removed."""
         entities, without = tuple(entities), tuple(without)
         names = {*(entity.name for entity in entities), *without}
         before = [solid for name in names if (solid := self.solids.get(name)) is not None]
         raised = self._raised & names
-        held = {name: self.held[name] for name in names & self.held.keys()}
+        holders = {name: self.holders[name] for name in names & self.holders.keys()}
         try:
             for name in without:
-                self.take(name)
+                self.remove(name)
             for entity in entities:
                 self.put(entity)
             yield
         finally:
             for name in names:
-                self.take(name)
+                self.remove(name)
             for solid in before:
                 self._add(solid)
             self._raised |= raised
-            self.held.update(held)
-            self.shifted()
+            self.holders.update(holders)
+            self.pop_shifted()
 
-    def shifted(self) -> list[Solid]:
-        """Who came to count, or does not count any more, since this was asked last."""
+    def pop_shifted(self) -> list[Solid]:
+        """Return the solids that started or stopped being counted since the last call."""
         grid = self.grid
         if not grid.shifted:
             return []
@@ -133,25 +140,25 @@ class Space:
         self.grid.add(solid)
 
     def around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
-        """Whose bounds meet its own, or are within a margin of them."""
+        """Return the solids whose bounds meet those of `solid` or are within a margin."""
         widest_m = self.limits.attached_m
-        if self.memory is None or self.memory.around is None or margin_m > widest_m:
+        if self.cache is None or self.cache.around is None or margin_m > widest_m:
             return self.grid.around(solid.bounds, margin_m, solid)
-        around = self.memory.around.get(solid)
+        around = self.cache.around.get(solid)
         if around is None:
-            around = self.memory.around[solid] = self.grid.around(solid.bounds, widest_m, solid)
+            around = self.cache.around[solid] = self.grid.around(solid.bounds, widest_m, solid)
         if margin_m == widest_m:
             return around
         return [other for other in around if measures.overlap(solid.bounds, other.bounds, margin_m)]
 
     def counted_around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
-        """Those of them who are looked at for what bears and holds the solid: in a crowd the largest."""
+        """Return those that are considered as neighbours: in a crowd the largest."""
         if not self.grid.crowds:
             return self.around(solid, margin_m)
         return [other for other in self.grid.counted_around(solid.bounds, margin_m) if other is not solid]
 
-    def bearers_around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
-        """Those of them who may bear and hold it; of what does not count itself, only what is larger."""
+    def supporters_around(self, solid: Solid, margin_m: float = 0.0) -> list[Solid]:
+        """Return those that may support or contain `solid`. If it is not counted, only larger ones may."""
         if not self.grid.crowds:
             return self.around(solid, margin_m)
         around = self.counted_around(solid, margin_m)
@@ -160,54 +167,54 @@ class Space:
         return [other for other in around if other.is_place or other.volume > solid.volume]
 
     def counts(self, solid: Solid) -> bool:
-        """Whether others look at it."""
+        """Return whether a solid is considered as a neighbour."""
         return self.grid.counts(solid)
 
     def is_crowded(self, solid: Solid) -> bool:
-        """Whether there is more around it than is looked at."""
+        """Return whether not all solids around this one are considered."""
         return self.grid.is_crowded(solid)
 
-    def beside(self, solids: Sequence[Solid], margin_m: float) -> Iterable[Solid]:
-        """Who may be within a margin of many: all who are there or thereabouts."""
-        return beside(self.grid, solids, margin_m) or self.solids.values()
+    def find_nearby(self, solids: Sequence[Solid], margin_m: float) -> Iterable[Solid]:
+        """Return the solids that may be within a margin of many, possibly more."""
+        return find_nearby(self.grid, solids, margin_m) or self.solids.values()
 
-    def crowds(self, names: Collection[str] | None = None) -> list[str]:
-        """Where not all count, a sentence each, the most crowded first; with `names`, where one is."""
-        return self.grid.told_crowds(names)
+    def describe_crowds(self, names: Collection[str] | None = None) -> list[str]:
+        """Return a notice for each crowd, the largest first, or only for crowds with one of `names`."""
+        return self.grid.describe_crowds(names)
 
-    def within(self, bounds: Bounds) -> list[Solid]:
-        """Whose bounds meet these."""
+    def find_within(self, bounds: Bounds) -> list[Solid]:
+        """Return the solids whose bounds intersect `bounds`."""
         return self.grid.around(bounds)
 
-    def remembering(self, *, of_few: bool = False) -> Memory:
-        """Within a `with`, nothing changes, so that whereabouts need to be worked out once only.
+    def caching(self, *, of_few: bool = False) -> SpaceCache:
+        """Return a context in which the space does not change and results are cached.
 
-        Where it is `of_few` that anything is asked, who is around them is remembered, too.
+        With `of_few`, the neighbours of each solid are cached, too.
         """
-        return Memory(self, of_few=of_few)
+        return SpaceCache(self, of_few=of_few)
 
-    def whereabouts(self, solid: Solid) -> Whereabouts:
-        """The smallest hollow that it is in, the nearest surface below it, the smallest place around it."""
-        if self.memory is None:
-            return self._whereabouts(solid)
-        known = self.memory.whereabouts.get(solid.name)
+    def spatial_relations(self, solid: Solid) -> SpatialRelations:
+        """Return the smallest hollow around a solid, the nearest surface below it, and the smallest place."""
+        if self.cache is None:
+            return self._compute_spatial_relations(solid)
+        known = self.cache.spatial_relations.get(solid.name)
         if known is None:
-            known = self.memory.whereabouts[solid.name] = self._whereabouts(solid)
+            known = self.cache.spatial_relations[solid.name] = self._compute_spatial_relations(solid)
         return known
 
-    def _whereabouts(self, solid: Solid) -> Whereabouts:
+    def _compute_spatial_relations(self, solid: Solid) -> SpatialRelations:
         limits = self.limits
         container: Found | None = None
         place: Found | None = None
         below: list[Found] = []
         least = solid.bottom - limits.gap_m - 1e-6
-        for other in self.bearers_around(solid):
+        for other in self.supporters_around(solid):
             if other.is_place:
                 made = measures.within(solid, other, limits)
                 if made and made.holds and (place is None or _area(other) < _area(place[0])):
                     place = (other, made)
                 continue
-            if other.top < least or not self._may_share(other, solid):
+            if other.top < least or not self._may_support_attached(other, solid):
                 continue
             made = measures.inside(solid, other, limits) if other.hollows else None
             if made and made.holds and (container is None or _volume(other) < _volume(container[0])):
@@ -216,40 +223,43 @@ class Space:
             if made is not None:
                 below.append((other, made))
         floor = None if place is None else solid.bottom - place[0].bottom
-        return Whereabouts(container, self._supports(solid, below, container, floor) if below else (), place)
+        return SpatialRelations(
+            container, self._supports(solid, below, container, floor) if below else (), place
+        )
 
-    def may_bear(self, bearer: Solid, solid: Solid) -> bool:
-        """Whether one is in a hollow of another or touches it from above: else it is not among its supports.
+    def may_support(self, support: Solid, solid: Solid) -> bool:
+        """Return whether one solid contains another or touches it from above.
 
-        That takes a look at the two; `whereabouts` looks at all that is around.
+        If not, it is not one of its supports. `spatial_relations` compares with all solids around.
         """
-        if solid.is_place or bearer.top < solid.bottom - self.limits.gap_m:
+        if solid.is_place or support.top < solid.bottom - self.limits.gap_m:
             return False
-        if not self._may_share(bearer, solid):
+        if not self._may_support_attached(support, solid):
             return False
-        if bearer.hollows and self._is_within(solid, bearer):
+        if support.hollows and self._is_within(solid, support):
             return True
-        made = measures.on(solid, bearer, self.limits)
+        made = measures.on(solid, support, self.limits)
         return made is not None and made.holds
 
-    def _may_share(self, bearer: Solid, solid: Solid) -> bool:
-        """Whether one may bear another for all that grasps this: a carried tray does what it takes along.
+    def _may_support_attached(self, support: Solid, solid: Solid) -> bool:
+        """Return whether a solid may support an attached one: a carried tray supports what moves with it.
 
-        So does what is taken along with it, as a bowl on the tray does an apple.
+        So do other objects that move with the tray. An example is a bowl on the tray that holds an apple.
         """
-        if not self.held or (holder := self.held.get(solid.name)) is None:
+        if not self.holders or (holder := self.holders.get(solid.name)) is None:
             return True
-        return holder in self.held and holder in (bearer.name, self.held.get(bearer.name))
+        return holder in self.holders and holder in (support.name, self.holders.get(support.name))
 
     def _supports(
         self, solid: Solid, below: list[Found], container: Found | None, floor_m: float | None
     ) -> tuple[Found, ...]:
-        """What of that which is close below bears it: the nearest, and what is level with that.
+        """Return the supports among the candidates `below`: the nearest, and those level with it.
 
-        To a centimetre all are equally near; of those the highest counts. The floor of its place, `floor_m`
-        below it, is one of them, and so is what it leans on. What is inside something is on no more than
-        what is in there with it, and what stands in a tray on nothing below the tray. What none of these
-        bears rests on what it leans on.
+        - Distances are compared to the centimetre, and of equal ones the highest counts.
+        - The floor of the place, `floor_m` below the solid, and what it leans on are candidates, too.
+        - The supports of a contained solid are in the same container.
+        - The supports of a solid in a tray are not below the tray.
+        - A solid without any of these rests on what it leans on.
         """
         limits = self.limits
         if container is not None:
@@ -258,7 +268,7 @@ class Space:
         gaps = [made.gap_m for _, made in leaning]
         below = [found for found in below if found[1].holds and not self._is_below(solid, *found)]
         on_floor = floor_m is not None and abs(floor_m) <= limits.gap_m
-        trays = [made.height_m for other, made in below if measures.cradles(other, solid, made)]
+        trays = [made.height_m for other, made in below if measures.is_in_open_hollow(other, solid, made)]
         if trays:
             lowest = max(trays) - limits.contact_m
             below = [found for found in below if found[1].height_m >= lowest]
@@ -266,7 +276,7 @@ class Space:
         if not below:
             least = min((side.bottom for side, _ in leaning), default=math.inf)
             may_stand = on_floor or (floor_m is None and solid.bottom <= least + limits.gap_m)
-            return () if may_stand else tuple(sorted(map(_held, leaning), key=_by_name))
+            return () if may_stand else tuple(sorted(map(_support_by_leaning, leaning), key=_by_name))
         gaps += [made.gap_m for _, made in below]
         if floor_m is not None and on_floor:
             gaps.append(floor_m)
@@ -283,7 +293,7 @@ class Space:
         return made is not None and made.holds
 
     def _is_below(self, solid: Solid, other: Solid, made: Measure) -> bool:
-        """Whether the other one rests on this one rather, as things do that are hooked into one another."""
+        """Return whether `other` rests on `solid` instead, as with objects that interlock."""
         if other.bottom < solid.bottom - self.limits.contact_m:
             return False
         back = measures.on(other, solid, self.limits)
@@ -292,24 +302,24 @@ class Space:
         )
 
 
-class Memory:
-    """What was worked out of a space that is as it was; it is asked for within a `with`."""
+class SpaceCache:
+    """Cached results of a space that does not change, for use in a `with`."""
 
-    __slots__ = ("_space", "around", "whereabouts")
+    __slots__ = ("_space", "around", "spatial_relations")
 
     def __init__(self, space: Space, *, of_few: bool) -> None:
-        """Nothing yet."""
+        """Create an empty cache."""
         self._space = space
-        self.whereabouts: dict[str, Whereabouts] = {}
+        self.spatial_relations: dict[str, SpatialRelations] = {}
         """By name."""
         self.around: dict[Solid, list[Solid]] | None = {} if of_few else None
-        """Who is within the margin of what hangs; of many that would take too much room."""
+        """The solids within the margin of attachments. For many solids this would take too much memory."""
 
     def __enter__(self) -> None:
-        self._space.memory = self
+        self._space.cache = self
 
     def __exit__(self, *_: object) -> None:
-        self._space.memory = None
+        self._space.cache = None
 
 
 def _nothing() -> None:
@@ -324,8 +334,8 @@ def _volume(solid: Solid) -> tuple[float, str]:
     return (solid.volume, solid.name)
 
 
-def _held(leaning: Found) -> Found:
-    """It holds by its steep sides; no part of the base is over them."""
+def _support_by_leaning(leaning: Found) -> Found:
+    """Return a support by steep sides only, with no share of the base."""
     side, made = leaning
     return side, made._replace(holds=True, share=0.0)
 

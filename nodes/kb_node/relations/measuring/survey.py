@@ -1,9 +1,9 @@
-"""Where many solids are, at once: what `Space.whereabouts` finds of each, as far as it is plain.
+"""Spatial relations of many solids at once: the clear results of `Space.spatial_relations`.
 
-A relation is *plain* where the numbers behind it are further from every threshold than rounding can take
-them, and nothing decides it but upright boxes, discs and level tops: a cup in the middle of a table. That is
-seen in arrays. Who has anything beside it that is not plain is `open`, and is measured one by one, so that
-the outcome is the same.
+A relation is *clear* if two conditions hold. Its values are further from each threshold than rounding
+errors, and only upright boxes, discs and level tops decide it. An example is a cup in the middle of a
+table. Arrays decide such cases. A solid with any unclear neighbour is `open` and measured one by one, so
+that the result is the same.
 """
 
 from __future__ import annotations
@@ -21,58 +21,58 @@ from semmap.nodes.kb_node.relations.geometry.planar import GUARD
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.arrangement import ALONGSIDE, BESIDE_M
-from semmap.nodes.kb_node.relations.measuring.bearing import bearing
 from semmap.nodes.kb_node.relations.measuring.broad_phase import (
     BroadPhase,
-    covered,
-    differs,
-    distinct,
-    repeated,
+    find_cells,
+    repeat_rows,
+    sort_unique,
+    starts_run,
 )
 from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.measuring.support_pairs import find_supports
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 
-NOBODY: Final = -1
+NO_ROW: Final = -1
 _NEAREST_M = 0.01
-"""Gaps that differ by more than this are never equally near to a centimetre."""
+"""Gaps that differ by more are never equal to the centimetre."""
 
 
 class Survey:
-    """What is plain of where some solids are, as arrays with a row for each of them."""
+    """The clear spatial relations of some solids, as arrays with one row each."""
 
     def __init__(self, space: Space, subjects: Sequence[Solid]) -> None:
-        """`subjects` are things of the space, no places."""
+        """Compute the relations of `subjects`, which are objects of the space, not places."""
         count = len(subjects)
         self._space: Final = space
         self._limits: Final = space.limits
         self._columns: Final = Columns(_with_around(space, subjects))
         self.solids: Final[Sequence[Solid]] = self._columns.solids
-        """The subjects, and then those around them: who is meant by a row below."""
-        self.held: Final = space.held
-        """The names of those that something grasps."""
+        """The subjects, followed by the solids around them. Rows below refer to it."""
+        self.holders: Final = space.holders
+        """The holders of attached objects, by name."""
         self.is_open = np.zeros(count, dtype=bool)
-        """(S,) whether it has to be measured what each is inside, on and in."""
+        """(S,) whether container, support and place must be measured."""
         self.may_hang = np.zeros(count, dtype=bool)
-        """(S,) whether it has to be measured what each hangs on."""
+        """(S,) whether attachments must be measured."""
         self.hangs_on: dict[int, list[int]] = {}
-        """By row, what some hang on of whom that need not be."""
-        self.container: Final[Ints] = np.full(count, NOBODY)
-        """(S,) rows of `solids`: what each is inside, if it is not open; `NOBODY` for nothing."""
-        self.support: Final[Ints] = np.full(count, NOBODY)
-        self.place: Final[Ints] = np.full(count, NOBODY)
+        """By row, the attachments of solids for which they need not be measured."""
+        self.container: Final[Ints] = np.full(count, NO_ROW)
+        """(S,) rows of `solids`: the container of each that is not open, or `NO_ROW`."""
+        self.support: Final[Ints] = np.full(count, NO_ROW)
+        self.place: Final[Ints] = np.full(count, NO_ROW)
         if _are_usual(space.limits):
-            with np.errstate(all="ignore"):  # what is very far away is not plain, whatever comes out of it
-                self._look()
+            with np.errstate(all="ignore"):  # solids very far away are never clear, whatever the result
+                self._compute()
         else:
             self.is_open[:] = self.may_hang[:] = True
 
-    def _look(self) -> None:
+    def _compute(self) -> None:
         limits, columns, grid = self._limits, self._columns, self._space.grid
         broad = BroadPhase(grid, columns.solids, columns.bounds, len(self.is_open))
         one, other, unknown = self._pairs(broad, limits.attached_m)
         self.is_open |= unknown
         self.may_hang |= unknown
-        hanging = self._find_what_may_hold(one, other)
+        hanging = self._find_attachment_pairs(one, other)
         if grid.crowds:
             one, other, _ = self._pairs(broad, 0.0)
         else:
@@ -81,24 +81,26 @@ class Survey:
             one, other = one[meets], other[meets]
         to_place = columns.is_place[other]
         self._find_places(one[to_place], other[to_place])
-        self._find_bearers(one[~to_place], other[~to_place])
-        self._find_what_hangs(*hanging)
+        self._find_containers_and_supports(one[~to_place], other[~to_place])
+        self._find_attachments(*hanging)
 
     def _pairs(self, broad: BroadPhase, margin_m: float) -> tuple[Ints, Ints, Bools]:
-        """Who may bear and hold each, as `Space.bearers_around` has it, and of whom that is not known."""
+        """Return the pairs as in `Space.supporters_around`, and the rows that are incomplete."""
         columns, grid = self._columns, self._space.grid
         one, other, unknown = broad.pairs(margin_m)
         if grid.crowds:
             counts = np.array([grid.counts(solid) for solid in self.solids[: len(unknown)]], dtype=bool)
-            bears = counts[one] | columns.is_place[other] | (columns.volume[other] > columns.volume[one])
-            one, other = one[bears], other[bears]
+            may_support = (
+                counts[one] | columns.is_place[other] | (columns.volume[other] > columns.volume[one])
+            )
+            one, other = one[may_support], other[may_support]
         return one, other, unknown
 
     def _take_smallest(
         self, into: Ints, one: Ints, other: Ints, size: Callable[[Solid], tuple[float, str]]
     ) -> None:
-        """Of several that one is in the smallest."""
-        rows = distinct(other).tolist()
+        """Store the smallest of the containers of each row."""
+        rows = sort_unique(other).tolist()
         sizes = [size(self.solids[row]) for row in rows]
         rank = np.zeros(len(self.solids), dtype=np.int64)
         rank[[rows[k] for k in sorted(range(len(rows)), key=sizes.__getitem__)]] = np.arange(len(rows))
@@ -108,7 +110,7 @@ class Survey:
     # Places
 
     def _find_places(self, one: Ints, other: Ints) -> None:
-        """The smallest place that enough of the footprint is in."""
+        """Find the smallest place that contains enough of the footprint."""
         columns, forms, limits = self._columns, self._columns.forms, self._limits
         measured = columns.is_measured[other]
         one, other = one[measured], other[measured]
@@ -143,13 +145,13 @@ class Survey:
         )
 
     def _floor(self) -> tuple[Floats, Bools]:
-        """(S,) how far each is above the floor of its place, and whether it has one."""
-        bottom, has_place = self._columns.bottom, self.place != NOBODY
+        """Return (S,) the height above the floor of the place, and whether there is a place."""
+        bottom, has_place = self._columns.bottom, self.place != NO_ROW
         return bottom[: len(self.place)] - np.where(has_place, bottom[self.place], 0.0), has_place
 
-    # What is inside and on what
+    # Containers and supports
 
-    def _find_bearers(self, one: Ints, other: Ints) -> None:
+    def _find_containers_and_supports(self, one: Ints, other: Ints) -> None:
         columns, limits = self._columns, self._limits
         below = columns.top[other] >= columns.bottom[one] - limits.gap_m - 2.0 * GUARD
         below &= columns.is_measured[one]
@@ -158,24 +160,24 @@ class Survey:
         self.is_open[one[~sure]] = True
         one, other = one[sure], other[sure]
         self._find_containers(one, other)
-        found = bearing(columns, one, other, limits)
-        # What is inside something is on nothing that is not in there, and so smaller than that.
+        found = find_supports(columns, one, other, limits)
+        # The supports of a contained solid are in the same container, and so smaller than it.
         container = self.container[found.upper]
-        has_container = container != NOBODY
+        has_container = container != NO_ROW
         counts = ~has_container | (columns.volume[found.lower] < columns.volume[container])
         self.is_open[found.upper[counts & (~found.holds | has_container)]] = True
         counts &= found.holds
         self._find_supports(found.upper[counts], found.lower[counts], found.gap_m[counts])
 
     def _find_containers(self, one: Ints, other: Ints) -> None:
-        """The smallest hollow that enough of the volume is in."""
+        """Find the smallest hollow that contains enough of the volume."""
         columns, forms, limits = self._columns, self._columns.forms, self._limits
         count = forms.hollows.count[columns.form[other]]
         may = (count > 0) & (columns.volume[one] < columns.volume[other])
         one, other, count = one[may], other[may], count[may]
         if not len(one):
             return
-        pair, turn = repeated(count)
+        pair, turn = repeat_rows(count)
         i, j = one[pair], other[pair]
         form, its = columns.form[i], columns.form[j]
         hollow = forms.hollows.first[its] + turn
@@ -204,19 +206,19 @@ class Survey:
         )
 
     def _find_supports(self, one: Ints, other: Ints, gap: Floats) -> None:
-        """The nearest of what is below, the floor of its place included."""
+        """Find the nearest support below, including the floor of the place."""
         floor, has_place = self._floor()
         asked = np.zeros(len(floor), dtype=bool)
         asked[one] = True
         on_floor = np.flatnonzero(asked & has_place & (np.abs(floor) < self._limits.gap_m + GUARD))
         one = np.concatenate([one, on_floor])
-        other = np.concatenate([other, np.full(len(on_floor), NOBODY)])
+        other = np.concatenate([other, np.full(len(on_floor), NO_ROW)])
         away = np.abs(np.concatenate([gap, floor[on_floor]]))
         order = np.lexsort((away, one))
         one, other, away = one[order], other[order], away[order]
-        is_nearest = differs(one)
+        is_nearest = starts_run(one)
         self.support[one[is_nearest]] = other[is_nearest]
-        # What stands in a tray is on nothing below the tray, however near that is.
+        # The supports of a solid in a tray are not below the tray, however near they are.
         self.is_open[
             one[~is_nearest & (self._columns.forms.hollows.count[self._columns.form[other]] > 0)]
         ] = True
@@ -224,10 +226,10 @@ class Survey:
         tied = second[away[second] - away[second - 1] < _NEAREST_M + GUARD]
         self.is_open[one[tied]] = True
 
-    # What hangs
+    # Attachments
 
-    def _find_what_may_hold(self, one: Ints, other: Ints) -> tuple[Ints, Ints]:
-        """Pairs of which the other plainly holds the one, unless something bears that."""
+    def _find_attachment_pairs(self, one: Ints, other: Ints) -> tuple[Ints, Ints]:
+        """Return the pairs whose second clearly holds the first, unless that has a support."""
         columns, forms, limits = self._columns, self._columns.forms, self._limits
         asked = columns.is_measured[one] & ~columns.is_place[other]
         one, other = one[asked], other[asked]
@@ -249,11 +251,11 @@ class Survey:
         self.may_hang[one[~plain & ~(exact & (slack < -GUARD))]] = True
         return one[plain], other[plain]
 
-    def _find_what_hangs(self, one: Ints, other: Ints) -> None:
-        """Of those that something may hold, who is borne does not hang."""
+    def _find_attachments(self, one: Ints, other: Ints) -> None:
+        """Store the attachments of solids without a support."""
         floor, has_place = self._floor()
         away = np.abs(floor) - self._limits.gap_m
-        is_borne = (self.container != NOBODY) | (self.support != NOBODY) | (has_place & (away < -GUARD))
+        is_borne = (self.container != NO_ROW) | (self.support != NO_ROW) | (has_place & (away < -GUARD))
         may_be_borne = self.is_open | (has_place & (np.abs(away) <= GUARD))
         self.may_hang &= self.is_open | ~is_borne
         self.may_hang[one[may_be_borne[one]]] = True
@@ -263,14 +265,14 @@ class Survey:
 
 
 def _with_around(space: Space, subjects: Sequence[Solid]) -> Sequence[Solid]:
-    """The subjects, and then all who may be beside them."""
+    """Return the subjects, followed by the solids that may be beside them."""
     if 2 * len(subjects) > len(space.solids):
         return list(dict.fromkeys(chain(subjects, space.solids.values())))
-    return space.grid.counted_in(covered(subjects, space.limits.attached_m), subjects)
+    return space.grid.find_counted_in(find_cells(subjects, space.limits.attached_m), subjects)
 
 
 def _are_usual(limits: Thresholds) -> bool:
-    """Whether what is plain under usual margins is so under these."""
+    """Return whether the thresholds are in the range for which clear cases were defined."""
     return (
         all(1e-3 <= share <= 1.0 for share in (limits.place_share, limits.inside_share))
         and limits.base_share <= 1.0

@@ -1,4 +1,4 @@
-"""When a relation holds: the margins, which stand in the TBox as annotations of its properties."""
+"""Thresholds of the relations, read from annotations of the properties in the TBox."""
 
 from __future__ import annotations
 
@@ -14,39 +14,39 @@ from semmap.schemas.explanations import Term
 
 
 class Thresholds(Struct, frozen=True, kw_only=True):
-    """The margins of all relations. Lengths in metres, shares from 0 to 1."""
+    """The thresholds of all relations. Lengths in metres, shares from 0 to 1."""
 
     gap_m: float = 0.05
-    """Between a bottom and the surface it stands on; the map may be as far off the body."""
+    """Between a bottom and its supporting surface. The map may differ this much from the body."""
     contact_m: float = 0.0015
-    """Between what touches; also between the surfaces that a thing rests on at once."""
+    """Between objects that touch, and between the surfaces that support one object together."""
     steepest_deg: float = 30.0
-    """Between the vertical and the normal of a contact that carries."""
+    """Between the vertical and the normal of a supporting contact."""
     base_share: float = 0.25
-    """Of the base that is over the surfaces, if its middle is not; what does not fall has about half."""
+    """Share of the base over the surfaces if its centre is not. A stable object has about half."""
     inside_share: float = 0.5
-    """Of the volume that is within the hollow."""
+    """Share of the volume within the hollow."""
     place_share: float = 0.5
-    """Of the footprint that is within the place."""
+    """Share of the footprint within the place."""
     touch_m: float = 0.01
-    """How far the boxes of two may reach into one another that are one above the other."""
+    """Allowed overlap of the boxes of two objects one above the other."""
     near_share: float = 1.0
-    """Of the mean length of the two things: a gap up to this is near."""
+    """The greatest gap of near objects, relative to the mean length of both."""
     near_most_m: float = 1.0
-    """But never further apart than this."""
+    """The greatest gap of near objects."""
     beneath_share: float = 0.3
-    """Of the smaller footprint that is over or under the other."""
+    """Share of the smaller footprint that is over or under the other."""
     attached_m: float = 0.02
-    """Between what hangs and what it hangs on."""
+    """Between an attached object and what it is attached to."""
 
     @property
     def upright(self) -> float:
-        """The least vertical component of the normal of a contact that carries."""
+        """Return the least vertical component of the normal of a supporting contact."""
         return math.cos(math.radians(self.steepest_deg))
 
 
 class Annotated(NamedTuple):
-    """Where the TBox has a threshold, and what it may be."""
+    """The annotation that holds a threshold, and its upper bound."""
 
     property: str
     annotation: str
@@ -68,17 +68,18 @@ ANNOTATIONS: Final = (
 )
 
 
-def of_tbox(values: Callable[[Term, Term], Iterable[Term]]) -> Thresholds:
-    """The thresholds that a TBox says, and the usual ones for what it does not say.
+def read_thresholds(values: Callable[[Term, Term], Iterable[Term]]) -> Thresholds:
+    """Return the thresholds of a TBox, with defaults for missing ones.
 
-    `values(property, annotation)` are the objects of such triples. Raises BadRequest for no threshold.
+    `values(property, annotation)` returns the objects of such triples. Raises BadRequest for an invalid
+    one.
     """
-    said: dict[str, float] = {}
+    found_values: dict[str, float] = {}
     for about in ANNOTATIONS:
         found = sorted(values(v.dm(about.property), v.dm(about.annotation)))
         if found:
-            said[about.field] = _number(about, v.lexical(found[0]))
-    return Thresholds(**said)
+            found_values[about.field] = _number(about, v.lexical(found[0]))
+    return Thresholds(**found_values)
 
 
 def _number(about: Annotated, text: str) -> float:
@@ -88,6 +89,6 @@ def _number(about: Annotated, text: str) -> float:
         value = math.nan
     if not 0.0 <= value <= about.most:
         raise errors.BadRequest(
-            f"the {about.annotation} of {about.property} is from 0 to {about.most:g}, not '{text}'"
+            f"invalid {about.annotation} of {about.property}: '{text}'; use a number from 0 to {about.most:g}"
         )
     return value

@@ -85,7 +85,7 @@ class LargeMap:
         for number, digest, path in self._stores.found():
             if number > seq or self._journal.digest(number).hex() != digest:
                 continue
-            count, size = self._journal.extent(after=number)
+            count, size = self._journal.size_after(after=number)
             if count > _FAR_BEHIND or size > _FAR_BEHIND_BYTES or self._journal.tbox_changes(number):
                 continue
             return Filled(path, number, number), [delta_of(c) for c in self._journal.commits(after=number)]

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
-from semmap.nodes.kb_node.relations.facts.beside import MIRRORED, Beside
-from semmap.nodes.kb_node.relations.facts.derived import Derived
+from semmap.nodes.kb_node.relations.facts.pair_facts import MIRRORED, PairFacts
+from semmap.nodes.kb_node.relations.facts.pair_properties import PairProperties
 from semmap.nodes.kb_node.relations.facts.place_facts import Changed, Fact
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.sparql.protocol import Surrounded
 from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, Delta
@@ -36,7 +36,7 @@ class Needs(NamedTuple):
         )
 
 
-def needs_of(patterns: frozenset[Pattern] | None, derived: Derived) -> Needs:
+def needs_of(patterns: frozenset[Pattern] | None, derived: PairProperties) -> Needs:
     """What a query with these triple patterns needs; all, where they cannot be told.
 
     Where one end of a pattern is a known individual, that one is enough.
@@ -57,20 +57,20 @@ def needs_of(patterns: frozenset[Pattern] | None, derived: Derived) -> Needs:
 class Measured:
     """Follows poses, and what of their relations is needed. It writes nothing into the dataset."""
 
-    def __init__(self, derived: Derived, dataset: Dataset, surrounded: Surrounded) -> None:
+    def __init__(self, derived: PairProperties, dataset: Dataset, surrounded: Surrounded) -> None:
         self._derived = derived
         self._dataset = dataset
-        self._pairs = Beside(Space(surrounded.placed, surrounded.limits))
+        self._pairs = PairFacts(Space(surrounded.placed, surrounded.limits))
         self._iris: dict[str, Term] = {}
         self._names: dict[Term, str] = {}
         self._meet(surrounded.placed)
 
     def need(self, needs: Needs) -> tuple[tuple[Triple, ...], tuple[Triple, ...]]:
         """What is no longer in the dataset, and what comes in, for what is needed from now on."""
-        return self._differing(self._triples(self._pairs.ask(*needs), self._iris))
+        return self._differing(self._triples(self._pairs.set_scope(*needs), self._iris))
 
     def after(
-        self, delta: Delta, placed: Iterable[Placed], removed: Iterable[str]
+        self, delta: Delta, placed: Iterable[PlacedEntity], removed: Iterable[str]
     ) -> tuple[tuple[Triple, ...], tuple[Triple, ...]]:
         """The same for a commit, which the dataset has already: these are otherwise or went."""
         placed = tuple(placed)
@@ -86,7 +86,7 @@ class Measured:
         candidates.update(triple for triple in delta.everything if triple[1] in self._derived.sources)
         return self._differing(candidates)
 
-    def _meet(self, placed: Iterable[Placed]) -> None:
+    def _meet(self, placed: Iterable[PlacedEntity]) -> None:
         for entity in placed:
             self._iris[entity.name] = v.iri(entity.iri)
             self._names[v.iri(entity.iri)] = entity.name

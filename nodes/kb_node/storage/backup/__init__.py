@@ -1,1 +1,1 @@
-"""Backups: a journal read out in parts while commits go on, and a data folder made from one."""
+"""Backups: reading a journal in parts while commits continue, and restoring a data folder."""

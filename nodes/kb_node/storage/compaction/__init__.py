@@ -1,1 +1,1 @@
-"""Compaction: a snapshot takes the place of the oldest part of the history."""
+"""Compaction: replaces the oldest part of the history by a snapshot."""

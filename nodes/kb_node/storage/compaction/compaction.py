@@ -1,4 +1,4 @@
-"""Compacting: what is older than so long becomes a snapshot, which the history begins with from then on."""
+"""Compaction: old commits are replaced by a snapshot, with which the history then begins."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from msgspec import Struct
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.storage.compaction import leftovers
 from semmap.nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.kb_node.storage.journal.beginning import Beginning
 from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
 from semmap.schemas.explanations import Triple
 
 
-class Share(NamedTuple):
-    """How much of the history becomes the snapshot."""
+class CompactedRange(NamedTuple):
+    """The part of the history that becomes the snapshot."""
 
     last: int
-    """The last commit of it; the one that the history begins with already where nothing is old enough."""
+    """Its last commit. Without old commits it is the one with which the history already begins."""
     commits: int
 
 
@@ -33,27 +33,27 @@ class _Changes(Struct):
     inserted: tuple[Triple, ...] = ()
 
 
-def share(journal: Journal, *, keep_ns: int, now_ns: int) -> Share:
-    """What is older than `keep_ns`: the commits before the first that is not.
+def share(journal: Journal, *, keep_ns: int, now_ns: int) -> CompactedRange:
+    """Return the commits older than `keep_ns`, before the first younger one.
 
-    Stamps of the future, by a clock that went wrong, say nothing. The last commit always stays.
+    Stamps in the future, from a wrong clock, are ignored. The last commit is always kept.
     """
     begins, last = journal.beginning.seq, journal.last
     young = journal.stamps.within(now_ns - keep_ns, now_ns)
     until = max(begins, min([last, *young[:1]]) - 1)
-    return Share(until, until - begins)
+    return CompactedRange(until, until - begins)
 
 
-def compact(journal: Journal, past: Past, until: int) -> None:
-    """Let the history begin with the map as it was after commit `until`. Raises NotWritten, Refused.
+def compact(journal: Journal, past: HistoryReader, until: int) -> None:
+    """Start the history with the map after commit `until`. Raises NotWritten, Refused.
 
-    Either all of it is done or nothing; commits may be made meanwhile. An end in the middle of the cleaning
-    up costs nothing but room.
+    The change is atomic, and commits may be made meanwhile. An interruption while old commits are deleted
+    only costs disk space.
     """
     map_id, begun_ns = journal.origin()
-    abox = asserted_after(journal, until).difference(rdf.parse(journal.tbox(until), "the TBox"))
+    abox = collect_asserted(journal, until).difference(rdf.parse(journal.tbox(until), "the TBox"))
     snapshot = Checkpoint(seq=until, triples=tuple(abox), entities=past.entities(until))
-    journal.begin_with(
+    journal.start_from(
         Beginning(
             seq=until,
             stamp_ns=journal.stamps.of(until),
@@ -67,13 +67,16 @@ def compact(journal: Journal, past: Past, until: int) -> None:
         leftovers.delete(journal)
 
 
-def asserted_after(journal: Journal, seq: int) -> set[Triple]:
-    """All that was asserted after a commit, the TBox with it: what commits brought and did not take away."""
+def collect_asserted(journal: Journal, seq: int) -> set[Triple]:
+    """Return all asserted triples after a commit, with the TBox."""
     start = journal.snapshot()
-    asserted = {*start.said(), *rdf.parse(journal.tbox(start.seq), f"the first TBox in {journal.path}")}
+    asserted = {
+        *start.all_triples(),
+        *rdf.parse(journal.tbox(start.seq), f"the first TBox in {journal.path}"),
+    }
     terms: dict[str, str] = {}
     share = terms.setdefault
-    for changes in journal.outlines(_Changes):
+    for changes in journal.decode_partially(_Changes):
         if changes.seq > seq:
             break
         asserted.difference_update(changes.retracted)

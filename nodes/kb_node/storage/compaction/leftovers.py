@@ -1,4 +1,4 @@
-"""What a snapshot has taken the place of is deleted bit by bit, so that commits can come between."""
+"""Deletion of compacted commits in small steps, so that new commits can be made between them."""
 
 from __future__ import annotations
 
@@ -7,30 +7,30 @@ from typing import Final
 from semmap.nodes.kb_node.storage.journal import Journal
 
 _ROWS: Final = 2000
-"""At a time: to delete them takes some tens of milliseconds."""
+"""Rows per step, which take some tens of milliseconds to delete."""
 _WHAT: Final = "the deletion of compacted commits"
 
 
-def are_there(journal: Journal) -> bool:
-    """Is something still there that was compacted?"""
+def exist(journal: Journal) -> bool:
+    """Return whether compacted commits are still stored."""
     with journal.file.reading() as db:
         (first,) = db.execute("SELECT min(seq) FROM commits").fetchone()
     return first is not None and first < journal.first
 
 
 def delete(journal: Journal) -> None:
-    """Delete them. What an end in the middle leaves is not looked at, and goes with the next call.
+    """Delete compacted commits. After an interruption the next call continues.
 
     Raises NotWritten.
     """
     until = journal.beginning.seq
-    while _commits_deleted(journal, until):
+    while _delete_commits(journal, until):
         pass
     _delete_touches(journal, until)
     journal.file.shrink()
 
 
-def _commits_deleted(journal: Journal, until: int) -> int:
+def _delete_commits(journal: Journal, until: int) -> int:
     statement = "DELETE FROM commits WHERE seq <= ? AND seq < (SELECT min(seq) FROM commits) + ?"
     with journal.file.writing(_WHAT) as db:
         return db.execute(statement, (until, _ROWS)).rowcount

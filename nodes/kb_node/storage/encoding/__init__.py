@@ -1,1 +1,1 @@
-"""How commits and checkpoints are laid out and compressed on disk."""
+"""Encoding and compression of commits and checkpoints on disk."""

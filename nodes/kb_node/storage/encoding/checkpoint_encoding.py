@@ -1,8 +1,8 @@
-"""A checkpoint as it stands in the journal: each term once, and what is said in numbers of terms.
+"""The encoding of a checkpoint: each term once, and triples as numbers of terms.
 
-So a start makes each text once, in however many triples it is, and the map shares it. Where the reasoner has
-columns, they are kept, and a start concludes nothing anew; else it is the triples. All is in frames that are
-compressed one by one, with a word of progress between them. What older versions wrote is read as well.
+Thus a start creates each string once, and the map shares it. If the reasoner has columns, they are stored,
+and a start infers nothing again. Otherwise the triples are stored. The content consists of frames that are
+compressed one by one, with progress reports between them. Checkpoints of older versions can be read.
 """
 
 from __future__ import annotations
@@ -17,27 +17,27 @@ from msgspec import Struct, msgpack
 
 from semmap.nodes.kb_node.progress import parts
 from semmap.nodes.kb_node.reasoner.abox.columns import Columns
-from semmap.nodes.kb_node.storage.encoding import columns_encoding, dense
+from semmap.nodes.kb_node.storage.encoding import body_encoding, columns_encoding
 from semmap.nodes.kb_node.storage.encoding.columns_encoding import StoredColumns
-from semmap.nodes.kb_node.storage.encoding.frames import Compressing, unpacked
+from semmap.nodes.kb_node.storage.encoding.frames import FrameCompressor, decompress_frames
 from semmap.nodes.runtime.interning import EntityInterner
 from semmap.schemas import codec, errors
 from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Triple
 
 _MARK: Final = b"\xc1checkpoint 1"
-"""How such a body begins; nothing in MessagePack begins with its first byte."""
+"""The start of such a body, whose first byte does not occur in MessagePack."""
 _TRIPLES: Final = 100_000
 _ENTITIES: Final = 10_000
-"""In a frame."""
+"""Items in a frame."""
 
 
 class _Triples(Struct, frozen=True, array_like=True):
-    """A frame: the terms that were in none before, and subject, predicate, object, subject, ..."""
+    """A frame: its new terms, and subject, predicate, object, subject, ... as numbers."""
 
     new_terms: list[str]
     numbers: bytes
-    """32 bits each, the lowest first."""
+    """32 bits each, little-endian."""
 
 
 class _Body(Struct, frozen=True, array_like=True):
@@ -49,7 +49,7 @@ class _Body(Struct, frozen=True, array_like=True):
 
 
 class _Whole(Struct, frozen=True, kw_only=True):
-    """What older versions wrote."""
+    """The format of older versions."""
 
     seq: int
     triples: tuple[Triple, ...] = ()
@@ -58,18 +58,18 @@ class _Whole(Struct, frozen=True, kw_only=True):
 
 
 class Checkpoint(Struct, frozen=True, kw_only=True):
-    """The ABox after commit `seq`: start-up replays only what came later."""
+    """The ABox after commit `seq`. A start replays only later commits."""
 
     seq: int
     triples: tuple[Triple, ...] = ()
-    """Where there are columns, only what is asserted and set aside."""
+    """With columns, only suppressed asserted facts."""
     entities: tuple[Entity, ...] = ()
     read_by: bytes = b""
-    """The format of the conclusions that were drawn from the triples: the entities, and the columns."""
+    """The format of the inferences from the triples: the entities and the columns."""
     columns: Columns | None = None
 
-    def said(self) -> Iterable[Triple]:
-        """The triples, wherever they are; in columns some of the TBox are among them."""
+    def all_triples(self) -> Iterable[Triple]:
+        """Return all triples. With columns they include some of the TBox."""
         return self.triples if self.columns is None else chain(self.columns.triples(), self.triples)
 
 
@@ -79,12 +79,15 @@ _entities = codec.decoder(list[Entity])
 
 
 def encode(checkpoint: Checkpoint, progress: Callable[[], None] = lambda: None) -> bytes:
-    """The body of a checkpoint. `progress` is called between frames."""
-    with Compressing() as beside:
-        columns = None if checkpoint.columns is None else columns_encoding.store(checkpoint.columns, beside)
-        triples = [beside.dense(frame) for frame in _frames_of_triples(checkpoint.triples, progress)]
+    """Return the body of a checkpoint. `progress` is called between frames."""
+    with FrameCompressor() as compressor:
+        columns = (
+            None if checkpoint.columns is None else columns_encoding.store(checkpoint.columns, compressor)
+        )
+        triples = [compressor.compress(frame) for frame in _frames_of_triples(checkpoint.triples, progress)]
         entities = [
-            beside.dense(msgpack.encode(part)) for part in parts(checkpoint.entities, _ENTITIES, progress)
+            compressor.compress(msgpack.encode(part))
+            for part in parts(checkpoint.entities, _ENTITIES, progress)
         ]
         body = _Body(
             seq=checkpoint.seq,
@@ -97,22 +100,22 @@ def encode(checkpoint: Checkpoint, progress: Callable[[], None] = lambda: None) 
 
 
 def decode(body: bytes, progress: Callable[[], None] = lambda: None) -> Checkpoint:
-    """What was encoded; equal terms are one object, and entities share what they have in common."""
+    """Return the checkpoint. Equal terms are one object, and entities share equal parts."""
     if not body.startswith(_MARK):
-        old: _Whole = dense.decode(body, _Whole)
+        old: _Whole = body_encoding.decode(body, _Whole)
         return Checkpoint(seq=old.seq, triples=old.triples, entities=old.entities, read_by=old.read_by)
     stored = _bodies.decode(memoryview(body)[len(_MARK) :])
     triples: list[Triple] = []
     terms: list[str] = []
-    for frame in unpacked(stored.triples):
+    for frame in decompress_frames(stored.triples):
         progress()
-        said = _triples.decode(frame)
-        terms += said.new_terms
-        each = map(terms.__getitem__, _numbers(said.numbers))
+        frame_content = _triples.decode(frame)
+        terms += frame_content.new_terms
+        each = map(terms.__getitem__, _numbers(frame_content.numbers))
         triples += zip(each, each, each, strict=True)
     entities: list[Entity] = []
     shared = EntityInterner()
-    for frame in unpacked(stored.entities):
+    for frame in decompress_frames(stored.entities):
         progress()
         entities += map(shared.entity, _entities.decode(frame))
     return Checkpoint(

@@ -1,4 +1,4 @@
-"""The reasoner's columns as they stand in a checkpoint: texts and numbers in frames that are compressed."""
+"""The encoding of the reasoner's columns in a checkpoint: strings and numbers in compressed frames."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from typing import Final
 from msgspec import Struct, msgpack
 
 from semmap.nodes.kb_node.reasoner.abox.columns import Claimed, Columns, KindSaid
-from semmap.nodes.kb_node.storage.encoding.frames import Compressing, unpacked
+from semmap.nodes.kb_node.storage.encoding.frames import FrameCompressor, decompress_frames
 from semmap.schemas import codec, errors
 
 _TERMS: Final = 100_000
 _NUMBERS: Final = 1 << 20
-"""In a frame."""
+"""Items in a frame."""
 
 
 class _Head(Struct, frozen=True, array_like=True):
-    """What is not long."""
+    """The short parts."""
 
     schema: bytes
     size: int
@@ -36,26 +36,26 @@ class StoredColumns(Struct, frozen=True, array_like=True):
     terms: list[bytes]
     source: bytes
     numbers: list[list[bytes]]
-    """Frame by frame: those of nodes, of edges, and the links of edges that leave and that enter."""
+    """By frame: numbers of nodes and edges, and the links of outgoing and incoming edges."""
 
 
 _heads = codec.decoder(_Head)
 _terms = codec.decoder(list[str])
 
 
-def store(columns: Columns, beside: Compressing) -> Callable[[], StoredColumns]:
-    """Begin to compress columns; the function that is returned waits for the outcome."""
+def store(columns: Columns, compressor: FrameCompressor) -> Callable[[], StoredColumns]:
+    """Start to compress columns, and return a function that waits for the result."""
     head = _Head(
         columns.schema, columns.size, columns.classes, columns.properties, columns.kinds, columns.reasons
     )
-    dense_head, source = beside.dense(msgpack.encode(head)), beside.dense(columns.source)
+    packed_head, source = compressor.compress(msgpack.encode(head)), compressor.compress(columns.source)
     terms = [
-        beside.dense(msgpack.encode(columns.terms[start : start + _TERMS]))
+        compressor.compress(msgpack.encode(columns.terms[start : start + _TERMS]))
         for start in range(0, len(columns.terms), _TERMS)
     ]
-    numbers = [[beside.dense(frame) for frame in _frames(column)] for column in _columns(columns)]
+    numbers = [[compressor.compress(frame) for frame in _frames(column)] for column in _columns(columns)]
     return lambda: StoredColumns(
-        dense_head.result(),
+        packed_head.result(),
         [frame.result() for frame in terms],
         source.result(),
         [[frame.result() for frame in column] for column in numbers],
@@ -63,17 +63,17 @@ def store(columns: Columns, beside: Compressing) -> Callable[[], StoredColumns]:
 
 
 def restore(stored: StoredColumns, progress: Callable[[], None]) -> Columns:
-    """The columns. `progress` is called between frames."""
-    (head,) = map(_heads.decode, unpacked([stored.head]))
-    (source,) = unpacked([stored.source])
+    """Return the columns. `progress` is called between frames."""
+    (head,) = map(_heads.decode, decompress_frames([stored.head]))
+    (source,) = decompress_frames([stored.source])
     terms: list[str] = []
-    for frame in unpacked(stored.terms):
+    for frame in decompress_frames(stored.terms):
         progress()
         terms += _terms.decode(frame)
     columns: list[array[int]] = []
     for frames in stored.numbers:
         column = array("i")
-        for frame in unpacked(frames):
+        for frame in decompress_frames(frames):
             progress()
             column.frombytes(frame)
         columns.append(_in_order(column))
@@ -109,7 +109,7 @@ def _frames(column: array[int]) -> Iterator[bytes]:
 
 
 def _in_order(numbers: array[int]) -> array[int]:
-    """32 bits each, the lowest first; a column that is given is not needed any more."""
+    """Convert to 32 bits, little-endian. The given column must not be used afterwards."""
     if numbers.itemsize != 4:
         raise errors.InternalError("integers of this machine do not have 32 bits")
     if sys.byteorder == "big":

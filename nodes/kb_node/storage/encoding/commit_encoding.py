@@ -1,8 +1,8 @@
-"""A commit as it stands in the journal, made while the rest of it is worked out.
+"""The encoding of a commit, which starts while the rest of it is still being computed.
 
-The triples of a large commit are most of it, and known before the entities that they change, and these before
-it is worked out where they are. Another thread encodes and compresses them meanwhile, some thousand at a
-time, so that the whole is never in memory but compressed. The outcome is what `dense.encode` makes of it.
+Most of a large commit are its triples, which are known before the changed entities, and these before the
+locations. Another thread encodes and compresses them in pieces, so that the whole is never in memory
+uncompressed. The result equals that of `body_encoding.encode`.
 """
 
 from __future__ import annotations
@@ -16,51 +16,51 @@ from typing import Any, Final
 from msgspec import structs
 
 from semmap.nodes.kb_node.progress import parts
-from semmap.nodes.kb_node.storage.encoding import dense
+from semmap.nodes.kb_node.storage.encoding import body_encoding
 from semmap.schemas import codec
 from semmap.schemas.commits import Commit
 from semmap.schemas.entities import Entity
 
 _MANY: Final = 1000
-"""Triples; a thread for fewer takes longer than it saves."""
+"""Triples. For fewer a thread costs more time than it saves."""
 _PIECE: Final = 10_000
-"""Elements of a list that are encoded together: some megabytes, and a few milliseconds."""
+"""List elements that are encoded together: some megabytes, and a few milliseconds."""
 _FIELDS: Final = Commit.__struct_encode_fields__
 _CHANGED: Final = ("changed",)
 _OTHERS: Final = ("removed", "notes")
 _EFFECTS: Final = (*_CHANGED, *_OTHERS)
-"""The end of a commit."""
+"""The last fields of a commit."""
 _BEGINNING: Final = _FIELDS[: -len(_EFFECTS)]
 
 
 class EarlyBody:
-    """The body of a commit of which only the effects are not known yet."""
+    """The body of a commit of which only the effects are unknown."""
 
     def __init__(self, commit: Commit) -> None:
-        self._is_wanted = True
-        self._deflate = zlib.compressobj(dense.DENSITY)
-        self._beside = ThreadPoolExecutor(1)
-        beginning = chain([_heading(_MAP, len(_FIELDS))], _encoded(commit, _BEGINNING))
-        self._head = self._beside.submit(self._compressed, beginning)
+        self._is_active = True
+        self._deflate = zlib.compressobj(body_encoding.COMPRESSION_LEVEL)
+        self._executor = ThreadPoolExecutor(1)
+        beginning = chain([_header(_MAP, len(_FIELDS))], _encoded(commit, _BEGINNING))
+        self._head = self._executor.submit(self._compressed, beginning)
         self._without = self._deflate
-        """What has compressed no more than the head."""
+        """The compressor state after the head only."""
         self._changed: Sequence[Entity] | None = None
         self._middle: Future[bytes]
 
     def expect(self, commit: Commit) -> None:
-        """It is likely to change the entities that it has now."""
+        """Encode the entities that the commit is likely to change."""
         self._changed = commit.changed
-        self._middle = self._beside.submit(self._expected, _encoded(commit, _CHANGED))
+        self._middle = self._executor.submit(self._expected, _encoded(commit, _CHANGED))
 
     def finish(self, commit: Commit) -> Future[bytes]:
-        """The whole, now that the effects are known."""
-        whole = self._beside.submit(self._whole, commit)
-        self._beside.shutdown(wait=False)
+        """Return the whole body, now that the effects are known."""
+        whole = self._executor.submit(self._whole, commit)
+        self._executor.shutdown(wait=False)
         return whole
 
-    def give_up(self) -> None:
-        """Nobody wants it any more."""
-        self._is_wanted = False
+    def discard(self) -> None:
+        """Stop the encoding, because the commit was aborted."""
+        self._is_active = False
 
     def _expected(self, changed: Iterator[bytes]) -> bytes:
         self._without = self._deflate.copy()
@@ -76,14 +76,14 @@ class EarlyBody:
     def _compressed(self, pieces: Iterator[bytes]) -> bytes:
         found = bytearray()
         for piece in pieces:
-            if not self._is_wanted:
+            if not self._is_active:
                 break
             found += self._deflate.compress(piece)
         return bytes(found)
 
 
-def early(commit: Commit, after: str) -> EarlyBody | None:
-    """The beginning of the body of a commit whose triples are worth it; `after` is the digest before it."""
+def begin_body(commit: Commit, after: str) -> EarlyBody | None:
+    """Start to encode a commit with enough triples, else return None. `after` is the digest before it."""
     if len(commit.inserted) + len(commit.retracted) < _MANY:
         return None
     return EarlyBody(structs.replace(commit, digest=after))
@@ -91,11 +91,11 @@ def early(commit: Commit, after: str) -> EarlyBody | None:
 
 _MAP: Final = (0x80, 0xDE)
 _ARRAY: Final = (0x90, 0xDC)
-"""How MessagePack begins a short one, and a longer one; the longest has the code after that."""
+"""The MessagePack codes of a short and a longer one. The longest has the next code."""
 
 
-def _heading(codes: tuple[int, int], count: int) -> bytes:
-    """What stands before so many elements."""
+def _header(codes: tuple[int, int], count: int) -> bytes:
+    """Return the MessagePack header of a map or array with this many elements."""
     short, long = codes
     if count < 1 << 4:
         return bytes([short | count])
@@ -104,16 +104,16 @@ def _heading(codes: tuple[int, int], count: int) -> bytes:
 
 
 def _encoded(commit: Commit, names: Sequence[str]) -> Iterator[bytes]:
-    """These fields, each after its name; a long list comes in pieces."""
+    """Yield these fields, each after its name. A long list is encoded in pieces."""
     for name in names:
         value: Any = getattr(commit, name)
         yield codec.encode(name)
         if not isinstance(value, tuple) or len(value) <= _PIECE:
             yield codec.encode(value)
             continue
-        yield _heading(_ARRAY, len(value))
+        yield _header(_ARRAY, len(value))
         for piece in parts(value, _PIECE, _nothing):
-            yield codec.encode(piece)[len(_heading(_ARRAY, len(piece))) :]
+            yield codec.encode(piece)[len(_header(_ARRAY, len(piece))) :]
 
 
 def _nothing() -> None:

@@ -1,4 +1,4 @@
-"""Frames: pieces of a large body that are compressed one by one, beside other work."""
+"""Frames: parts of a large body that are compressed one by one, in parallel with other work."""
 
 from __future__ import annotations
 
@@ -8,34 +8,34 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from types import TracebackType
 
-from semmap.nodes.kb_node.storage.encoding import dense
+from semmap.nodes.kb_node.storage.encoding import body_encoding
 
 
-class Compressing:
-    """A thread that compresses frames while the next ones are made; to be used in a `with`."""
+class FrameCompressor:
+    """A thread that compresses frames while the next ones are created. Use it in a `with`."""
 
     def __init__(self) -> None:
-        self._beside = ThreadPoolExecutor(1)
+        self._executor = ThreadPoolExecutor(1)
 
-    def __enter__(self) -> Compressing:
+    def __enter__(self) -> FrameCompressor:
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._beside.shutdown()
+        self._executor.shutdown()
 
-    def dense(self, frame: bytes) -> Future[bytes]:
-        """A frame, compressed."""
-        return self._beside.submit(zlib.compress, frame, dense.DENSITY)
+    def compress(self, frame: bytes) -> Future[bytes]:
+        """Compress a frame in the background."""
+        return self._executor.submit(zlib.compress, frame, body_encoding.COMPRESSION_LEVEL)
 
 
-def unpacked(frames: Sequence[bytes]) -> Iterator[bytes]:
-    """Each frame as it was; the next one is unpacked while the last one is read."""
-    with ThreadPoolExecutor(1) as beside:
+def decompress_frames(frames: Sequence[bytes]) -> Iterator[bytes]:
+    """Yield each frame decompressed. The next one is decompressed meanwhile."""
+    with ThreadPoolExecutor(1) as executor:
         ahead = deque[Future[bytes]]()
         for frame in frames:
-            ahead.append(beside.submit(zlib.decompress, frame))
+            ahead.append(executor.submit(zlib.decompress, frame))
             if len(ahead) > 1:
                 yield ahead.popleft().result()
         while ahead:

@@ -1,4 +1,4 @@
-"""The truth on disk: an append-only SQLite file of commits, each with a digest chained to the one before."""
+"""The journal: an append-only SQLite file of commits, whose digests form a chain."""
 
 from semmap.nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
 from semmap.nodes.kb_node.storage.journal.journal import Journal

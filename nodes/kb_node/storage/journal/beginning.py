@@ -1,4 +1,4 @@
-"""Where a journal's history begins: with its first commit or, once it was compacted, with a snapshot."""
+"""The start of the history in a journal: its first commit or, after compaction, a snapshot."""
 
 from __future__ import annotations
 
@@ -13,43 +13,43 @@ from semmap.schemas import codec
 TABLE: Final = """CREATE TABLE beginning (
     seq INTEGER PRIMARY KEY, head BLOB NOT NULL, body BLOB NOT NULL, digest BLOB NOT NULL
 ) STRICT"""
-"""One row; journals that were never compacted lack the table."""
+"""A table with one row, which journals without compaction lack."""
 
 
 class Beginning(Struct, frozen=True, kw_only=True):
-    """The last commit that is part of the snapshot: what the first commit that is kept builds upon."""
+    """The last commit that is part of the snapshot, on which the first stored commit is based."""
 
     seq: int = 0
-    """0 where nothing was compacted."""
+    """0 without compaction."""
     stamp_ns: int = 0
     chain: bytes = b""
     """The digest of all commits up to this one."""
     map_id: str = ""
-    """Of the map: the digest of the very first commit, in hexadecimal."""
+    """The identity of the map: the digest of the very first commit, in hexadecimal."""
     begun_ns: int = 0
-    """When the very first commit was made."""
+    """The time of the very first commit."""
     entities: int = 0
     body_digest: bytes = b""
-    """Of the snapshot, which is a checkpoint in its encoding."""
+    """The digest of the snapshot, which has the encoding of a checkpoint."""
 
 
 def write(db: sqlite3.Connection, beginning: Beginning, body: bytes) -> None:
-    """Let the history begin there; within a transaction of the caller's."""
-    if not is_there(db):
+    """Store the start of the history, within the transaction of the caller."""
+    if not exists(db):
         db.execute(TABLE)
     head = msgpack.encode(beginning)
     db.execute("DELETE FROM beginning")
     db.execute("INSERT INTO beginning VALUES (?, ?, ?, ?)", (beginning.seq, head, body, digest(head)))
 
 
-def is_there(db: sqlite3.Connection) -> bool:
-    """Was the journal compacted?"""
+def exists(db: sqlite3.Connection) -> bool:
+    """Return whether the journal was compacted."""
     return db.execute("SELECT 1 FROM sqlite_master WHERE name = 'beginning'").fetchone() is not None
 
 
 def read(db: sqlite3.Connection) -> Beginning | None:
-    """What was written; one at 0 where nothing was, None where it is damaged."""
-    if not is_there(db):
+    """Return the stored start, one with `seq` 0 without compaction, or None if it is damaged."""
+    if not exists(db):
         return Beginning()
     row = db.execute("SELECT seq, head, digest FROM beginning").fetchone()
     try:
@@ -62,12 +62,12 @@ def read(db: sqlite3.Connection) -> Beginning | None:
 
 
 def body_of(db: sqlite3.Connection, beginning: Beginning) -> bytes | None:
-    """The snapshot; None where it is damaged."""
+    """Return the snapshot, or None if it is damaged."""
     row = db.execute("SELECT body FROM beginning").fetchone()
     sound = row is not None and isinstance(row[0], bytes) and digest(row[0]) == beginning.body_digest
     return row[0] if sound else None
 
 
 def digest(content: bytes) -> bytes:
-    """Of a head or a snapshot."""
+    """Return the digest of a head or snapshot."""
     return hashlib.blake2b(content, digest_size=16).digest()

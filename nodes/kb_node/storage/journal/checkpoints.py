@@ -1,4 +1,4 @@
-"""The checkpoints in a journal: the whole map after some commit, for a start to go on from."""
+"""Checkpoints in a journal: the whole map after a commit, from which a start continues."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from collections.abc import Callable
 from semmap.nodes.kb_node.storage.encoding import checkpoint_encoding
 from semmap.nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
 from semmap.nodes.kb_node.storage.journal import index_check
-from semmap.nodes.kb_node.storage.journal.digests import chained, is_sound
+from semmap.nodes.kb_node.storage.journal.digests import chain_digest, is_intact
 from semmap.nodes.kb_node.storage.journal.sqlite_file import JournalFile
 
 log = logging.getLogger(__name__)
 
 
-def keep(file: JournalFile, checkpoint: Checkpoint, *, begins: int, progress: Callable[[], None]) -> None:
-    """Write `checkpoint` down, in a journal that begins after commit `begins`; of the older ones one stays.
+def save(file: JournalFile, checkpoint: Checkpoint, *, begins: int, progress: Callable[[], None]) -> None:
+    """Write `checkpoint` to a journal that begins after commit `begins`, and keep one older checkpoint.
 
-    Raises NotWritten, with nothing changed, when the disk does not take it.
+    Raises NotWritten, with nothing changed, if the disk rejects it.
     """
     body = checkpoint_encoding.encode(checkpoint, progress)
-    row = (checkpoint.seq, body, chained(b"", body))
+    row = (checkpoint.seq, body, chain_digest(b"", body))
     with file.writing(f"the checkpoint after commit {checkpoint.seq}") as db:
         db.execute("INSERT OR REPLACE INTO checkpoints VALUES (?, ?, ?)", row)
         db.execute(
@@ -29,11 +29,11 @@ def keep(file: JournalFile, checkpoint: Checkpoint, *, begins: int, progress: Ca
         index_check.write(db, begins, checkpoint.seq)
 
 
-def newest(file: JournalFile, *, begins: int, progress: Callable[[], None]) -> Checkpoint | None:
-    """The newest that is sound, in a journal that begins after commit `begins`; None if there is none."""
+def load_newest(file: JournalFile, *, begins: int, progress: Callable[[], None]) -> Checkpoint | None:
+    """Return the newest intact checkpoint of a journal that begins after commit `begins`, or None."""
     with file.reading() as db:
         for seq, body, digest in db.execute("SELECT * FROM checkpoints ORDER BY seq DESC"):
-            if is_sound(b"", body, digest):
+            if is_intact(b"", body, digest):
                 found = checkpoint_encoding.decode(body, progress)
                 if found.seq == seq >= begins:
                     return found

@@ -1,7 +1,7 @@
-"""Whether what commits are found by is as the commits say: damage there would hide what is sound.
+"""Verification of the indexes of a journal, because a damaged index would hide intact commits.
 
-The ids of commands, the names of entities that were touched, and the list of TBoxes are compared with those
-commits that a start replays anyway, and up to the last checkpoint by a digest that was recorded with it.
+The command ids, the touched names and the list of TBoxes are compared with the commits that a start replays
+anyway. Up to the last checkpoint they are verified by a digest that was recorded with it.
 """
 
 from __future__ import annotations
@@ -25,53 +25,53 @@ _INDEXES: Final = (
 
 
 class Record(Struct, frozen=True):
-    """What the indexes said of the commits up to one."""
+    """The digest of the indexes up to a commit."""
 
     seq: int
     digest: bytes
 
 
 class Expected:
-    """What the indexes should say of the commits that are taken in."""
+    """The index entries that the added commits should have."""
 
     def __init__(self) -> None:
-        self._said: tuple[set[tuple[str, int]], ...] = (set(), set(), set())
+        self._entries: tuple[set[tuple[str, int]], ...] = (set(), set(), set())
 
-    def take(self, commit: Commit) -> None:
-        """Take in a commit."""
-        ids, names, tboxes = self._said
+    def add(self, commit: Commit) -> None:
+        """Add the entries of a commit."""
+        ids, names, tboxes = self._entries
         ids.add((commit.id, commit.seq))
         names.update((name, commit.seq) for name in commit.names)
         if commit.tbox:
             tboxes.add(("", commit.seq))
 
-    def is_said(self, db: sqlite3.Connection, after: int) -> bool:
-        """Do the indexes say this, and nothing else, of the commits later than `after`?"""
+    def matches(self, db: sqlite3.Connection, after: int) -> bool:
+        """Return whether the indexes have exactly these entries for the commits after `after`."""
         return all(
-            set(db.execute(query, (after, 1 << 62))) == said
-            for query, said in zip(_INDEXES, self._said, strict=True)
+            set(db.execute(query, (after, 1 << 62))) == entries
+            for query, entries in zip(_INDEXES, self._entries, strict=True)
         )
 
 
 def write(db: sqlite3.Connection, after: int, seq: int) -> None:
-    """Record what the indexes say of the commits from `after` to `seq`; within the caller's transaction."""
+    """Record the digest of the indexes from `after` to `seq`, within the transaction of the caller."""
     value = msgpack.encode(Record(seq, _digest(db, after, seq)))
     db.execute("INSERT OR REPLACE INTO meta VALUES (?, ?)", (_RECORD, value))
 
 
 def read(db: sqlite3.Connection) -> Record | None:
-    """What was recorded last; None where nothing was. Raises MsgspecError or TypeError if it is damaged."""
+    """Return the last record, or None. Raises MsgspecError or TypeError if it is damaged."""
     row = db.execute("SELECT value FROM meta WHERE key = ?", (_RECORD,)).fetchone()
     return None if row is None else msgpack.decode(row[0], type=codec.prepared(Record))
 
 
 def is_as_recorded(db: sqlite3.Connection, after: int, record: Record) -> bool:
-    """Do the indexes still say so?"""
+    """Return whether the indexes still have the recorded digest."""
     return _digest(db, after, record.seq) == record.digest
 
 
 def is_well_formed(db: sqlite3.Connection) -> bool:
-    """Can SQLite read all of the file, and do its own indexes fit its tables?"""
+    """Return whether SQLite can read the whole file, and its own indexes match the tables."""
     found: list[tuple[str]] = db.execute("PRAGMA integrity_check(1)").fetchall()
     return found == [("ok",)]
 

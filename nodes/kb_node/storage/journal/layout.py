@@ -1,4 +1,4 @@
-"""The tables of a journal, and the formats of those that this version reads."""
+"""The tables of a journal, and the formats that this version reads."""
 
 from __future__ import annotations
 
@@ -17,4 +17,4 @@ CREATE TABLE checkpoints (seq INTEGER PRIMARY KEY, body BLOB NOT NULL, digest BL
 """
 FORMAT: Final = b"4"
 COMPACTED: Final = b"5"
-"""The format of a journal that begins with a snapshot, which older versions take for a damaged one."""
+"""The format of a journal that starts with a snapshot, which older versions report as damaged."""

@@ -1,4 +1,4 @@
-"""Commits as they stand in the file, read a page at a time and proved by their digests."""
+"""Stored commits, read in pages and verified by their digests."""
 
 from __future__ import annotations
 
@@ -6,23 +6,25 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from semmap.nodes.kb_node.storage.journal.digests import is_sound
-from semmap.nodes.kb_node.storage.journal.sqlite_file import JournalFile, mend
+from semmap.nodes.kb_node.storage.journal.digests import is_intact
+from semmap.nodes.kb_node.storage.journal.sqlite_file import JournalFile, repair_hint
 from semmap.schemas import errors
 
 PAGE: Final = 256
 
 
 class Damaged(errors.Refused):
-    """A commit is not as it was written. `last_good` is the number of the one before."""
+    """A commit is not as it was written. `last_good` is the number of the previous one."""
 
     def __init__(self, path: Path, seq: int) -> None:
-        super().__init__(f"{path}: commit {seq} is damaged; the last good one is {seq - 1}; {mend(path)}")
+        super().__init__(
+            f"{path}: commit {seq} is damaged; the last good one is {seq - 1}; {repair_hint(path)}"
+        )
         self.last_good = seq - 1
 
 
 class Row(NamedTuple):
-    """A commit as it stands in the file."""
+    """A commit as stored in the file."""
 
     seq: int
     id: str
@@ -30,20 +32,20 @@ class Row(NamedTuple):
     digest: bytes
 
 
-def sound(file: JournalFile, *, after: int, before: bytes, size: int = PAGE) -> Iterator[Row]:
-    """The commits later than `after`, which has the digest `before`. Raises Damaged at the first damaged."""
+def read_intact_rows(file: JournalFile, *, after: int, before: bytes, size: int = PAGE) -> Iterator[Row]:
+    """Yield the commits after `after`, whose digest is `before`. Raises Damaged at the first damaged one."""
     seq = after
-    while rows := page(file, seq, size):
+    while rows := read_page(file, seq, size):
         for row in rows:
             seq += 1
-            if row.seq != seq or not is_sound(before, row.body, row.digest):
+            if row.seq != seq or not is_intact(before, row.body, row.digest):
                 raise Damaged(file.path, seq)
             before = row.digest
             yield row
 
 
-def page(file: JournalFile, after: int, size: int = PAGE) -> list[Row]:
-    """The next rows; where they cannot be read together, one at a time, so that the bad one is known."""
+def read_page(file: JournalFile, after: int, size: int = PAGE) -> list[Row]:
+    """Return the next rows. If they cannot be read together, read them one by one to find the damaged one."""
     query = "SELECT seq, command_id, body, digest FROM commits WHERE seq > ? ORDER BY seq LIMIT ?"
     try:
         with file.reading() as db:
@@ -51,4 +53,4 @@ def page(file: JournalFile, after: int, size: int = PAGE) -> list[Row]:
     except errors.Refused:
         if size == 1:
             raise Damaged(file.path, after + 1) from None
-        return page(file, after, 1)
+        return read_page(file, after, 1)

@@ -1,4 +1,4 @@
-"""The journal's SQLite file: transactions that are durable at their end, for one process at a time."""
+"""The SQLite file of a journal: durable transactions, for one process at a time."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from semmap.schemas import errors
 
 _PAGE_BYTES: Final = 4096
 _LOG_BYTES: Final = 1025 * _PAGE_BYTES
-"""SQLite begins its write-ahead log anew after 1000 pages, and what the last commit wrote."""
-ANEW = "start a new map with --fresh (this one is kept)"
+"""SQLite restarts its write-ahead log after 1000 pages and what the last commit wrote."""
+NEW_MAP_HINT = "start a new map with --fresh (this one is kept)"
 
 
 class InUse(errors.Refused):
@@ -25,37 +25,40 @@ class InUse(errors.Refused):
 
 
 class NotWritten(errors.Refused):
-    """The disk did not take it; nothing was written."""
+    """The disk rejected a write, and nothing was written."""
 
 
 class JournalFile:
-    """An open file. Any thread has its connection while it is `reading` or `writing`, one at a time."""
+    """An open file. Any thread may use its connection while `reading` or `writing`, one at a time."""
 
     def __init__(self, path: Path) -> None:
-        """Open the file at `path`: WAL with `synchronous=FULL`. Raises InUse, Refused when it is damaged."""
-        if write_ahead.is_set_aside(path):
-            raise _lost(path)
-        log = write_ahead.look(path)
+        """Open the file at `path` in WAL mode with `synchronous=FULL`.
+
+        Raises InUse, Refused if it is damaged.
+        """
+        if write_ahead.has_damaged_copy(path):
+            raise _log_damage_error(path)
+        log = write_ahead.inspect_log(path)
         try:
             try:
                 self._open(path)
             except InUse:
                 raise
             except errors.Refused:
-                if log is None or log.has_sound_head:
+                if log is None or log.has_valid_header:
                     raise
-                log.set_aside()
-                raise _lost(path) from None
-            if log is not None and log.lost(self._recovered()):
-                log.set_aside()
+                log.save_copy()
+                raise _log_damage_error(path) from None
+            if log is not None and log.has_lost_commits(self._count_valid_frames()):
+                log.save_copy()
                 self._db.close()
-                raise _lost(path)
+                raise _log_damage_error(path)
         finally:
             if log is not None:
                 log.file.close()
 
-    def _recovered(self) -> int:
-        """How many frames of the log SQLite has found to be sound."""
+    def _count_valid_frames(self) -> int:
+        """Return the number of log frames that SQLite accepted."""
         with self.reading() as db:
             _, frames, _ = db.execute("PRAGMA wal_checkpoint(PASSIVE)").fetchone()
         return int(frames)
@@ -66,43 +69,43 @@ class JournalFile:
         try:
             self._db = sqlite3.connect(path, isolation_level=None, timeout=2.0, check_same_thread=False)
         except sqlite3.DatabaseError as error:
-            raise _refusal(path, error) from None
+            raise _to_refused(path, error) from None
         try:
             with self.reading() as db:
                 db.execute("PRAGMA locking_mode=EXCLUSIVE")
                 db.execute("PRAGMA journal_mode=WAL")
                 db.execute("PRAGMA synchronous=FULL")
-                db.execute("SELECT 1 FROM sqlite_master").fetchone()  # now the log is read
-                db.execute("BEGIN IMMEDIATE")  # so that the log is there
+                db.execute("SELECT 1 FROM sqlite_master").fetchone()  # this reads the log
+                db.execute("BEGIN IMMEDIATE")  # this creates the log
                 db.execute("ROLLBACK")
-            _lengthen(path.with_name(f"{path.name}-wal"))
+            _preallocate(path.with_name(f"{path.name}-wal"))
         except errors.Refused:
             self._db.close()
             raise
 
     def close(self) -> None:
-        """Release it."""
+        """Close the file."""
         with self._lock:
             self._db.close()
 
     @contextmanager
     def reading(self) -> Iterator[sqlite3.Connection]:
-        """The connection, to read. Raises InUse, Refused when the file is damaged."""
+        """Provide the connection for reading. Raises InUse, Refused if the file is damaged."""
         try:
             with self._lock:
                 yield self._db
         except sqlite3.ProgrammingError:
             raise
-        except UnicodeDecodeError:  # of a text that is not one any more
-            raise _refusal(self.path, sqlite3.DatabaseError("a text is not UTF-8")) from None
+        except UnicodeDecodeError:  # a damaged text
+            raise _to_refused(self.path, sqlite3.DatabaseError("a text is not UTF-8")) from None
         except sqlite3.DatabaseError as error:
-            raise _refusal(self.path, error) from None
+            raise _to_refused(self.path, error) from None
 
     @contextmanager
     def writing(self, what: str) -> Iterator[sqlite3.Connection]:
-        """The connection in a transaction: all of it or nothing, and durable at its end.
+        """Provide the connection in a durable transaction, which is applied as a whole or not at all.
 
-        Within another it is a part of that. Raises NotWritten when the disk does not take `what`.
+        Nested calls join the outer transaction. Raises NotWritten if the disk rejects `what`.
         """
         db = self._db
         try:
@@ -121,7 +124,7 @@ class JournalFile:
             raise NotWritten(f"{what} could not be written to {self.path}: {error}") from None
 
     def shrink(self) -> None:
-        """Give the room of what was deleted back to the disk. Raises NotWritten; then it is used again."""
+        """Return free space to the disk. Raises NotWritten, and then SQLite reuses the space itself."""
         try:
             with self._lock:
                 self._db.execute("VACUUM")
@@ -130,34 +133,38 @@ class JournalFile:
             raise NotWritten(f"{self.path} could not be made smaller: {error}") from None
 
 
-def _lengthen(log: Path) -> None:
-    """Let the write-ahead log be as long from the beginning as it will be once it is written anew.
+def _preallocate(log: Path) -> None:
+    """Extend the write-ahead log to the length at which SQLite restarts it.
 
-    A commit that makes the file longer waits for the file system's own journal, too: on a busy disk three
-    times as long. SQLite reads no further than the last frame that it wrote. Where there is no room, the log
-    grows as it is written.
+    A commit that extends the file also waits for the journal of the file system, which takes three times as
+    long on a busy disk. SQLite does not read beyond the last frame that it wrote. Without enough space the
+    log grows as it is written.
     """
     with suppress(OSError), log.open("r+b", buffering=0) as file:
-        page = bytes(_PAGE_BYTES)  # at once it would be cached in large pieces, each written back as a whole
+        page = bytes(
+            _PAGE_BYTES
+        )  # one large write would be cached in large pieces, each written back as a whole
         for _ in range(file.seek(0, os.SEEK_END), _LOG_BYTES, _PAGE_BYTES):
             file.write(page)
         os.fsync(file.fileno())
 
 
-def _lost(path: Path) -> errors.Refused:
-    return errors.Refused(f"{path}: the log with its last commits is damaged; {mend(path)}")
+def _log_damage_error(path: Path) -> errors.Refused:
+    return errors.Refused(
+        f"{path}: the write-ahead log with the last commits is damaged; {repair_hint(path)}"
+    )
 
 
-def _refusal(path: Path, error: sqlite3.DatabaseError) -> errors.Refused:
+def _to_refused(path: Path, error: sqlite3.DatabaseError) -> errors.Refused:
     if not isinstance(error, sqlite3.OperationalError):
-        return errors.Refused(f"{path} is damaged: {error}; {mend(path)}")
+        return errors.Refused(f"{path} is damaged: {error}; {repair_hint(path)}")
     if "locked" in str(error):
         stop = f"semmap down --data {path.parent}"
         return InUse(f"another knowledge base is using {path}; stop it with: {stop}")
-    return errors.Refused(f"{path} cannot be read: {error}; {ANEW}")
+    return errors.Refused(f"{path} cannot be read: {error}; {NEW_MAP_HINT}")
 
 
-def mend(path: Path) -> str:
-    """How one goes on after damage."""
+def repair_hint(path: Path) -> str:
+    """Return the next step after damage."""
     repair = f"semmap repair --data {shlex.quote(str(path.parent))}"
-    return f"continue with what is good: {repair} (the damaged file is kept)"
+    return f"recover the intact commits: {repair} (the damaged file is kept)"

@@ -1,4 +1,4 @@
-"""When commits were made. Their stamps are read once and remembered, as far as they are asked for."""
+"""The times of commits, read once and cached."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from itertools import accumulate
 
 from msgspec import Struct
 
-from semmap.nodes.kb_node.storage.encoding import dense
+from semmap.nodes.kb_node.storage.encoding import body_encoding
 from semmap.nodes.kb_node.storage.journal import rows
 from semmap.nodes.kb_node.storage.journal.beginning import Beginning
 from semmap.nodes.kb_node.storage.journal.sqlite_file import JournalFile
 
 
 class Stamps:
-    """The stamps of all commits in a journal [ns since 1970]. Any thread may ask."""
+    """The stamps of all commits in a journal [ns since 1970]. Any thread may use it."""
 
     def __init__(self, file: JournalFile, beginning: Beginning) -> None:
         self._file = file
@@ -24,13 +24,13 @@ class Stamps:
         self._known = array("q")
         self._reading = threading.Lock()
 
-    def begin_with(self, beginning: Beginning) -> None:
-        """The history begins elsewhere from now on."""
+    def reset(self, beginning: Beginning) -> None:
+        """Use another start of the history from now on."""
         with self._reading:
             self._beginning, self._known = beginning, array("q")
 
     def of(self, seq: int) -> int:
-        """When a commit was made. Raises Damaged if it is not there."""
+        """Return when a commit was made. Raises Damaged if it is missing."""
         with self._file.reading() as db:
             row = db.execute("SELECT body FROM commits WHERE seq = ?", (seq,)).fetchone()
         if row is None:
@@ -38,43 +38,43 @@ class Stamps:
         return _stamp(row[0])
 
     def seq_at(self, stamp_ns: int) -> int:
-        """The last commit that is stamped up to a time; one less than the first that is known before that.
+        """Return the last commit stamped up to a time, or one less than the first known one.
 
-        Where the clock was set back meanwhile a time comes twice, and the second counts. The last commit of
-        the snapshot that the history begins with is known by its stamp, too.
+        If the clock was set back, a time occurs twice, and the second one counts. The last commit of the
+        snapshot is known by its stamp, too.
         """
         with self._reading:
-            stamps, begins = self._so_far(), self._beginning
+            stamps, begins = self._read_all(), self._beginning
             known = array("q", [begins.stamp_ns]) + stamps if begins.seq else stamps
             earliest_since = list(accumulate(reversed(known), min))[::-1]
             last = begins.seq + len(stamps)
         return last - len(known) + bisect_right(earliest_since, stamp_ns)
 
     def within(self, first_ns: int, last_ns: int) -> list[int]:
-        """The commits that are stamped within these times, both included, in order."""
+        """Return the commits stamped within these times, both included, in order."""
         with self._reading:
-            stamps = enumerate(self._so_far(), start=self._beginning.seq + 1)
+            stamps = enumerate(self._read_all(), start=self._beginning.seq + 1)
             return [seq for seq, stamp_ns in stamps if first_ns <= stamp_ns <= last_ns]
 
     def latest(self) -> int:
-        """The latest time that any commit is stamped with."""
+        """Return the latest stamp of any commit."""
         with self._reading:
-            return max(self._so_far(), default=self._beginning.stamp_ns)
+            return max(self._read_all(), default=self._beginning.stamp_ns)
 
-    def _so_far(self) -> array[int]:
-        """Those of all commits, after reading what is not known yet."""
+    def _read_all(self) -> array[int]:
+        """Return the stamps of all commits, after reading new ones."""
         known = self._known
-        while page := rows.page(self._file, self._beginning.seq + len(known)):
+        while page := rows.read_page(self._file, self._beginning.seq + len(known)):
             known.extend(_stamp(row.body) for row in page)
         return known
 
 
 class _Stamp(Struct):
-    """The part of a commit that tells when it was made."""
+    """The part of a commit with its time."""
 
     stamp_ns: int
 
 
 def _stamp(body: bytes) -> int:
-    found: _Stamp = dense.decode(body, _Stamp)
+    found: _Stamp = body_encoding.decode(body, _Stamp)
     return found.stamp_ns

@@ -1,8 +1,9 @@
-"""Damage to SQLite's write-ahead log, which holds the last commits until they are moved into the file.
+"""Detection of damage in the write-ahead log of SQLite, which holds the last commits until a checkpoint.
 
-SQLite takes a log that is damaged for one that ends there, as after a loss of power, and says nothing of the
-commits behind that. So the log is looked at before SQLite opens it, and compared with what that found. A
-damaged one is set aside as it is; for salvage its checksums are made anew, and commits prove themselves.
+SQLite treats a damaged log like one that ends there, as after a power failure, and does not report the lost
+commits. Therefore the log is inspected before SQLite opens it, and compared with what SQLite found. A
+damaged log is kept as a copy. To recover its commits, its checksums are computed again, and the commits are
+verified by their digests.
 """
 
 from __future__ import annotations
@@ -17,45 +18,45 @@ from pathlib import Path
 from typing import BinaryIO, Final, NamedTuple
 
 _HEADER: Final = struct.Struct(">IIII8sII")
-"""What it is, version, page size, number of the log, salts, checksum of these."""
+"""Magic number, version, page size, sequence number, salts, checksum."""
 _FRAME: Final = struct.Struct(">II8sII")
 """Page, pages of the file (if a transaction ends with this frame), salts, checksum."""
 _LITTLE_ENDIAN: Final = 0x377F0682
 _VERSION: Final = 3007000
 _SUFFIX: Final = "-wal"
-_SET_ASIDE: Final = "-wal.damaged"
+_DAMAGED_SUFFIX: Final = "-wal.damaged"
 
 
 class Log(NamedTuple):
-    """A log as it is on disk. The file stays readable until `close`, whatever becomes of its name."""
+    """A log on disk. The file stays readable until it is closed, even if it is renamed or deleted."""
 
     path: Path
     file: BinaryIO
     ends: tuple[int, ...]
-    """The numbers of the frames that transactions end with, from 1."""
+    """The numbers of the frames that end transactions, from 1."""
     is_before_boot: bool
-    """Has the machine started since it was written? Then it may have lost power in the middle of that."""
+    """Whether it was written before the last boot, and a power failure may have interrupted it."""
 
     @property
-    def has_sound_head(self) -> bool:
-        """Is the beginning as SQLite wrote it?"""
+    def has_valid_header(self) -> bool:
+        """Return whether the header is as SQLite wrote it."""
         self.file.seek(0)
         return _is_sound(self.file.read(_HEADER.size))
 
-    def lost(self, recovered: int) -> bool:
-        """Are there transactions behind the `recovered` frames, other than one that was never finished?"""
+    def has_lost_commits(self, recovered: int) -> bool:
+        """Return whether there are finished transactions after the `recovered` frames."""
         behind = [end for end in self.ends if end > recovered]
         return len(behind) > (1 if self.is_before_boot else 0)
 
-    def set_aside(self) -> None:
-        """Keep a copy for salvage."""
+    def save_copy(self) -> None:
+        """Save a copy for the repair."""
         self.file.seek(0)
-        with self.path.with_name(f"{self.path.name}{_SET_ASIDE}").open("wb") as copy:
+        with self.path.with_name(f"{self.path.name}{_DAMAGED_SUFFIX}").open("wb") as copy:
             shutil.copyfileobj(self.file, copy)
 
 
-def look(path: Path) -> Log | None:
-    """The log of the database at `path`, if there is one with anything in it."""
+def inspect_log(path: Path) -> Log | None:
+    """Return the log of the database at `path`, or None if it is missing or empty."""
     log = path.with_name(f"{path.name}{_SUFFIX}")
     if not log.exists() or log.stat().st_size <= _HEADER.size:
         return None
@@ -65,50 +66,53 @@ def look(path: Path) -> Log | None:
     return Log(path, file, ends, log.stat().st_mtime < booted_s)
 
 
-def is_set_aside(path: Path) -> bool:
-    """Is there a damaged log that was not mended yet?"""
-    return path.with_name(f"{path.name}{_SET_ASIDE}").exists()
+def has_damaged_copy(path: Path) -> bool:
+    """Return whether there is a copy of a damaged log that was not recovered yet."""
+    return path.with_name(f"{path.name}{_DAMAGED_SUFFIX}").exists()
 
 
-def mend(path: Path) -> None:
-    """Let SQLite read all of the log that was set aside, damaged pages too.
+def recover(path: Path) -> None:
+    """Write a log with valid checksums from the copy of the damaged one, including damaged pages.
 
-    Not the first page, where it is damaged: SQLite could read nothing at all then, and the one before does.
+    A damaged first page is left out, because SQLite could not open the file with it. The previous version
+    of that page is used instead.
     """
-    damaged = path.with_name(f"{path.name}{_SET_ASIDE}")
+    damaged = path.with_name(f"{path.name}{_DAMAGED_SUFFIX}")
     content = memoryview(damaged.read_bytes())
     with damaged.open("rb") as file:
         salts, size = _salts(file), _page_size(file)
     order = "little"
-    mended = bytearray(_HEADER.pack(_LITTLE_ENDIAN, _VERSION, size, 0, salts, 0, 0))
-    sums = _checksum(memoryview(mended)[:24], (0, 0), order)
-    mended[24:32] = struct.pack(">II", *sums)
+    recovered = bytearray(_HEADER.pack(_LITTLE_ENDIAN, _VERSION, size, 0, salts, 0, 0))
+    sums = _checksum(memoryview(recovered)[:24], (0, 0), order)
+    recovered[24:32] = struct.pack(">II", *sums)
     written: tuple[int, int] | None = None
-    theirs = sys.byteorder  # where the head is damaged: that of this machine, as SQLite writes it
+    theirs = sys.byteorder  # for a damaged header: that of this machine, as SQLite writes it
     if _is_sound(bytes(content[: _HEADER.size])):
         written = _HEADER.unpack_from(content)[-2:]
         theirs = "little" if _HEADER.unpack_from(content)[0] == _LITTLE_ENDIAN else "big"
     for start in range(_HEADER.size, len(content) - size - _FRAME.size + 1, _FRAME.size + size):
-        number, pages, own, *said = _FRAME.unpack_from(content, start)
+        number, pages, own, *stored_sums = _FRAME.unpack_from(content, start)
         if not _is_near(own, salts):
             break
         head, page = content[start : start + 8], content[start + _FRAME.size : start + _FRAME.size + size]
-        is_sound = written is None or _checksum(page, _checksum(head, written, theirs), theirs) == (*said,)
-        written = said[0], said[1]
+        is_sound = written is None or _checksum(page, _checksum(head, written, theirs), theirs) == (
+            *stored_sums,
+        )
+        written = stored_sums[0], stored_sums[1]
         if number == 1 and not pages and not is_sound:
             continue
         sums = _checksum(page, _checksum(head, sums, order), order)
-        mended += bytes(head) + salts + struct.pack(">II", *sums) + bytes(page)
-    path.with_name(f"{path.name}{_SUFFIX}").write_bytes(mended)
+        recovered += bytes(head) + salts + struct.pack(">II", *sums) + bytes(page)
+    path.with_name(f"{path.name}{_SUFFIX}").write_bytes(recovered)
 
 
-def forget(path: Path) -> None:
-    """What was set aside is mended: from now on the journal proves its commits itself."""
-    path.with_name(f"{path.name}{_SET_ASIDE}").unlink()
+def delete_damaged_copy(path: Path) -> None:
+    """Delete the copy after recovery. From then on the journal verifies its commits itself."""
+    path.with_name(f"{path.name}{_DAMAGED_SUFFIX}").unlink()
 
 
 def _frames(file: BinaryIO) -> Iterator[tuple[int, int]]:
-    """The number of each frame of this log, and the pages of the file if a transaction ends with it."""
+    """Yield the number of each frame of this log, and the file's pages if a transaction ends with it."""
     salts, size = _salts(file), _page_size(file)
     file.seek(0, 2)
     length = file.tell()
@@ -118,12 +122,12 @@ def _frames(file: BinaryIO) -> Iterator[tuple[int, int]]:
         file.seek(start)
         _, pages, own, _, _ = _FRAME.unpack(file.read(_FRAME.size))
         if not _is_near(own, salts):
-            return  # from here on it is what an earlier log has left
+            return  # the rest was left by an earlier log
         yield number, pages
 
 
 def _salts(file: BinaryIO) -> bytes:
-    """Those of the log; of its first frames where its head is damaged."""
+    """Return the salts of the log, or those of its first frame if the header is damaged."""
     file.seek(0)
     head = file.read(_HEADER.size)
     if _is_sound(head):
@@ -139,15 +143,15 @@ def _is_sound(head: bytes) -> bool:
 
 
 def _page_size(file: BinaryIO) -> int:
-    """Read from the database itself, whose head is not a part of the log."""
-    with Path(file.name.removesuffix(_SET_ASIDE).removesuffix(_SUFFIX)).open("rb") as database:
+    """Return the page size from the header of the database, which is not part of the log."""
+    with Path(file.name.removesuffix(_DAMAGED_SUFFIX).removesuffix(_SUFFIX)).open("rb") as database:
         database.seek(16)
         size = int.from_bytes(database.read(2), "big")
     return 65536 if size == 1 else size
 
 
 def _is_near(own: bytes, salts: bytes) -> bool:
-    """Are they the same, but for some flipped bits? Those of another log are random."""
+    """Return whether salts are equal except for a few flipped bits. Those of another log are random."""
     return (int.from_bytes(own, "big") ^ int.from_bytes(salts, "big")).bit_count() <= 2
 
 

@@ -1,1 +1,1 @@
-"""Repair: what of a damaged journal is sound, and a journal made of that."""
+"""Repair: extracts the intact commits of a damaged journal into a new one."""

@@ -1,1 +1,1 @@
-"""Replaying: a copy of a journal, also of one in use, and a map that begins anew in the middle of it."""
+"""Replay: a copy of a journal, possibly one in use, and a map that starts in the middle of it."""

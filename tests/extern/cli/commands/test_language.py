@@ -48,7 +48,7 @@ def test_what_is_there_is_told_in_few_words(system, monkeypatch, capsys):
         with pytest.raises(errors.BadRequest, match="words must be"):
             client.tell(words=3)
     for words, wrong, sentence in (
-        (("tell", "teapot"), 1, "nothing is named or called 'teapot'"),
+        (("tell", "teapot"), 1, "no entity has the name, label or class 'teapot'"),
         (("tell", "--words", "0"), 2, "0 is not in the range"),
         (("tell", ""), 1, ""),
     ):
@@ -185,7 +185,7 @@ def test_what_is_ambiguous_is_asked_back_and_what_is_not_there_is_told(kitchen, 
         ("", "1 to 1000 characters"),
         ("cup " * 100, "at most 60 words"),
         ("the cup that was on the table", "asks about the past"),
-        ("the second cup from the left", "depend on who looks"),
+        ("the second cup from the left", "require a viewpoint"),
     ],
 )
 def test_what_cannot_be_found_by_says_what_can(kitchen, monkeypatch, capsys, text, because):

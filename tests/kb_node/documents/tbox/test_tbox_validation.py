@@ -4,7 +4,7 @@ import pytest
 
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commands import History
@@ -90,7 +90,7 @@ def test_the_next_start_need_not_work_it_out_again(furnished):
 def test_history_and_the_past_stay_right_across_it(furnished):
     before = furnished.snapshot().entities
     replace(furnished, "t", NEW_CLASSES)
-    past = Past(furnished._journal)
+    past = HistoryReader(furnished._journal)
     assert past.entities(1) == before
     assert past.entities(2) == furnished.snapshot().entities
     assert past.entities(1, "Movable", ["Movable"]) == ()

@@ -1,17 +1,17 @@
-"""Places whose extents are polygons: facts, one by one and many at once."""
+"""Places with polygon extents, one by one and many at once."""
 
 import random
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import solid_of
 from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.schemas.entities import Pose
 from semmap.schemas.polygons import EXTENT, box_around, read_wkt
+from tests.kb_node.relations.entities import thing
 from tests.kb_node.relations.facts.test_many_at_once import at_once, kept, one_by_one
-from tests.kb_node.relations.made import thing
 
 L_SHAPE = "POLYGON ((0 0, 6 0, 6 2, 2 2, 2 5, 0 5, 0 0))"
 COURT = "POLYGON ((-1 -1, 9 -1, 9 9, -1 9, -1 -1), (0 0, 0 5, 6 5, 6 0, 0 0))"
@@ -23,11 +23,11 @@ def place(name, wkt, z=0.0):
 
 
 def place_of(space, name):
-    found = space.whereabouts(space.solids[name]).place
+    found = space.spatial_relations(space.solids[name]).place
     return None if found is None else found[0].name
 
 
-def test_a_thing_is_where_the_polygon_is_not_where_its_box_is():
+def test_the_polygon_counts_and_not_its_box():
     room, court = place("room1", L_SHAPE), place("court1", COURT)
     cups = {
         "cup1": (1.0, 4.0, 0.0),
@@ -45,7 +45,7 @@ def test_a_thing_is_where_the_polygon_is_not_where_its_box_is():
     }
 
 
-def test_half_a_footprint_is_enough_and_the_share_is_exact():
+def test_half_a_footprint_is_enough():
     space = Space([place("room1", L_SHAPE), thing("box1", (2.1, 3.0, 0.0), "", size=(1.0, 1.0, 1.0))])
     made = measures.within(space.solids["box1"], space.solids["room1"], space.limits)
 
@@ -53,7 +53,7 @@ def test_half_a_footprint_is_enough_and_the_share_is_exact():
     assert (round(made.share, 9), made.holds) == (0.4, False)
 
 
-def test_what_has_no_size_is_in_where_its_position_is():
+def test_without_a_size_the_position_counts():
     space = Space(
         [place("room1", L_SHAPE), thing("x1", (1.0, 4.0, 0.0), ""), thing("x2", (4.0, 4.0, 0.0), "")]
     )
@@ -75,15 +75,15 @@ def test_floor_and_height_count():
     assert place_of(space, "cup1") == "room2"
 
 
-def test_a_turned_place_stays_where_it_is_though_the_copy_for_another_process_is_a_message():
+def test_a_rotated_place_survives_encoding():
     room = place("room1", L_SHAPE)
-    one, other = solid_of(room), solid_of(Placed.of(room))
+    one, other = solid_of(room), solid_of(PlacedEntity.of(room))
 
     assert one.form is other.form
     assert one.footprint == 18.0
 
 
-def test_many_at_once_are_where_they_are_one_by_one():
+def test_a_survey_equals_single_measurements():
     chance = random.Random(5)
     there = [
         place("room1", L_SHAPE),
@@ -104,7 +104,7 @@ def test_many_at_once_are_where_they_are_one_by_one():
     assert {"room1", "court1", "hall1"} <= found
 
 
-def test_another_extent_moves_who_is_in_it():
+def test_a_changed_extent_changes_the_contents():
     cup = thing("cup1", (4.0, 4.0, 0.0))
     facts = one_by_one([place("room1", L_SHAPE), cup])
     assert not facts.holds(("cup1", "isLocatedIn", "room1"))
@@ -115,12 +115,12 @@ def test_another_extent_moves_who_is_in_it():
     assert facts.holds(("cup1", "isLocatedIn", "room1"))
 
 
-def test_what_it_covers_is_not_forgotten_with_what_can_be_worked_out_again():
+def test_clearing_the_cache_keeps_the_region():
     room = place("room1", L_SHAPE)
     space = Space([room])
     solid = space.solids["room1"]
     outline, area = solid.outline, solid.footprint
-    solid.forget()
+    solid.clear_cache()
     space.put(thing("cup1", (4.0, 1.0, 0.0)))
     assert place_of(space, "cup1") == "room1"
     assert (solid.outline, solid.footprint) == (outline, area)

@@ -1,4 +1,4 @@
-"""Facts of many that are worked out at once are those that are worked out one by one, to the last one."""
+"""Facts computed in arrays equal those computed one by one."""
 
 import math
 import random
@@ -13,19 +13,19 @@ from msgspec import structs
 from semmap.nodes.kb_node.relations.facts import place_facts
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.kb_node.relations.geometry.columns import solids_of
-from semmap.nodes.kb_node.relations.geometry.fitting import fitted
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.fitting import fit_model
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import solid_of
 from semmap.nodes.kb_node.relations.measuring import crowds, space
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.measuring.survey import NOBODY, Survey
+from semmap.nodes.kb_node.relations.measuring.survey import NO_ROW, Survey
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.ontology.model_shapes import own_size_m, shapes
 from semmap.schemas.entities import Pose, orientation_from_yaw
 from tests.depth import tries
 
 MODELS = [*sorted(shapes()), "odd"]
-"""All that are shipped, and one that nobody knows."""
+"""All shipped models, and an unknown one."""
 TABLEWARE = ["table", "cup", "book", "bowl", "tray", "plate", "rug"]
 FURNITURE = ["fridge", "drawer", "milk", "carton", "can", "cupboard", "bookshelf", "book"]
 OPENING = ["fridge", "drawer", "desk", "oven", "dishwasher", "cabinet", "plate", "can", "apple", "laptop"]
@@ -34,11 +34,11 @@ LYING = (0.5**0.5, 0.0, 0.5**0.5, 0.0)
 HEAD_DOWN = (0.0, 1.0, 0.0, 0.0)
 HARDLY_LEANING = (math.cos(1e-4), math.sin(1e-4), 0.0, 0.0)
 STEPS = (0.0, 1e-12, -1e-12, 1e-9, 5e-7, -5e-7, 1e-6, 2e-6, -2e-6, 1e-4)
-"""By which a thing is off a threshold [m]."""
+"""Distances from a threshold [m]."""
 
 
 def one_by_one(entities, limits=None):
-    """The facts as they are without this."""
+    """Return the facts computed without arrays."""
     with many(10**9):
         facts = Facts(limits)
         facts.update(entities)
@@ -55,20 +55,20 @@ def at_once(entities, limits=None):
 def in_steps(entities, limits=None):
     with many(1):
         facts = Facts(limits)
-        for _ in facts.filling(entities):
+        for _ in facts.fill_steps(entities):
             pass
         return facts
 
 
 @contextmanager
 def many(count):
-    """Within, so many are worked out in arrays."""
+    """Use arrays from this number of entities on."""
     with patch.object(place_facts, "MANY", count), patch.object(space, "MANY", count):
         yield
 
 
 def kept(facts):
-    """What is held of each, in its order, and about each."""
+    """Return the stored facts, in their order, by subject and by object."""
     return [(one.of, {name: set(about) for name, about in one.about.items()}) for one in facts._kept]
 
 
@@ -76,7 +76,7 @@ def require_alike(entities, limits=None):
     expected = one_by_one(entities, limits)
     for facts in (at_once(entities, limits), in_steps(entities, limits)):
         assert kept(facts) == kept(expected)
-        assert facts.space.crowds() == expected.space.crowds()
+        assert facts.space.describe_crowds() == expected.space.describe_crowds()
         for name, solid in expected.space.solids.items():
             other = facts.space.solids[name]
             assert (other.bounds, other.bottom, other.top) == (solid.bounds, solid.bottom, solid.top)
@@ -84,7 +84,7 @@ def require_alike(entities, limits=None):
 
 
 class World:
-    """Things on and in one another in a few square metres, some of them at thresholds."""
+    """Objects on and in each other on a few square metres, some of them at thresholds."""
 
     def __init__(self, seed, models=MODELS, middle=(0.0, 0.0), extent=2.0, odd=0.15):
         self.dice = random.Random(seed)
@@ -111,7 +111,7 @@ class World:
 
     def entity(self, name, model, at, size, turn, place=False):
         pose = Pose(position_m=at, orientation_wxyz=turn)
-        return Placed(
+        return PlacedEntity(
             name=name,
             iri=f"urn:{name}",
             pose=pose,
@@ -122,8 +122,8 @@ class World:
         )
 
     def joints(self, model, size):
-        """Some stand open, some shut, most of what opens at all."""
-        leaves = fitted(model, size).leaves if size and model in shapes() else ()
+        """Return joint positions, most of them open or closed."""
+        leaves = fit_model(model, size).leaves if size and model in shapes() else ()
         if not leaves or self.dice.random() < 0.3:
             return ()
         stands = tuple(
@@ -143,7 +143,7 @@ class World:
         return tuple(round(m + self.dice.uniform(-self.extent, self.extent), 2) for m in self.middle)
 
     def at(self):
-        """Somewhere, or on, in or beside another, by its box or by one of its surfaces or hollows."""
+        """Return a position anywhere, or on, in or beside another object."""
         dice = self.dice
         if not self.made or dice.random() < 0.3:
             return (*self.somewhere(), dice.choice([0.0, 0.0, 0.02, 0.75, dice.uniform(0.0, 2.0)]))
@@ -170,7 +170,7 @@ def test_crowded_worlds_of_all_models(seed, extent, odd):
 
 @settings(deadline=None, max_examples=tries(50))
 @given(st.integers(0, 10**9), st.sampled_from([TABLEWARE, FURNITURE, OPENING]))
-def test_what_stands_on_and_in_few_models(seed, models):
+def test_objects_on_and_in_a_few_models(seed, models):
     require_alike(World(seed, models, extent=1.0, odd=0.0).things(40))
 
 
@@ -185,7 +185,7 @@ def test_far_away(seed, middle):
     require_alike([*World(seed + 1).things(10), *world.things(20)])
 
 
-def test_further_than_numbers_reach():
+def test_positions_beyond_the_cell_numbers():
     made = World(1).things(20)
     away = Pose(position_m=(1e308, -1e308, 1e308))
     require_alike([*made, *(structs.replace(one, name=f"far-{one.name}", pose=away) for one in made)])
@@ -215,7 +215,7 @@ def test_in_crowds(seed, most, extent):
 @settings(deadline=None, max_examples=tries(25))
 @given(st.integers(0, 10**9), st.sampled_from([3, 100]), st.integers(1, 12))
 def test_step_by_step(seed, most, step):
-    """Some come, others go or are moved, whether by many at once or not."""
+    """Entities are added, removed and moved, in large and small updates."""
     world = World(seed, extent=1.0)
     made = {entity.name: entity for entity in world.things(30)}
     names = list(made)
@@ -245,7 +245,7 @@ def test_step_by_step(seed, most, step):
             assert held == set(expected)
 
 
-def test_in_an_ordinary_map_nothing_has_to_be_measured_one_by_one():
+def test_an_ordinary_map_needs_no_measurement_one_by_one():
     world, made = World(0), []
     top = own_size_m("table")[2]
     for room in range(4):
@@ -261,13 +261,13 @@ def test_in_an_ordinary_map_nothing_has_to_be_measured_one_by_one():
     survey = Survey(there, [solid for solid in there.solids.values() if not solid.is_place])
     assert not survey.is_open.any()
     assert not survey.may_hang.any()
-    assert (survey.place != NOBODY).all()
-    assert (survey.support != NOBODY).sum() == 3 * 16
+    assert (survey.place != NO_ROW).all()
+    assert (survey.support != NO_ROW).sum() == 3 * 16
     require_alike(made)
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_solids_that_are_made_together_are_as_those_made_alone(seed):
+def test_solids_created_together_equal_those_created_alone(seed):
     made = [e for e in World(seed, extent=5000.0).things(400) if e.pose is not None]
     for alone, solid in zip(map(solid_of, made), solids_of(made), strict=True):
         for what in (

@@ -1,11 +1,11 @@
-"""What is on, inside and in what: kept commit by commit, it is always what it is from nothing."""
+"""Computed facts: incremental updates equal a rebuild."""
 
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
-from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
+from tests.kb_node.relations.entities import CORNER, ROOM, TABLE, TOP, thing
 
 CUP_ON_TABLE = ("cup1", "isOn", "table1")
 AT = st.tuples(
@@ -30,14 +30,14 @@ PLACES = st.builds(
     st.sampled_from([1.0, 3.0]),
 )
 CHANGES = st.lists(st.tuples(st.lists(THINGS | PLACES, max_size=4), st.lists(st.sampled_from(
-    ["table1", "cup1", "bowl1", "book1", "room1", "nobody"]
+    ["table1", "cup1", "bowl1", "book1", "room1", "missing"]
 ), max_size=2)), max_size=12)  # fmt: skip
 
 
 @settings(deadline=None, max_examples=300)
 @given(CHANGES)
 @example([([thing("bookshelf1", (-0.1, 0.1, 0.0))], []), ([thing("table1", (-0.3, 0.0, 0.0))], [])])
-def test_step_by_step_it_is_as_from_nothing(changes):
+def test_incremental_updates_equal_a_rebuild(changes):
     facts, there = Facts(), {}
     held = set()
     for changed, removed in changes:
@@ -48,19 +48,19 @@ def test_step_by_step_it_is_as_from_nothing(changes):
         assert gone <= held
         assert not come & held
         held = held - gone | come
-        anew = Facts()
-        anew.update(map(Placed.of, there.values()))
-        assert held == set(facts) == set(anew)
+        rebuilt = Facts()
+        rebuilt.update(map(PlacedEntity.of, there.values()))
+        assert held == set(facts) == set(rebuilt)
         for name in there:
-            assert facts.upward([name]) == anew.upward([name])
+            assert facts.with_contents([name]) == rebuilt.with_contents([name])
 
 
-def test_who_is_carried_by_what_changes():
+def test_with_contents_follows_changes():
     facts = Facts()
     book = thing("book1", (0.0, 0.0, TOP))
     cup = thing("cup1", (0.0, 0.0, TOP + book.size_m[2]))
     facts.update([ROOM, CORNER, TABLE, book, cup])
-    assert facts.upward(["table1"]) == {"table1", "book1", "cup1"}
+    assert facts.with_contents(["table1"]) == {"table1", "book1", "cup1"}
     changed = facts.update([], ["book1"])
     assert changed.come == {CUP_ON_TABLE}
     assert facts.update([], ["table1"]).gone == {CUP_ON_TABLE, ("table1", "isLocatedIn", "kitchen1")}

@@ -1,4 +1,4 @@
-"""Distances of boxes along the axes, and of what stands upright, are those that the search finds."""
+"""Distances of axis-aligned boxes and of upright parts equal those of the search."""
 
 import math
 
@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from semmap.nodes.kb_node.relations.geometry.convex import _searched, contact, convex
+from semmap.nodes.kb_node.relations.geometry.convex import _search_contact, contact, make_convex
 from semmap.nodes.kb_node.relations.geometry.solids import solid_of
-from tests.kb_node.relations.made import thing
+from tests.kb_node.relations.entities import thing
 
 AT = st.tuples(*[st.sampled_from([-0.7, -0.4, -0.1, 0.0, 0.05, 0.3, 0.5, 0.8])] * 3)
 SIZE = st.tuples(*[st.sampled_from([0.1, 0.3, 0.6])] * 3)
@@ -45,27 +45,31 @@ TURN = st.sampled_from([0.0, 0.3, YAW, 1.2])
 
 @st.composite
 def upright(draw):
-    """A box, a cylinder or a cylinder with an oval base."""
+    """Return a box, a cylinder, or a cylinder with an oval base."""
     a, b, c = draw(LENGTH), draw(LENGTH), draw(LENGTH)
     cos, sin = math.cos(turn := draw(TURN)), math.sin(turn)
     level = ((a * cos, a * sin, 0.0), (-b * sin, b * cos, 0.0))
     up = (0.0, 0.0, c)
-    return convex(draw(AT), (up,), level) if draw(st.booleans()) else convex(draw(AT), (*level, up), ())
+    return (
+        make_convex(draw(AT), (up,), level)
+        if draw(st.booleans())
+        else make_convex(draw(AT), (*level, up), ())
+    )
 
 
 @settings(deadline=None, max_examples=300)
 @given(upright(), upright())
-def test_what_stands_upright_is_as_far_apart_as_the_search_finds(one, other):
+def test_upright_distances_equal_the_search(one, other):
     if one.is_square and other.is_square:
         return
-    found, searched = contact(one, other), _searched(one, other, math.inf)
+    found, searched = contact(one, other), _search_contact(one, other, math.inf)
     assert found.distance == pytest.approx(searched.distance, abs=1e-12)
     assert found.normal == pytest.approx(searched.normal, abs=1e-12)
 
 
-def test_one_that_is_deep_beside_another_is_not_above_it():
-    post = convex((0.0, 0.0, 0.5), ((0.0, 0.0, 0.5),), ((0.1, 0.0, 0.0), (0.0, 0.1, 0.0)))
-    beside = convex((0.19, 0.0, 0.55), ((0.0, 0.0, 0.5),), ((0.1, 0.0, 0.0), (0.0, 0.1, 0.0)))
+def test_a_deep_side_overlap_is_not_above():
+    post = make_convex((0.0, 0.0, 0.5), ((0.0, 0.0, 0.5),), ((0.1, 0.0, 0.0), (0.0, 0.1, 0.0)))
+    beside = make_convex((0.19, 0.0, 0.55), ((0.0, 0.0, 0.5),), ((0.1, 0.0, 0.0), (0.0, 0.1, 0.0)))
     found = contact(beside, post)
     assert found.distance == pytest.approx(-0.01, abs=1e-6)
     assert found.normal == pytest.approx((1.0, 0.0, 0.0), abs=1e-3)
@@ -77,12 +81,12 @@ def test_the_normal_points_from_the_other_to_the_one():
     assert found.normal == (0.0, 0.0, 1.0)
 
 
-def test_what_just_meets_is_not_apart():
+def test_touching_parts_have_no_distance():
     found = contact(box((0.4, 0.0, 0.5), (0.6, 0.1, 0.1), 0.0), box((0.0, 0.0, 0.0), (0.5, 0.5, 0.5), 0.0))
     assert found == (0.0, (0.0, 0.0, 1.0))
 
 
-def test_a_contact_is_worked_out_once():
+def test_a_contact_is_computed_once():
     one, other = box((0.0, 0.0, 0.0), (0.3, 0.3, 0.3), YAW), box((0.34, 0.0, 0.0), (0.3, 0.3, 0.3), 0.0)
     assert contact(one, other) is contact(one, other)
     assert contact(one, other, -0.1) is not contact(one, other)

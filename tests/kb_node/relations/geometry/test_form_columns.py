@@ -1,4 +1,4 @@
-"""Many forms as arrays are what each of them is alone."""
+"""Forms as arrays equal single forms."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def quaternion(rng):
 
 
 def some(count=60):
-    """Forms of every model: drawn and stretched, upright, turned, leaning, on their side and head."""
+    """Return forms of every model: original and stretched, upright, rotated, tilted and overturned."""
     rng = random.Random(4)
     ways = [
         UPRIGHT,
@@ -58,7 +58,7 @@ def some(count=60):
 FORMS = some()
 
 
-def test_how_far_forms_reach():
+def test_extents_of_forms():
     for columns in (Extents(FORMS), FormColumns(FORMS)):
         assert columns.bounds.tolist() == [list(form.bounds) for form in FORMS]
         assert columns.top.tolist() == [form.top for form in FORMS]
@@ -66,7 +66,7 @@ def test_how_far_forms_reach():
         assert columns.bottoms().tolist() == [form.bottom for form in FORMS]
 
 
-def test_what_forms_measure():
+def test_properties_of_forms():
     columns = FormColumns(FORMS)
     assert columns.volume.tolist() == [form.volume for form in FORMS]
     assert columns.bottom.tolist() == [form.bottom for form in FORMS]
@@ -80,7 +80,7 @@ def test_what_forms_measure():
             assert np.allclose([-u - v, u - v, u + v, v - u], form.outline)
 
 
-def test_parts_are_where_each_form_has_them():
+def test_parts_equal_those_of_each_form():
     columns = FormColumns(FORMS)
     parts = columns.parts
     for row, form in enumerate(FORMS):
@@ -90,7 +90,7 @@ def test_parts_are_where_each_form_has_them():
         assert found == sorted((list(part.low), list(part.high)) for part in form.parts)
 
 
-def test_what_a_form_stands_on_is_within_its_base():
+def test_the_lowest_parts_are_within_the_base():
     columns = FormColumns(FORMS)
     for row, form in enumerate(FORMS):
         if not form.parts:
@@ -103,7 +103,7 @@ def test_what_a_form_stands_on_is_within_its_base():
             assert len(on) == 1
 
 
-def test_hollows_are_those_of_the_model_stretched_and_turned():
+def test_hollows_equal_those_of_the_transformed_model():
     columns = FormColumns(FORMS)
     hollows = columns.hollows
     for row, form in enumerate(FORMS):
@@ -122,7 +122,7 @@ def test_hollows_are_those_of_the_model_stretched_and_turned():
 
 
 def test_some_models_have_hollows_and_parts():
-    """Otherwise the tests above would say nothing."""
+    """Otherwise the tests above would be empty."""
     columns = FormColumns(FORMS)
     assert columns.hollows.count.sum() > 5
     assert columns.parts.is_disc.sum() > 5

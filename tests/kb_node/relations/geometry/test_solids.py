@@ -1,11 +1,11 @@
-"""A solid that replaces another is what it would be without that one."""
+"""A solid that replaces another equals a new one."""
 
 from __future__ import annotations
 
 import pytest
 
 from semmap.nodes.kb_node.relations.geometry.forms import form_of
-from semmap.nodes.kb_node.relations.geometry.placed import Placed
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import solid_of
 from semmap.schemas.entities import Pose, Size
 
@@ -21,9 +21,11 @@ def _placed(
     model: str = "chair",
     *,
     place: bool = False,
-) -> Placed:
+) -> PlacedEntity:
     pose = Pose(position_m=at, orientation_wxyz=turn)
-    return Placed(name="a", iri="http://example.org/a", pose=pose, size_m=size, place=place, model=model)
+    return PlacedEntity(
+        name="a", iri="http://example.org/a", pose=pose, size_m=size, place=place, model=model
+    )
 
 
 @pytest.mark.parametrize(
@@ -40,7 +42,9 @@ def _placed(
     ],
 )
 @pytest.mark.parametrize("turn", [(1.0, 0.0, 0.0, 0.0), LEANING])
-def test_bounds_bottom_and_top_after_a_change(now: Placed, turn: tuple[float, float, float, float]) -> None:
+def test_bounds_bottom_and_top_after_a_change(
+    now: PlacedEntity, turn: tuple[float, float, float, float]
+) -> None:
     before = solid_of(_placed(HERE, turn))
     fresh, moved = solid_of(now), solid_of(now, before)
     assert fresh is not None
@@ -49,10 +53,10 @@ def test_bounds_bottom_and_top_after_a_change(now: Placed, turn: tuple[float, fl
     assert (moved.is_place, moved.is_measured) == (fresh.is_place, fresh.is_measured)
 
 
-def test_what_stays_at_its_height_needs_no_parts() -> None:
+def test_a_horizontal_move_needs_no_parts() -> None:
     before = solid_of(_placed(HERE, size=(0.41, 0.31, 0.71)))
     assert before is not None
-    before.form.forget()
+    before.form.clear_cache()
     now = solid_of(_placed((5.0, 5.0, 0.3), size=(0.41, 0.31, 0.71)), before)
     assert now is not None
     assert now.bottom == before.bottom

@@ -3,9 +3,14 @@
 import pytest
 
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
-from semmap.nodes.kb_node.relations.measuring.arrangement import attached, attachments, between, next_to
+from semmap.nodes.kb_node.relations.measuring.arrangement import (
+    find_attachments,
+    find_between,
+    measure_attachment,
+    measure_next_to,
+)
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from tests.kb_node.relations.made import ROOM, TABLE, TOP, thing
+from tests.kb_node.relations.entities import ROOM, TABLE, TOP, thing
 
 WALL = thing("wall1", (0.0, 2.0, 0.0), size=(0.1, 4.0, 2.5), turn=(0.7071068, 0.0, 0.0, 0.7071068))
 PICTURE = thing("picture1", (0.0, 1.93, 1.4), turn=(0.7071068, 0.0, 0.0, -0.7071068))
@@ -28,34 +33,34 @@ def space(*entities):
 def test_next_to(other, holds):
     cup = thing("cup1", (0.0, 0.0, TOP))
     there = space(cup, other)
-    made = next_to(there, there.solids["cup1"], there.solids[other.name])
+    made = measure_next_to(there, there.solids["cup1"], there.solids[other.name])
     assert (None if made is None else made.holds) == holds
 
 
-def test_what_is_between_two_keeps_them_from_being_next_to_one_another():
+def test_an_object_between_two_prevents_next_to():
     there = space(*CUPS)
     first, middle, last = (there.solids[cup.name] for cup in CUPS)
-    assert between(there, first, last) == [middle]
-    assert between(there, first, middle) == []
-    made = next_to(there, first, last)
+    assert find_between(there, first, last) == [middle]
+    assert find_between(there, first, middle) == []
+    made = measure_next_to(there, first, last)
     assert made is None or not made.holds
-    assert next_to(there, first, middle).holds
+    assert measure_next_to(there, first, middle).holds
 
 
-def test_what_hangs_on_a_wall_is_attached_to_it():
+def test_a_picture_on_a_wall_is_attached_to_it():
     there = space(WALL, PICTURE)
     picture, wall = there.solids["picture1"], there.solids["wall1"]
-    assert attached(there, picture, wall).holds
-    assert attached(there, wall, picture) is None
-    assert list(attachments(there, picture)) == [wall]
+    assert measure_attachment(there, picture, wall).holds
+    assert measure_attachment(there, wall, picture) is None
+    assert list(find_attachments(there, picture)) == [wall]
 
 
-def test_what_stands_at_a_wall_is_not():
+def test_a_standing_object_is_not_attached_to_the_wall():
     there = space(WALL, thing("cabinet1", (0.0, 1.72, 0.0)))
-    assert list(attachments(there, there.solids["cabinet1"])) == []
+    assert list(find_attachments(there, there.solids["cabinet1"])) == []
 
 
-def test_attachments_are_facts_and_end_when_something_bears_it():
+def test_an_attachment_ends_with_a_support():
     facts = Facts()
     facts.update([ROOM, WALL, PICTURE])
     hangs = ("picture1", "isAttachedTo", "wall1")

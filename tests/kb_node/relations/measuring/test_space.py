@@ -1,4 +1,4 @@
-"""Situations, and what a person would say of them."""
+"""Spatial relations in small situations, compared with human judgement."""
 
 import math
 
@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from semmap.nodes.kb_node.relations.lazy_space import LazySpace
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.surroundings import Surroundings
 from semmap.ontology.model_shapes import shapes
-from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
+from tests.kb_node.relations.entities import CORNER, ROOM, TABLE, TOP, thing
 
 LYING = (math.cos(math.pi / 4), 0.0, math.sin(math.pi / 4), 0.0)
 BOWL = thing("bowl1", (0.1, 0.0, TOP))
@@ -20,7 +20,7 @@ BOARDS = [surface.height for surface in shapes()["bookshelf"].surfaces]
 
 def said(name, *entities):
     space = Space([ROOM, CORNER, TABLE, *entities])
-    container, supports, place = space.whereabouts(space.solids[name])
+    container, supports, place = space.spatial_relations(space.solids[name])
     assert len(supports) < 2
     return tuple(found and found[0].name for found in (container, *(supports or (None,)), place))
 
@@ -81,27 +81,27 @@ def said(name, *entities):
         ),
     ],
 )
-def test_where_a_thing_is(entity, others, expected):
+def test_spatial_relations(entity, others, expected):
     assert said(entity.name, entity, *others) == expected
 
 
-def test_what_has_no_position_is_nowhere():
+def test_an_entity_without_a_position_has_no_relations():
     space = Space([TABLE, thing("cup1", None)])
     assert list(space.solids) == ["table1"]
 
 
-def test_a_table_that_was_turned_over_carries_nothing():
+def test_an_overturned_table_supports_nothing():
     over = thing("table2", (2.5, 0.0, TOP), turn=(0.0, 1.0, 0.0, 0.0), model="table")
     assert said("cup1", over, thing("cup1", (2.5, 0.0, TOP)))[1] is None
 
 
-def test_a_model_longer_the_other_way_is_turned_as_the_simulator_turns_it():
+def test_a_model_is_turned_as_in_the_simulator():
     x, y, z = TABLE.size_m
     desk = thing("table2", (-2.0, 0.0, 0.0), model="table", size=(y, x, z))
     assert said("cup1", desk, thing("cup1", (-2.0 + 0.4 * y, 0.0, z)))[1] == "table2"
 
 
-def test_two_things_in_one_place_and_a_size_of_nothing_do_no_harm():
+def test_equal_positions_and_zero_sizes_are_accepted():
     twice = [thing("cup1", (0.0, 0.0, TOP)), thing("cup2", (0.0, 0.0, TOP))]
     assert said("cup1", *twice)[1] == "table1"
 
@@ -111,9 +111,9 @@ NAMES = st.sampled_from(["cup1", "table2", "bowl1", "book1", "chair1", "corner1"
 
 
 @given(st.lists(st.tuples(NAMES, st.none() | POSES), max_size=25))
-def test_bringing_it_up_to_date_is_building_it_anew(changes):
+def test_updating_a_space_equals_rebuilding_it(changes):
     there = {entity.name: entity for entity in (ROOM, TABLE)}
-    kept = Surroundings(lambda: list(there.values()), there.get)
+    kept = LazySpace(lambda: list(there.values()), there.get)
     kept.space()
     for name, pose in changes:
         if pose is None:
@@ -124,11 +124,11 @@ def test_bringing_it_up_to_date_is_building_it_anew(changes):
             there[name] = thing(
                 name, (x, y, z), yaw=yaw, place=place, size=(1.5, 1.5, 2.5) if place else None
             )
-        kept.touch([name])
+        kept.mark_changed([name])
     new, space = Space(there.values()), kept.space()
     assert space.solids.keys() == new.solids.keys()
     for name, solid in space.solids.items():
-        ours, theirs = space.whereabouts(solid), new.whereabouts(new.solids[name])
+        ours, theirs = space.spatial_relations(solid), new.spatial_relations(new.solids[name])
         assert named(ours) == named(theirs)
 
 
@@ -143,7 +143,7 @@ def tilted(degrees):
 
 
 def boards(degrees=50.0, height=1.0):
-    """Two boards, a metre wide, that meet in a valley at x = 0."""
+    """Return two boards, one metre wide, that meet in a valley at x = 0."""
     x, z = 0.5 * math.cos(math.radians(degrees)), 0.5 * math.sin(math.radians(degrees))
     size = (1.0, 1.0, 0.02)
     return [
@@ -152,32 +152,32 @@ def boards(degrees=50.0, height=1.0):
     ]
 
 
-def test_what_steep_sides_hold_is_on_them():
+def test_an_object_held_by_steep_sides_is_on_them():
     ball = thing("ball1", (0.0, 0.0, 1.09))
     space = Space([ROOM, *boards(), ball])
-    supports = space.whereabouts(space.solids["ball1"]).supports
+    supports = space.spatial_relations(space.solids["ball1"]).supports
     assert [(side.name, made.holds, made.share) for side, made in supports] == [
         ("board1", True, 0.0),
         ("board2", True, 0.0),
     ]
 
 
-def test_what_leans_and_stands_on_the_floor_is_on_nothing():
+def test_a_leaning_object_on_the_floor_has_no_support():
     low = boards(height=0.0)
     for there in ([ROOM, *low], low):  # also where no floor is known
         space = Space([*there, thing("ball1", (-0.235, 0.0, 0.0))])
-        assert space.whereabouts(space.solids["ball1"]).supports == ()
+        assert space.spatial_relations(space.solids["ball1"]).supports == ()
 
 
 @given(
     st.lists(st.tuples(st.floats(-3, 3), st.floats(-3, 3)), max_size=12),
     st.lists(st.sampled_from([0.0, 0.01, 0.02, 0.5]), min_size=3, max_size=3),
 )
-def test_who_is_around_is_the_same_whether_it_is_remembered_or_not(places, margins):
+def test_cached_neighbours_equal_uncached_ones(places, margins):
     space = Space([ROOM, TABLE, *(thing(f"cup{k}", (x, y, TOP)) for k, (x, y) in enumerate(places))])
     for solid in space.solids.values():
         expected = [set(space.around(solid, margin)) for margin in margins]
-        with space.remembering(of_few=True):
+        with space.caching(of_few=True):
             assert [set(space.around(solid, margin)) for margin in margins] == expected
-            assert set(space.bearers_around(solid)) == set(space.grid.around(solid.bounds, 0.0, solid))
-    assert space.memory is None
+            assert set(space.supporters_around(solid)) == set(space.grid.around(solid.bounds, 0.0, solid))
+    assert space.cache is None

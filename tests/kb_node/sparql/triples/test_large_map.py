@@ -122,7 +122,7 @@ def test_the_store_is_kept_between_starts_and_catches_up(node, tmp_path):
 def test_another_journal_has_another_store(node, tmp_path):
     assert node.count() == 3
     node.close()
-    seed.set_aside(tmp_path)
+    seed.archive_journal(tmp_path)
     assert not (tmp_path / FOLDER).exists()
     (tmp_path / FOLDER).mkdir()
     (tmp_path / FOLDER / f"1-{'00' * 16}").mkdir()  # as if the same number were another commit

@@ -1,4 +1,4 @@
-"""A compacted journal is the same map with less of a past, and says where that begins."""
+"""A compacted journal has the same map and a shorter history."""
 
 import shutil
 import time
@@ -8,7 +8,7 @@ import pytest
 from semmap.nodes.kb_node import undo
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.compaction import compaction, leftovers
-from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal, index_check
 from semmap.nodes.kb_node.storage.journal.verification import verify
 from semmap.nodes.kb_node.storage.repair.repair import repair
@@ -25,7 +25,7 @@ DAY_NS = 86_400 * 1_000_000_000
 
 @pytest.fixture
 def day(monkeypatch):
-    """A clock that tells how many days have gone by; nothing is older than some years."""
+    """A clock that counts days."""
     began_ns, days = time.time_ns() - 100 * DAY_NS, [0.0]
     monkeypatch.setattr("time.time_ns", lambda: began_ns + int(days[0] * DAY_NS))
 
@@ -37,7 +37,7 @@ def day(monkeypatch):
 
 @pytest.fixture
 def semantic_map(tmp_path, day):
-    """A commit a day for ten days: eight chairs, the fifth day another TBox, on the tenth chair2 goes."""
+    """A commit a day for ten days: eight chairs, a new TBox on day 5, no chair2 on day 10."""
     made = home.new_map(tmp_path)
     for number in range(1, 11):
         day(number)
@@ -60,8 +60,8 @@ def opened(data):
 
 
 @pytest.mark.parametrize("until", range(1, 10))
-def test_the_map_and_what_is_kept_of_its_past_stay_as_they_were(tmp_path, semantic_map, until):
-    journal, past = semantic_map._journal, Past(semantic_map._journal)
+def test_compaction_keeps_the_map_and_the_recent_history(tmp_path, semantic_map, until):
+    journal, past = semantic_map._journal, HistoryReader(semantic_map._journal)
     before, commits, origin = state(semantic_map), list(journal.commits()), journal.origin()
     as_of = {seq: past.entities(seq) for seq in range(1, 11)}
     compaction.compact(journal, past, until)
@@ -76,12 +76,12 @@ def test_the_map_and_what_is_kept_of_its_past_stay_as_they_were(tmp_path, semant
     }
     journal = Journal(tmp_path / FILENAME)
     assert (journal.first, journal.last, journal.origin()) == (until + 1, 12, origin)
-    assert not leftovers.are_there(journal)
+    assert not leftovers.exist(journal)
     journal.close()
     assert repair(tmp_path).startswith("nothing is damaged")
 
 
-def test_what_is_older_is_told_by_time(semantic_map, day):
+def test_the_range_depends_on_stamps(semantic_map, day):
     journal = semantic_map._journal
 
     def older(days):
@@ -91,12 +91,12 @@ def test_what_is_older_is_told_by_time(semantic_map, day):
     assert older(30) == (0, 0)
     assert older(3) == (7, 7)
     assert older(0.25) == (9, 9)  # the last one stays
-    compaction.compact(journal, Past(journal), 4)
+    compaction.compact(journal, HistoryReader(journal), 4)
     assert older(3) == (7, 3)
     assert older(30) == (4, 0)
 
 
-def test_a_clock_that_went_wrong_does_not_decide(tmp_path, day):
+def test_stamps_in_the_future_are_ignored(tmp_path, day):
     semantic_map = home.new_map(tmp_path)
     for number, stamped in enumerate((1, 900, 2, 8, 3, 9), start=1):
         day(stamped)
@@ -107,8 +107,8 @@ def test_a_clock_that_went_wrong_does_not_decide(tmp_path, day):
     home.close(semantic_map)
 
 
-def test_where_the_history_begins_is_said(semantic_map, day):
-    journal, past = semantic_map._journal, Past(semantic_map._journal)
+def test_the_start_of_the_history_is_listed(semantic_map, day):
+    journal, past = semantic_map._journal, HistoryReader(semantic_map._journal)
     stamp_ns = journal.stamps.of(6)
     compaction.compact(journal, past, 6)
     first, *rest = past.history(History())
@@ -120,9 +120,7 @@ def test_where_the_history_begins_is_said(semantic_map, day):
     assert [commit.seq for commit in past.history(History(since=8))] == [8, 9, 10]
     assert past.commits([3, 7]) == (journal.commit(7),)
     for when in (5, (stamp_ns - DAY_NS) / 1e9):
-        with pytest.raises(
-            errors.Refused, match=r"before commit 6 at .* has been compacted: the history begi"
-        ):
+        with pytest.raises(errors.Refused, match=r"before 6 at .* have been compacted: the history begi"):
             past.entities(when)
     assert len(past.entities((stamp_ns + DAY_NS // 2) / 1e9)) == 5
     with pytest.raises(
@@ -136,7 +134,7 @@ def test_where_the_history_begins_is_said(semantic_map, day):
     assert past.last_seen("chair2").removed is not None
 
 
-def test_an_end_in_the_middle_loses_nothing(tmp_path, semantic_map, monkeypatch):
+def test_an_interruption_loses_nothing(tmp_path, semantic_map, monkeypatch):
     journal, expected = semantic_map._journal, state(semantic_map)
     commits = list(journal.commits())
 
@@ -146,25 +144,25 @@ def test_an_end_in_the_middle_loses_nothing(tmp_path, semantic_map, monkeypatch)
     with monkeypatch.context() as patch:
         patch.setattr(index_check, "write", fail)
         with pytest.raises(MemoryError):
-            compaction.compact(journal, Past(journal), 6)
+            compaction.compact(journal, HistoryReader(journal), 6)
     assert list(journal.commits()) == commits
     with monkeypatch.context() as patch:
         patch.setattr(leftovers, "delete", lambda _: None)
-        compaction.compact(journal, Past(journal), 6)
+        compaction.compact(journal, HistoryReader(journal), 6)
     home.close(semantic_map)
     after, kept = opened(tmp_path)
     assert {e.name for e in after[2].entities} == {e.name for e in expected[2].entities}
     assert kept == commits[6:]
     journal = Journal(tmp_path / FILENAME)
-    assert leftovers.are_there(journal)
+    assert leftovers.exist(journal)
     leftovers.delete(journal)
-    assert not leftovers.are_there(journal)
+    assert not leftovers.exist(journal)
     verify(journal)
     journal.close()
 
 
 def test_compacting_again_goes_further(tmp_path, semantic_map):
-    journal, past = semantic_map._journal, Past(semantic_map._journal)
+    journal, past = semantic_map._journal, HistoryReader(semantic_map._journal)
     expected, commits = past.entities(10), list(journal.commits())
     for until in (3, 6, 9):
         compaction.compact(journal, past, until)
@@ -175,7 +173,7 @@ def test_compacting_again_goes_further(tmp_path, semantic_map):
     assert {e.name for e in opened(tmp_path)[0][2].entities} == {e.name for e in expected}
 
 
-def test_the_room_is_given_back(tmp_path):
+def test_disk_space_is_freed(tmp_path):
     semantic_map = home.new_map(tmp_path)
     for number in range(1, 101):
         one = chair("chair1", at=(number, 2.0, 0.0))
@@ -184,22 +182,22 @@ def test_the_room_is_given_back(tmp_path):
     home.close(semantic_map)
     size = (tmp_path / FILENAME).stat().st_size
     journal = Journal(tmp_path / FILENAME)
-    compaction.compact(journal, Past(journal), 190)
+    compaction.compact(journal, HistoryReader(journal), 190)
     journal.close()
     assert (tmp_path / FILENAME).stat().st_size < size / 3
 
 
 @pytest.mark.parametrize("checkpoint", [True, False])
 @pytest.mark.parametrize("part", ["head", "body"])
-def test_a_snapshot_that_is_damaged_is_noticed(tmp_path, semantic_map, checkpoint, part):
+def test_a_damaged_snapshot_is_detected(tmp_path, semantic_map, checkpoint, part):
     expected = state(semantic_map)
-    compaction.compact(semantic_map._journal, Past(semantic_map._journal), 6)
+    compaction.compact(semantic_map._journal, HistoryReader(semantic_map._journal), 6)
     if checkpoint:
         semantic_map.checkpoint()
     home.close(semantic_map)
     edit(tmp_path / FILENAME, f"UPDATE beginning SET {part} = x'1234'")
     with pytest.raises(
-        errors.Refused, match=r"history begins(?: with)? is damaged; continue with what is good"
+        errors.Refused, match=r"start of (?:the|its) history is damaged; recover the intact commits"
     ):
         opened(tmp_path)
     if checkpoint:
@@ -207,12 +205,12 @@ def test_a_snapshot_that_is_damaged_is_noticed(tmp_path, semantic_map, checkpoin
         after, _ = opened(tmp_path)
         assert {e.name for e in after[2].entities} == {e.name for e in expected[2].entities}
     else:
-        with pytest.raises(errors.Refused, match="no checkpoint to go on from; restore a backup"):
+        with pytest.raises(errors.Refused, match="no checkpoint to continue from; restore a backup"):
             repair(tmp_path)
 
 
 def test_repair_keeps_the_snapshot(tmp_path, semantic_map):
-    compaction.compact(semantic_map._journal, Past(semantic_map._journal), 6)
+    compaction.compact(semantic_map._journal, HistoryReader(semantic_map._journal), 6)
     home.close(semantic_map)
     flip(tmp_path / FILENAME, "commits", 8)
     assert repair(tmp_path).startswith("the map continues from commit 10 (commit 8 is damaged and left out)")
@@ -221,9 +219,9 @@ def test_repair_keeps_the_snapshot(tmp_path, semantic_map):
     assert {e.name for e in after[2].entities} == {f"chair{n}" for n in (1, 3, 4, 6, 7, 9)}
 
 
-def test_an_older_journal_is_not_taken_for_a_compacted_one(tmp_path, semantic_map):
+def test_an_older_journal_is_not_compacted(tmp_path, semantic_map):
     home.close(semantic_map)
     copy = shutil.copytree(tmp_path, tmp_path / "copy")
     edit(copy / FILENAME, "UPDATE meta SET value = x'35' WHERE key = 'format'")
-    with pytest.raises(errors.Refused, match="where its history begins is damaged"):
+    with pytest.raises(errors.Refused, match="the start of its history is damaged"):
         Journal(copy / FILENAME)

@@ -1,7 +1,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from semmap.nodes.kb_node.storage.encoding import checkpoint_encoding, dense
+from semmap.nodes.kb_node.storage.encoding import body_encoding, checkpoint_encoding
 from semmap.nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint, decode, encode
 from semmap.schemas import codec
 from tests.recorder.messages import entity
@@ -11,7 +11,7 @@ TRIPLES = st.lists(st.tuples(TERMS, TERMS, TERMS), max_size=20).map(tuple)
 
 
 @given(TRIPLES)
-def test_what_is_encoded_is_decoded(triples):
+def test_encoding_is_reversible(triples):
     checkpoint = Checkpoint(seq=7, triples=triples, entities=(entity("cup1", "Cup"),), read_by=b"1")
     assert decode(encode(checkpoint)) == checkpoint
 
@@ -45,7 +45,7 @@ def test_entities_share_what_they_have_in_common():
     assert a.provenance is b.provenance
 
 
-def test_what_an_older_version_wrote_is_read():
+def test_checkpoints_of_older_versions_are_read():
     checkpoint = Checkpoint(seq=7, triples=(("<urn:a>", "<urn:b>", '"c"'),), entities=(entity("a", "Cup"),))
     assert decode(codec.encode(checkpoint)) == checkpoint
-    assert decode(dense.encode(checkpoint, dense_from=1)) == checkpoint
+    assert decode(body_encoding.encode(checkpoint, compressed_from=1)) == checkpoint

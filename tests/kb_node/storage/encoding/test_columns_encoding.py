@@ -21,7 +21,7 @@ def columns():
 
 
 @pytest.mark.parametrize("size", [3, 1 << 20])
-def test_what_is_stored_is_restored(columns, monkeypatch, size):
+def test_stored_columns_are_restored(columns, monkeypatch, size):
     monkeypatch.setattr(columns_encoding, "_TERMS", size)
     monkeypatch.setattr(columns_encoding, "_NUMBERS", size)
     told = []
@@ -30,7 +30,7 @@ def test_what_is_stored_is_restored(columns, monkeypatch, size):
     assert read == Checkpoint(seq=7, columns=columns)
     assert len(told) >= 1 + 13
     assert (
-        set(read.said())
+        set(read.all_triples())
         == set(columns.triples())
         == set(FACTS) - set(triples(":cup7 a :Cup ; :isOn :table ."))
     )
@@ -39,7 +39,7 @@ def test_what_is_stored_is_restored(columns, monkeypatch, size):
     assert filled.holds(triples(":cup :isAt :kitchen .")[0])
 
 
-def test_frames_are_in_one_order_whatever_the_machine(columns, monkeypatch):
+def test_frames_have_the_same_byte_order_everywhere(columns, monkeypatch):
     body = checkpoint_encoding.encode(Checkpoint(seq=7, columns=columns))
     monkeypatch.setattr(columns_encoding.sys, "byteorder", "big")
     assert checkpoint_encoding.decode(body).columns.subject != columns.subject

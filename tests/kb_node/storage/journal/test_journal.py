@@ -20,7 +20,7 @@ def commit(seq, text="x"):
 
 
 def written(journal, after=0):
-    """The commits as they were written: the digests are the journal's."""
+    """Return the commits without the digests, which the journal adds."""
     commits = list(journal.commits(after=after))
     assert [c.digest for c in commits] == [journal.digest(c.seq).hex() for c in commits]
     return [structs.replace(c, digest="") for c in commits]
@@ -49,7 +49,7 @@ def flip(path, table, seq):
     db.close()
 
 
-def test_what_was_appended_is_there_again(path):
+def test_appended_commits_are_read_again(path):
     write(path, commit(1), commit(2), commit(3))
     journal = Journal(path)
     assert written(journal) == [commit(1), commit(2), commit(3)]
@@ -62,14 +62,14 @@ def test_what_was_appended_is_there_again(path):
     journal.close()
 
 
-def test_a_second_knowledge_base_is_refused(journal, path):
+def test_a_second_knowledge_base_is_rejected(journal, path):
     with pytest.raises(InUse, match=r"another knowledge base is using .*journal\.sqlite"):
         Journal(path)
     journal.append(commit(1))
 
 
 @pytest.mark.parametrize("damaged", [1, 2, 3])
-def test_a_flipped_byte_is_named(path, damaged):
+def test_a_flipped_byte_names_the_commit(path, damaged):
     write(path, commit(1), commit(2), commit(3))
     flip(path, "commits", damaged)
     journal = Journal(path)
@@ -91,7 +91,7 @@ def test_a_flipped_byte_is_named(path, damaged):
         ("UPDATE commits SET body = (SELECT body FROM commits WHERE seq = 1) WHERE seq = 2", 2),
     ],
 )
-def test_a_missing_or_forged_commit_is_named(path, statement, named):
+def test_a_missing_or_forged_commit_is_reported(path, statement, named):
     write(path, commit(1), commit(2), commit(3))
     edit(path, statement)
     journal = Journal(path)
@@ -100,16 +100,16 @@ def test_a_missing_or_forged_commit_is_named(path, statement, named):
     journal.close()
 
 
-def test_a_damaged_tbox_is_noticed(path):
+def test_a_damaged_tbox_is_detected(path):
     write(path)
     edit(path, "UPDATE tboxes SET value = x'00' WHERE seq = 0")
     journal = Journal(path)
-    with pytest.raises(errors.Refused, match=r"the TBox in it is damaged; continue .* semmap repair"):
+    with pytest.raises(errors.Refused, match=r"its TBox is damaged; recover .* semmap repair"):
         journal.tbox(0)
     journal.close()
 
 
-def test_damaged_pages_are_told(path):
+def test_damaged_pages_are_reported(path):
     write(path, *(commit(i, "x" * 3000) for i in range(1, 20)))
     content = bytearray(path.read_bytes())
     content[4096:] = b"\xff" * (len(content) - 4096)
@@ -122,18 +122,18 @@ def test_damaged_pages_are_told(path):
     ("content", "text"),
     [(b"", "cannot be read: no such table"), (b"not a database " * 99, "is damaged: file is not a database")],
 )
-def test_what_is_no_journal_is_refused(path, content, text):
+def test_other_files_are_rejected(path, content, text):
     path.write_bytes(content)
     with pytest.raises(errors.Refused, match=text):
         Journal(path)
 
 
-def test_no_journal_is_made_where_there_is_no_folder(tmp_path):
+def test_a_missing_folder_is_rejected(tmp_path):
     with pytest.raises(errors.Refused, match="cannot create a journal at"):
         Journal.create(tmp_path / "nowhere" / "journal.sqlite", b"")
 
 
-def test_another_version_is_refused_and_released(path):
+def test_another_version_is_rejected_and_closed(path):
     write(path)
     edit(path, "UPDATE meta SET value = x'00' WHERE key = 'format'")
     with pytest.raises(errors.Refused, match="another version of semmap; start a new map with --fresh"):
@@ -149,7 +149,7 @@ def checkpoint(seq):
     )
 
 
-def test_the_newest_sound_checkpoint_is_taken(path, journal):
+def test_the_newest_intact_checkpoint_is_used(path, journal):
     assert journal.last_checkpoint() == Checkpoint(seq=0)
     for seq in (10, 20, 30):
         journal.checkpoint(checkpoint(seq))
@@ -166,12 +166,12 @@ def test_the_newest_sound_checkpoint_is_taken(path, journal):
 
 
 BULKY = random.Random(2).randbytes(100_000).hex()
-"""A text that no compression makes small."""
+"""A string that cannot be compressed."""
 
 
 @contextmanager
 def full_by_page_count(journal):
-    """SQLite may not use another page."""
+    """Limit the number of pages of SQLite."""
     with journal.file.reading() as db:
         pages = db.execute("PRAGMA page_count").fetchone()[0]
         db.execute(f"PRAGMA max_page_count={pages}")
@@ -181,7 +181,7 @@ def full_by_page_count(journal):
 
 @contextmanager
 def full_by_file_size(journal):
-    """The operating system takes no more bytes."""
+    """Limit the file size by the operating system."""
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     size = journal.path.stat().st_size  # less than the log, which is as long as it gets from the beginning
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
@@ -190,7 +190,7 @@ def full_by_file_size(journal):
 
 
 @pytest.mark.parametrize("full", [full_by_page_count, full_by_file_size])
-def test_a_full_disk_refuses_and_nothing_is_half_there(journal, path, full):
+def test_a_full_disk_writes_nothing(journal, path, full):
     journal.append(commit(1))
     big = commit(2, BULKY)
     with full(journal):

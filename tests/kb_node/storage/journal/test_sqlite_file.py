@@ -54,7 +54,7 @@ def test_the_log_never_grows(file, tmp_path):
     assert numbers(file) == list(range(1500))
 
 
-def test_what_was_written_is_there_after_a_kill(file, tmp_path):
+def test_written_data_survives_a_kill(file, tmp_path):
     write(file, 1)
     left = tmp_path / "left"
     left.mkdir()
@@ -68,7 +68,7 @@ def test_what_was_written_is_there_after_a_kill(file, tmp_path):
 
 
 @pytest.mark.parametrize("kind", [write, write_together])
-def test_a_transaction_is_all_or_nothing(file, kind):
+def test_a_transaction_is_atomic(file, kind):
     kind(file, 1, 2)
     with pytest.raises(NotWritten, match=r"numbers could not be written to .*journal\.sqlite: UNIQUE"):
         kind(file, 3, 3)
@@ -81,7 +81,7 @@ def fail_after(file, number):
         raise ZeroDivisionError
 
 
-def test_so_it_is_whatever_goes_wrong_within(file):
+def test_any_error_rolls_back(file):
     with pytest.raises(ZeroDivisionError):
         fail_after(file, 1)
     assert numbers(file) == []
@@ -99,17 +99,17 @@ def test_a_thread_waits_until_another_has_written(file):
     assert seen == [[1, 2]]
 
 
-def test_a_second_process_is_refused(file, tmp_path):
+def test_a_second_process_is_rejected(file, tmp_path):
     with pytest.raises(InUse, match="another knowledge base is using"):
         JournalFile(tmp_path / "journal.sqlite")
 
 
-def test_a_folder_is_no_file(tmp_path):
+def test_a_folder_is_rejected(tmp_path):
     with pytest.raises(errors.Refused, match="cannot be read: unable to open"):
         JournalFile(tmp_path)
 
 
-def test_one_that_is_closed_is_our_own_fault(file):
+def test_use_after_close_is_a_programming_error(file):
     file.close()
     with pytest.raises(sqlite3.ProgrammingError):
         numbers(file)

@@ -18,7 +18,7 @@ def at(seq, stamp_ns):
         ((100, 110, 1, 2), (0, 1, 2, 50, 105, 200), (0, 3, 4, 4, 4, 4)),
     ],
 )
-def test_a_time_is_found_where_the_clock_was_set_back(journal, stamps, asked, found):
+def test_times_are_found_after_a_clock_change(journal, stamps, asked, found):
     for seq, stamp_ns in enumerate(stamps, start=1):
         journal.append(at(seq, stamp_ns))
         journal.stamps.seq_at(stamp_ns)  # what came since is read the next time

@@ -1,4 +1,4 @@
-"""A journal whose process was killed has its last commits in SQLite's log: damage there is noticed, too."""
+"""Damage to SQLite's write-ahead log, which holds the last commits after a kill, is detected."""
 
 import io
 import os
@@ -19,7 +19,7 @@ from tests.kb_node.storage.repair.test_repair import attempt
 
 @pytest.fixture(scope="module")
 def killed(tmp_path_factory):
-    """What is on disk after a kill: eight commits in the log."""
+    """Return the files after a kill, with eight commits in the log."""
     folder, copy = tmp_path_factory.mktemp("running"), tmp_path_factory.mktemp("killed")
     semantic_map = home.new_map(folder)
     for number in range(1, 9):
@@ -59,30 +59,30 @@ ALL = {f"chair{number}" for number in range(1, 9)}
         (True, 0, True),
     ],
 )
-def test_a_transaction_may_be_unfinished_only_if_the_machine_lost_power(is_before_boot, recovered, lost):
+def test_an_unfinished_transaction_is_accepted_after_a_power_failure_only(is_before_boot, recovered, lost):
     log = Log(Path("journal"), io.BytesIO(), (3, 6, 9), is_before_boot)
-    assert log.lost(recovered) is lost
+    assert log.has_lost_commits(recovered) is lost
 
 
-def test_a_sound_log_is_read(data):
+def test_an_intact_log_is_read(data):
     assert (data / f"{FILENAME}-wal").stat().st_size > 32
     assert names(data) == ALL
 
 
-def test_a_log_that_ends_in_the_middle_of_a_transaction_is_read_up_to_it(data):
-    """That one was never acknowledged."""
+def test_a_log_with_an_unfinished_transaction_is_read_up_to_it(data):
+    """That transaction was never acknowledged."""
     wal = data / f"{FILENAME}-wal"
     os.truncate(wal, end_of(wal) - 5000)
     assert names(data) == ALL - {"chair8"}
 
 
 def end_of(wal):
-    """Where what is written ends; room may have been made behind it."""
+    """Return where the written part ends. Space may be preallocated behind it."""
     return len(wal.read_bytes().rstrip(b"\0"))
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_a_flipped_bit_is_noticed_and_costs_little(data, seed):
+def test_a_flipped_bit_is_detected_and_loses_little(data, seed):
     wal, chance = data / f"{FILENAME}-wal", random.Random(seed)
     content = bytearray(wal.read_bytes())
     at = chance.randrange(32) if seed % 4 == 0 else chance.randrange(end_of(wal))

@@ -1,4 +1,4 @@
-"""Damaged journals: refused with the commit's number, and mended up to the last good one."""
+"""Damaged journals are rejected with the commit's number, and repaired up to the last intact one."""
 
 import os
 import random
@@ -34,7 +34,7 @@ def whole(tmp_path_factory):
 
 @pytest.fixture
 def data(whole, tmp_path):
-    """A copy of it to be damaged."""
+    """A copy of the folder, to be damaged."""
     return shutil.copytree(whole, tmp_path, dirs_exist_ok=True)
 
 
@@ -48,7 +48,7 @@ def opened(data):
 
 
 def attempt(function, data):
-    """What a function gives, or the words with which it refuses."""
+    """Return the result of a function, or its error message."""
     try:
         return function(data)
     except errors.Refused as error:
@@ -56,7 +56,7 @@ def attempt(function, data):
 
 
 @pytest.mark.parametrize("broken", [1, 3, 5, 8])
-def test_what_is_good_after_a_damaged_commit_is_kept(data, broken):
+def test_intact_commits_after_a_damaged_one_are_kept(data, broken):
     _, commits = opened(data)
     flip(data / FILENAME, "commits", broken)
     damaged = (data / FILENAME).read_bytes()
@@ -68,17 +68,17 @@ def test_what_is_good_after_a_damaged_commit_is_kept(data, broken):
     )
     (kept,) = (data / "kept").iterdir()
     assert (kept / FILENAME).read_bytes() == damaged
-    (seq, _, snapshot), mended = opened(data)
+    (seq, _, snapshot), repaired = opened(data)
     assert seq == 8
-    assert mended[: broken - 1] == commits[: broken - 1]
-    assert (mended[broken - 1].inserted, mended[broken - 1].retracted) == ((), ())
-    assert [c.inserted for c in mended[broken:]] == [c.inserted for c in commits[broken:]]
+    assert repaired[: broken - 1] == commits[: broken - 1]
+    assert (repaired[broken - 1].inserted, repaired[broken - 1].retracted) == ((), ())
+    assert [c.inserted for c in repaired[broken:]] == [c.inserted for c in commits[broken:]]
     assert {e.name for e in snapshot.entities} == {f"chair{n}" for n in range(1, 9) if n not in (5, broken)}
     assert repair(data) == f"nothing is damaged in {data}: the map continues from commit 8"
 
 
 def story(folder, *steps):
-    """A journal with a commit for each step, a function of the map that gives a transaction's triples."""
+    """Create a journal with a commit for each step, a function from the map to triples."""
     semantic_map = home.new_map(folder)
     for number, step in enumerate(steps, start=1):
         insert, retract = step
@@ -87,7 +87,7 @@ def story(folder, *steps):
 
 
 def at(name, before, after):
-    """From one x to another."""
+    """Return a step that changes an x coordinate."""
     here = [t for t in chair(name, at=(before, 2.0, 0.0)) if "coordinates_x" in t[1]]
     there = [t for t in chair(name, at=(after, 2.0, 0.0)) if "coordinates_x" in t[1]]
     return there, here
@@ -104,7 +104,7 @@ MOVES = (
 
 
 def where(data):
-    """Each entity's x."""
+    """Return the x of each entity."""
     (_, _, snapshot), _ = opened(data)
     return {e.name: e.pose.position_m[0] for e in snapshot.entities}
 
@@ -112,18 +112,18 @@ def where(data):
 @pytest.mark.parametrize(
     ("broken", "unfit", "there"),
     [
-        (1, "left out, too, because it would not fit without that: commits 3 and 5", {"chair2": 1.0}),
+        (1, "also left out because of missing changes: commits 3 and 5", {"chair2": 1.0}),
         (3, "", {"chair1": 5.0, "chair2": 1.0}),  # where it is set from there is known to the next one
-        (4, "left out, too, because it would not fit without that: commit 6", {"chair1": 5.0, "chair2": 1.0}),
+        (4, "also left out because of missing changes: commit 6", {"chair1": 5.0, "chair2": 1.0}),
         (6, "", {"chair1": 5.0, "chair2": 1.0, "chair3": 1.0}),
     ],
 )
-def test_what_does_not_fit_without_it_is_told(tmp_path, broken, unfit, there):
+def test_dependent_commits_are_reported(tmp_path, broken, unfit, there):
     home.close(story(tmp_path, *MOVES))
     flip(tmp_path / FILENAME, "commits", broken)
     said = repair(tmp_path)
     assert f"(commit {broken} is damaged and left out" in said
-    assert (unfit in said) if unfit else "left out, too" not in said
+    assert (unfit in said) if unfit else "also left out" not in said
     assert where(tmp_path) == there
     _, commits = opened(tmp_path)
     assert [c.reason for c in commits if "left out" not in c.reason] == [
@@ -132,22 +132,22 @@ def test_what_does_not_fit_without_it_is_told(tmp_path, broken, unfit, there):
 
 
 @pytest.mark.parametrize("broken", [(1,), (3,), (2, 3), (1, 5), (6,)], ids=str)
-def test_a_checkpoint_tells_what_damaged_commits_have_changed(tmp_path, broken):
+def test_a_checkpoint_restores_damaged_commits(tmp_path, broken):
     semantic_map = story(tmp_path, *MOVES)
     semantic_map.checkpoint()
     home.close(semantic_map)
     (_, triples, _), commits = opened(tmp_path)
     for seq in broken:
         flip(tmp_path / FILENAME, "commits", seq)
-    assert "known from the checkpoint after commit 6); the damaged file" in repair(tmp_path)
-    (_, mended_triples, _), mended = opened(tmp_path)
-    assert mended_triples == triples
+    assert "restored from the checkpoint after commit 6); the damaged file" in repair(tmp_path)
+    (_, repaired_triples, _), repaired = opened(tmp_path)
+    assert repaired_triples == triples
     assert where(tmp_path) == {"chair1": 5.0, "chair2": 1.0}
-    assert [c.inserted for c in mended[broken[-1] :]] == [c.inserted for c in commits[broken[-1] :]]
+    assert [c.inserted for c in repaired[broken[-1] :]] == [c.inserted for c in commits[broken[-1] :]]
 
 
 @pytest.mark.parametrize("seq", range(1, 9))
-def test_a_digest_that_is_damaged_costs_nothing(data, seq):
+def test_a_damaged_digest_loses_nothing(data, seq):
     """The next commit has it, too."""
     expected = opened(data)
     edit(data / FILENAME, "UPDATE commits SET digest = x'00112233' WHERE seq = ?", seq)
@@ -155,14 +155,14 @@ def test_a_digest_that_is_damaged_costs_nothing(data, seq):
         opened(data)
     said = repair(data)
     if seq < 8:
-        assert "(all of them are good)" in said
+        assert "(all commits are intact)" in said
         assert opened(data) == expected
     else:
         assert "commit 8 is damaged and left out" in said
 
 
 @pytest.mark.parametrize("left", [0.5, 0.7, 0.75, 0.85, 0.95])
-def test_a_journal_that_was_cut_off_goes_on_from_what_is_left(data, left):
+def test_a_truncated_journal_is_repaired(data, left):
     _, commits = opened(data)
     path = data / FILENAME
     os.truncate(path, int(path.stat().st_size * left))
@@ -171,15 +171,15 @@ def test_a_journal_that_was_cut_off_goes_on_from_what_is_left(data, left):
     first = data / "first.nt"
     first.write_text("".join(f"{s} {p} {o} .\n" for s, p, o in home.TBOX))
     assert repair(data, tbox=first).startswith("the map continues from commit ")
-    (seq, _, _), mended = opened(data)
+    (seq, _, _), repaired = opened(data)
     assert seq <= 8
     assert all(
         ours.id == theirs.id or "left out" in ours.reason
-        for ours, theirs in zip(mended, commits, strict=False)
+        for ours, theirs in zip(repaired, commits, strict=False)
     )
 
 
-def test_a_full_disk_ends_the_repair_and_leaves_the_damaged_file(data, monkeypatch):
+def test_a_full_disk_aborts_the_repair(data, monkeypatch):
     flip(data / FILENAME, "commits", 8)
     damaged = (data / FILENAME).read_bytes()
     append = Journal.append
@@ -197,8 +197,8 @@ def test_a_full_disk_ends_the_repair_and_leaves_the_damaged_file(data, monkeypat
     assert repair(data).startswith("the map continues from commit 8 ")
 
 
-def test_it_tells_how_far_it_is(data, monkeypatch):
-    monkeypatch.setattr(repair_module, "_TOLD_EVERY_S", 0.0)
+def test_progress_is_reported(data, monkeypatch):
+    monkeypatch.setattr(repair_module, "_REPORT_INTERVAL_S", 0.0)
     flip(data / FILENAME, "commits", 5)
     told = []
     repair(data, told.append)
@@ -209,7 +209,7 @@ def test_it_tells_how_far_it_is(data, monkeypatch):
     assert told == [*checked, *saved, "the map is rebuilt from 8 commits"]
 
 
-def test_a_repaired_map_takes_commits_again(data):
+def test_a_repaired_map_accepts_commits(data):
     flip(data / FILENAME, "commits", 7)
     repair(data)
     journal = Journal(data / FILENAME)
@@ -220,8 +220,8 @@ def test_a_repaired_map_takes_commits_again(data):
 
 
 @pytest.mark.parametrize("seed", range(30))
-def test_flipped_bits_are_noticed_or_do_no_harm(data, seed):
-    """Wherever they are: in commits, in what these are found by, in the checkpoint, in SQLite's own pages."""
+def test_flipped_bits_are_detected_or_harmless(data, seed):
+    """Anywhere: in commits, indexes, the checkpoint, and SQLite's own pages."""
     semantic_map = SemanticMap(Journal(data / FILENAME))
     semantic_map.checkpoint()
     semantic_map.commit(transaction("last", chair("chair9")))
@@ -237,13 +237,13 @@ def test_flipped_bits_are_noticed_or_do_no_harm(data, seed):
     found = attempt(looked_at, data)
     assert found == expected or "is damaged" in found
     if "start a new map with --fresh" not in attempt(repair, data):
-        _, mended = opened(data)
+        _, repaired = opened(data)
         theirs = {commit.seq: commit for commit in expected[0][1]}
-        assert all("commit" in ours.reason or ours.inserted == theirs[ours.seq].inserted for ours in mended)
+        assert all("commit" in ours.reason or ours.inserted == theirs[ours.seq].inserted for ours in repaired)
 
 
 def looked_at(data):
-    """What is there, by every way of finding it."""
+    """Return the contents, read in every possible way."""
     everything = opened(data)
     journal = Journal(data / FILENAME)
     try:
@@ -254,7 +254,7 @@ def looked_at(data):
         journal.close()
 
 
-def test_what_cannot_be_mended_says_how_to_go_on(data):
+def test_an_unrepairable_journal_names_the_next_step(data):
     (data / FILENAME).write_bytes(b"not a database " * 99)
     with pytest.raises(errors.Refused, match=r"file is not a database; start a new map with --fresh"):
         repair(data)
@@ -262,14 +262,14 @@ def test_what_cannot_be_mended_says_how_to_go_on(data):
 
 def test_a_commit_whose_tbox_is_damaged_is_left_out(data):
     edit(data / FILENAME, "UPDATE tboxes SET value = x'00' WHERE seq = 5")
-    with pytest.raises(errors.Refused, match="the TBox in it is damaged"):
+    with pytest.raises(errors.Refused, match="its TBox is damaged"):
         opened(data)
     assert repair(data).startswith("the map continues from commit 8 (commit 5 is damaged and left out)")
     assert {f"chair{n}" for n in (1, 2, 3, 4, 6, 7, 8)} <= where(data).keys()
 
 
 def damage_a_page_of_the_tbox(path):
-    """After that SQLite cannot read the row at all, and calls the file malformed."""
+    """Then SQLite cannot read the row, and reports a malformed file."""
     content = bytearray(path.read_bytes())
     tbox = tbox_of(path)
     page = content.index(tbox[len(tbox) // 2 :][:64]) // 4096 * 4096
@@ -286,7 +286,7 @@ def tbox_of(path):
 
 
 @pytest.mark.parametrize("how", ["digest", "pages"])
-def test_a_first_tbox_that_is_lost_can_be_given_anew(data, how, tmp_path_factory):
+def test_a_lost_initial_tbox_can_be_provided(data, how, tmp_path_factory):
     expected = opened(data)
     tbox = tmp_path_factory.mktemp("tbox") / "tbox.nt"
     tbox.write_bytes(tbox_of(data / FILENAME))
@@ -311,7 +311,7 @@ def scene(path):
     return path
 
 
-def test_nothing_and_what_is_in_use_are_refused(data, tmp_path_factory):
+def test_missing_and_used_journals_are_rejected(data, tmp_path_factory):
     with pytest.raises(errors.BadFile, match="there is no map in"):
         repair(tmp_path_factory.mktemp("empty"))
     journal = Journal(data / FILENAME)

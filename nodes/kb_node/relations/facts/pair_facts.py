@@ -1,0 +1,269 @@
+"""Relations between neighbouring objects, measured only on request.
+
+There are too many to store all of them at each commit: fifty objects in a room are near most of the others.
+In a crowd only counted objects are compared (`measuring.crowds`), so that the work is bounded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Set
+from typing import Final
+
+from semmap.nodes.kb_node.relations.facts.place_facts import Changed, Fact
+from semmap.nodes.kb_node.relations.geometry.forms import Bounds
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.arrangement import measure_next_to
+from semmap.nodes.kb_node.relations.measuring.measures import Measure
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.schemas.entities import Entity
+from semmap.schemas.relations import RelationName
+
+MIRRORED: Final[dict[RelationName, RelationName]] = {
+    "touches": "touches",
+    "isUnder": "isAbove",
+    "isAbove": "isUnder",
+    "isNextTo": "isNextTo",
+    "isNear": "isNear",
+}
+"""The relations measured here, each with its inverse."""
+_MEASURES: Final[dict[RelationName, Callable[[Space, Solid, Solid], Measure | None]]] = {
+    "touches": lambda space, one, other: (
+        None if other.is_place else measures.touches(one, other, space.limits)
+    ),
+    "isUnder": lambda space, one, other: measures.beneath(one, other, space.limits),
+    "isAbove": lambda space, one, other: measures.beneath(other, one, space.limits),
+    "isNextTo": measure_next_to,
+    "isNear": lambda space, one, other: measures.near(one, other, space.limits),
+}
+_ALL: Final = frozenset(MIRRORED)
+_SupportState = tuple[str | None, frozenset[str]]
+"""What an object is inside, and what it is on."""
+
+
+def measure_pair(
+    space: Space, solid: Solid, other: Solid, wanted: Set[RelationName] = _ALL
+) -> Iterator[tuple[RelationName, Measure]]:
+    """Yield the measured relations of a pair.
+
+    An object is not reported as near or under what it is on or inside.
+    """
+    if is_separate(space, solid, other):
+        names: Iterable[RelationName] = (name for name in MIRRORED if name in wanted)
+    else:
+        names = ("touches",) if "touches" in wanted else ()
+    for name in names:
+        made = _MEASURES[name](space, solid, other)
+        if made is not None:
+            yield name, made
+
+
+def is_separate(space: Space, solid: Solid, other: Solid) -> bool:
+    """Return whether `solid` is not on or in `other`, nor a larger support or container of it."""
+    is_content = _is_on_or_in(space, other, solid) and solid.footprint >= other.footprint
+    return not (is_content or _is_on_or_in(space, solid, other))
+
+
+def _is_on_or_in(space: Space, solid: Solid, other: Solid) -> bool:
+    container, supports, _ = space.spatial_relations(solid)
+    return other in (container and container[0], *(support for support, _ in supports))
+
+
+def are_near(space: Space, one: Solid, other: Solid) -> bool:
+    """Return whether `isNear` is a fact, with the same meaning as in `list --near` and SPARQL."""
+    made = measures.near(one, other, space.limits)
+    if made is None or not made.holds or not (space.counts(one) and space.counts(other)):
+        return False
+    return is_separate(space, one, other) or is_separate(space, other, one)
+
+
+class PairFacts:
+    """The requested facts of pairs, updated with the map.
+
+    A fact is reported once for a pair, with the alphabetically first name as its subject.
+    """
+
+    def __init__(self, space: Space) -> None:
+        """`space` must not be changed by anything else."""
+        self.space = space
+        space.pop_shifted()
+        self._whole: frozenset[RelationName] = frozenset()
+        self._some: frozenset[str] = frozenset()
+        self._pairs: dict[str, dict[str, tuple[RelationName, ...]]] = {}
+        """By both names."""
+        self._support_states: dict[str, _SupportState] = {}
+
+    def set_scope(self, whole: Iterable[RelationName], some: Iterable[str]) -> Changed:
+        """Keep the relations `whole` of all objects, and all relations of the objects `some`, from now on."""
+        whole, some = frozenset(whole), frozenset(some)
+        whole |= {MIRRORED[relation] for relation in whole}
+        more, others = whole - self._whole, some - self._some
+        is_less = not (whole >= self._whole and some >= self._some)
+        self._whole, self._some = whole, some
+        if not (whole or some):
+            self._support_states.clear()
+        gone, come = self._compute(others)
+        if is_less:
+            for name, there in list(self._pairs.items()):
+                for other, known in list(there.items()):
+                    if name < other and not (name in some or other in some):
+                        now = tuple(relation for relation in known if relation in whole)
+                        self._replace((name, other), now, gone, come)
+        if more:
+            come |= self._compute(self.space.solids, more=more).come
+        return Changed(gone, come)
+
+    def holds(self, name: str, relation: RelationName, other: str) -> bool:
+        """Return whether a fact holds for a pair, in either order."""
+        if other < name:
+            name, other, relation = other, name, MIRRORED[relation]
+        return relation in self._pairs.get(name, {}).get(other, ())
+
+    def update(self, changed: Iterable[Entity | PlacedEntity], removed: Iterable[str] = ()) -> Changed:
+        """Apply added, changed and removed entities."""
+        space, moved = self.space, list[Solid]()
+        if not self._support_states and (self._whole or self._some):
+            with space.caching():
+                self._support_states = {
+                    n: self._support_state(s) for n, s in space.solids.items() if self._takes_part(s)
+                }
+        names: dict[str, None] = {}
+        for name in removed:
+            names[name] = None
+            moved += filter(None, (space.solids.get(name),))
+            space.remove(name)
+        for entity in changed:
+            names[entity.name] = None
+            moved += filter(None, (space.solids.get(entity.name),))
+            moved += filter(None, (space.put(entity),))
+        shifted = space.pop_shifted()
+        names.update((solid.name, None) for solid in shifted)
+        moved += shifted
+        if not (self._whole or self._some):
+            return Changed(set(), set())
+        with space.caching():
+            for solid in moved:
+                for other in space.counted_around(solid):
+                    if self._takes_part(other) and self._support_states.get(
+                        other.name
+                    ) != self._support_state(other):
+                        names[other.name] = None
+            for name in names:
+                now = space.solids.get(name)
+                if now is None or not self._takes_part(now):
+                    self._support_states.pop(name, None)
+                else:
+                    self._support_states[name] = self._support_state(now)
+        return self._compute(names, moved)
+
+    def _takes_part(self, solid: Solid) -> bool:
+        """Return whether an object is in any pair."""
+        return not solid.is_place and self.space.counts(solid)
+
+    def _support_state(self, solid: Solid) -> _SupportState:
+        container, supports, _ = self.space.spatial_relations(solid)
+        return container and container[0].name, frozenset(support.name for support, _ in supports)
+
+    def _compute(
+        self, names: Iterable[str], moved: Iterable[Solid] = (), more: Set[RelationName] = frozenset()
+    ) -> Changed:
+        """Compute all pairs of these objects, and the pairs that moved objects were or are between.
+
+        With `more`, only these relations are measured, and known ones are kept.
+        """
+        gone, come = set[Fact](), set[Fact]()
+        done = set[tuple[str, str]]()
+        space = self.space
+        with space.caching():
+            for name in tuple(names):
+                solid = space.solids.get(name)
+                others = dict.fromkeys(self._pairs.get(name, ()))
+                if solid is not None and self._takes_part(solid):
+                    for near in space.counted_around(solid, space.limits.near_most_m):
+                        if self._takes_part(near):
+                            others[near.name] = None
+                for other in others:
+                    pair = (name, other) if name < other else (other, name)
+                    if pair not in done:
+                        done.add(pair)
+                        now = self._measure(*pair, more)
+                        if more:
+                            known = self._pairs.get(pair[0], {}).get(pair[1], ())
+                            now = tuple(r for r in MIRRORED if r in now or r in known)
+                        self._replace(pair, now, gone, come)
+            for pair in self._pairs_across(moved):
+                if pair not in done:
+                    done.add(pair)
+                    self._replace(pair, self._measure(*pair), gone, come)
+        return Changed(gone, come)
+
+    def _pairs_across(self, moved: Iterable[Solid]) -> Iterator[tuple[str, str]]:
+        """Yield the pairs that these solids may be or have been between."""
+        space = self.space
+        if "isNextTo" not in self._whole and not self._some:
+            return
+        for solid in moved:
+            if solid.is_place:
+                continue
+            around = space.counted_around(solid, space.limits.near_most_m)
+            ends = [end for end in around if self._takes_part(end)]
+            for at, one in enumerate(ends):
+                for other in ends[at + 1 :]:
+                    if not _may_be_beside(space, one, other):
+                        continue
+                    if measures.overlap(solid.bounds, _both(one.bounds, other.bounds)):
+                        yield (one.name, other.name) if one.name < other.name else (other.name, one.name)
+
+    def _measure(
+        self, name: str, other_name: str, more: Set[RelationName] = frozenset()
+    ) -> tuple[RelationName, ...]:
+        solid, other = self.space.solids.get(name), self.space.solids.get(other_name)
+        if solid is None or other is None or not _may_be_beside(self.space, solid, other):
+            return ()
+        if not (self._takes_part(solid) and self._takes_part(other)):
+            return ()
+        wanted = _ALL if name in self._some or other_name in self._some else more or self._whole
+        if not wanted:
+            return ()
+        # If a small object supports a larger one, only relations of the small one are measured.
+        one, two = (solid, other) if is_separate(self.space, solid, other) else (other, solid)
+        found = {relation for relation, made in measure_pair(self.space, one, two, wanted) if made.holds}
+        if one is other:
+            found = {MIRRORED[relation] for relation in found}
+        return tuple(relation for relation in MIRRORED if relation in found)
+
+    def _replace(
+        self,
+        pair: tuple[str, str],
+        now: tuple[RelationName, ...],
+        gone: set[Fact],
+        come: set[Fact],
+    ) -> None:
+        name, other = pair
+        before = self._pairs.get(name, {}).get(other, ())
+        if now == before:
+            return
+        gone.update((name, relation, other) for relation in before if relation not in now)
+        come.update((name, relation, other) for relation in now if relation not in before)
+        for one, two in (pair, (other, name)):
+            there = self._pairs.setdefault(one, {})
+            if now:
+                there[two] = now
+            else:
+                there.pop(two, None)
+                if not there:
+                    del self._pairs[one]
+
+
+def _may_be_beside(space: Space, one: Solid, other: Solid) -> bool:
+    """Return whether two objects are close enough for any of the relations, by their bounds."""
+    limits = space.limits
+    reach = max(measures.near_limit(one, other, limits), limits.contact_m)
+    return measures.overlap(one.bounds, other.bounds, reach)
+
+
+def _both(one: Bounds, other: Bounds) -> Bounds:
+    return (
+        min(one[0], other[0]), min(one[1], other[1]), max(one[2], other[2]), max(one[3], other[3]),
+    )  # fmt: skip

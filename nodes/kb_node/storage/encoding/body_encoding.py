@@ -1,0 +1,42 @@
+"""The encoding of bodies on disk: MessagePack, compressed if that takes less time than writing it.
+
+Messages over the network are never compressed, so that they cannot grow when they are read.
+"""
+
+from __future__ import annotations
+
+import zlib
+from typing import Any, Final
+
+from semmap.schemas import codec
+from semmap.schemas.errors import BadRequest
+
+LARGEST: Final = 4 << 30
+"""The greatest size of a decompressed body [bytes]."""
+COMPRESSION_LEVEL: Final = 1
+"""The fastest level of zlib."""
+_DENSE: Final = b"x"
+"""The first byte of zlib data, with which no MessagePack map starts."""
+
+
+def encode(message: Any, *, compressed_from: int) -> bytes:
+    """Return `message` as MessagePack, compressed (zlib) from `compressed_from` bytes on."""
+    body = codec.encode(message)
+    return body if len(body) < compressed_from else zlib.compress(body, COMPRESSION_LEVEL)
+
+
+def decode(body: bytes, kind: Any) -> Any:
+    """Return the message of type `kind` in `body`. Raises BadRequest if it is damaged."""
+    return codec.decode(_unfolded(body) if body[:1] == _DENSE else body, kind)
+
+
+def _unfolded(body: bytes) -> bytes:
+    unfolding = zlib.decompressobj()
+    try:
+        content = unfolding.decompress(body, LARGEST)
+    except zlib.error as error:
+        raise BadRequest(f"{codec.MALFORMED}it is not valid MessagePack, JSON or zlib: {error}") from None
+    if not unfolding.eof:
+        reason = f"is larger than {LARGEST >> 20} MB" if unfolding.unconsumed_tail else "ends too early"
+        raise BadRequest(f"{codec.MALFORMED}it {reason}")
+    return content
