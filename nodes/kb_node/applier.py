@@ -9,12 +9,12 @@ from typing import Final
 from msgspec import structs
 
 from semmap.nodes.kb_node import preconditions, proofs
-from semmap.nodes.kb_node.beliefs import Believed
+from semmap.nodes.kb_node.derived_facts import DerivedChanges
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
 from semmap.nodes.kb_node.entities import entity_changes, entity_reading
 from semmap.nodes.kb_node.entities.fast_reading import Patterns
 from semmap.nodes.kb_node.map_state import MapState
-from semmap.nodes.kb_node.places import at_most
+from semmap.nodes.kb_node.places import truncate_notes
 from semmap.nodes.kb_node.progress import parts, steadily
 from semmap.nodes.kb_node.reasoner import Change, Inconsistent
 from semmap.ontology import vocabulary as v
@@ -33,7 +33,7 @@ class Applier:
         """`state` is what is changed."""
         self._state = state
         self._patterns = Patterns()
-        self.believed: dict[int, Believed] = {}
+        self.derived_changes: dict[int, DerivedChanges] = {}
         """What the last commits changed of what is computed, until somebody asks."""
 
     def apply(
@@ -53,9 +53,9 @@ class Applier:
             entity_reading.owners(state.reasoner, state.classes, s) for s in steadily(known, state.progress)
         )
         owners, new = (subjects.union(*about), subjects - known) if known else (subjects, subjects)
-        state.beliefs.begin()
+        state.derived_facts.begin()
         restores = bool(commit.undoes)
-        contradicted = state.beliefs.contradicted.keys() if restores else frozenset()
+        contradicted = state.derived_facts.contradicted.keys() if restores else frozenset()
         lenient = restores or not state.follows
         change = self.change(delete=commit.retracted, insert=commit.inserted, lenient=lenient)
         try:
@@ -78,7 +78,7 @@ class Applier:
     ) -> Commit:
         """Like `apply`, for a commit that replaces the TBox: all is worked out anew beside the old."""
         state = self._state
-        before = state.tbox, state.reasoner, state.classes, state.beliefs
+        before = state.tbox, state.reasoner, state.classes, state.derived_facts
         abox = {*state.abox(), *commit.inserted}.difference(commit.retracted, tbox)
         try:
             state.exchange_tbox(tbox, tbox_validation.compiled(tbox))
@@ -87,10 +87,10 @@ class Applier:
             concerned.update(i for c in state.classes.spatial for i in state.reasoner.instances(c))
             commit = self._with_effects(commit, set(), Change(frozenset(concerned)), set())
             if state.follows:
-                commit = self._with_places_anew(commit, before[-1].withheld.keys())
+                commit = self._with_all_places(commit, before[-1].suppressed.keys())
             commit = make_durable(commit)
         except BaseException:
-            state.tbox, state.reasoner, state.classes, state.beliefs = before
+            state.tbox, state.reasoner, state.classes, state.derived_facts = before
             raise
         return commit
 
@@ -102,7 +102,7 @@ class Applier:
             return
         after: dict[str, Entity | None] = {departed.name: None for departed in commit.removed}
         after.update((entity.name, entity) for entity in commit.changed)
-        state.beliefs.follow(
+        state.derived_facts.follow(
             changed=[entity for entity in before.values() if entity is not None],
             removed=[name for name, entity in before.items() if entity is None],
             before=lambda name: after[name] if name in after else state.by_name.get(name),
@@ -120,7 +120,7 @@ class Applier:
         state = self._state
         try:
             if len(delete) + len(insert) <= PART or not state.reasoner.is_compiled:
-                return state.beliefs.change(delete, insert, lenient=lenient)
+                return state.derived_facts.change(delete, insert, lenient=lenient)
             return self._change_in_parts(delete, insert, lenient)
         except Inconsistent as error:
             raise proofs.refusal(error) from None
@@ -130,7 +130,7 @@ class Applier:
     ) -> Change:
         """Whatever is a part of a consistent map is consistent, so nothing is refused that should not be."""
         state = self._state
-        reasoner, changes = state.beliefs, list[Change]()
+        reasoner, changes = state.derived_facts, list[Change]()
         deleted = inserted = 0
         try:
             for part in parts(delete, PART, state.progress):
@@ -153,18 +153,18 @@ class Applier:
         """`commit` with the entities, too, whose classes change by where things are."""
         state = self._state
         entities = state.by_name
-        moved = state.beliefs.follow(
+        moved = state.derived_facts.follow(
             changed=commit.changed,
             removed=[departed.name for departed in commit.removed],
             before=entities.get,
             retracted=commit.retracted,
             inserted=commit.inserted,
         )
-        self.believed[commit.seq] = state.beliefs.believed
+        self.derived_changes[commit.seq] = state.derived_facts.derived_changes
         crowds = state.places.crowds(commit.names)
         if crowds:
             commit = structs.replace(commit, notes=(*commit.notes, *crowds))
-        commit = self._with_withheld(commit, state.beliefs.newly_withheld)
+        commit = self._with_suppressed(commit, state.derived_facts.newly_suppressed)
         if not moved:
             return commit
         changed = {entity.name: entity for entity in commit.changed}
@@ -176,34 +176,35 @@ class Applier:
                 changed[name] = structs.replace(entity, types=state.types_of(entity))
         return structs.replace(commit, changed=tuple(e for n, e in changed.items() if e != entities.get(n)))
 
-    def _with_places_anew(self, commit: Commit, withheld: Set[Triple]) -> Commit:
+    def _with_all_places(self, commit: Commit, suppressed: Set[Triple]) -> Commit:
         """The same for a commit that replaces the TBox, so that everything is worked out anew.
 
-        `withheld` is what was before.
+        `suppressed` is what was before.
         """
         state = self._state
         gone = {departed.name for departed in commit.removed}
         after = {name: e for name, e in state.by_name.items() if name not in gone}
         after.update((entity.name, entity) for entity in commit.changed)
-        state.beliefs.fill(after)
-        commit = self._with_withheld(commit, sorted(state.beliefs.withheld.keys() - withheld))
+        state.derived_facts.fill(after)
+        commit = self._with_suppressed(commit, sorted(state.derived_facts.suppressed.keys() - suppressed))
         for name, entity in after.items():
             after[name] = structs.replace(entity, types=state.types_of(entity))
         changed = tuple(e for name, e in after.items() if e != state.by_name.get(name))
         return structs.replace(commit, changed=changed)
 
-    def _with_withheld(self, commit: Commit, facts: Collection[Triple]) -> Commit:
+    def _with_suppressed(self, commit: Commit, facts: Collection[Triple]) -> Commit:
         """`commit` with a note on what it lets contradict the map, so that it is left out."""
         if not facts:
             return commit
         return structs.replace(
-            commit, notes=(*commit.notes, *at_most(list(map(self._state.beliefs.told, facts))))
+            commit,
+            notes=(*commit.notes, *truncate_notes(list(map(self._state.derived_facts.describe, facts)))),
         )
 
     def _require_agreement(self, commit: Commit) -> None:
         """Raises Inconsistent for a commit that contradicts what was said before and geometry denies."""
         try:
-            self._state.beliefs.require_agreement(commit.inserted)
+            self._state.derived_facts.require_agreement(commit.inserted)
         except Inconsistent as error:
             raise proofs.refusal(error) from None
 
@@ -212,6 +213,6 @@ class Applier:
 
         Taking something back may bring such together that did at the time, since geometry denied them.
         """
-        newly = {t: why for t, why in self._state.beliefs.contradicted.items() if t not in contradicted}
+        newly = {t: why for t, why in self._state.derived_facts.contradicted.items() if t not in contradicted}
         if newly:
             raise proofs.refusal(Inconsistent(newly[min(newly)]))

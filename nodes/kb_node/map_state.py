@@ -9,8 +9,8 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.beliefs import Beliefs, Believed
-from semmap.nodes.kb_node.entities import entity_changes, entity_reading, foreseeing
+from semmap.nodes.kb_node.derived_facts import DerivedChanges, DerivedFacts
+from semmap.nodes.kb_node.entities import entity_changes, entity_reading, new_entities
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.places import Places
 from semmap.nodes.kb_node.progress import parts, steadily
@@ -48,10 +48,10 @@ class MapState:
         """Whether what is computed is worked out at each commit; not yet after a start."""
         self._follows_all = False
         """Whether all of it was; if not, a commit works out what it concerns."""
-        self.believes = False
+        self.has_derived = False
         """Whether the reasoner has what is computed; after a start it does if its columns were kept."""
         self.by_name: dict[str, Entity] = {}
-        """The entities; changed by `take` and `give_back` only."""
+        """The entities; changed by `take` and `revert_entities` only."""
         self.places = Places(
             self.by_name,
             self.entities,
@@ -88,7 +88,7 @@ class MapState:
         """The entities, or those of a class by inference, in the order of their names."""
         if class_iri is None:
             return (self.by_name[name] for name in sorted(self.by_name))
-        self.believe_places()
+        self.ensure_derived()
         found = filter(None, map(self.known, self.reasoner.instances(class_iri)))
         return iter(sorted(found, key=lambda entity: entity.name))
 
@@ -98,7 +98,7 @@ class MapState:
 
     def stars(self, names: Iterable[str]) -> tuple[Star, ...]:
         """The triples about some entities, taken together. Raises UnknownName, Refused for the TBox's."""
-        self.believe_places()
+        self.ensure_derived()
         iris = [v.iri(self.entity(name).iri) for name in names]
         leaving = frozenset(iris)
         return tuple(
@@ -117,7 +117,7 @@ class MapState:
 
     def inferred(self, name: str | None = None) -> Iterator[Triple]:
         """What follows and was not said, about one entity or all. Raises UnknownName."""
-        self.believe_places()
+        self.ensure_derived()
         for entity in [self.entity(name)] if name is not None else self.entities():
             yield from sorted(self.reasoner.inferred(v.iri(entity.iri), None, None))
 
@@ -125,10 +125,10 @@ class MapState:
         """The items, for long work on them: the node tells meanwhile that it lives."""
         return steadily(items, self.progress)
 
-    def all_believed(self) -> Believed:
+    def all_derived(self) -> DerivedChanges:
         """What is computed and what is set aside."""
-        self.believe_places()
-        return self.beliefs.all()
+        self.ensure_derived()
+        return self.derived_facts.all()
 
     def placed(self) -> tuple[Placed, ...]:
         """Where everything is."""
@@ -140,7 +140,7 @@ class MapState:
 
     def types_of(self, entity: Entity) -> tuple[str, ...]:
         """The classes of an entity as it is now, by what is computed, too."""
-        return self.classes.spoken_types(self.reasoner.types(v.iri(entity.iri)))
+        return self.classes.type_names(self.reasoner.types(v.iri(entity.iri)))
 
     def known(self, iri: Term) -> Entity | None:
         """The entity with this IRI, as of the last commit."""
@@ -148,25 +148,25 @@ class MapState:
 
     # What is computed of where things are
 
-    def follow_places(self) -> None:
+    def derive_all(self) -> None:
         """Work out where everything is, if that was not done since the start.
 
         Whoever asks what follows needs it, and the first commit.
         """
-        while self.follow_some():
+        while self.derive_some():
             self.progress()
 
-    def follow_enough(self, transaction: Transaction) -> None:
+    def derive_for(self, transaction: Transaction) -> None:
         """As much of that as a transaction needs.
 
         If it only puts things somewhere and nobody asserts where things are, it suffices to know where all of
         them are; what holds of them is worked out between other work.
         """
         while not self._follows_all and not (self.follows and _only_places(transaction)):
-            self.follow_some()
+            self.derive_some()
             self.progress()
 
-    def follow_some(self) -> bool:
+    def derive_some(self) -> bool:
         """Do a part of that, some tens of milliseconds; whether there is more to do."""
         if self._follows_all:
             return False
@@ -178,11 +178,11 @@ class MapState:
         return False
 
     def _follow(self) -> Iterator[None]:
-        self.beliefs.begin()
-        yield from self.beliefs.placing(self.by_name)
-        self.follows = self.believes and self.beliefs.is_compared_in_steps()
-        yield from self.beliefs.comparing(self.by_name)
-        self.follows = self.believes = self._follows_all = True
+        self.derived_facts.begin()
+        yield from self.derived_facts.placing(self.by_name)
+        self.follows = self.has_derived and self.derived_facts.is_compared_in_steps()
+        yield from self.derived_facts.comparing(self.by_name)
+        self.follows = self.has_derived = self._follows_all = True
         for names in parts(tuple(self.by_name), _STEP, self.progress):
             for name in names:
                 entity = self.by_name.get(name)
@@ -190,26 +190,30 @@ class MapState:
                     self.by_name[name] = structs.replace(entity, types=types)
             yield
 
-    def believe_places(self) -> None:
+    def ensure_derived(self) -> None:
         """Let the reasoner have what is computed of where things are, if it has not."""
-        if not self.believes:
-            self.follow_places()
+        if not self.has_derived:
+            self.derive_all()
 
     def _crowds(self, names: Collection[str] | None) -> list[str]:
         """The sentences on crowds, if relations are computed."""
         if not self.follows or names is None:
-            self.follow_places()
-        return [] if self.beliefs.computed.is_idle else self.beliefs.computed.facts.space.crowds(names)
+            self.derive_all()
+        return (
+            []
+            if self.derived_facts.computed.is_idle
+            else self.derived_facts.computed.facts.space.crowds(names)
+        )
 
     def _facts(self) -> Facts | None:
         """The relations that are computed, if any are, with their solids."""
-        self.follow_places()
-        return None if self.beliefs.computed.is_idle else self.beliefs.computed.facts
+        self.derive_all()
+        return None if self.derived_facts.computed.is_idle else self.derived_facts.computed.facts
 
     @contextmanager
-    def places_foreseen(self, transaction: Transaction) -> Iterator[None]:
+    def predicted_places(self, transaction: Transaction) -> Iterator[None]:
         """Within, a process of its own works out where everything is after a large transaction."""
-        computed = self.beliefs.computed
+        computed = self.derived_facts.computed
         if _HAS_CORES and not computed.is_idle:
             self._foresee(transaction)
         try:
@@ -218,7 +222,10 @@ class MapState:
             computed.facts.give_up_ahead()
 
     def _foresee(self, transaction: Transaction) -> None:
-        coming, facts = foreseeing.coming(transaction, self.classes), self.beliefs.computed.facts
+        coming, facts = (
+            new_entities.predict_new_entities(transaction, self.classes),
+            self.derived_facts.computed.facts,
+        )
         if coming is not None and len(self) <= len(coming):
             foreseen = Foreseen(facts.space.limits, self.placed(), coming)
             with suppress(OSError):  # then it is worked out here
@@ -226,7 +233,7 @@ class MapState:
 
     def tidy(self) -> None:
         """What a commit leaves to be done when nobody waits for it."""
-        self.beliefs.computed.facts.forget()
+        self.derived_facts.computed.facts.forget()
 
     # Changing
 
@@ -234,7 +241,7 @@ class MapState:
         """Let another TBox hold; `reasoner` holds it, and nothing else yet."""
         self.tbox, self.reasoner = tbox, reasoner
         self.classes = ClassTable(reasoner)
-        self.beliefs = Beliefs(reasoner, self.classes.limits, self.progress)
+        self.derived_facts = DerivedFacts(reasoner, self.classes.limits, self.progress)
 
     def take(self, commit: Commit) -> None:
         """Let the entities show a commit that the reasoner has taken in already."""
@@ -244,7 +251,7 @@ class MapState:
             del self.by_name[gone.name]
         self.show(commit.changed)
 
-    def give_back(self, commit: Commit, before: Mapping[str, Entity | None], digest: str) -> None:
+    def revert_entities(self, commit: Commit, before: Mapping[str, Entity | None], digest: str) -> None:
         """Let the entities be as before the last commit: those that it touched, None for what was not there.
 
         `digest` is that of the commit before.

@@ -44,7 +44,7 @@ _SHAPING: Final = (EXTENT, *OPENING)
 """Properties that its shape depends on."""
 
 
-class TakenBack(NamedTuple):
+class RetractedLocations(NamedTuple):
     """What was said of a place and is denied by a change, with a sentence on each."""
 
     triples: tuple[Triple, ...] = ()
@@ -149,15 +149,15 @@ class Places:
 
     def taken_back(
         self, reasoner: Reasoner, classes: ClassTable, gone: Collection[Triple], come: Collection[Triple]
-    ) -> TakenBack:
+    ) -> RetractedLocations:
         """What was said of the places of those that a change moves or resizes, and geometry then denies."""
         if not self._sayings:
-            return TakenBack()
+            return RetractedLocations()
         moved = dict(_moved(self._entities, reasoner, classes, gone, come))
         leaving = set(gone)
         said = {t: fact for t, fact in self._sayings.about(moved).items() if t not in leaving}
         if not said:
-            return TakenBack()
+            return RetractedLocations()
         space = self.space()
         triples: list[Triple] = []
         notes: dict[str, None] = {}
@@ -166,9 +166,9 @@ class Places:
                 if (relation := denial(space, fact)) is not None:
                     triples.append(triple)
                     notes[f"taken back: {relation.text}"] = None
-        return TakenBack(tuple(triples), at_most(notes))
+        return RetractedLocations(tuple(triples), truncate_notes(notes))
 
-    def left_behind(self, names: Collection[str]) -> tuple[str, ...]:
+    def describe_left_behind(self, names: Collection[str]) -> tuple[str, ...]:
         """What stands on those that leave, or is inside them, and stays: a sentence on each; the first."""
         leaving = set(names)
         if leaving.issuperset(self._entities):
@@ -199,10 +199,10 @@ class Places:
         space = self.space()
         with space.supposing(commit.changed, (gone.name for gone in commit.removed)):
             relations = (denial(space, fact) for fact in facts)
-            return at_most(dict.fromkeys(r.text for r in relations if r is not None))
+            return truncate_notes(dict.fromkeys(r.text for r in relations if r is not None))
 
 
-def at_most(notes: Collection[str]) -> tuple[str, ...]:
+def truncate_notes(notes: Collection[str]) -> tuple[str, ...]:
     """The first sentences of a kind, and how many more there are."""
     first = tuple(islice(notes, _FEW))
     more = len(notes) - len(first)

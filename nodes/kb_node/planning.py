@@ -103,7 +103,7 @@ def _spelled_out(
     notes: list[str] = []
     if remove:
         draft.remove([state.entity(name) for name in state.steadily(remove)])
-        notes += state.places.left_behind(remove)
+        notes += state.places.describe_left_behind(remove)
     for one in state.steadily(edit):
         draft.edit(state.entity(one.name), one)
         if one.carry:

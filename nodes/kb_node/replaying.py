@@ -115,7 +115,7 @@ def missing(status: SystemStatus, nodes: Collection[str]) -> tuple[str, ...]:
     return ("the scene is not known yet",) if status.in_agreement is None else status.pending
 
 
-def refusing() -> Mapping[str, Handler]:
+def rejecting_handlers() -> Mapping[str, Handler]:
     """Handlers for what would change a map that is replayed, by verb: each refuses."""
 
     def refuse(_: Any) -> Any:

@@ -11,7 +11,7 @@ from msgspec import structs
 
 from semmap.nodes.kb_node import planning
 from semmap.nodes.kb_node.applier import Applier
-from semmap.nodes.kb_node.beliefs import UNCHANGED, Believed
+from semmap.nodes.kb_node.derived_facts import UNCHANGED, DerivedChanges
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
 from semmap.nodes.kb_node.entities import entity_reading
@@ -75,11 +75,11 @@ class SemanticMap(MapState):
         super().__init__(tbox, reasoner or closure_cache.reasoner(tbox, journal.path.parent), progress)
         self._applier = Applier(self)
         self._schedule = CheckpointSchedule(journal, start.seq)
-        self.foretell: Callable[[Commit], Callable[[], None]] = lambda _: lambda: None
+        self.prepare: Callable[[Commit], Callable[[], None]] = lambda _: lambda: None
         """Told of each commit before it is checked; what it returns is called if that is not made."""
         self.is_sound = True
         """False when an unexpected error (no memory) may have left a change half done: then start anew."""
-        self.broke: Callable[[], None] = lambda: None
+        self.on_failure: Callable[[], None] = lambda: None
         """Called when that happens."""
         self._look: Callable[[Commit], Any] | None = None
         """While a change is only tried: who looks at it."""
@@ -91,9 +91,9 @@ class SemanticMap(MapState):
         """The TBox that held after commit `seq`. Raises Refused when it is damaged."""
         return frozenset(rdf.parse(self._journal.tbox(seq), f"the TBox in {self._journal.path}"))
 
-    def believed_of(self, commit: Commit) -> Believed:
+    def take_derived_changes(self, commit: Commit) -> DerivedChanges:
         """What a commit changed of what is computed and set aside; it is told once."""
-        return self._applier.believed.pop(commit.seq, UNCHANGED)
+        return self._applier.derived_changes.pop(commit.seq, UNCHANGED)
 
     # Changing
 
@@ -109,7 +109,7 @@ class SemanticMap(MapState):
         something unexpected happens: whether the commit is durable the journal knows.
         """
         if self._undo_log is None:
-            self._applier.believed.clear()
+            self._applier.derived_changes.clear()
         try:
             made = self._carried_out(lambda: self._commit(transaction))
         except errors.SemmapError:
@@ -126,7 +126,7 @@ class SemanticMap(MapState):
             raise
         except Exception as error:
             self.is_sound = False
-            self.broke()
+            self.on_failure()
             log.exception("a change may be half done")
             raise errors.NoAnswer(
                 f"the knowledge base starts again from its journal, because a change failed in the middle:"
@@ -134,10 +134,10 @@ class SemanticMap(MapState):
             ) from error
 
     def _commit(self, transaction: Transaction) -> Commit | None:
-        self.follow_enough(transaction)
+        self.derive_for(transaction)
         if transaction.is_quick:
             return self._made(transaction)
-        with gc_pause.uncollected(), self.places_foreseen(transaction):
+        with gc_pause.uncollected(), self.predicted_places(transaction):
             return self._made(transaction)
 
     def _made(self, transaction: Transaction) -> Commit | None:
@@ -147,7 +147,7 @@ class SemanticMap(MapState):
         commit = planning.signed(transaction, plan, self.seq + 1)
         if self._look is not None:
             return self._taken(apply(commit, self._write, self._noted))
-        give_up, begun = self.foretell(commit), commit_encoding.early(commit, self.digest)
+        give_up, begun = self.prepare(commit), commit_encoding.early(commit, self.digest)
         write, noted = partial(self._write, begun=begun), partial(self._noted, begun=begun)
         try:
             return self._taken(apply(commit, write, noted))
@@ -202,7 +202,7 @@ class SemanticMap(MapState):
             notes=(),
         )
         commit = planning.signed(transaction, plan, self.seq + 1, tbox=True)
-        self.follow_places()
+        self.derive_all()
         before = self.classes
 
         def make_durable(commit: Commit) -> Commit:
@@ -217,7 +217,7 @@ class SemanticMap(MapState):
         `tbox` (N-Triples) is the one that it lets hold. Raises Inconsistent, BadRequest, NotWritten; then the
         map is as before.
         """
-        self.follow_places()
+        self.derive_all()
         if tbox is None:
             return self._taken(self._applier.apply(commit, self._write))
         new = frozenset(rdf.parse(tbox, "the TBox"))
@@ -231,7 +231,7 @@ class SemanticMap(MapState):
         When the disk does not take them, all are refused and the map is as before.
         """
         log = self._undo_log = []
-        self._applier.believed.clear()
+        self._applier.derived_changes.clear()
         results: list[Commit | errors.SemmapError | None] = []
         try:
             with self._journal.together():
@@ -260,7 +260,7 @@ class SemanticMap(MapState):
         """Undo the last commit, of which the journal keeps nothing."""
         commit, before = memento
         self._applier.reverse(commit, before)
-        self.give_back(commit, before, self._journal.digest(commit.seq - 1).hex())
+        self.revert_entities(commit, before, self._journal.digest(commit.seq - 1).hex())
 
     def _taken(self, commit: Commit) -> Commit:
         if self._undo_log is not None:
@@ -286,9 +286,9 @@ class SemanticMap(MapState):
         """Does a checkpoint take so long that nobody should wait for it without need?"""
         return len(self.reasoner) > LARGE
 
-    def picture(self) -> Checkpoint:
+    def snapshot_for_checkpoint(self) -> Checkpoint:
         """The map as it is now, to be written down while it goes on changing. Takes some 0.2 us a triple."""
-        self.believe_places()
+        self.ensure_derived()
         self._schedule.pictured()
         columns = self.reasoner.columns(self.tbox)
         return Checkpoint(
@@ -305,7 +305,7 @@ class SemanticMap(MapState):
         Raises Refused when the disk does not take it; then the history is replayed.
         """
         if not self._schedule.is_written(self.seq):
-            self._journal.checkpoint(self.picture(), self.progress)
+            self._journal.checkpoint(self.snapshot_for_checkpoint(), self.progress)
             self.written(self.seq)
 
     def written(self, seq: int) -> None:
@@ -316,7 +316,7 @@ class SemanticMap(MapState):
         is_ours = start.read_by == conclusions_format.mark()
         if start.columns is not None and is_ours and self.reasoner.fill(start.columns):
             self.reasoner.believe(aside=start.triples)
-            self.believes = True
+            self.has_derived = True
         else:
             self._applier.change(insert=tuple(start.said()), lenient=True)
         self.seq, self.digest = start.seq, self._journal.digest(start.seq).hex()
@@ -338,7 +338,7 @@ class SemanticMap(MapState):
             self._taken(made)
             self.progress()
         if self.seq > start.seq or start.read_by != conclusions_format.mark():
-            self.follow_places()  # else the entities have the classes that they have by their places
+            self.derive_all()  # else the entities have the classes that they have by their places
 
 
 def _as_it_is(commit: Commit) -> Commit:

@@ -9,7 +9,7 @@ import pytest
 
 from semmap.nodes.coordinator.door import Door
 from semmap.nodes.kb_node.answers import answers as kb_answers
-from semmap.nodes.kb_node.answers import trials
+from semmap.nodes.kb_node.answers import dry_runs
 from semmap.nodes.kb_node.answers.pages import Pages
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import Journal
@@ -96,4 +96,4 @@ def _effects(commit):
 
 
 def _changed(semantic_map, change, dry_run):
-    return trials.of(semantic_map, change) if dry_run else _effects(change())
+    return dry_runs.of(semantic_map, change) if dry_run else _effects(change())

@@ -6,7 +6,7 @@ import random
 
 import pytest
 
-from semmap.nodes.kb_node import beliefs, map_state
+from semmap.nodes.kb_node import derived_facts, map_state
 from semmap.nodes.kb_node.relations.facts import place_facts
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.kb_node.relations.measuring import crowds
@@ -21,7 +21,7 @@ from semmap.schemas.entities import Pose
 @pytest.fixture
 def restarted(flat, monkeypatch):
     """The flat with a heap of things more, just started; it takes many steps to work out where they are."""
-    for module in (beliefs, map_state, place_facts):
+    for module in (derived_facts, map_state, place_facts):
         monkeypatch.setattr(module, "_STEP", 3)
     monkeypatch.setattr(crowds, "MOST", 12)
     dice = random.Random(7)
@@ -53,18 +53,18 @@ def at(semantic_map, dice):
 
 def begin(semantic_map, steps=0):
     while not semantic_map.follows:
-        semantic_map.follow_some()
+        semantic_map.derive_some()
     for _ in range(steps):
-        semantic_map.follow_some()
+        semantic_map.derive_some()
 
 
 def agrees(semantic_map):
-    """Is what is believed what is computed of the poses from nothing?"""
+    """Is what is derived_changes what is computed of the poses from nothing?"""
     facts = Facts(semantic_map.classes.limits)
     facts.update(semantic_map.by_name.values())
     expected = {(v.entity_iri(s), v.dm(p), v.entity_iri(o)) for s, p, o in facts}
-    assert set(semantic_map.beliefs.computed.facts) == set(facts)
-    return set(semantic_map.reasoner.computed()) == expected - semantic_map.beliefs.withheld.keys()
+    assert set(semantic_map.derived_facts.computed.facts) == set(facts)
+    return set(semantic_map.reasoner.computed()) == expected - semantic_map.derived_facts.suppressed.keys()
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -73,7 +73,7 @@ def test_commits_between_the_steps_change_nothing_of_the_outcome(restarted, seed
     begin(restarted)
     for i in range(20):
         for _ in range(dice.randrange(3)):
-            restarted.follow_some()
+            restarted.derive_some()
         if dice.random() < 0.3:
             add = (new(restarted, f"new{i}", at(restarted, dice)),)
             restarted.commit(Transaction(id=f"t{i}", source="operator", add=add))
@@ -81,7 +81,7 @@ def test_commits_between_the_steps_change_nothing_of_the_outcome(restarted, seed
             name = dice.choice([e.name for e in restarted.entities() if not e.place])
             edit = (Edit(name=name, at=at(restarted, dice)),)
             restarted.commit(Transaction(id=f"t{i}", source="operator", edit=edit))
-    restarted.follow_places()
+    restarted.derive_all()
     assert agrees(restarted)
 
 
@@ -100,7 +100,7 @@ def test_a_commit_that_is_refused_leaves_all(restarted):
     add = (new(restarted, "more1", (0.0, 0.0, 0.0)),)
     with pytest.raises(errors.NameTaken):
         restarted.commit(Transaction(id="taken", source="operator", add=add))
-    restarted.follow_places()
+    restarted.derive_all()
     assert agrees(restarted)
 
 

@@ -7,8 +7,8 @@ from functools import partial
 import pytest
 
 from semmap.nodes.kb_node import map_state
-from semmap.nodes.kb_node.answers import trials
-from semmap.nodes.kb_node.entities import foreseeing
+from semmap.nodes.kb_node.answers import dry_runs
+from semmap.nodes.kb_node.entities import new_entities
 from semmap.nodes.kb_node.relations.facts.ahead import Ahead
 from semmap.nodes.kb_node.relations.facts.foreseen import WorkedOut
 from semmap.nodes.kb_node.semantic_map import SemanticMap
@@ -61,7 +61,7 @@ def said(new, name="load"):
 
 @pytest.fixture
 def few_are_many(monkeypatch):
-    monkeypatch.setattr(foreseeing, "MANY", MANY)
+    monkeypatch.setattr(new_entities, "MANY", MANY)
     monkeypatch.setattr("semmap.schemas.commits._FEW", MANY)
 
 
@@ -98,14 +98,14 @@ def new_map(tmp_path):
 def seen(semantic_map, commit):
     reasoner = semantic_map.reasoner
     entities = [(e.name, e.types, e.pose, e.size_m, e.model) for e in commit.changed]
-    computed, facts = set(reasoner.computed()), set(semantic_map.beliefs.computed.facts)
+    computed, facts = set(reasoner.computed()), set(semantic_map.derived_facts.computed.facts)
     return entities, commit.notes, commit.inserted, computed, set(reasoner.given()), facts
 
 
 def alone(monkeypatch, semantic_map, *transactions):
     """What is seen of the last one where nothing is foreseen."""
     with monkeypatch.context() as patched:
-        patched.setattr(foreseeing, "MANY", 10**9)
+        patched.setattr(new_entities, "MANY", 10**9)
         for transaction in transactions:
             commit = semantic_map.commit(transaction)
     return seen(semantic_map, commit)
@@ -187,14 +187,14 @@ def test_a_load_that_is_refused_leaves_no_process_and_nothing_behind(new_map, fe
     with pytest.raises(errors.Inconsistent):
         semantic_map.commit(Transaction(id="no", source="file", insert=(*load.insert, wrong)))
     assert [ahead._process.poll() is None for ahead in processes] == [False, False]
-    assert not set(semantic_map.beliefs.computed.facts)
+    assert not set(semantic_map.derived_facts.computed.facts)
     assert set(semantic_map.reasoner.given()) == before
     assert semantic_map.commit(wanted(things())).changed
 
 
 def test_a_dry_run_foresees_too_and_changes_nothing(new_map, helped):
     semantic_map, load = new_map(), wanted(things())
-    tried = trials.of(semantic_map, lambda: semantic_map.commit(load))
+    tried = dry_runs.of(semantic_map, lambda: semantic_map.commit(load))
     assert helped == [True]
     assert not semantic_map.by_name
     assert semantic_map.commit(load).names == tried.names
@@ -204,7 +204,7 @@ def test_what_is_not_plain_is_not_foreseen(new_map, few_are_many):
     classes, new = new_map().classes, list(things())
 
     def has(load):
-        return foreseeing.coming(load, classes) is not None
+        return new_entities.predict_new_entities(load, classes) is not None
 
     assert has(wanted(new))
     assert has(said(new))

@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from semmap.nodes.kb_node.answers import trials
+from semmap.nodes.kb_node.answers import dry_runs
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.relations.facts.said import denial
 from semmap.nodes.kb_node.relations.facts.sayings import Sayings
@@ -201,7 +201,7 @@ def test_a_dry_run_shows_it_and_does_nothing(room):
     say(room, "cup1", "isOn", "table1")
     before = home.state(room)
     wanted = Transaction(id="dry", source="operator", edit=(Edit(name="cup1", at=(0.0, 2.0, 0.0)),))
-    tried = trials.of(room, lambda: room.commit(wanted))
+    tried = dry_runs.of(room, lambda: room.commit(wanted))
     assert stands(tried.notes) == ["taken back: cup1 was said to be on table1; it stands"]
     assert home.state(room) == before
     assert said(room) == {("cup1", "table1")}
@@ -218,21 +218,21 @@ def test_what_contradicts_what_is_taken_back_is_no_contradiction(room):
 
 def test_what_contradicts_what_geometry_denies_is_refused_all_the_same(room):
     say(room, "table1", "isOn", "table2")
-    before = triples(room), room.all_believed()
+    before = triples(room), room.all_derived()
     with pytest.raises(errors.Inconsistent, match=r"table1 and table2|table2 and table1"):
         say(room, "table2", "isOn", "table1")
     with pytest.raises(errors.Inconsistent):
         say(room, "table1", "supports", "table2")
-    assert (triples(room), room.all_believed()) == before
+    assert (triples(room), room.all_derived()) == before
     assert say(room, "cup1", "isOn", "table2") is not None
 
 
 def test_what_contradicts_only_a_measured_fact_is_not_refused(room):
     say(room, "apple1", "isOn", "table2")
-    before = room.all_believed()
+    before = room.all_derived()
     assert say(room, "bowl1", "isOn", "apple1").notes  # apple1 is measured to be inside bowl1
     take_back(room)
-    after = room.all_believed()
+    after = room.all_derived()
     assert (set(after.come), set(after.aside)) == (set(before.come), set(before.aside))
 
 
@@ -242,25 +242,25 @@ def test_undo_is_refused_where_geometry_does_not_deny_what_contradicts(room):
     on = (v.entity_iri("lost1"), v.dm("isOn"), v.entity_iri("table1"))
     retracted = commit(room, retract=(on,))
     say(room, "table1", "isOn", "lost1")
-    before = triples(room), room.all_believed()
+    before = triples(room), room.all_derived()
     with pytest.raises(errors.Inconsistent, match=r"cannot be undone: .*table1"):
         take_back(room, retracted.seq)
-    assert (triples(room), room.all_believed()) == before
+    assert (triples(room), room.all_derived()) == before
 
 
 def test_undo_brings_contradictory_assertions_back_that_geometry_denies(room, monkeypatch):
     say(room, "table1", "isOn", "table2")
     with monkeypatch.context() as patched:  # as maps were that were made before this was refused
-        patched.setattr(room.beliefs, "require_agreement", lambda inserted: None)
+        patched.setattr(room.derived_facts, "require_agreement", lambda inserted: None)
         say(room, "table2", "isOn", "table1")
-    before = triples(room), {*room.all_believed().aside}
+    before = triples(room), {*room.all_derived().aside}
     assert len(before[1]) == 2
     moved = move(room, "table1", (0.0, 3.0, 0.0))
     assert len(moved.retracted) > len(moved.inserted)
     take_back(room)
-    assert (triples(room), {*room.all_believed().aside}) == before
-    assert trials.of(room, lambda: move(room, "table1", (0.0, 3.0, 0.0))).notes
-    assert (triples(room), {*room.all_believed().aside}) == before
+    assert (triples(room), {*room.all_derived().aside}) == before
+    assert dry_runs.of(room, lambda: move(room, "table1", (0.0, 3.0, 0.0))).notes
+    assert (triples(room), {*room.all_derived().aside}) == before
 
 
 def test_it_is_the_same_after_a_restart(room):
@@ -431,12 +431,12 @@ def random_change(room, dice):
 
 def test_a_dry_run_of_a_removal_leaves_set_aside_what_is(room):
     say(room, "cup1", "isOn", "table2")
-    before = room.all_believed(), set(room.inferred())
+    before = room.all_derived(), set(room.inferred())
     for names in (("cup1",), ("table2",), ("cup1", "table2")):
         tried = Transaction(id=f"dry {names}", source="operator", remove=names)
-        effects = trials.of(room, lambda wanted=tried: room.commit(wanted))
+        effects = dry_runs.of(room, lambda wanted=tried: room.commit(wanted))
         assert "table2 supports cup1" not in effects.trial.lost
-        after = room.all_believed(), set(room.inferred())
+        after = room.all_derived(), set(room.inferred())
         assert set(after[0].aside) == set(before[0].aside)
         assert set(after[0].come) == set(before[0].come)
         assert after[1] == before[1]

@@ -5,9 +5,9 @@ import random
 import pytest
 
 from semmap.nodes.kb_node import undo
-from semmap.nodes.kb_node.answers import answers, questions, trials
-from semmap.nodes.kb_node.answers.standing_places import StandingPlaces
-from semmap.nodes.kb_node.answers.whereabouts import Now
+from semmap.nodes.kb_node.answers import answers, dry_runs, questions
+from semmap.nodes.kb_node.answers.entity_queries import Now
+from semmap.nodes.kb_node.answers.location_queries import LocationQueries
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.history import Past
@@ -60,7 +60,7 @@ def test_a_thing_that_is_added_is_somewhere(flat):
     commit = flat.commit(Transaction(id="cup", source="operator", add=(new,)))
     assert on("cup9", "coffee_table1") in set(flat.inferred("cup9"))
     assert on("cup9", "coffee_table1") not in commit.inserted
-    assert flat.believed_of(commit).come
+    assert flat.take_derived_changes(commit).come
 
 
 def test_what_comes_into_a_crowd_is_told_so(flat):
@@ -89,7 +89,7 @@ def test_who_is_in_another_class_by_where_things_are_is_in_the_commit(flat):
 
 def test_a_dry_run_tells_what_would_be_and_leaves_all(flat):
     before = state(flat)
-    effects = trials.of(flat, lambda: flat.commit(moved(flat, "cup1", (2.0, 2.0, 0.0))))
+    effects = dry_runs.of(flat, lambda: flat.commit(moved(flat, "cup1", (2.0, 2.0, 0.0))))
     assert any("cup1 isLocatedIn livingroom1" in line for line in effects.trial.gained)
     assert state(flat) == before
 
@@ -116,7 +116,7 @@ def test_undo_and_the_past_and_a_restart_give_what_was(flat, tmp_path):
     replayed._journal.close()
     kept = SemanticMap(Journal(tmp_path / "journal.sqlite"))
     assert state(kept) == now  # from the columns of the checkpoint
-    kept.follow_places()
+    kept.derive_all()
     assert state(kept) == now
     kept._journal.close()
 
@@ -133,7 +133,7 @@ def test_a_removal_that_is_only_tried_or_not_taken_leaves_all(flat, monkeypatch)
     before = state(flat)
     for name in ("milk1", "counter1", "kitchen1"):
         removal = Transaction(id=f"without {name}", source="operator", remove=(name,))
-        trials.of(flat, lambda wanted=removal: flat.commit(wanted))
+        dry_runs.of(flat, lambda wanted=removal: flat.commit(wanted))
         assert state(flat) == before
         with monkeypatch.context() as patched:
             patched.setattr(flat._journal, "append", _full)
@@ -152,12 +152,12 @@ def test_what_contradicts_the_tbox_is_withheld_and_told(tmp_path):
     journal = Journal.create(tmp_path / "journal.sqlite", rdf.serialise(frozenset(tbox), "ntriples"))
     barred = SemanticMap(journal)
     barred.commit(Transaction(id="flat", source="file", insert=tuple(t for t in FLAT if t[1] != ON)))
-    told = list(answers.withheld(barred))
+    told = list(answers.suppressed_facts(barred))
     assert any(text.startswith("that milk1 is on counter1 (measured) would contradict") for text in told)
     assert not any("on counter1 (asserted)" in text for text in told)
     assert not barred.reasoner.holds(on("milk1", "counter1"))
     barred.commit(moved(barred, "milk1", (2.0, 2.0, 0.0)))
-    assert len(list(answers.withheld(barred))) == len(told) - 1
+    assert len(list(answers.suppressed_facts(barred))) == len(told) - 1
     journal.close()
 
 
@@ -171,7 +171,7 @@ dm:Milk rdfs:subClassOf [ a owl:Restriction ; owl:onProperty dm:isOn ; owl:allVa
 def choosy(flat):
     """The flat with a TBox by which milk is on shelves only, and the commit that let it hold."""
     tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes() + ONLY_SHELVES, "household.ttl", label_prefix="t")
-    flat.follow_places()
+    flat.derive_all()
     commit = flat.replace_tbox(Transaction(id="choosy", source="operator"), tbox)
     return flat, commit
 
@@ -183,7 +183,7 @@ def test_all_questions_agree_with_what_is_withheld(choosy):
     there = now.entities(Entities(where=Where(on="counter1")))
     assert "milk1" not in {entity.name for entity in there}
     assert there
-    watching = StandingPlaces(semantic_map, lambda _: None).watch(Watch(id="w", on="counter1"))
+    watching = LocationQueries(semantic_map, lambda _: None).watch(Watch(id="w", on="counter1"))
     assert watching.rows == tuple((v.iri(entity.iri),) for entity in there)
     milk = now.entity(Get(name="milk1", where=True))
     assert "isOn" not in {relation.relation for relation in milk.whereabouts}
@@ -192,7 +192,7 @@ def test_all_questions_agree_with_what_is_withheld(choosy):
     assert told.text.endswith("so it is no fact (for the reason see: semmap check)")
     question = Explain(name="milk1", predicate="isOn", value="counter1")
     with pytest.raises(errors.Refused, match=r"measured.* would contradict the map"):
-        now.explained(question, questions.of_explain(semantic_map, question))
+        now.explained(question, questions.parse_explain(semantic_map, question))
 
 
 def test_what_bears_tells_of_what_is_withheld_on_it_too(choosy):
@@ -204,7 +204,7 @@ def test_what_bears_tells_of_what_is_withheld_on_it_too(choosy):
 def test_a_dry_run_of_another_tbox_notes_what_it_would_withhold(flat):
     tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes() + ONLY_SHELVES, "household.ttl", label_prefix="t")
     seen = []
-    tried = trials.of(
+    tried = dry_runs.of(
         flat,
         lambda: flat.replace_tbox(Transaction(id="choosy", source="operator"), tbox),
         lambda: seen.append(flat.tbox),
@@ -253,9 +253,9 @@ def test_the_commit_that_lets_something_be_withheld_notes_it_once(choosy):
     assert "counter1 (measured)" in note
     away = semantic_map.commit(moved(semantic_map, "milk1", (2.0, 2.0, 0.0)))
     assert not away.notes
-    assert not semantic_map.beliefs.withheld
+    assert not semantic_map.derived_facts.suppressed
     there = (8.2, 0.3, 0.9)
-    tried = trials.of(semantic_map, lambda: semantic_map.commit(moved(semantic_map, "milk1", there)))
+    tried = dry_runs.of(semantic_map, lambda: semantic_map.commit(moved(semantic_map, "milk1", there)))
     back = semantic_map.commit(moved(semantic_map, "milk1", there))
     assert back.notes == tried.notes == (note,)
     assert not semantic_map.commit(moved(semantic_map, "milk1", (8.21, 0.3, 0.9))).notes
@@ -264,7 +264,7 @@ def test_the_commit_that_lets_something_be_withheld_notes_it_once(choosy):
 def test_a_standing_question_follows_what_is_withheld(choosy):
     semantic_map, _ = choosy
     news = []
-    standing = StandingPlaces(semantic_map, news.append)
+    standing = LocationQueries(semantic_map, news.append)
     standing.watch(Watch(id="w", on="counter1"))
     milk = v.iri(semantic_map.entity("milk1").iri)
     semantic_map.replace_tbox(Transaction(id="plain", source="operator"), home.household())

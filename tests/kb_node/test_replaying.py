@@ -8,7 +8,7 @@ from concurrent.futures import Future
 import pytest
 
 from semmap.nodes.kb_node.config import Replay
-from semmap.nodes.kb_node.replaying import CHANGES, Player, missing, refusing
+from semmap.nodes.kb_node.replaying import CHANGES, Player, missing, rejecting_handlers
 from semmap.nodes.kb_node.storage.journal import FILENAME
 from semmap.nodes.kb_node.storage.replay.preparing import SOURCE
 from semmap.schemas import errors
@@ -140,7 +140,7 @@ def test_after_a_while_it_begins_without_the_others(replay):
 
 
 def test_such_a_map_is_not_changed_by_anybody():
-    handlers = refusing()
+    handlers = rejecting_handlers()
     assert set(handlers) == {call.VERB for call in CHANGES}
     change = Transaction(id="1", source="operator", add=(NewEntity(name="a", class_iri="urn:A"),))
     with pytest.raises(errors.Refused, match="a replay of the past, and cannot be changed"):

@@ -273,11 +273,11 @@ def test_a_start_from_a_checkpoint_concludes_nothing_anew(semantic_map, monkeypa
 
 def test_a_picture_can_be_written_down_later(semantic_map):
     semantic_map.commit(transaction(1, chair(preferred="stool")))
-    picture = semantic_map.picture()
+    snapshot = semantic_map.snapshot_for_checkpoint()
     semantic_map.commit(transaction(2, turtle(":lamp1 a dm:Lamp .")))
     expected = state(semantic_map)
-    semantic_map._journal.checkpoint(picture)
-    semantic_map.written(picture.seq)
+    semantic_map._journal.checkpoint(snapshot)
+    semantic_map.written(snapshot.seq)
     again = home.reopened(semantic_map)
     assert state(again) == expected
     assert again._schedule.is_written(1)
@@ -449,8 +449,8 @@ def test_after_an_error_in_the_middle_of_a_change_the_map_is_to_be_started_again
     semantic_map, monkeypatch, together, durable
 ):
     semantic_map.commit(transaction("before", chair("chair1")))
-    broke = []
-    semantic_map.broke = lambda: broke.append(True)
+    on_failure = []
+    semantic_map.on_failure = lambda: on_failure.append(True)
 
     def fail(*_):
         raise MemoryError
@@ -460,7 +460,7 @@ def test_after_an_error_in_the_middle_of_a_change_the_map_is_to_be_started_again
     wanted = [transaction("a", chair("chair2")), transaction("b", chair("chair3"))]
     with pytest.raises(errors.NoAnswer, match="starts again from its journal, because a change failed in"):
         semantic_map.commit_together(wanted) if together else semantic_map.commit(wanted[0])
-    assert broke == [True]
+    assert on_failure == [True]
     assert not semantic_map.is_sound
     monkeypatch.undo()
     again = home.reopened(semantic_map)

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from semmap.nodes.coordinator.scene.reconcile import order
-from semmap.nodes.kb_node.answers.whereabouts import Now
+from semmap.nodes.kb_node.answers.entity_queries import Now
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.sim_node.physics import base_scene

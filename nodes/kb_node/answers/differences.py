@@ -6,8 +6,8 @@ import time
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, get_args
 
-from semmap.nodes.kb_node.answers.beginnings import Moves
-from semmap.nodes.kb_node.answers.beginnings import spells as spells_of
+from semmap.nodes.kb_node.answers.fact_intervals import Moves
+from semmap.nodes.kb_node.answers.fact_intervals import spells as spells_of
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact, Facts
 from semmap.nodes.kb_node.relations.geometry.placed import Placed
 from semmap.nodes.kb_node.relations.geometry.solids import Solid

@@ -66,7 +66,7 @@ class Inventories:
 
     def around(self, entity: Entity) -> Inventory:
         """What is in a place and its parts; of a thing, what it is on, in and beside, and what bears that."""
-        self._map.believe_places()
+        self._map.ensure_derived()
         names = {entity.name, *(other for _, other in self._map.places.about(entity.name))}
         space = self._map.places.space()
         if _is_table(entity) and (solid := space.solids.get(entity.name)) is not None:
@@ -78,8 +78,8 @@ class Inventories:
         return self._of(found)
 
     def _of(self, entities: Iterable[Entity]) -> Inventory:
-        self._map.believe_places()
-        left_out = self._map.beliefs.left_out
+        self._map.ensure_derived()
+        left_out = self._map.derived_facts.left_out
         things = [self._thing(entity, left_out) for entity in entities if not entity.place]
         return Inventory(things, self._places())
 

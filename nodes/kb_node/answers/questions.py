@@ -9,8 +9,8 @@ from typing import NamedTuple
 from msgspec import structs
 
 from semmap.nodes.kb_node import proofs
-from semmap.nodes.kb_node.answers import asked_terms
-from semmap.nodes.kb_node.answers.asked_terms import RELATIONS
+from semmap.nodes.kb_node.answers import term_resolution
+from semmap.nodes.kb_node.answers.term_resolution import RELATIONS
 from semmap.nodes.kb_node.reasoner import Held, Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner import explanations as reasons
 from semmap.nodes.kb_node.reasoner.entailment.explaining import nearby, why_entailed, why_excluded
@@ -34,7 +34,7 @@ class Undecided(NotCompilable):
     """Neither the rules nor a refutation decide it at once: a proof is to be searched for, on a copy."""
 
 
-class Asked(NamedTuple):
+class StatementQuestion(NamedTuple):
     """A question as triples: the one that is meant, or several that a word may stand for."""
 
     triples: tuple[Triple, ...]
@@ -46,22 +46,24 @@ class Asked(NamedTuple):
         return tuple(dict.fromkeys(term for s, _, o in self.triples for term in (s, o)))
 
 
-def of_explain(semantic_map: SemanticMap, question: Explain) -> Asked:
+def parse_explain(semantic_map: SemanticMap, question: Explain) -> StatementQuestion:
     """What `explain` asks. Raises UnknownName, UnknownClass, BadRequest for an unknown property."""
-    subject = asked_terms.individual(semantic_map, question.name)
-    predicate = asked_terms.property_(semantic_map, question.predicate)
-    values = asked_terms.values(semantic_map, subject, predicate, question.value)
-    return Asked(tuple((subject, predicate, value) for value in values), question.negated)
+    subject = term_resolution.individual(semantic_map, question.name)
+    predicate = term_resolution.property_(semantic_map, question.predicate)
+    values = term_resolution.values(semantic_map, subject, predicate, question.value)
+    return StatementQuestion(tuple((subject, predicate, value) for value in values), question.negated)
 
 
-def of_could(semantic_map: SemanticMap, question: Could) -> Asked:
+def parse_could(semantic_map: SemanticMap, question: Could) -> StatementQuestion:
     """What `could` asks. Raises UnknownName, UnknownClass, BadRequest for an unknown property."""
-    subject = asked_terms.individual(semantic_map, question.name)
-    predicate = asked_terms.property_(semantic_map, question.predicate)
-    return Asked(((subject, predicate, asked_terms.value(semantic_map, predicate, question.value)),))
+    subject = term_resolution.individual(semantic_map, question.name)
+    predicate = term_resolution.property_(semantic_map, question.predicate)
+    return StatementQuestion(
+        ((subject, predicate, term_resolution.value(semantic_map, predicate, question.value)),)
+    )
 
 
-def is_quick(reasoner: Reasoner, asked: Asked) -> bool:
+def is_quick(reasoner: Reasoner, asked: StatementQuestion) -> bool:
     """Whether supposing it is quick: the reasoner works change by change, and touches few triples."""
     return reasoner.is_compiled and not any(
         _has_many(reasoner, term)
@@ -70,14 +72,14 @@ def is_quick(reasoner: Reasoner, asked: Asked) -> bool:
     )
 
 
-def copy_of(held: Held, names: Mapping[Term, str]) -> Reasoner:
+def copy_reasoner(held: Held, names: Mapping[Term, str]) -> Reasoner:
     """A reasoner for work beside the map's own; `names` tell its classes apart."""
     reasoner = Reasoner.of(held)
     reasoner.words.tell_apart(names)
     return reasoner
 
 
-def _told(reasoner: Reasoner, found: reasons.Explanation) -> Explanation:
+def _to_message(reasoner: Reasoner, found: reasons.Explanation) -> Explanation:
     """An explanation as it goes over the wire; what is computed in it is told as measured."""
     computed = [fact for fact in found.support if reasoner.is_computed(fact)]
     message = proofs.message(found)
@@ -86,13 +88,13 @@ def _told(reasoner: Reasoner, found: reasons.Explanation) -> Explanation:
     return structs.replace(message, text=as_measured(message.text, computed, reasoner.words))
 
 
-def why(reasoner: Reasoner, asked: Asked) -> Explanation | None:
+def why(reasoner: Reasoner, asked: StatementQuestion) -> Explanation | None:
     """Why it holds by the rules; None if it does not."""
     found = next(filter(None, map(reasoner.explain, asked.triples)), None)
-    return None if found is None else _told(reasoner, found)
+    return None if found is None else _to_message(reasoner, found)
 
 
-def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanation:
+def explain(reasoner: Reasoner, asked: StatementQuestion, *, anew: bool = True) -> Explanation:
     """Why it holds, or cannot hold.
 
     What no rule derives or contradicts is proved or refuted from what is near, if a proof is found there.
@@ -106,14 +108,14 @@ def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanati
     clause = said(first, reasoner.words)
     if asked.negated:
         if (denied := refute(reasoner, first, anew=anew)) is not None:
-            return _told(reasoner, denied)
+            return _to_message(reasoner, denied)
         holds = reasoner.explain(first)
         if holds is None:
             if not anew:
                 raise Undecided("no rule excludes it, and none derives it")
             near = _near(reasoner, asked)
             if (further := why_excluded(near, first, words=reasoner.words)) is not None:
-                return _told(reasoner, further)
+                return _to_message(reasoner, further)
             holds = why_entailed(near, first, words=reasoner.words)
         raise errors.Refused(
             f"it does hold: {holds.text}"
@@ -123,27 +125,29 @@ def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanati
     if (found := why(reasoner, asked)) is not None:
         return found
     if (different := why_different(reasoner, first, anew=anew)) is not None:
-        return _told(reasoner, different)
+        return _to_message(reasoner, different)
     if (excluded := refute(reasoner, first, anew=anew)) is not None:
-        told = _told(reasoner, excluded)
+        told = _to_message(reasoner, excluded)
         raise errors.Refused(f"it does not hold: {told.text}", explanation=told)
     if not anew:
         raise Undecided("no rule derives it, and none excludes it")
     near = _near(reasoner, asked)
     if (further := why_entailed(near, first, words=reasoner.words)) is not None:
-        return _told(reasoner, further)
+        return _to_message(reasoner, further)
     if (excluded := why_excluded(near, first, words=reasoner.words)) is not None:
-        told = _told(reasoner, excluded)
+        told = _to_message(reasoner, excluded)
         raise errors.Refused(f"it does not hold: {told.text}", explanation=told)
     raise errors.Refused(f"it does not hold that {clause}, and nothing excludes it")
 
 
-def _near(reasoner: Reasoner, asked: Asked) -> Reasoner:
+def _near(reasoner: Reasoner, asked: StatementQuestion) -> Reasoner:
     """A reasoner that holds what is near, in which a proof is searched for."""
     return Reasoner(nearby(reasoner, asked.terms), closed=reasoner.closed)
 
 
-def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True, against: str | None = None) -> Possible:
+def could(
+    reasoner: Reasoner, asked: StatementQuestion, *, anew: bool = True, against: str | None = None
+) -> Possible:
     """Whether it could hold; the reasoner is as before. `against` is what geometry says of it, a clause.
 
     Raises:
@@ -159,7 +163,7 @@ def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True, against: str |
             computed = [fact for fact in excluded.support if reasoner.is_computed(fact)]
             if not computed:
                 text = f"no: {excluded.text}"
-                return Possible(possible=False, text=text, explanation=_told(reasoner, excluded))
+                return Possible(possible=False, text=text, explanation=_to_message(reasoner, excluded))
             reasoner.believe(gone=computed)  # nothing that is computed refuses a commit
             measured += computed
     finally:

@@ -7,8 +7,8 @@ from itertools import chain
 from operator import itemgetter
 from typing import NamedTuple
 
-from semmap.nodes.kb_node.by_property import by_property
 from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.grouping import group_by_property
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import stars
 from semmap.ontology import vocabulary as v
@@ -27,7 +27,7 @@ _CLASSES = frozenset((v.OWL_CLASS, v.RDFS_CLASS))
 _NUMBERS = tuple(f"^^{v.iri(v.XSD + kind)}" for kind in ("integer", "decimal", "double", "float"))
 
 
-class SortedOut(NamedTuple):
+class FilteredDocument(NamedTuple):
     """The triples that fit the TBox, a word on each individual left out, and on what may be a mistake."""
 
     triples: list[Triple]
@@ -35,7 +35,9 @@ class SortedOut(NamedTuple):
     notes: list[str]
 
 
-def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bool) -> SortedOut:
+def filter_document(
+    triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bool
+) -> FilteredDocument:
     """What of a document may come into the map. A number of a star may be written as any kind of number.
 
     Raises UnknownClass naming all individuals of unknown classes, unless `skip_unknown`; then what is of
@@ -43,10 +45,10 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
     Raises BadFile for a TBox.
     """
     triples = list(triples)
-    said = by_property(triples)
-    if _has_other_numbers(said, classes.number_kinds):
-        triples = _with_numbers(triples, classes.number_kinds)
-        said = by_property(triples)
+    said = group_by_property(triples)
+    if _has_other_numbers(said, classes.number_datatypes):
+        triples = _with_numbers(triples, classes.number_datatypes)
+        said = group_by_property(triples)
     types_said = said.get(v.RDF_TYPE, [])
     used = set(map(itemgetter(2), types_said))
     declared = {s for s, _, o in types_said if o in _CLASSES} if used & _CLASSES else set[Term]()
@@ -71,9 +73,9 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
         gone = {s for s, _ in unknown} - {s for s, _, o in types_said if o in described}
         doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
         kept = _without(gone, [t for t in triples if t not in doubtful])
-        said = by_property(kept)
+        said = group_by_property(kept)
     notes = (*_unknown_properties(said, classes), *_own_classes(declared, classes), *_halves(said, kept))
-    return SortedOut(kept, words, list(notes))
+    return FilteredDocument(kept, words, list(notes))
 
 
 def undeclared_classes(triples: Iterable[Triple], classes: ClassTable) -> set[Term]:
@@ -86,7 +88,7 @@ def undeclared_classes(triples: Iterable[Triple], classes: ClassTable) -> set[Te
     return {o for _, o in types if o not in declared and not is_built_in(o)}
 
 
-def strangers(
+def find_undescribed(
     triples: Sequence[Triple], reasoner: Reasoner, stays: Callable[[Triple], bool] = lambda _: True
 ) -> dict[Term, Triple]:
     """What something is related to though nobody says what it is, each with the first triple that does so.
@@ -94,7 +96,7 @@ def strangers(
     What the reasoner holds counts, too, as far as it `stays`.
     """
     relations = {s for s, _, _ in reasoner.asserted(None, v.RDF_TYPE, v.OWL_OBJECT_PROPERTY)}
-    said = by_property(triples)
+    said = group_by_property(triples)
     related = {o for p in relations & said.keys() for _, _, o in said[p]}
     related.difference_update(map(itemgetter(0), said.get(v.RDF_TYPE, ())))
     strange = {o for o in related if not any(map(stays, reasoner.asserted(o, v.RDF_TYPE, None)))}
@@ -105,7 +107,7 @@ def strangers(
     return found
 
 
-def of_strangers(found: Mapping[Term, Triple]) -> str:
+def undescribed_note(found: Mapping[Term, Triple]) -> str:
     """One sentence on them."""
     few = ", ".join(f"{_called(term)} ({v.spoken(said)})" for term, said in [*found.items()][:_FEW])
     more = f" and {len(found) - _FEW} more" if len(found) > _FEW else ""

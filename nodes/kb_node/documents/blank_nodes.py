@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterable, Mapping
 from semmap.schemas.explanations import Term, Triple
 
 
-def labelled_like(new: Collection[Triple], known: Collection[Triple]) -> frozenset[Triple]:
+def relabel_like(new: Collection[Triple], known: Collection[Triple]) -> frozenset[Triple]:
     """`new`, where a blank node of which it says what `known` says of one has that one's label.
 
     The two have no label in common.

@@ -17,24 +17,24 @@ from semmap.schemas.packing import unpacked
 
 def of_document(
     semantic_map: SemanticMap, load: LoadDocument, triples: Iterable[Triple]
-) -> tuple[Transaction, abox_document.SortedOut]:
+) -> tuple[Transaction, abox_document.FilteredDocument]:
     """What of an ABox may come into the map, and what is to be said of the rest.
 
     Raises UnknownClass, BadFile for a TBox, UnknownName for what nobody describes if the load is strict.
     """
-    sorted_out = abox_document.sort_out(triples, semantic_map.classes, skip_unknown=load.skip_unknown)
+    filtered = abox_document.filter_document(triples, semantic_map.classes, skip_unknown=load.skip_unknown)
     stays = semantic_map.tbox.__contains__ if load.replace else lambda _: True
-    if found := abox_document.strangers(sorted_out.triples, semantic_map.reasoner, stays):
-        said = abox_document.of_strangers(found)
+    if found := abox_document.find_undescribed(filtered.triples, semantic_map.reasoner, stays):
+        said = abox_document.undescribed_note(found)
         if load.strict:
             raise errors.UnknownName(said)
-        sorted_out.notes.append(f"{said}; --strict refuses such files")
+        filtered.notes.append(f"{said}; --strict refuses such files")
     transaction = _transaction(
         load,
         retract=semantic_map.abox() if load.replace else (),
-        insert=_outside(sorted_out.triples, semantic_map.tbox),
+        insert=_outside(filtered.triples, semantic_map.tbox),
     )
-    return transaction, sorted_out
+    return transaction, filtered
 
 
 def is_all(triples: Sequence[Triple], transaction: Transaction) -> bool:
@@ -61,7 +61,11 @@ def tbox_of(semantic_map: SemanticMap, load: LoadTBox, *, label_prefix: str) -> 
         of_file=rdf.prefixes(content),
         spatial_root=load.spatial_root,
     )
-    return triples if load.spatial_root else tbox_declarations.keeping_roots(triples, semantic_map.classes)
+    return (
+        triples
+        if load.spatial_root
+        else tbox_declarations.with_spatial_roots_of(triples, semantic_map.classes)
+    )
 
 
 def require_no_map(semantic_map: SemanticMap, load: LoadTBox, tbox: Iterable[Triple]) -> None:

@@ -17,7 +17,7 @@ from xml.parsers import expat
 import pyoxigraph
 
 from semmap.nodes.kb_node.documents import plain_turtle
-from semmap.nodes.kb_node.documents.fault_lines import line_of_fault
+from semmap.nodes.kb_node.documents.error_lines import find_error_line
 from semmap.nodes.kb_node.documents.owl import syntaxes as owl_syntaxes
 from semmap.nodes.kb_node.documents.owl.syntaxes import OwlSyntax
 from semmap.ontology import vocabulary as v
@@ -101,7 +101,7 @@ def parse(
     except (SyntaxError, ValueError) as error:
         reason = _reason(error)
         if syntax in ("rdfxml", "jsonld") and isinstance(error, SyntaxError) and not _LINE.search(reason):
-            line = line_of_fault(content, _SYNTAX[syntax], v.ABOX)
+            line = find_error_line(content, _SYNTAX[syntax], v.ABOX)
             reason += f" (line {line})" if syntax == "rdfxml" else f" (at or before line {line})"
         raise errors.BadFile(f"{name} is not valid {_SPOKEN[syntax]}: {reason}") from None
     except MemoryError as error:

@@ -25,7 +25,7 @@ Path = Annotated[tuple[Term, ...], Meta(max_length=8)]
 """Properties to follow from an entity to the individual that says it; of several objects the least counts."""
 
 
-class PoseWords(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class PoseMapping(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """How a pose is said: at the end of `path`, as text of numbers."""
 
     path: Path = ()
@@ -40,7 +40,7 @@ class PoseWords(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Property of a pose that is not in the map frame: such a one is not read."""
 
 
-class SizeWords(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class SizeMapping(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """How an extent along the body's own axes is said: at the end of `path`, a property each [m]."""
 
     path: Path = ()
@@ -49,7 +49,7 @@ class SizeWords(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     z: Term
 
 
-class SetAside(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class IgnoredStatement(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A statement of the ontology that does not count, because no map could be kept with it."""
 
     triple: tuple[Term, Term, Term]
@@ -75,9 +75,9 @@ class Alignment(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Roots of the classes whose bodies stay where they are put."""
     names: tuple[Term, ...] = ()
     """Properties of what people call a thing, the best first."""
-    pose: tuple[PoseWords, ...] = ()
-    size: tuple[SizeWords, ...] = ()
-    set_aside: tuple[SetAside, ...] = ()
+    pose: tuple[PoseMapping, ...] = ()
+    size: tuple[SizeMapping, ...] = ()
+    set_aside: tuple[IgnoredStatement, ...] = ()
     relations: dict[Literal["isOn", "isInside", "isLocatedIn"], Term] = {}
     """Relation that can be measured to the property by which the vocabulary states it."""
 
@@ -91,7 +91,7 @@ class Alignment(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
         return (*(words.path for words in self.pose), *(words.path for words in self.size))
 
     @property
-    def first_words(self) -> frozenset[Term]:
+    def entry_properties(self) -> frozenset[Term]:
         """The properties by which an entity itself begins to say where it is, how big, how called."""
         poses = {words.path[0] if words.path else words.position for words in self.pose}
         sizes = {words.path[0] if words.path else words.x for words in self.size}

@@ -63,7 +63,9 @@ class ClassTable:
         """Those that say how the TBox's vocabulary tells positions, sizes and names."""
         self.edges = frozenset(stars.STAR_PROPERTIES).union(*(known.edges for known in self.alignments))
         """The properties that lead from an entity to the individuals that describe it, and on."""
-        self.first_words = frozenset[Term]().union(*(known.first_words for known in self.alignments))
+        self.entry_properties = frozenset[Term]().union(
+            *(known.entry_properties for known in self.alignments)
+        )
         """The alignments' properties by which an entity begins to describe itself."""
         self.declared_roots = tuple(
             sorted(s for s, _, o in reasoner.asserted(None, v.SPATIAL, None) if o in _TRUE)
@@ -77,12 +79,14 @@ class ClassTable:
         self.places: frozenset[Term] = places - self._solid
         self.property_names = PropertyNames(reasoner, self.properties, self.prefixes)
         self.stated = PropertyTable(
-            reasoner, self.property_names, self.names, self.prefixes, self.edges | self.first_words
+            reasoner, self.property_names, self.names, self.prefixes, self.edges | self.entry_properties
         )
         self._depth = {c: len(reasoner.superclasses(c)) for c in self.names}
         self._parents = {c: tuple(self._named_parents(c)) for c in self.names}
         named = {**self.names, **self.property_names.names}
-        self.told_apart: dict[Term, str] = {t: name for t, name in named.items() if name != v.local_name(t)}
+        self.qualified_names: dict[Term, str] = {
+            t: name for t, name in named.items() if name != v.local_name(t)
+        }
         """The classes and properties whose names have a prefix, because others are called alike."""
         self.models: dict[Term, str] = {c: self._nearest(c, v.MODEL) for c in self.names}
         built_in = self._named_below(*(c for known in self.alignments for c in known.fixed))
@@ -95,7 +99,7 @@ class ClassTable:
         self._kinds: dict[tuple[frozenset[Term], frozenset[Term]], Kind | None] = {}
 
     @cached_property
-    def number_kinds(self) -> dict[Term, Term]:
+    def number_datatypes(self) -> dict[Term, Term]:
         """The kind of number that properties ask for: a star's, and with alignments all of the TBox."""
         known = dict.fromkeys((*v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ, *v.SIZE_XYZ), v.XSD_FLOAT)
         if self.alignments:
@@ -119,7 +123,7 @@ class ClassTable:
         shared = prefixes.told_apart(self.names.keys(), self.prefixes)
         return {local: tuple(names) for local, names in shared.items()}
 
-    def special_first(self, types: Iterable[Term]) -> list[Term]:
+    def most_specific_first(self, types: Iterable[Term]) -> list[Term]:
         """Those of `types` that are named classes of the TBox, the most special one first."""
         return sorted((t for t in types if t in self.names), key=lambda c: (-self._depth[c], c))
 
@@ -134,15 +138,15 @@ class ClassTable:
             found = self._kinds[types, asserted] = self._kind(types, asserted)
             return found
 
-    def spoken_types(self, types: frozenset[Term]) -> tuple[str, ...]:
+    def type_names(self, types: frozenset[Term]) -> tuple[str, ...]:
         """The names of an individual's classes, the most special ones first."""
         known = self._spoken.get(types)
         if known is None:
-            known = self._spoken[types] = tuple(self.names[t] for t in self.special_first(types))
+            known = self._spoken[types] = tuple(self.names[t] for t in self.most_specific_first(types))
         return known
 
     def _kind(self, types: frozenset[Term], asserted: frozenset[Term]) -> Kind | None:
-        named = self.special_first(types)
+        named = self.most_specific_first(types)
         spatial = [t for t in named if t in self.spatial]
         if not spatial:
             return None
@@ -194,7 +198,9 @@ class ClassTable:
             iri=v.bare(c),
             prefixed=self.prefixed[c],
             parents=tuple(self.names[p] for p in self._parents[c]),
-            ancestors=tuple(self.names[a] for a in self.special_first(self._reasoner.superclasses(c) - {c})),
+            ancestors=tuple(
+                self.names[a] for a in self.most_specific_first(self._reasoner.superclasses(c) - {c})
+            ),
             labels=labels,
             also=tuple(also),
             comment=v.lexical(comments[0]) if comments else "",

@@ -71,7 +71,12 @@ def of(
             entity = at_sight.get(iri) or entity_reading.read_entity(
                 reasoner, classes, iri, provenance, about
             )
-            if entity is not None and entity.pose is None and was is not None and not _is_said(reasoner, iri):
+            if (
+                entity is not None
+                and entity.pose is None
+                and was is not None
+                and not _is_asserted(reasoner, iri)
+            ):
                 entity = None  # only what is computed still speaks of it, and will not
         if entity is None:
             removed += [Departed(name=was.name, types=was.types)] if was is not None else []
@@ -97,7 +102,7 @@ def known(by_name: Mapping[str, Entity], iri: Term) -> Entity | None:
     return entity if entity is not None and v.iri(entity.iri) == iri else None
 
 
-def _is_said(reasoner: Reasoner, iri: Term) -> bool:
+def _is_asserted(reasoner: Reasoner, iri: Term) -> bool:
     """Is anything asserted of an individual?"""
     return any(reasoner.asserted(iri)) or any(reasoner.asserted(None, None, iri))
 

@@ -9,7 +9,7 @@ from itertools import islice
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.entities import aligned
+from semmap.nodes.kb_node.entities import aligned_values
 from semmap.nodes.kb_node.entities.class_table import ClassTable, Kind
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import stars
@@ -77,7 +77,7 @@ def read_entity(
     pose, size_m = read_place(about, classes, iri)
     preferred = _references(about, said.get(v.HAS_PREFERRED_REFERENCE, ()))
     if classes.alignments:
-        preferred = preferred or aligned.names(classes.alignments, about, iri)[:1]
+        preferred = preferred or aligned_values.names(classes.alignments, about, iri)[:1]
     return entity_of(
         iri,
         kind,
@@ -102,8 +102,8 @@ def read_place(about: About, classes: ClassTable, iri: Term) -> tuple[Pose | Non
     size_m = _size(about, iri, said.get(v.HAS_SIZE, ()))
     pose = _pose(about, iri, said.get(v.HAS_POSITION, ()))
     if classes.alignments:
-        size_m = size_m or aligned.size(classes.alignments, about, iri)
-        pose = pose or aligned.pose(classes.alignments, about, iri, size_m)
+        size_m = size_m or aligned_values.size(classes.alignments, about, iri)
+        pose = pose or aligned_values.pose(classes.alignments, about, iri, size_m)
     if v.HAS_EXTENT in said:
         return _around(iri, said[v.HAS_EXTENT], pose, size_m)
     return pose, size_m

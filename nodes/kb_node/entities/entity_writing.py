@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from semmap.nodes.kb_node.entities import aligned, entity_reading, gripping, opening
+from semmap.nodes.kb_node.entities import aligned_values, entity_reading, implied_values
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.entities.entity_reading import Objects
 from semmap.nodes.kb_node.entities.property_table import Property
@@ -166,8 +166,8 @@ class Draft:
             known = left.get(prop.iri, list(said.get(prop.iri, ())))
             new = [term for term in terms if not any(same(k, term) for k in known)]
             left[prop.iri] = [*([] if prop.functional and new else known), *new]
-        left.update(opening.implied(left, said))
-        left.update(gripping.implied(left, said))
+        left.update(implied_values.imply_joint_values(left, said))
+        left.update(implied_values.imply_attachment_values(left, said))
         for property_, now in left.items():
             before = said.get(property_, ())
             self._go((iri, property_, term) for term in before if term not in now)
@@ -191,9 +191,9 @@ class Draft:
 
     def _place(self, entity: Entity, nodes: Sequence[Term], pose: Pose, size_m: Size | None) -> None:
         about = self._reasoner.about
-        said = None if nodes else aligned.said_pose(self._classes.alignments, about, v.iri(entity.iri))
+        said = None if nodes else aligned_values.find_pose(self._classes.alignments, about, v.iri(entity.iri))
         if said is not None and self._is_own_way(said.nodes):
-            self._change(aligned.pose_triples(said, pose, size_m, about))
+            self._change(aligned_values.pose_triples(said, pose, size_m, about))
             return
         if said is not None:
             self._leave(said.nodes, said.words.path, said.words.position)
@@ -206,9 +206,9 @@ class Draft:
 
     def _resize(self, entity: Entity, nodes: Sequence[Term], size_m: Size) -> None:
         iri, about = v.iri(entity.iri), self._reasoner.about
-        said = None if nodes else aligned.said_size(self._classes.alignments, about, iri)
+        said = None if nodes else aligned_values.find_size(self._classes.alignments, about, iri)
         if said is not None and self._is_own_way(said.nodes):
-            self._change(aligned.size_triples(said, size_m, about))
+            self._change(aligned_values.size_triples(said, size_m, about))
             return
         if said is not None:
             self._leave(said.nodes, said.words.path, said.words.x)

@@ -142,7 +142,7 @@ def _pattern(form: Form, star: _Star, reasoner: Reasoner, classes: ClassTable) -
     if entity.isdisjoint(classes.spatial) or not all(map(classes.spatial.isdisjoint, nodes)):
         return None
     said = _Said(form, others)
-    if said.is_out_of_the_ordinary or said.speaks(classes.first_words) or said.speaks(_EXTENT):
+    if said.is_out_of_the_ordinary or said.speaks(classes.entry_properties) or said.speaks(_EXTENT):
         return None
     kind = classes.kind(entity, frozenset(said.classes))
     if kind is None:

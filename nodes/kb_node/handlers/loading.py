@@ -7,10 +7,10 @@ import uuid
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from semmap.nodes.kb_node.answers import trials
+from semmap.nodes.kb_node.answers import dry_runs
 from semmap.nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
-from semmap.nodes.kb_node.handlers.changing import Changing, TellingOf, effects
+from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, ReportingProgress, effects
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.storage.journal import Journal
@@ -21,17 +21,17 @@ from semmap.schemas.commits import Commit, Effects, Transaction
 from semmap.schemas.packing import unpacked
 
 
-class Loading:
+class LoadHandlers:
     """Reads documents, and has them committed whole or in parts."""
 
     def __init__(
         self,
         semantic_map: SemanticMap,
         journal: Journal,
-        changing: Changing,
+        changing: ChangeHandlers,
         sparql: SparqlService,
         *,
-        telling_of: TellingOf,
+        reporting_progress: ReportingProgress,
         notes: Callable[[], tuple[str, ...]],
     ) -> None:
         """`notes` say what is to be known of the TBox that holds."""
@@ -39,7 +39,7 @@ class Loading:
         self._journal = journal
         self._changing = changing
         self._sparql = sparql
-        self._telling_of = telling_of
+        self._reporting_progress = reporting_progress
         self._notes = notes
 
     def handlers(self) -> dict[str, Handler]:
@@ -60,7 +60,7 @@ class Loading:
         if rdf.syntax_of(content) == "turtle" and not (load.replace or load.parts or load.dry_run):
             self._sparql.foresee(load.id, content, v.ABOX, packed=load.content)
         label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # the same when sent again
-        with self._telling_of(f"loading {load.filename or 'a file'}") as tell:
+        with self._reporting_progress(f"loading {load.filename or 'a file'}") as tell:
             triples = rdf.parse(
                 content,
                 load.filename,
@@ -69,7 +69,7 @@ class Loading:
             )
             del content
             tell(f"{len(triples):,} triples to check and write")
-            transaction, sorted_out = document_change.of_document(self._map, load, triples)
+            transaction, filtered = document_change.of_document(self._map, load, triples)
             if not document_change.is_all(triples, transaction):
                 self._sparql.forget()
             if load.dry_run:
@@ -77,11 +77,11 @@ class Loading:
                 return Loaded(
                     commit=tried,
                     names=names,
-                    skipped=tuple(sorted_out.skipped),
-                    notes=tuple(sorted_out.notes),
+                    skipped=tuple(filtered.skipped),
+                    notes=tuple(filtered.notes),
                 )
-            skipped, notes = tuple(sorted_out.skipped), sorted_out.notes
-            del triples, sorted_out  # of very many triples each list takes its memory
+            skipped, notes = tuple(filtered.skipped), filtered.notes
+            del triples, filtered  # of very many triples each list takes its memory
             parts = load_parts.in_parts(transaction) if load.parts else [transaction]
             commit = partial(self._commit, told=load.told)
             commits = load_parts.commit_each(parts, commit, tell if load.parts else lambda _: None)
@@ -95,13 +95,13 @@ class Loading:
 
     def _tried_load(self, transaction: Transaction) -> tuple[tuple[str, ...], Effects | None]:
         """The names of all entities that a load would change, and what it would commit."""
-        tried = trials.of(self._map, lambda: self._map.commit(transaction))
+        tried = dry_runs.of(self._map, lambda: self._map.commit(transaction))
         return (tried.trial.changed if tried is not None and tried.trial is not None else (), tried)
 
     def on_load_tbox(self, load: LoadTBox) -> Loaded:
         """Another TBox, in one commit (none for the one that holds), and what is to be known of it."""
         read = document_change.tbox_of(self._map, load, label_prefix=f"t{uuid.uuid4().hex[:8]}")
-        tbox = blank_nodes.labelled_like(read, self._map.tbox)
+        tbox = blank_nodes.relabel_like(read, self._map.tbox)
         document_change.require_no_map(self._map, load, tbox)
         transaction = document_change.of_tbox(self._map, load, tbox)
         if transaction is None:
@@ -114,7 +114,7 @@ class Loading:
 
         try:
             if load.dry_run:
-                tried = trials.of(self._map, replace, lambda: noted.extend(self._notes()))
+                tried = dry_runs.of(self._map, replace, lambda: noted.extend(self._notes()))
                 return Loaded(commit=tried, skipped=(), notes=tuple(noted))
             made = self._changing.changed(replace, dry_run=False)
             return Loaded(commit=made, skipped=(), notes=self._notes())

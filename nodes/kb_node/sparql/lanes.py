@@ -23,8 +23,15 @@ from typing import Any, Final
 
 from msgspec import msgpack
 
-from semmap.nodes.kb_node.sparql.protocol import Dismiss, Hire, Left, Outcome, Question, outcomes
-from semmap.nodes.kb_node.sparql.readers import cause_of_death
+from semmap.nodes.kb_node.sparql.protocol import (
+    QueryOutcome,
+    QueryRequest,
+    ReaderExited,
+    StartReader,
+    StopReader,
+    outcomes,
+)
+from semmap.nodes.kb_node.sparql.readers import error_for_signal
 from semmap.nodes.runtime.fair_queue import FairQueue
 from semmap.schemas import codec, errors
 from semmap.schemas.commands import Sparql
@@ -45,15 +52,15 @@ _SHORT: Final = 16_000
 
 @dataclass
 class _Query:
-    question: Question
+    question: QueryRequest
     asker: str = ""
     future: Future[SparqlResult] = field(default_factory=Future)
     began_s: float = 0.0
-    was_set_aside: bool = False
+    was_preempted: bool = False
 
     def takes_long(self, now_s: float) -> bool:
         """By what is known now."""
-        return self.was_set_aside or now_s - self.began_s >= LONG_S
+        return self.was_preempted or now_s - self.began_s >= LONG_S
 
 
 @dataclass
@@ -89,7 +96,7 @@ class Lanes:
 
         Raises Busy when too many queries wait.
         """
-        question = Question(
+        question = QueryRequest(
             number=next(self._numbers),
             seq=seq,
             query=command.query,
@@ -109,7 +116,7 @@ class Lanes:
             self._hand_out()
         return query.future
 
-    def leave(self, left: Left) -> None:
+    def leave(self, left: ReaderExited) -> None:
         """A reader is no more."""
         lane = self._lanes[left.lane]
         with self._lock:
@@ -123,7 +130,7 @@ class Lanes:
                 return
             lane.query = None
             self._hand_out()
-        query.future.set_exception(cause_of_death(left.signal, query.question.timeout_s))
+        query.future.set_exception(error_for_signal(left.signal, query.question.timeout_s))
 
     def close(self, error: Exception) -> None:
         """There will be no more readers; nobody waits any longer."""
@@ -160,7 +167,7 @@ class Lanes:
     def _taking_long(self, now_s: float) -> list[_Lane]:
         """The lanes whose queries do: first those that were set aside before, then by their age."""
         lanes = [lane for lane in self._lanes if lane.query is not None and lane.query.takes_long(now_s)]
-        return sorted(lanes, key=lambda lane: (not lane.query.was_set_aside, lane.query.began_s))  # type: ignore[union-attr]
+        return sorted(lanes, key=lambda lane: (not lane.query.was_preempted, lane.query.began_s))  # type: ignore[union-attr]
 
     def _look_again(self) -> None:
         """When the next query will have taken long."""
@@ -181,15 +188,15 @@ class Lanes:
                 query, lane.query, lane.is_closing = lane.query, None, True
                 if query is None:
                     raise errors.InternalError("a lane that takes long has no query")
-                query.was_set_aside = True
+                query.was_preempted = True
                 self._set_aside.put(query.asker, query)
-                self._send(Dismiss(lane=lane.number), None)
+                self._send(StopReader(lane=lane.number), None)
             if len(self._waiting):
                 self._look_again()
 
     def _hire(self, lane: _Lane) -> None:
         lane.has_reader = True
-        self._send(Hire(lane=lane.number), None)
+        self._send(StartReader(lane=lane.number), None)
 
     def _put(self, lane: _Lane, query: _Query) -> None:
         """From here, if it cannot take long: to wake another thread does."""
@@ -204,7 +211,7 @@ class Lanes:
             while True:
                 self._take(lane, outcomes.decode(connection.recv_bytes()))
 
-    def _take(self, lane: _Lane, outcome: Outcome) -> None:
+    def _take(self, lane: _Lane, outcome: QueryOutcome) -> None:
         with self._lock:
             query = lane.query
             if query is None or query.question.number != outcome.number:

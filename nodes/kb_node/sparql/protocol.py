@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from msgspec import Raw, Struct, msgpack
 
-from semmap.nodes.kb_node.beliefs import UNCHANGED, Believed
+from semmap.nodes.kb_node.derived_facts import UNCHANGED, DerivedChanges
 from semmap.nodes.kb_node.relations.geometry.placed import Placed
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.sparql.triples.dataset import Delta
@@ -17,7 +17,7 @@ from semmap.schemas.sparql import RowsChanged
 NOTHING = Raw(msgpack.encode(None))
 
 
-class Surrounded(Struct, frozen=True, kw_only=True, tag=True):
+class Placements(Struct, frozen=True, kw_only=True, tag=True):
     """Where everything is: what a question may need to have measured. Commits tell the rest from then on."""
 
     placed: tuple[Placed, ...]
@@ -34,12 +34,12 @@ class Load(Struct, frozen=True, kw_only=True, tag=True):
     seq: int
     asserted: tuple[Triple, ...]
     infers: bool
-    believed: Believed = UNCHANGED
+    derived_changes: DerivedChanges = UNCHANGED
     """What is computed, and what is set aside, if what follows is wanted."""
-    surrounded: Surrounded | None = None
+    placements: Placements | None = None
 
 
-class LoadKept(Struct, frozen=True, kw_only=True, tag=True):
+class LoadFromDisk(Struct, frozen=True, kw_only=True, tag=True):
     """Instead of `Load`: the triples are in the store at `path`.
 
     It has all commits up to `seq` and some of those up to `settled`, which follow: only with all of these it
@@ -55,40 +55,40 @@ class Committed(Struct, frozen=True, kw_only=True, tag=True):
     """Every commit from then on, in order."""
 
     delta: Delta
-    believed: Believed = UNCHANGED
+    derived_changes: DerivedChanges = UNCHANGED
     """What it changes of what is computed and set aside, if what follows is wanted."""
     placed: tuple[Placed, ...] = ()
-    """The entities that it changes, and the names of those that went, after `Surrounded`."""
+    """The entities that it changes, and the names of those that went, after `Placements`."""
     removed: tuple[str, ...] = ()
 
 
-class Demanded(Struct, frozen=True, kw_only=True, tag=True):
+class MeasurementRequest(Struct, frozen=True, kw_only=True, tag=True):
     """A query that may look at what has to be measured; what it needs is to be there under this number."""
 
     demand: int
     query: str
 
 
-class Asked(Struct, frozen=True, kw_only=True, tag=True):
+class StandingCommand(Struct, frozen=True, kw_only=True, tag=True):
     """A command about a standing query, to be answered under its number."""
 
     number: int
     command: Watch | Renew
 
 
-class Hire(Struct, frozen=True, kw_only=True, tag=True):
+class StartReader(Struct, frozen=True, kw_only=True, tag=True):
     """A lane has no reader and needs one."""
 
     lane: int
 
 
-class Dismiss(Struct, frozen=True, kw_only=True, tag=True):
+class StopReader(Struct, frozen=True, kw_only=True, tag=True):
     """The reader of a lane is to be ended: its query has been set aside."""
 
     lane: int
 
 
-class Answered(Struct, frozen=True, kw_only=True, tag=True):
+class CommandReply(Struct, frozen=True, kw_only=True, tag=True):
     """The answer: the command's reply, encoded, or the error."""
 
     number: int
@@ -96,14 +96,14 @@ class Answered(Struct, frozen=True, kw_only=True, tag=True):
     error: ErrorMessage | None = None
 
 
-class Left(Struct, frozen=True, kw_only=True, tag=True):
+class ReaderExited(Struct, frozen=True, kw_only=True, tag=True):
     """A lane's reader is no more: it died of a signal, or (0) went because its triples were too old."""
 
     lane: int
     signal: int
 
 
-class News(Struct, frozen=True, kw_only=True, tag=True):
+class QueryUpdate(Struct, frozen=True, kw_only=True, tag=True):
     """Rows of a standing query have changed; with `ended` there will be no more."""
 
     rows: RowsChanged | None = None
@@ -111,7 +111,7 @@ class News(Struct, frozen=True, kw_only=True, tag=True):
     ended: bool = False
 
 
-class Question(Struct, frozen=True, kw_only=True):
+class QueryRequest(Struct, frozen=True, kw_only=True):
     """A query, to be answered by a reader as of commit `seq` or later, on the lane that it came on."""
 
     number: int
@@ -124,7 +124,7 @@ class Question(Struct, frozen=True, kw_only=True):
     """What was measured under this number is needed, too; 0 for nothing."""
 
 
-class Outcome(Struct, frozen=True, kw_only=True):
+class QueryOutcome(Struct, frozen=True, kw_only=True):
     """What came of it: a `SparqlResult`, encoded, or the error; or the reader is too `old` and goes."""
 
     number: int
@@ -133,10 +133,19 @@ class Outcome(Struct, frozen=True, kw_only=True):
     old: bool = False
 
 
-ToWorker = Load | LoadKept | Surrounded | Committed | Demanded | Asked | Hire | Dismiss
-FromWorker = Answered | Left | News
+ToWorker = (
+    Load
+    | LoadFromDisk
+    | Placements
+    | Committed
+    | MeasurementRequest
+    | StandingCommand
+    | StartReader
+    | StopReader
+)
+FromWorker = CommandReply | ReaderExited | QueryUpdate
 
 to_worker = codec.decoder(ToWorker)
 from_worker = codec.decoder(FromWorker)
-questions = codec.decoder(Question)
-outcomes = codec.decoder(Outcome)
+questions = codec.decoder(QueryRequest)
+outcomes = codec.decoder(QueryOutcome)

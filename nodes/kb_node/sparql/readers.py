@@ -1,7 +1,7 @@
 """A reader: a forked process with a copy of the triples; it evaluates a query at a time and may die of it.
 
 It takes its questions from a *lane*, one end of a pair of sockets, and gives the answers there. The one who
-holds the other end need not be the one who forked it: that one has the *leash*, on which it learns of the
+holds the other end need not be the one who forked it: that one has the *control*, on which it learns of the
 reader's end, and lets it go when its triples are too old.
 """
 
@@ -19,11 +19,11 @@ from typing import Final, NoReturn
 
 from msgspec import Raw, msgpack
 
-from semmap.nodes.kb_node.sparql.protocol import Outcome, Question, questions
+from semmap.nodes.kb_node.sparql.protocol import QueryOutcome, QueryRequest, questions
 from semmap.nodes.kb_node.sparql.queries import text
 from semmap.nodes.kb_node.sparql.queries.evaluation import answer
-from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, KeptDataset
-from semmap.nodes.kb_node.sparql.triples.kept import remove_clone
+from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, DiskDataset
+from semmap.nodes.kb_node.sparql.triples.disk_stores import remove_clone
 from semmap.nodes.kb_node.sparql.triples.log import Log
 from semmap.schemas import errors
 
@@ -44,8 +44,8 @@ class Reader:
     def __init__(self, lane: Connection, dataset: Dataset, log: Log, *, infers: bool) -> None:
         """`infers`: what follows is in the dataset, too."""
         self.log = log
-        self._kept_at = dataset.path if isinstance(dataset, KeptDataset) else None
-        self.leash, there = Pipe()
+        self._kept_at = dataset.path if isinstance(dataset, DiskDataset) else None
+        self.control, there = Pipe()
         self._pid = os.fork()
         if self._pid == 0:
             _serve(lane, there, dataset, log, infers)
@@ -54,24 +54,24 @@ class Reader:
     def retire(self) -> None:
         """Let it go as soon as it has answered."""
         with suppress(OSError):  # it has gone
-            self.leash.send_bytes(b"")
+            self.control.send_bytes(b"")
 
     def end(self) -> int:
         """Kill it if it still lives; the signal that it died of, or 0."""
         with suppress(ProcessLookupError):
             os.kill(self._pid, signal.SIGKILL)
-        return self.bury()
+        return self.reap()
 
-    def bury(self) -> int:
+    def reap(self) -> int:
         """Wait for its end; the signal that it died of, or 0."""
         _, status = os.waitpid(self._pid, 0)
         if self._kept_at is not None:
             remove_clone(self._kept_at, self._pid)
-        self.leash.close()
+        self.control.close()
         return max(0, -os.waitstatus_to_exitcode(status))
 
 
-def cause_of_death(number: int, timeout_s: float) -> errors.Refused:
+def error_for_signal(number: int, timeout_s: float) -> errors.Refused:
     """What a query did that made its reader die of a signal."""
     if number == signal.SIGALRM:
         return errors.Refused(f"the query was cancelled after {timeout_s:g} s, its time limit; narrow it")
@@ -82,20 +82,20 @@ def cause_of_death(number: int, timeout_s: float) -> errors.Refused:
     return errors.Refused(f"the query was cancelled: its process was ended by signal {number}")
 
 
-def _serve(lane: Connection, leash: Connection, dataset: Dataset, log: Log, infers: bool) -> NoReturn:
+def _serve(lane: Connection, control: Connection, dataset: Dataset, log: Log, infers: bool) -> NoReturn:
     """The child's life: it ends with its parent's or its asker's, when it is let go, or with a signal."""
     try:
-        dataset = _opened(dataset, log, {lane.fileno(), leash.fileno(), log.fileno()})
+        dataset = _opened(dataset, log, {lane.fileno(), control.fileno(), log.fileno()})
         poll = select.poll()
-        for connection in (lane, leash):
+        for connection in (lane, control):
             poll.register(connection, select.POLLIN)
         is_old = False
-        while not is_old and leash.fileno() not in {fd for fd, _ in poll.poll()}:
+        while not is_old and control.fileno() not in {fd for fd, _ in poll.poll()}:
             question = questions.decode(lane.recv_bytes())
             while not (is_old or _is_ready(question, dataset, log, infers)):
-                is_old = leash.poll(_A_MOMENT_S)
+                is_old = control.poll(_A_MOMENT_S)
             lane.send_bytes(
-                msgpack.encode(Outcome(number=question.number, old=True))
+                msgpack.encode(QueryOutcome(number=question.number, old=True))
                 if is_old
                 else _answered(question, dataset)
             )
@@ -114,7 +114,7 @@ def _opened(dataset: Dataset, log: Log, fds: set[int]) -> Dataset:
     return opened
 
 
-def _is_ready(question: Question, dataset: Dataset, log: Log, infers: bool) -> bool:
+def _is_ready(question: QueryRequest, dataset: Dataset, log: Log, infers: bool) -> bool:
     """Whether the dataset is what is asked about, after the commits that have come."""
     wanted = max(question.seq, dataset.settled)
     if dataset.seq < wanted or dataset.demand < question.demand:
@@ -126,7 +126,7 @@ def _is_ready(question: Question, dataset: Dataset, log: Log, infers: bool) -> b
     return is_there and (infers or not question.inferred)
 
 
-def _answered(question: Question, dataset: Dataset) -> bytes:
+def _answered(question: QueryRequest, dataset: Dataset) -> bytes:
     """The outcome, encoded, if it comes in time: else the process ends."""
     signal.setitimer(signal.ITIMER_REAL, question.timeout_s)
     outcome = msgpack.encode(_evaluate(question, dataset))
@@ -134,10 +134,10 @@ def _answered(question: Question, dataset: Dataset) -> bytes:
     if len(outcome) <= ANSWER_BYTES:
         return outcome
     error = errors.Refused(f"the answer is longer than {ANSWER_BYTES >> 20} MB")
-    return msgpack.encode(Outcome(number=question.number, error=errors.to_message(error)))
+    return msgpack.encode(QueryOutcome(number=question.number, error=errors.to_message(error)))
 
 
-def _evaluate(question: Question, dataset: Dataset) -> Outcome:
+def _evaluate(question: QueryRequest, dataset: Dataset) -> QueryOutcome:
     try:
         text.require_reading(question.query)
         result = answer(
@@ -147,14 +147,14 @@ def _evaluate(question: Question, dataset: Dataset) -> Outcome:
             limit=question.limit,
             measured=question.demand > 0,
         )
-        return Outcome(number=question.number, result=Raw(msgpack.encode(result)))
+        return QueryOutcome(number=question.number, result=Raw(msgpack.encode(result)))
     except errors.SemmapError as error:
-        return Outcome(number=question.number, error=errors.to_message(error))
+        return QueryOutcome(number=question.number, error=errors.to_message(error))
     except MemoryError:
         os.abort()
     except Exception as error:
         fault = errors.InternalError(f"SPARQL failed: {type(error).__name__}: {error}")
-        return Outcome(number=question.number, error=errors.to_message(fault))
+        return QueryOutcome(number=question.number, error=errors.to_message(fault))
 
 
 def _close_all_but(fds: set[int]) -> None:

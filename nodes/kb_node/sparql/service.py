@@ -19,23 +19,23 @@ from typing import Any, overload
 
 from msgspec import msgpack
 
-from semmap.nodes.kb_node.beliefs import UNCHANGED, Believed
+from semmap.nodes.kb_node.derived_facts import UNCHANGED, DerivedChanges
 from semmap.nodes.kb_node.relations.facts.derived import Derived
 from semmap.nodes.kb_node.relations.geometry.placed import Placed
 from semmap.nodes.kb_node.sparql.lanes import Lanes
 from semmap.nodes.kb_node.sparql.protocol import (
-    Answered,
-    Asked,
+    CommandReply,
     Committed,
-    Demanded,
-    Left,
     Load,
-    LoadKept,
-    News,
-    Surrounded,
+    LoadFromDisk,
+    MeasurementRequest,
+    Placements,
+    QueryUpdate,
+    ReaderExited,
+    StandingCommand,
     from_worker,
 )
-from semmap.nodes.kb_node.sparql.queries.naming import may_name
+from semmap.nodes.kb_node.sparql.queries.predicates import may_name
 from semmap.nodes.kb_node.sparql.triples.dataset import Delta
 from semmap.nodes.kb_node.sparql.triples.large_map import Filled, LargeMap, delta_of
 from semmap.nodes.runtime.futures import settle
@@ -57,14 +57,14 @@ class SparqlService:
     def __init__(
         self,
         asserted: Callable[[], Iterable[Triple]],
-        publish: Callable[[News], None],
+        publish: Callable[[QueryUpdate], None],
         large_map: LargeMap | None = None,
-        believed: Callable[[], Believed] = Believed,
-        surrounded: Callable[[], Surrounded] | None = None,
+        derived_changes: Callable[[], DerivedChanges] = DerivedChanges,
+        placements: Callable[[], Placements] | None = None,
     ) -> None:
         """`asserted()` is what the map says now, `publish` gets the news.
 
-        `believed()` is what is computed besides, and what of the asserted is set aside; `surrounded()` is
+        `derived_changes()` is what is computed besides, and what of the asserted is set aside; `placements()` is
         where everything is, for queries about what has to be measured.
 
         With a `large_map` the triples of a large one are in a store on disk, which is made beside the node's
@@ -72,8 +72,8 @@ class SparqlService:
         always kept in memory.
         """
         self._asserted = asserted
-        self._believed = believed
-        self._surrounded = surrounded
+        self._derived_changes = derived_changes
+        self._placements = placements
         self._measured: frozenset[str] = frozenset()
         """The local names of the properties that have to be measured."""
         self._measures = False
@@ -118,15 +118,15 @@ class SparqlService:
     def _demand(self, worker: _Worker, command: Sparql | Watch) -> int:
         """Have measured what a query may look at; the number under which that is done, 0 for nothing."""
         query = command.query
-        if self._surrounded is None or not command.inferred or not self._measured or query is None:
+        if self._placements is None or not command.inferred or not self._measured or query is None:
             return 0
         if not may_name(query, self._measured):
             return 0
         if not self._measures:
             self._measures = True
-            worker.send(self._surrounded())
+            worker.send(self._placements())
         demand = next(self._demands)
-        worker.send(Demanded(demand=demand, query=query))
+        worker.send(MeasurementRequest(demand=demand, query=query))
         return demand
 
     def foresee(self, commit_id: str, turtle: bytes, base: str, *, packed: bytes = b"") -> None:
@@ -142,13 +142,13 @@ class SparqlService:
         if self._large is not None:
             self._large.forget()
 
-    def foretell(self, commit: Commit) -> Callable[[], None]:
+    def prepare(self, commit: Commit) -> Callable[[], None]:
         """A commit that `follow` will get if it stands the check. What is returned says that it will not."""
         if self._large is None or self._infers or self._since_filling is not None:
             return lambda: None
-        return self._large.foretell(commit)
+        return self._large.prepare(commit)
 
-    def follow(self, commit: Commit, believed: Believed = UNCHANGED) -> None:
+    def follow(self, commit: Commit, derived_changes: DerivedChanges = UNCHANGED) -> None:
         """Every commit, in order, and what it changed of what is computed."""
         self._seq = commit.seq
         is_much = self._large is not None and self._large.is_much(commit)
@@ -164,7 +164,7 @@ class SparqlService:
             self._worker.send(
                 Committed(
                     delta=delta_of(commit),
-                    believed=believed if self._infers else UNCHANGED,
+                    derived_changes=derived_changes if self._infers else UNCHANGED,
                     placed=tuple(map(Placed.of, commit.changed)) if self._measures else (),
                     removed=tuple(gone.name for gone in commit.removed) if self._measures else (),
                 )
@@ -203,27 +203,27 @@ class SparqlService:
         self._large.fill(self._seq, lambda: self._seq, commit).add_done_callback(on_done)
 
     def _load_into_memory(self, worker: _Worker) -> None:
-        believed = self._believed() if self._infers else UNCHANGED
+        derived_changes = self._derived_changes() if self._infers else UNCHANGED
         asserted = tuple(self._asserted())
-        surrounded = None
-        if self._infers and self._surrounded is not None:
+        placements = None
+        if self._infers and self._placements is not None:
             self._measured = frozenset(map(v.local_name, Derived(asserted).sources))
             if self._measures:
-                surrounded = self._surrounded()
+                placements = self._placements()
         worker.send(
             Load(
                 seq=self._seq,
                 asserted=asserted,
                 infers=self._infers,
-                believed=believed,
-                surrounded=surrounded,
+                derived_changes=derived_changes,
+                placements=placements,
             )
         )
         self._go_on()
 
     def _take_over(self, store: Filled, since: Iterable[Delta]) -> None:
         if self._worker is not None:
-            self._worker.send(LoadKept(path=str(store.path), seq=store.seq, settled=store.settled))
+            self._worker.send(LoadFromDisk(path=str(store.path), seq=store.seq, settled=store.settled))
             for delta in since:
                 self._worker.send(Committed(delta=delta))
         self._go_on()
@@ -246,7 +246,7 @@ class SparqlService:
 class _Worker:
     """The process, while it lives."""
 
-    def __init__(self, publish: Callable[[News], None]) -> None:
+    def __init__(self, publish: Callable[[QueryUpdate], None]) -> None:
         self._publish = publish
         self._numbers = count()
         self._outbox: queue.SimpleQueue[tuple[Connection, Any] | None] = queue.SimpleQueue()
@@ -281,7 +281,7 @@ class _Worker:
                     return self._lanes.ask(command, seq, demand, asker)
                 number, future = next(self._numbers), Future[Any]()
                 self._waiting[number] = (type(command), future)
-                self.send(Asked(number=number, command=command))
+                self.send(StandingCommand(number=number, command=command))
                 return future
         future = Future()
         future.set_exception(_ended())
@@ -304,18 +304,18 @@ class _Worker:
         try:
             while True:
                 match from_worker.decode(self._connection.recv_bytes()):
-                    case News() as news:
+                    case QueryUpdate() as news:
                         self._publish(news)
-                    case Left() as left:
+                    case ReaderExited() as left:
                         self._lanes.leave(left)
                     case answered:
                         self._answer(answered)
         except (EOFError, OSError):
             pass
         finally:
-            self._bury()
+            self._reap()
 
-    def _bury(self) -> None:
+    def _reap(self) -> None:
         """Nobody is waiting for it any longer."""
         with self._lock:
             self.is_alive = False
@@ -330,7 +330,7 @@ class _Worker:
         self._writer.join()
         self._connection.close()
 
-    def _answer(self, message: Answered) -> None:
+    def _answer(self, message: CommandReply) -> None:
         with self._lock:
             kind, future = self._waiting.pop(message.number)
         if message.error is not None:

@@ -88,7 +88,7 @@ def test_what_is_in_a_corner_is_in_the_room_too(told):
     told.undo(9)
 
 
-def test_what_cannot_be_asked_is_said(told):
+def test_what_cannot_be_asked_is_asserted(told):
     with pytest.raises(errors.BadRequest, match="commit 6 comes after commit 5; give the earlier one first"):
         told.diff("6", "5")
     with pytest.raises(errors.Refused, match="there is no commit 99 yet; the last one is 10"):

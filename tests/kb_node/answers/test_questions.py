@@ -27,12 +27,12 @@ def furnished(semantic_map):
 
 def explained(semantic_map, name, predicate, value, *, negated=False):
     question = Explain(name=name, predicate=predicate, value=value, negated=negated)
-    return questions.explain(semantic_map.reasoner, questions.of_explain(semantic_map, question))
+    return questions.explain(semantic_map.reasoner, questions.parse_explain(semantic_map, question))
 
 
 def answered(semantic_map, name, predicate, value):
     question = Could(name=name, predicate=predicate, value=value)
-    return questions.could(semantic_map.reasoner, questions.of_could(semantic_map, question))
+    return questions.could(semantic_map.reasoner, questions.parse_could(semantic_map, question))
 
 
 @pytest.mark.parametrize(
@@ -132,19 +132,19 @@ def test_what_no_rule_excludes_is_searched_for_on_a_copy():
     )
     robot, other = triple(":ann a :Robot"), triple(":ann a :Child")
     with pytest.raises(questions.Undecided):
-        questions.explain(reasoner, questions.Asked((robot,), negated=True), anew=False)
-    found = questions.explain(reasoner, questions.Asked((robot,), negated=True))
+        questions.explain(reasoner, questions.StatementQuestion((robot,), negated=True), anew=False)
+    found = questions.explain(reasoner, questions.StatementQuestion((robot,), negated=True))
     assert found.text.startswith("ann is not a Robot, because it is a Person (asserted), ")
     assert (found.conclusion, found.supposed) == (None, robot)
     with pytest.raises(errors.Refused, match="it does not hold: ann is not a Robot, because") as refused:
-        questions.explain(reasoner, questions.Asked((robot,)))
+        questions.explain(reasoner, questions.StatementQuestion((robot,)))
     assert refused.value.explanation == found
     with pytest.raises(errors.Refused, match="it is not known that ann is a Child, but nothing excludes it"):
-        questions.explain(reasoner, questions.Asked((other,), negated=True))
+        questions.explain(reasoner, questions.StatementQuestion((other,), negated=True))
     with pytest.raises(
         errors.Refused, match="it does hold: ann knows itself, because everything knows itself"
     ):
-        questions.explain(reasoner, questions.Asked((triple(":ann :knows :ann"),), negated=True))
+        questions.explain(reasoner, questions.StatementQuestion((triple(":ann :knows :ann"),), negated=True))
 
 
 def test_why_something_cannot_be(furnished):
@@ -215,7 +215,7 @@ def test_what_cannot_be_asked(furnished, question, error, text):
         answered(furnished, *question)
 
 
-def test_what_would_be_the_same_is_said(tmp_path):
+def test_what_would_be_the_same_is_asserted(tmp_path):
     semantic_map = home.new_map(
         tmp_path, (*home.TBOX, *turtle("dm:isPartOf a owl:ObjectProperty , owl:FunctionalProperty ."))
     )
@@ -230,13 +230,13 @@ def test_what_would_be_the_same_is_said(tmp_path):
 def test_what_would_take_long_is_not_tried_on_the_map_itself(furnished):
     crowd = "".join(f":thing{n} a dm:Door ; dm:isLocatedIn :kitchen1 ." for n in range(questions._QUICK + 1))
     ask = Could(name="kitchen1", predicate="sameAs", value="chair2")
-    assert questions.is_quick(furnished.reasoner, questions.of_could(furnished, ask))
+    assert questions.is_quick(furnished.reasoner, questions.parse_could(furnished, ask))
     furnished.commit(transaction(2, turtle(crowd)))
-    asked = questions.of_could(furnished, ask)
+    asked = questions.parse_could(furnished, ask)
     assert not questions.is_quick(furnished.reasoner, asked)
     beside = Reasoner(furnished.reasoner.asserted())
     assert questions.could(beside, asked).text == questions.could(furnished.reasoner, asked).text
-    classes = questions.of_could(furnished, Could(name="Chair", predicate="sameAs", value="Door"))
+    classes = questions.parse_could(furnished, Could(name="Chair", predicate="sameAs", value="Door"))
     with pytest.raises(NotCompilable):
         questions.could(furnished.reasoner, classes, anew=False)
 
@@ -258,13 +258,17 @@ def test_what_no_rule_derives_is_explained_too(furnished, question, text):
 
 
 def test_a_proof_is_not_searched_for_on_the_map_itself(furnished):
-    asked = questions.of_explain(furnished, Explain(name="Chair", predicate="disjointWith", value="Kitchen"))
+    asked = questions.parse_explain(
+        furnished, Explain(name="Chair", predicate="disjointWith", value="Kitchen")
+    )
     with pytest.raises(NotCompilable):
         questions.explain(furnished.reasoner, asked, anew=False)
-    asked = questions.of_explain(furnished, Explain(name="chair1", predicate="type", value="Door"))
+    asked = questions.parse_explain(furnished, Explain(name="chair1", predicate="type", value="Door"))
     with pytest.raises(questions.Undecided):
         questions.explain(furnished.reasoner, asked, anew=False)
-    beside = questions.copy_of(Held(nearby(furnished.reasoner, asked.terms), []), furnished.classes.prefixed)
+    beside = questions.copy_reasoner(
+        Held(nearby(furnished.reasoner, asked.terms), []), furnished.classes.prefixed
+    )
     with pytest.raises(
         errors.Refused, match="it does not hold that chair1 is a Door, and nothing excludes it"
     ):
@@ -277,7 +281,7 @@ def test_classes_that_are_called_alike_have_prefixes_in_sentences(tmp_path):
     semantic_map.commit(transaction(1, turtle(":chair1 a dm:Chair . :a a <http://a.org/lab.owl#Seat> .")))
     said = explained(semantic_map, "chair1", "type", "dm:Seat").text
     assert said == "chair1 is a Seat, because it is a dm:Chair (asserted), and every dm:Chair is a Seat."
-    copied = questions.copy_of(semantic_map.reasoner.held(), semantic_map.classes.prefixed)
-    asked = questions.of_explain(semantic_map, Explain(name="a", predicate="type", value="lab:Seat"))
+    copied = questions.copy_reasoner(semantic_map.reasoner.held(), semantic_map.classes.prefixed)
+    asked = questions.parse_explain(semantic_map, Explain(name="a", predicate="type", value="lab:Seat"))
     assert questions.explain(copied, asked).text == "a is a lab:Seat (asserted)."
     home.close(semantic_map)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from semmap.nodes.kb_node.documents import rdf
-from semmap.nodes.kb_node.documents.blank_nodes import labelled_like
+from semmap.nodes.kb_node.documents.blank_nodes import relabel_like
 from semmap.ontology import HOUSEHOLD_TTL
 
 RESTRICTED = b"<urn:c> <urn:below> [ <urn:on> <urn:p> ; <urn:in> ( <urn:a> [ <urn:not> <urn:b> ] ) ] ."
@@ -16,7 +16,7 @@ CYCLE = b"_:a <urn:next> _:b . _:b <urn:next> _:c . _:c <urn:next> _:a . _:b <ur
 def compared(before: bytes, after: bytes) -> tuple[int, int]:
     """How many triples go and how many come."""
     known, new = (frozenset(rdf.parse(c, "f", label_prefix=p)) for c, p in ((before, "a"), (after, "b")))
-    labelled = labelled_like(new, known)
+    labelled = relabel_like(new, known)
     assert len(labelled) == len(new)
     return len(known - labelled), len(labelled - known)
 

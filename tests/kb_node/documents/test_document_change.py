@@ -34,9 +34,9 @@ def test_what_is_replaced_goes_in_the_same_transaction(semantic_map):
 
 def test_what_was_left_out_is_told(semantic_map):
     content = turtle(":a a dm:Chair . :b a dm:Chiar .")
-    made, sorted_out = document_change.of_document(semantic_map, document(skip_unknown=True), content)
+    made, filtered = document_change.of_document(semantic_map, document(skip_unknown=True), content)
     assert made.insert == turtle(":a a dm:Chair .")
-    assert sorted_out.skipped == ["b (unknown class 'Chiar')"]
+    assert filtered.skipped == ["b (unknown class 'Chiar')"]
 
 
 def test_the_tbox_that_holds_is_no_change(semantic_map):
@@ -60,9 +60,9 @@ STRANGE = ":a a dm:Chair ; dm:isLocatedIn :kitchn . :kitchn dm:isLocatedIn :b . 
 
 
 def test_what_nobody_describes_is_noted(semantic_map):
-    made, sorted_out = document_change.of_document(semantic_map, document(), turtle(STRANGE))
+    made, filtered = document_change.of_document(semantic_map, document(), turtle(STRANGE))
     assert set(made.insert) == set(turtle(STRANGE))
-    assert sorted_out.notes == [
+    assert filtered.notes == [
         "referenced but not described: kitchn (a isLocatedIn kitchn); --strict refuses such files"
     ]
 
@@ -91,8 +91,8 @@ def test_what_nobody_describes_is_refused_when_that_is_asked_for(semantic_map):
 )
 def test_what_somebody_describes_is_no_stranger(semantic_map, text, strict):
     semantic_map.commit(transaction(1, turtle(":hall a dm:Location .")))
-    _, sorted_out = document_change.of_document(semantic_map, document(strict=strict), turtle(text))
-    assert not any("not described" in note for note in sorted_out.notes)
+    _, filtered = document_change.of_document(semantic_map, document(strict=strict), turtle(text))
+    assert not any("not described" in note for note in filtered.notes)
 
 
 def test_what_goes_describes_nothing(semantic_map):

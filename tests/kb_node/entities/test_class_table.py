@@ -52,9 +52,9 @@ def test_a_cycle_of_subclasses_does_no_harm():
 
 
 def test_special_first_is_by_depth_and_leaves_unknown_classes_out():
-    special_first = table().special_first
+    most_specific_first = table().most_specific_first
     given = [v.OBJECT, v.OWL_THING, v.dm("Chair"), "_:x", v.dm("Nothing_Known")]
-    assert special_first(given) == [v.dm("Chair"), v.OBJECT]
+    assert most_specific_first(given) == [v.dm("Chair"), v.OBJECT]
 
 
 TWINS = "<http://a.org/lab.owl#Chair> a owl:Class ; rdfs:subClassOf dm:Seat ."

@@ -1,10 +1,10 @@
-"""Loading documents, without the wire."""
+"""LoadHandlers documents, without the wire."""
 
 from contextlib import nullcontext
 
 from semmap.nodes.kb_node.documents import rdf
-from semmap.nodes.kb_node.handlers.changing import Changing
-from semmap.nodes.kb_node.handlers.loading import Loading
+from semmap.nodes.kb_node.handlers.changes import ChangeHandlers
+from semmap.nodes.kb_node.handlers.loading import LoadHandlers
 from semmap.ontology import stars
 from semmap.ontology import vocabulary as v
 from semmap.schemas.bridge import LoadDocument
@@ -20,18 +20,23 @@ class NoSparql:
 
 
 def loading(semantic_map, said):
-    def telling_of(work):
+    def reporting_progress(work):
         return nullcontext(lambda text: said.append(f"{work}: {text}"))
 
-    changing = Changing(
+    changing = ChangeHandlers(
         semantic_map,
         semantic_map._journal,
         spread=lambda commit, **how: None,
         not_written=said.append,
-        telling_of=telling_of,
+        reporting_progress=reporting_progress,
     )
-    return Loading(
-        semantic_map, semantic_map._journal, changing, NoSparql(), telling_of=telling_of, notes=lambda: ()
+    return LoadHandlers(
+        semantic_map,
+        semantic_map._journal,
+        changing,
+        NoSparql(),
+        reporting_progress=reporting_progress,
+        notes=lambda: (),
     )
 
 

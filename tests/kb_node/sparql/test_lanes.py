@@ -7,7 +7,13 @@ from msgspec import Raw, msgpack
 
 from semmap.nodes.kb_node.sparql import lanes
 from semmap.nodes.kb_node.sparql.lanes import AT_LENGTH, LANES, Lanes
-from semmap.nodes.kb_node.sparql.protocol import Dismiss, Hire, Left, Outcome, questions
+from semmap.nodes.kb_node.sparql.protocol import (
+    QueryOutcome,
+    ReaderExited,
+    StartReader,
+    StopReader,
+    questions,
+)
 from semmap.schemas import errors
 from semmap.schemas.commands import Sparql
 from semmap.schemas.sparql import SparqlResult
@@ -42,7 +48,7 @@ class Readers:
 
     def answer(self, lane, question, **outcome):
         result = Raw(msgpack.encode(SparqlResult(kind="ask", seq=7, verdict=True)))
-        message = Outcome(number=question.number, **({"result": result} | outcome))
+        message = QueryOutcome(number=question.number, **({"result": result} | outcome))
         self.lanes.others[lane].send_bytes(msgpack.encode(message))
 
 
@@ -57,12 +63,12 @@ def readers():
 def test_each_question_has_a_lane_and_the_warm_one_comes_first(readers):
     first = readers.ask("a")
     second = readers.ask("b")
-    assert readers.sent == [Hire(lane=0), Hire(lane=1)]
+    assert readers.sent == [StartReader(lane=0), StartReader(lane=1)]
     readers.answer(1, readers.take(1))
     assert second.result(WAIT_S).verdict
     third = readers.ask("c")
     assert readers.take(1).query == "c"
-    assert readers.sent == [Hire(lane=0), Hire(lane=1)]
+    assert readers.sent == [StartReader(lane=0), StartReader(lane=1)]
     assert not first.done()
     assert not third.done()
 
@@ -79,11 +85,11 @@ def test_what_finds_no_lane_waits_for_the_next(readers):
 def test_a_reader_that_dies_of_its_query_takes_the_answer_with_it(readers):
     future = readers.ask("endless")
     late = readers.take(0)
-    readers.lanes.leave(Left(lane=0, signal=signal.SIGALRM))
+    readers.lanes.leave(ReaderExited(lane=0, signal=signal.SIGALRM))
     with pytest.raises(errors.Refused, match=r"cancelled after 1.5 s"):
         future.result(WAIT_S)
     following = readers.ask("next")
-    assert readers.sent == [Hire(lane=0), Hire(lane=0)]
+    assert readers.sent == [StartReader(lane=0), StartReader(lane=0)]
     readers.answer(0, late)  # nobody waits for it
     readers.answer(0, readers.take(0))
     assert following.result(WAIT_S).verdict
@@ -91,11 +97,11 @@ def test_a_reader_that_dies_of_its_query_takes_the_answer_with_it(readers):
 
 def test_a_reader_that_goes_leaves_the_question_to_the_next(readers):
     future = readers.ask("unread")
-    readers.lanes.leave(Left(lane=0, signal=0))
-    assert readers.sent == [Hire(lane=0), Hire(lane=0)]
+    readers.lanes.leave(ReaderExited(lane=0, signal=0))
+    assert readers.sent == [StartReader(lane=0), StartReader(lane=0)]
     given_back = readers.take(0)
     readers.answer(0, given_back, old=True)
-    readers.lanes.leave(Left(lane=0, signal=0))
+    readers.lanes.leave(ReaderExited(lane=0, signal=0))
     again = readers.take(0)
     assert again == given_back
     readers.answer(0, again)
@@ -126,9 +132,9 @@ def test_where_all_lanes_take_long_one_is_set_aside_for_who_waits_and_begun_anew
     monkeypatch.setattr(lanes, "LONG_S", 0.05)
     futures, taken = begun(readers, LANES)
     quick = readers.ask("quick")
-    until(lambda: Dismiss(lane=AT_LENGTH) in readers.sent, "one is set aside")
-    readers.lanes.leave(Left(lane=AT_LENGTH, signal=0))
-    assert readers.sent[-1] == Hire(lane=AT_LENGTH)
+    until(lambda: StopReader(lane=AT_LENGTH) in readers.sent, "one is set aside")
+    readers.lanes.leave(ReaderExited(lane=AT_LENGTH, signal=0))
+    assert readers.sent[-1] == StartReader(lane=AT_LENGTH)
     question = readers.take(AT_LENGTH)
     assert question.query == "quick"
     readers.answer(AT_LENGTH, question)
@@ -148,7 +154,7 @@ def test_nothing_is_set_aside_while_nobody_waits(readers, monkeypatch):
     monkeypatch.setattr(lanes, "LONG_S", 0.0)
     begun(readers, LANES)
     readers.lanes._make_room()
-    assert all(isinstance(sent, Hire) for sent in readers.sent)
+    assert all(isinstance(sent, StartReader) for sent in readers.sent)
     assert readers.lanes._timer is None
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from semmap.nodes.kb_node.relations.facts.beside import beside
 from semmap.nodes.kb_node.relations.telling import explained
-from semmap.nodes.kb_node.sparql.protocol import Surrounded
+from semmap.nodes.kb_node.sparql.protocol import Placements
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.ontology import vocabulary as v
 from semmap.schemas.commands import Sparql, Watch
@@ -28,8 +28,8 @@ def service(flat, news):
     made = SparqlService(
         lambda: flat.reasoner.asserted(),
         news.put,
-        believed=flat.all_believed,
-        surrounded=lambda: Surrounded(placed=flat.placed(), limits=flat.classes.limits),
+        derived_changes=flat.all_derived,
+        placements=lambda: Placements(placed=flat.placed(), limits=flat.classes.limits),
     )
     yield made
     made.close()
@@ -70,7 +70,7 @@ def stir(flat, service, dice, number, things, spots):
     at = (x + dice.choice([0.0, 0.0, 0.02, 0.3]), y, z)
     commit = flat.commit(Transaction(id=f"c{number}", source="operator", edit=(Edit(name=name, at=at),)))
     if commit is not None:
-        service.follow(commit, flat.believed_of(commit))
+        service.follow(commit, flat.take_derived_changes(commit))
 
 
 def movable(flat):
@@ -138,14 +138,14 @@ def test_what_somebody_says_is_told_once(flat, service):
     triple = (near[0], v.dm("isNear"), near[1])
     for change in ({"insert": (triple,)}, {"retract": (triple,)}):
         commit = flat.commit(Transaction(id=str(change), source="operator", **change))
-        service.follow(commit, flat.believed_of(commit))
+        service.follow(commit, flat.take_derived_changes(commit))
         assert near in ask(service, flat, ALL.format("isNear"))
 
 
 def test_an_entity_that_goes_is_near_nobody(flat, service):
     ask(service, flat, ALL.format("isNear"))
     commit = flat.commit(Transaction(id="r", source="operator", remove=("milk1",)))
-    service.follow(commit, flat.believed_of(commit))
+    service.follow(commit, flat.take_derived_changes(commit))
     assert ask(service, flat, ALL.format("isNear")) == told(flat, "isNear")
 
 

@@ -38,7 +38,7 @@ QUERIES = {
 @pytest.mark.long
 def test_they_have_the_rows_that_there_are(flat):
     dice, news = random.Random(15), queue.SimpleQueue()
-    service = SparqlService(lambda: flat.reasoner.asserted(), news.put, believed=flat.all_believed)
+    service = SparqlService(lambda: flat.reasoner.asserted(), news.put, derived_changes=flat.all_derived)
     rows, truth = {}, {}
     for query, evaluate in QUERIES.items():
         begun = service.ask(Watch(query=query, inferred=True, lease=600.0), flat.seq).result(WAIT_S)
@@ -51,7 +51,7 @@ def test_they_have_the_rows_that_there_are(flat):
         at = (x + dice.choice([0.0, 0.0, 0.02]), y, z)
         commit = flat.commit(Transaction(id=f"c{number}", source="operator", edit=(Edit(name=name, at=at),)))
         if commit is not None:
-            service.follow(commit, flat.believed_of(commit))
+            service.follow(commit, flat.take_derived_changes(commit))
         truth[flat.seq] = {evaluate: evaluate(flat.reasoner) for evaluate in QUERIES.values()}
     for query, evaluate in QUERIES.items():
         asked = service.ask(Sparql(query=query, inferred=True), flat.seq).result(WAIT_S)

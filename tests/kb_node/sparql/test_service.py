@@ -10,7 +10,7 @@ import pyoxigraph as ox
 import pytest
 from msgspec import structs
 
-from semmap.nodes.kb_node.beliefs import Beliefs
+from semmap.nodes.kb_node.derived_facts import DerivedFacts
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
 from semmap.nodes.kb_node.sparql import readers
@@ -39,16 +39,16 @@ class Home:
         self.seq = 0
         self.news = queue.SimpleQueue()
         self.there = {}
-        self.beliefs = Beliefs(self.reasoner)
+        self.derived_facts = DerivedFacts(self.reasoner)
         self.service = SparqlService(
-            lambda: self.reasoner.asserted(), self.news.put, believed=lambda: self.beliefs.all()
+            lambda: self.reasoner.asserted(), self.news.put, derived_changes=lambda: self.derived_facts.all()
         )
 
     def commit(self, insert=(), retract=(), changed=(), removed=()):
         insert, retract = tuple(insert), tuple(retract)
-        self.beliefs.begin()
-        self.beliefs.change(retract, insert)
-        self.beliefs.follow(changed, removed, self.there.get, retract, insert)
+        self.derived_facts.begin()
+        self.derived_facts.change(retract, insert)
+        self.derived_facts.follow(changed, removed, self.there.get, retract, insert)
         self.seq += 1
         self.there.update((entity.name, entity) for entity in changed)
         for name in removed:
@@ -63,12 +63,12 @@ class Home:
             changed=tuple(changed),
             removed=tuple(Departed(name=name, types=()) for name in removed),
         )
-        self.service.follow(commit, self.beliefs.believed)
+        self.service.follow(commit, self.derived_facts.derived_changes)
 
     def replace(self, triples):
         """Another TBox."""
         self.reasoner = Reasoner(triples)
-        self.beliefs = Beliefs(self.reasoner)
+        self.derived_facts = DerivedFacts(self.reasoner)
         self.seq += 1
         self.service.follow(Commit(seq=self.seq, stamp_ns=0, id="", source="operator", tbox=True))
 

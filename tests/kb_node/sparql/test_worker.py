@@ -6,7 +6,14 @@ import pytest
 from msgspec import msgpack
 
 from semmap.nodes.kb_node.sparql import worker
-from semmap.nodes.kb_node.sparql.protocol import Committed, Hire, Left, Load, Question, outcomes
+from semmap.nodes.kb_node.sparql.protocol import (
+    Committed,
+    Load,
+    QueryRequest,
+    ReaderExited,
+    StartReader,
+    outcomes,
+)
 from semmap.nodes.kb_node.sparql.triples.dataset import Delta
 from semmap.ontology import vocabulary as v
 from semmap.schemas.sparql import SparqlResult
@@ -35,7 +42,7 @@ class Process:
         self.worker.take(Committed(delta=Delta(seq=self.seq, inserted=(chair,))))
 
     def ask(self, lane, query, *, seq=None, inferred=False):
-        question = Question(
+        question = QueryRequest(
             number=1,
             seq=self.seq if seq is None else seq,
             query=query,
@@ -50,7 +57,7 @@ class Process:
         until(lambda: not self._theirs[lane].poll(0), "a reader has taken the question")
 
     def hire(self, lane):
-        self.worker.take(Hire(lane=lane))
+        self.worker.take(StartReader(lane=lane))
 
     def hear(self, lane):
         assert self.lanes[lane].poll(WAIT_S)
@@ -111,7 +118,7 @@ def test_a_reader_that_cannot_follow_goes_and_leaves_the_question(process):
     process.hire(0)
     for _ in range(11):
         process.commit()
-    assert process.bury_one() == Left(lane=0, signal=0)
+    assert process.bury_one() == ReaderExited(lane=0, signal=0)
     process.ask(0, CHAIRS)
     process.hire(0)
     assert process.rows(0) == 11
@@ -123,7 +130,7 @@ def test_one_that_has_taken_the_question_gives_it_back(process):
     process.await_taken(0)
     process.worker.take(Load(seq=0, asserted=tuple(home.TBOX), infers=True))
     assert process.hear(0).old
-    assert process.bury_one() == Left(lane=0, signal=0)
+    assert process.bury_one() == ReaderExited(lane=0, signal=0)
 
 
 def test_lanes_have_readers_of_their_own(process):

@@ -54,7 +54,7 @@ def _without_what_is_set_aside(triples: list[Triple]) -> list[Triple]:
     return triples
 
 
-def keeping_roots(tbox: Sequence[Triple], before: ClassTable) -> list[Triple]:
+def with_spatial_roots_of(tbox: Sequence[Triple], before: ClassTable) -> list[Triple]:
     """A TBox that declares no spatial roots itself, with those of the one before, as far as it has these."""
     if any(p == v.SPATIAL for _, p, _ in tbox):
         return list(tbox)

@@ -33,7 +33,7 @@ def require_fit(abox: Iterable[Triple], before: ClassTable, after: ClassTable) -
     """Raises DoesNotFit when the ABox has classes that the TBox has not, or things in space would be none."""
     abox = list(abox)
     try:
-        abox_document.sort_out(abox, after, skip_unknown=False)
+        abox_document.filter_document(abox, after, skip_unknown=False)
     except errors.UnknownClass as error:
         raise DoesNotFit(f"the map does not fit the TBox: {error.text.partition('; --')[0]}") from None
     types = [(s, o) for s, p, o in abox if p == v.RDF_TYPE]

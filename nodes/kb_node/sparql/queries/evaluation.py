@@ -8,7 +8,7 @@ from typing import Final
 import pyoxigraph as ox
 
 from semmap.nodes.kb_node.sparql.queries.text import query_prefixes, syntax_error
-from semmap.nodes.kb_node.sparql.queries.unknown import unknown
+from semmap.nodes.kb_node.sparql.queries.unknown_terms import unknown
 from semmap.nodes.kb_node.sparql.triples.dataset import ASSERTED, INFERRED, MEASURED, Dataset
 from semmap.ontology import prefixes
 from semmap.ontology import vocabulary as v

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import chain
 
-from semmap.nodes.kb_node.beliefs import UNCHANGED, Believed
+from semmap.nodes.kb_node.derived_facts import UNCHANGED, DerivedChanges
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, Delta, as_stored
@@ -36,7 +36,7 @@ _FIRST, _REST = v.iri(v.RDF + "first"), v.iri(v.RDF + "rest")
 def inferred(reasoner: Reasoner, subject: Term | None = None) -> Iterator[Triple]:
     """What follows about an individual, or about all and about classes and properties by their names.
 
-    Literals are as the dataset stores them. Left out is what RDF has no place for (literals as subjects),
+    Literals are as the dataset stores them. ReaderExited out is what RDF has no place for (literals as subjects),
     classes without a name, and that everything is the same as itself.
     """
     if subject is None:
@@ -57,13 +57,15 @@ def inferred(reasoner: Reasoner, subject: Term | None = None) -> Iterator[Triple
 class Consequences:
     """What follows in a dataset, exact after each commit; what is computed is among it."""
 
-    def __init__(self, asserted: Iterable[Triple], dataset: Dataset, believed: Believed = UNCHANGED) -> None:
+    def __init__(
+        self, asserted: Iterable[Triple], dataset: Dataset, derived_changes: DerivedChanges = UNCHANGED
+    ) -> None:
         """Put into `dataset` what follows from what is asserted and computed, and not set aside."""
         self._dataset = dataset
-        aside = set(believed.aside)
+        aside = set(derived_changes.aside)
         self._reasoner = Reasoner(t for t in asserted if t not in aside)
-        self._reasoner.believe(come=believed.come, aside=believed.aside)
-        dataset.deny(believed.aside)
+        self._reasoner.believe(come=derived_changes.come, aside=derived_changes.aside)
+        dataset.deny(derived_changes.aside)
         self._read_schema()
         dataset.infer(inferred(self._reasoner))
 
@@ -72,20 +74,22 @@ class Consequences:
         self._onward = frozenset(property for chain in chains for property in chain)
         self._steps = max(map(len, chains), default=1) - 1
 
-    def after(self, delta: Delta, believed: Believed = UNCHANGED) -> Delta:
+    def after(self, delta: Delta, derived_changes: DerivedChanges = UNCHANGED) -> Delta:
         """`delta`, which is about what is asserted, with what it changes of what follows; no more is done.
 
-        `believed` is what it changes besides.
+        `derived_changes` is what it changes besides.
         """
         was_compiled = self._reasoner.is_compiled
-        less = self._reasoner.believe(gone=believed.gone, aside=believed.aside, tell_implied=True)
+        less = self._reasoner.believe(
+            gone=derived_changes.gone, aside=derived_changes.aside, tell_implied=True
+        )
         touched = self._reasoner.apply(delete=delta.retracted, insert=delta.inserted).touched
-        more = self._reasoner.believe(come=believed.come, back=believed.back, tell_implied=True)
+        more = self._reasoner.believe(come=derived_changes.come, back=derived_changes.back, tell_implied=True)
         if not (was_compiled and self._reasoner.is_compiled) or any(map(is_schema, delta.asserted)):
             gone, new = self._all_changes()
         elif less.implied is None or more.implied is None:
             touched |= less.touched | more.touched
-            gone, new = self._changes((*delta.asserted, *chain(*believed)), touched)
+            gone, new = self._changes((*delta.asserted, *chain(*derived_changes)), touched)
         else:
             gone, new = self._changes(delta.asserted, touched)
             for triple in less.implied | more.implied:
@@ -98,8 +102,8 @@ class Consequences:
             inserted=delta.inserted,
             no_longer_inferred=tuple(sorted(gone)),
             newly_inferred=tuple(sorted(new)),
-            denied=believed.aside,
-            undenied=believed.back,
+            denied=derived_changes.aside,
+            undenied=derived_changes.back,
         )
 
     def _compare(self, triple: Triple, gone: set[Triple], new: set[Triple]) -> None:

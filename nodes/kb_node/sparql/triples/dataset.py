@@ -15,7 +15,7 @@ from pathlib import Path
 import pyoxigraph as ox
 from msgspec import Struct
 
-from semmap.nodes.kb_node.sparql.triples.kept import cloned
+from semmap.nodes.kb_node.sparql.triples.disk_stores import cloned
 from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Term, Triple
 
@@ -189,7 +189,7 @@ class Dataset:
         return found
 
 
-class KeptDataset(Dataset):
+class DiskDataset(Dataset):
     """The triples in a store on disk, and the log since. Who keeps it never opens it: only readers do.
 
     Oxigraph's threads for a store on disk would not live on in a fork.

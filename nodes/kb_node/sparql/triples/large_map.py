@@ -20,7 +20,7 @@ from typing import Final, NamedTuple
 
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.sparql.triples.dataset import Delta
-from semmap.nodes.kb_node.sparql.triples.kept import KeptStores
+from semmap.nodes.kb_node.sparql.triples.disk_stores import DiskStores
 from semmap.nodes.kb_node.sparql.triples.store_filler import StoreFiller
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.runtime.futures import settle
@@ -66,9 +66,9 @@ class LargeMap:
         self._reasoner = reasoner
         self._soon = soon
         self._large = large
-        self._stores = KeptStores(journal.path.parent)
+        self._stores = DiskStores(journal.path.parent)
         self._filler: StoreFiller | None = None
-        self._foretold: tuple[str, StoreFiller] | None = None
+        self._prepared: tuple[str, StoreFiller] | None = None
         """The id of a commit that is being checked, and the store of the map after it."""
 
     @property
@@ -103,12 +103,12 @@ class LargeMap:
         if is_much and not self.is_large:
             self._begin(commit_id, (), packed or turtle, base)
 
-    def foretell(self, commit: Commit) -> Callable[[], None]:
+    def prepare(self, commit: Commit) -> Callable[[], None]:
         """A commit will be made if it stands the check: begin its store if that is worth it.
 
         What is returned gives it up again.
         """
-        if self._foretold is None or self._foretold[0] != commit.id or commit.retracted:
+        if self._prepared is None or self._prepared[0] != commit.id or commit.retracted:
             self.forget()  # what was taken back
             if self.is_much(commit) and not (commit.retracted or self.is_large):
                 self._begin(commit.id, commit.inserted)
@@ -116,16 +116,16 @@ class LargeMap:
 
     def forget(self) -> None:
         """What was foreseen or foretold does not come."""
-        if self._foretold is not None:
-            self._foretold[1].give_up()
-            self._foretold = None
+        if self._prepared is not None:
+            self._prepared[1].give_up()
+            self._prepared = None
 
     def _begin(self, commit_id: str, inserted: Sequence[Triple], turtle: bytes = b"", base: str = "") -> None:
         self.forget()
         with suppress(OSError):  # `fill` says so
             path = self._stores.begin()
             before = list(self._reasoner().asserted())
-            self._foretold = commit_id, StoreFiller(path, _frames(before, inserted), turtle, base=base)
+            self._prepared = commit_id, StoreFiller(path, _frames(before, inserted), turtle, base=base)
 
     def fill(self, seq: int, now: Callable[[], int], commit: Commit | None = None) -> Future[Filled]:
         """Make the store of the map after commit `seq`, as it is; the node's thread resolves the future.
@@ -136,8 +136,8 @@ class LargeMap:
         """
         future: Future[Filled] = Future()
         count: int | None = None
-        if commit is not None and self._foretold is not None and self._foretold[0] == commit.id:
-            (_, filler), self._foretold = self._foretold, None
+        if commit is not None and self._prepared is not None and self._prepared[0] == commit.id:
+            (_, filler), self._prepared = self._prepared, None
             count = len(self._reasoner())
         else:
             try:
@@ -179,7 +179,7 @@ class LargeMap:
 
     def close(self) -> None:
         """Give up what is being made."""
-        for filler in (self._filler, self._foretold and self._foretold[1]):
+        for filler in (self._filler, self._prepared and self._prepared[1]):
             if filler is not None and not filler.outcome.done():
                 filler.give_up()
 

@@ -11,7 +11,7 @@ from concurrent.futures import Future
 from contextlib import suppress
 from pathlib import Path
 
-from semmap.nodes.kb_node.sparql.triples.filling import END, PACKED, frame
+from semmap.nodes.kb_node.sparql.triples.bulk_load import END, PACKED, frame
 from semmap.schemas import errors
 from semmap.schemas.explanations import Triple
 from semmap.schemas.packing import is_packed
@@ -55,7 +55,13 @@ class StoreFiller:
             self.outcome.set_result(counts)
 
     def _pump(self, pieces: Iterable[Sequence[Triple]]) -> tuple[int, int]:
-        command = [sys.executable, "-P", "-m", "semmap.nodes.kb_node.sparql.triples.filling", str(self.path)]
+        command = [
+            sys.executable,
+            "-P",
+            "-m",
+            "semmap.nodes.kb_node.sparql.triples.bulk_load",
+            str(self.path),
+        ]
         if self._turtle:
             command += [self._base, PACKED] if is_packed(self._turtle) else [self._base]
         with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:

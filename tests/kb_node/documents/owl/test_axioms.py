@@ -7,7 +7,7 @@ import pyoxigraph
 import pytest
 
 from semmap.nodes.kb_node.documents import rdf
-from semmap.nodes.kb_node.documents.blank_nodes import labelled_like
+from semmap.nodes.kb_node.documents.blank_nodes import relabel_like
 from tests.data import data_folder
 
 HEAD = "Prefix(:=<urn:t:>)\nOntology(<urn:t>\n"
@@ -196,7 +196,7 @@ CONSTRUCTS = [
 def test_a_construct_becomes_the_triples_of_the_mapping(axiom, turtle):
     read = rdf.parse((HEAD + axiom + ")").encode(), "o.ofn", label_prefix="r")
     expected = rdf.parse((TURTLE + turtle).encode(), "expected.ttl", label_prefix="x")
-    assert labelled_like(read, expected) == frozenset(expected)
+    assert relabel_like(read, expected) == frozenset(expected)
     assert len(read) == len(set(read)) == len(expected)
 
 

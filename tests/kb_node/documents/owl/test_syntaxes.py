@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from semmap.nodes.kb_node.documents import rdf
-from semmap.nodes.kb_node.documents.blank_nodes import labelled_like
+from semmap.nodes.kb_node.documents.blank_nodes import relabel_like
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 
@@ -107,7 +107,7 @@ SYNTAXES = {"functional": FUNCTIONAL, "manchester": MANCHESTER, "owlxml": OWL_XM
 def test_every_syntax_says_the_same(syntax):
     read = rdf.parse(SYNTAXES[syntax].encode(), "kitchen", label_prefix="r")
     expected = rdf.parse(TURTLE.encode(), "kitchen.ttl", label_prefix="x")
-    assert labelled_like(read, expected) == frozenset(expected)
+    assert relabel_like(read, expected) == frozenset(expected)
 
 
 @pytest.mark.parametrize(

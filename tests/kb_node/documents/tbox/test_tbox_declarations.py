@@ -4,7 +4,7 @@ import pytest
 
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.documents.tbox import tbox_notes
-from semmap.nodes.kb_node.documents.tbox.tbox_declarations import declared, keeping_roots
+from semmap.nodes.kb_node.documents.tbox.tbox_declarations import declared, with_spatial_roots_of
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import vocabulary as v
@@ -68,11 +68,11 @@ def test_prefixes_are_read_from_every_syntax(text, prefixes):
 
 def test_roots_stay_until_others_are_declared():
     before = table(declared(triples(), spatial_root=["Animal"]))
-    assert table(keeping_roots(triples(), before)).spatial_roots == (ANIMAL,)
+    assert table(with_spatial_roots_of(triples(), before)).spatial_roots == (ANIMAL,)
     other = declared(triples(), spatial_root=["Idea"])
-    assert table(keeping_roots(other, before)).spatial_roots == ("<http://zoo.org/zoo#Idea>",)
+    assert table(with_spatial_roots_of(other, before)).spatial_roots == ("<http://zoo.org/zoo#Idea>",)
     without = [t for t in triples() if ANIMAL not in t]
-    assert table(keeping_roots(without, before)).spatial_roots == ()
+    assert table(with_spatial_roots_of(without, before)).spatial_roots == ()
 
 
 def test_without_roots_it_is_told_what_that_means():

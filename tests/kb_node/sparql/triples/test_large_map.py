@@ -11,7 +11,7 @@ from semmap.nodes.kb_node.sparql import worker
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.sparql.triples import large_map
 from semmap.nodes.kb_node.sparql.triples.dataset import Delta
-from semmap.nodes.kb_node.sparql.triples.kept import FOLDER, clone_of, cloned
+from semmap.nodes.kb_node.sparql.triples.disk_stores import FOLDER, clone_path, cloned
 from semmap.nodes.kb_node.sparql.triples.large_map import LargeMap
 from semmap.nodes.kb_node.storage import seed
 from semmap.nodes.kb_node.storage.journal import Journal
@@ -45,7 +45,7 @@ class Node:
         large_map.fill = counted
         self.large_map = large_map
         self.service = SparqlService(lambda: self.map.reasoner.asserted(), self.news.put, large_map)
-        self.map.foretell = self.service.foretell
+        self.map.prepare = self.service.prepare
 
     def commit(self, number, insert=(), retract=()):
         commit = self.map.commit(transaction(number, insert, retract))
@@ -325,7 +325,7 @@ def test_a_query_that_takes_too_long_is_cancelled_and_its_clone_goes(node, tmp_p
 
 
 def test_a_long_log_is_taken_into_the_store(node, monkeypatch):
-    dataset = worker.KeptDataset
+    dataset = worker.DiskDataset
     assert node.count() == 3
     (path,) = stores(node)
     kept = dataset(path, node.map.seq, node.map.seq)
@@ -350,4 +350,4 @@ def test_a_clone_changes_nothing_in_the_store(tmp_path):
     clone.remove(quad)
     assert len(clone) == 0
     assert len(ox.Store(str(path))) == 1
-    assert clone_of(path, 1).parent == path.parent
+    assert clone_path(path, 1).parent == path.parent

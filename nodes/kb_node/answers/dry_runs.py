@@ -1,0 +1,73 @@
+"""A change that is tried and taken back: what it would commit, and what would follow."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from itertools import islice
+
+from msgspec import structs
+
+from semmap.nodes.kb_node.answers.answers import without_trivial
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import Commit, Effects, Trial
+from semmap.schemas.explanations import Term, Triple
+
+_FEW = 50
+"""Entities of which it is said what follows."""
+
+
+def of(
+    semantic_map: SemanticMap,
+    change: Callable[[], Commit | None],
+    meanwhile: Callable[[], None] = lambda: None,
+) -> Effects | None:
+    """The effects of what `change` would commit, with nothing done; None if it changes nothing.
+
+    `meanwhile` is called while the map is as it would be. Raises what `change` raises.
+    """
+
+    def look(commit: Commit) -> _After:
+        meanwhile()
+        return _After(semantic_map, commit)
+
+    seen = semantic_map.try_out(change, look)
+    if seen is None:
+        return None
+    held = _asserted(semantic_map, seen.concerned)
+    followed = _inferred(semantic_map, seen.concerned)
+    commit, names = seen.commit, semantic_map.classes.qualified_names
+    return structs.replace(
+        Effects.of(commit),
+        trial=Trial(
+            inserted=len(commit.inserted),
+            retracted=len(commit.retracted),
+            changed=tuple(entity.name for entity in commit.changed),
+            gained=_spoken(seen.followed - followed - held, names),
+            lost=_spoken(followed - seen.followed - seen.held, names),
+        ),
+    )
+
+
+class _After:
+    """What holds of the entities that a commit touches, after it."""
+
+    def __init__(self, semantic_map: SemanticMap, commit: Commit) -> None:
+        self.commit = commit
+        gone = filter(None, (semantic_map.find(departed.name) for departed in commit.removed))
+        self.concerned = [v.iri(entity.iri) for entity in islice((*commit.changed, *gone), _FEW)]
+        self.held = _asserted(semantic_map, self.concerned)
+        self.followed = _inferred(semantic_map, self.concerned)
+
+
+def _asserted(semantic_map: SemanticMap, iris: Iterable[Term]) -> set[Triple]:
+    return {t for iri in iris for t in semantic_map.reasoner.asserted(iri)}
+
+
+def _inferred(semantic_map: SemanticMap, iris: Iterable[Term]) -> set[Triple]:
+    reasoner = semantic_map.reasoner
+    return {t for iri in iris for t in without_trivial(reasoner.inferred(iri, None, None))}
+
+
+def _spoken(triples: Iterable[Triple], names: Mapping[Term, str]) -> tuple[str, ...]:
+    return tuple(v.spoken(triple, names) for triple in sorted(triples))

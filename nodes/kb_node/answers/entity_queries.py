@@ -1,0 +1,273 @@
+"""Entities and where they are, now and in the past: what `list`, `get`, `relations` and `explain` answer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Sequence
+from typing import Final, NamedTuple
+
+from msgspec import structs
+
+from semmap.nodes.kb_node.answers import answers, questions
+from semmap.nodes.kb_node.answers.fact_intervals import FactStarts
+from semmap.nodes.kb_node.relations.facts.place_facts import Fact
+from semmap.nodes.kb_node.relations.facts.rules import COMPUTED
+from semmap.nodes.kb_node.relations.facts.said import PROPERTIES, denial, denied, fact_of
+from semmap.nodes.kb_node.relations.measuring.phrases import SPOKEN
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.selection import only_meant, selected
+from semmap.nodes.kb_node.relations.support import on_nothing
+from semmap.nodes.kb_node.relations.telling import explained, relations, whereabouts
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.bridge import Entities
+from semmap.schemas.commands import Explain, Get, Relations
+from semmap.schemas.entities import Entity
+from semmap.schemas.explanations import Explanation, Term, Triple
+from semmap.schemas.relations import Described, Relation, RelationName
+
+_MEASURED: Final[dict[Term, tuple[RelationName, bool]]] = {
+    **{v.dm(name): (name, False) for name in SPOKEN},
+    **PROPERTIES,
+}
+"""The properties that `explain` has measured; of the inverse ones the object is the thing."""
+
+
+class Explained(NamedTuple):
+    """Why something holds; where measured facts are a reason, their sentences are still to be dated."""
+
+    explanation: Explanation
+    before: str = ""
+    measured: tuple[tuple[Fact, str], ...] = ()
+
+    def dated(self, look_up: Callable[[Collection[Fact]], FactStarts]) -> Explanation:
+        """With words for since when each measured fact holds and, of several, since when all do."""
+        if not self.measured:
+            return self.explanation
+        facts = [fact for fact, _ in self.measured]
+        began = look_up(facts)
+        told = [f"{text} ({since})" if (since := began.spoken([f])) else text for f, text in self.measured]
+        if len(facts) > 1 and (since := began.spoken(facts)) is not None:
+            told[-1] += f". So it is {since}"
+        return structs.replace(self.explanation, text=self.before + "; ".join(told))
+
+
+class Now:
+    """The map as it is; owned by the node's thread."""
+
+    def __init__(self, semantic_map: SemanticMap) -> None:
+        self._map = semantic_map
+
+    def entities(self, query: Entities) -> tuple[Entity, ...]:
+        """The entities of a class; with `where` those that are there. Raises UnknownClass, UnknownName."""
+        found = answers.entities_of(self._map, query.class_)
+        if query.where is None:
+            return found
+        return tuple(
+            selected(
+                self._map.places.space(),
+                found,
+                query.where,
+                self._map.entities(),
+                self._map.derived_facts.left_out,
+            )
+        )
+
+    def entity(self, query: Get) -> Described:
+        """One entity; with `where` also where it is and what was wrongly said of that. Raises UnknownName."""
+        entity = self._map.entity(query.name)
+        if not query.where:
+            return Described.of(entity)
+        found = self._with_where(entity)
+        return structs.replace(found, on_nothing=_on_nothing(self._map.places.space(), entity))
+
+    def described(self, name: str) -> Described | None:
+        """The entity of that name with where it is, if it is there."""
+        entity = self._map.find(name)
+        return None if entity is None else self._with_where(entity)
+
+    def _with_where(self, entity: Entity) -> Described:
+        space = self._map.places.space()
+        wrong = denied(space, answers.asserted_locations(self._map, entity))
+        left_out = self._map.derived_facts.left_out
+        there = (r for r in whereabouts(space, entity.name) if _fact(r) not in left_out)
+        withheld = tuple(answers.suppressed_facts(self._map, entity))
+        return Described.of(entity, tuple(there), tuple(wrong), withheld)
+
+    def denied(self) -> tuple[Relation, ...]:
+        """What was said of where things are and is not so."""
+        space = self._map.places.space()
+        return tuple(denied(space, filter(None, map(fact_of, sorted(self._map.reasoner.set_aside())))))
+
+    def relations(self, query: Relations) -> tuple[Relation, ...]:
+        """Where a thing is relative to others. Raises UnknownName; BadRequest for an ambiguous word."""
+        named = _named(query, self._map.find, lambda: tuple(self._map.entities()))
+        left_out = self._map.derived_facts.left_out
+        is_fixed = self._map.entity(named.name).fixed
+        found = relations(self._map.places.space(), named, is_fixed=is_fixed)
+        return tuple(_as_left_out(r) if left_out and _fact(r) in left_out else r for r in found)
+
+    def measured(self, query: Explain) -> Explanation | None:
+        """What was measured of a relation that the TBox has no property for; None of any other.
+
+        Raises Refused when it does not hold, UnknownName.
+        """
+        relation = next((name for name in SPOKEN if name == query.predicate), None)
+        if relation is None or self._map.classes.property_names.find(relation) is not None:
+            return None
+        if query.negated:
+            raise errors.BadRequest(f"the TBox has no property '{relation}', so nothing can exclude it")
+        space = self._map.places.space()
+        ends = [self._map.entity(word).name for word in (query.name, query.value)]
+        for name in ends:
+            if name not in space.solids:
+                raise errors.Refused(f"{name} has no position, so it is in no relation to anything")
+        seen = explained(space, ends[0], relation, ends[1])
+        if seen is None:
+            raise errors.InternalError(f"the relation '{relation}' is not computed")
+        if not seen.holds:
+            raise errors.Refused(seen.text)
+        return Explanation(conclusion=None, support=(), steps=(), text=seen.text)
+
+    def explained(self, query: Explain, asked: questions.StatementQuestion) -> Explained | None:
+        """Why something holds, with what was measured where that is a reason; None if that is not known yet.
+
+        Raises Refused when a measurement denies it.
+        """
+        seen = self._seen(asked.triples[0])
+        found = questions.why(self._map.reasoner, asked)
+        if query.negated:
+            if seen is None or seen.holds or found is not None:
+                return None
+            return Explained(Explanation(conclusion=None, support=(), steps=(), text=seen.text))
+        if found is None:
+            if (
+                withheld := next((t for t in asked.triples if t in self._map.derived_facts.suppressed), None)
+            ) is not None:
+                raise errors.Refused(f"it does not hold: {self._map.derived_facts.describe(withheld)}")
+            if seen is not None and not seen.holds:
+                is_said = self._map.has(asked.triples[0]) and self.against(asked.triples[0]) is not None
+                aside = "; it was asserted, but is left out of what holds as long as it is not so"
+                raise errors.Refused(seen.text + (aside if is_said else ""))
+            return None if seen is None else Explained(self._measured(seen))
+        if found.conclusion is not None and self._map.reasoner.is_computed(found.conclusion):
+            return Explained(found, measured=(self._told(found.conclusion),))
+        if seen is not None and not seen.holds:
+            # What is on a thing touches it with a gap, and where places are is asserted, not measured.
+            seen = None if seen.relation == "touches" or self._is_place(seen.subject) else seen
+        if seen is not None:
+            if not seen.holds:
+                text = f"{found.text.rstrip('.')}; but as it stands {seen.text}"
+                return Explained(structs.replace(found, text=text))
+            return Explained(found, f"{found.text.rstrip('.')}; and ", ((_fact(seen), seen.text),))
+        told = tuple(self._told(fact) for fact in found.support if self._map.reasoner.is_computed(fact))
+        return Explained(found, f"{found.text.rstrip('.')}; measured: ", told) if told else Explained(found)
+
+    def against(self, triple: Triple) -> str | None:
+        """What geometry says against a fact about a place, as a clause; None where it says nothing."""
+        if (fact := fact_of(triple)) is None:
+            return None
+        found = denial(self._map.places.space(), fact)
+        return None if found is None else found.text.partition("; ")[2]
+
+    def _seen(self, triple: Triple) -> Relation | None:
+        """What is measured of a relation of two entities, or of its inverse; None for any other triple."""
+        s, p, o = triple
+        if p not in _MEASURED or o.startswith('"'):
+            return None
+        relation, is_inverse = _MEASURED[p]
+        ends = [v.entity_name(s), v.entity_name(o)]
+        for name, iri in zip(ends, (s, o), strict=True):
+            if (entity := self._map.find(name)) is None or v.iri(entity.iri) != iri:
+                return None
+        if is_inverse:
+            ends.reverse()
+        return explained(self._map.places.space(), ends[0], relation, ends[1])
+
+    def _is_place(self, name: str) -> bool:
+        return self._map.entity(name).place
+
+    def _measured(self, seen: Relation) -> Explanation:
+        subject, object_ = (v.iri(self._map.entity(name).iri) for name in (seen.subject, seen.object))
+        return Explanation(
+            conclusion=(subject, v.dm(seen.relation), object_), support=(), steps=(), text=seen.text
+        )
+
+    def _told(self, fact: Triple) -> tuple[Fact, str]:
+        """A computed fact, and what was measured of it."""
+        relation = COMPUTED[fact[1]]
+        name, other = v.entity_name(fact[0]), v.entity_name(fact[2])
+        seen = explained(self._map.places.space(), name, relation, other)
+        return (name, relation, other), v.spoken(fact) if seen is None else seen.text
+
+
+class Then:
+    """The map as of `query.as_of`, read from the journal; for any thread."""
+
+    def __init__(self, semantic_map: SemanticMap, past: Past) -> None:
+        self._map = semantic_map
+        self._past = past
+
+    def entities(self, query: Entities) -> tuple[Entity, ...]:
+        """See `Now.entities`."""
+        if query.as_of is None:
+            raise errors.InternalError("the question names no moment")
+        found = self._past.entities(query.as_of, query.class_, tuple(self._map.classes.iris))
+        if query.where is None:
+            return found
+        everyone = self._past.entities(query.as_of, None, ())
+        return tuple(selected(self._space(everyone), found, query.where, everyone))
+
+    def entity(self, query: Get) -> Described:
+        """See `Now.entity`; what was wrongly said is not looked for."""
+        if query.as_of is None:
+            raise errors.InternalError("the question names no moment")
+        entity = self._past.entity(query.name, query.as_of)
+        if not query.where:
+            return Described.of(entity)
+        space = self._space(self._past.entities(query.as_of, None, ()))
+        there = tuple(whereabouts(space, entity.name))
+        return Described.of(entity, there, on_nothing=_on_nothing(space, entity))
+
+    def relations(self, query: Relations) -> tuple[Relation, ...]:
+        """See `Now.relations`."""
+        if query.as_of is None:
+            raise errors.InternalError("the question names no moment")
+        everyone = self._past.entities(query.as_of, None, ())
+        there = {entity.name: entity for entity in everyone}
+        named = _named(query, there.get, lambda: everyone)
+        is_fixed = named.name in there and there[named.name].fixed
+        return tuple(relations(self._space(everyone), named, is_fixed=is_fixed))
+
+    def _space(self, entities: Iterable[Entity]) -> Space:
+        return Space(entities, self._map.classes.limits)
+
+
+def _fact(relation: Relation) -> Fact:
+    return (relation.subject, relation.relation, relation.object)
+
+
+def _on_nothing(space: Space, entity: Entity) -> str:
+    """How high it hovers, or "" for what something bears, or need bear nothing."""
+    solid = None if entity.fixed else space.solids.get(entity.name)
+    found = None if solid is None else on_nothing(space, solid)
+    return "" if found is None else found.text
+
+
+def _as_left_out(relation: Relation) -> Relation:
+    """A relation that is measured and withheld."""
+    note = "but it would contradict the map, so it is no fact (for the reason see: semmap check)"
+    return structs.replace(relation, text=f"{relation.text}; {note}")
+
+
+def _named(
+    query: Relations, find: Callable[[str], Entity | None], everyone: Callable[[], Sequence[Entity]]
+) -> Relations:
+    """The query with the names of those whom its words mean: a name, else a reference, else a class."""
+    names = {
+        field: only_meant(everyone(), word)
+        for field in ("name", "other", "viewer")
+        if (word := getattr(query, field)) is not None and find(word) is None
+    }
+    return structs.replace(query, **names) if names else query

@@ -1,0 +1,68 @@
+"""Plans of the map and ways through it, now and in the past, worked out beside the node's own work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+from typing import Protocol, TypeVar
+
+from semmap.nodes.kb_node.answers.plans import plan_of
+from semmap.nodes.kb_node.relations.selection import only_meant
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.nodes.navigation.ways import find_way, position
+from semmap.schemas.bridge import PlanOf, WayOf
+from semmap.schemas.entities import Entity
+from semmap.schemas.moments import When
+from semmap.schemas.plans import Plan, Way
+
+R = TypeVar("R")
+
+
+class Aside(Protocol):
+    """Works beside the node's thread."""
+
+    def __call__(self, function: Callable[[], R]) -> Future[R]:
+        """The result of `function()`, when there is one."""
+        ...
+
+
+class RoutePlanning:
+    """Owned by the node's thread; `aside` works beside it."""
+
+    def __init__(self, semantic_map: SemanticMap, past: Past, aside: Aside) -> None:
+        self._map = semantic_map
+        self._past = past
+        self._aside = aside
+
+    def plan(self, query: PlanOf) -> Future[Plan]:
+        """The plan of the map."""
+        entities = self._entities(query.as_of)
+
+        def plan() -> Plan:
+            return plan_of(entities(), query.walls)
+
+        return self._aside(plan)
+
+    def way(self, query: WayOf) -> Future[Way]:
+        """A way through the map. Raises UnknownName; Refused where there is none."""
+        entities = self._entities(query.as_of)
+
+        def way() -> Way:
+            there = entities()
+            ends = [position(word) or _named(there, word) for word in (query.from_, query.to)]
+            return find_way(plan_of(there, query.walls), ends[0], ends[1], query.radius, query.heights)
+
+        return self._aside(way)
+
+    def _entities(self, as_of: When | None) -> Callable[[], Sequence[Entity]]:
+        """Those of now, which this thread alone may look up, or of then."""
+        if as_of is not None:
+            return lambda: self._past.entities(as_of, None, ())
+        now = tuple(self._map.entities())
+        return lambda: now
+
+
+def _named(there: Sequence[Entity], word: str) -> str:
+    """The name that a word means. Raises UnknownName, BadRequest for an ambiguous one."""
+    return word if any(entity.name == word for entity in there) else only_meant(there, word)

@@ -1,0 +1,16 @@
+"""Very many triples, looked at property by property instead of one by one."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
+
+from semmap.schemas.explanations import Term, Triple
+
+
+def group_by_property(triples: Iterable[Triple]) -> dict[Term, list[Triple]]:
+    """The triples of each property, in their order."""
+    found = defaultdict[Term, list[Triple]](list)
+    for triple in triples:
+        found[triple[1]].append(triple)
+    return dict(found)

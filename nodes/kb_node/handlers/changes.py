@@ -1,0 +1,160 @@
+"""What changes the map: one transaction, several, or the taking back of one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from typing import Protocol, TypeVar
+
+from semmap.nodes.kb_node import undo
+from semmap.nodes.kb_node.answers import dry_runs
+from semmap.nodes.kb_node.documents import term_syntax
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
+from semmap.schemas import errors
+from semmap.schemas.bridge import MadeBy, Outcome, TakeBack, Transactions
+from semmap.schemas.calls import Handler, by_verb
+from semmap.schemas.commits import Commit, Effects, Transaction
+
+Tell = Callable[[str], None]
+ReportingProgress = Callable[[str], AbstractContextManager[Tell]]
+"""Of a large change, which begins with a word of WORKING: lets the heartbeat tell how far it is."""
+
+
+class Spread(Protocol):
+    """`spread(commit)` has everybody told of it: `at_once`, or else when the reply is on its way.
+
+    The coordinator is `told` of it by the reply.
+    """
+
+    def __call__(self, commit: Commit, /, *, told: bool, at_once: bool) -> None:  # noqa: D102
+        ...
+
+
+_FEW = 1000
+"""Entities that are added or removed at once without a word on it."""
+C = TypeVar("C", Commit, Commit | None)
+
+
+class ChangeHandlers:
+    """Commits what is asked for, and has everybody told: journal (durable), reply, publish."""
+
+    def __init__(
+        self,
+        semantic_map: SemanticMap,
+        journal: Journal,
+        *,
+        spread: Spread,
+        not_written: Callable[[NotWritten], None],
+        reporting_progress: ReportingProgress,
+    ) -> None:
+        """`spread` is called with each new commit, in order, before it is replied.
+
+        `not_written` is called with each one that the disk does not take.
+        """
+        self._map = semantic_map
+        self._journal = journal
+        self._spread = spread
+        self._not_written = not_written
+        self._reporting_progress = reporting_progress
+
+    def handlers(self) -> dict[str, Handler]:
+        """By verb."""
+        return by_verb(
+            Transaction.answered_by(self.on_commit),
+            Transactions.answered_by(self.on_commits),
+            TakeBack.answered_by(self.on_undo),
+            MadeBy.answered_by(self.on_made_by),
+        )
+
+    def on_commit(self, transaction: Transaction) -> Effects | None:
+        """One transaction."""
+        term_syntax.require_triples(transaction.insert)
+        coming, going = len(transaction.add), len(transaction.remove)
+        if coming + going <= _FEW:
+            return self._transacted(transaction)
+        file = transaction.reason.removeprefix("load ") or "a file"
+        with self._reporting_progress(f"loading {file}" if coming else "removing entities") as tell:
+            tell(f"{coming or going:,} entities to check and write")
+            return self._transacted(transaction)
+
+    def _transacted(self, transaction: Transaction) -> Effects | None:
+        return self.changed(lambda: self._map.commit(transaction), transaction.dry_run, told=transaction.told)
+
+    def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
+        """Several transactions, each by itself, made durable once for all.
+
+        Raises BadRequest, with nothing done, when there is one that is not of RDF terms.
+        """
+        for transaction in several.transactions:
+            term_syntax.require_triples(transaction.insert)
+            if transaction.dry_run:
+                raise errors.BadRequest("a dry run cannot be combined with other transactions")
+        before = self._map.seq
+        results = self._map.commit_together(several.transactions)
+        for error in results:
+            if isinstance(error, NotWritten):
+                self._not_written(error)
+        for transaction, result in zip(several.transactions, results, strict=True):
+            if isinstance(result, Commit) and result.seq > before:
+                before = result.seq
+                self._spread(result, told=transaction.told, at_once=False)
+        return tuple(map(_outcome, results))
+
+    def on_undo(self, command: TakeBack) -> Effects | None:
+        """A commit that takes back another one."""
+
+        def change() -> Commit:
+            return undo.undo(self._map, self._journal, command, self._undoing)
+
+        return self.changed(change, command.dry_run, told=command.told)
+
+    @contextmanager
+    def _undoing(self, target: Commit) -> Iterator[None]:
+        """Around the undoing of a commit."""
+        count = len(target.changed) + len(target.removed)
+        if count <= _FEW:
+            yield
+            return
+        with self._reporting_progress(f"undoing commit {target.seq}") as tell:
+            tell(f"{count:,} entities to check and write")
+            yield
+
+    def on_made_by(self, query: MadeBy) -> tuple[Effects | None, ...]:
+        """The commits that some commands have made."""
+        return tuple(effects(self._journal.commit_of(id_)) for id_ in query.ids)
+
+    def changed(
+        self, change: Callable[[], Commit | None], dry_run: bool, *, told: bool = False
+    ) -> Effects | None:
+        """What `change` commits, and publishes; or would commit, in a dry run."""
+        if dry_run:
+            return dry_runs.of(self._map, change)
+        return effects(self.published_if_new(change, told=told))
+
+    def published_if_new(self, change: Callable[[], C], *, told: bool = False, at_once: bool = False) -> C:
+        """What `change` commits; published unless it is the answer to an old command.
+
+        `at_once`: its reply comes after others have been committed, which may take long.
+        """
+        before = self._map.seq
+        try:
+            commit = change()
+        except NotWritten as error:
+            self._not_written(error)
+            raise
+        if commit is not None and commit.seq > before:
+            self._spread(commit, told=told and not commit.tbox, at_once=at_once)
+        return commit
+
+
+def effects(commit: Commit | None) -> Effects | None:
+    """What a commit made of the entities, if there is one."""
+    return None if commit is None else Effects.of(commit)
+
+
+def _outcome(result: Commit | errors.SemmapError | None) -> Outcome:
+    if isinstance(result, errors.SemmapError):
+        return Outcome(error=errors.to_message(result))
+    return Outcome(commit=effects(result))

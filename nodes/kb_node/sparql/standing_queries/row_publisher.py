@@ -1,0 +1,37 @@
+"""The news of standing queries on the wire: each has a key, and so a publisher, of its own."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from msgspec import structs
+
+from semmap.nodes import bus
+from semmap.nodes.kb_node.sparql.protocol import QueryUpdate
+from semmap.schemas import codec, keys
+
+_TOO_MUCH: Final = (
+    f"its rows changed by more than {bus.PUBLISHED >> 20} MB, which is more than is told at once; ask again"
+)
+
+
+class RowPublisher:
+    """Publishes the news, from one thread."""
+
+    def __init__(self, session: bus.Session) -> None:
+        self._session = session
+        self._publishers: dict[str, Any] = {}
+
+    def publish(self, news: QueryUpdate) -> None:
+        """Tell those who watch a query what has changed; after its end, take its publisher away."""
+        if news.rows is not None:
+            if news.watch not in self._publishers:
+                key = keys.query_key(news.watch)
+                self._publishers[news.watch] = bus.publisher(self._session, keys.QUERY, key)
+            rows = news.rows
+            if len(payload := codec.encode(rows)) > bus.PUBLISHED:
+                rows = structs.replace(rows, appeared=(), disappeared=(), error=_TOO_MUCH)
+                payload = codec.encode(rows)
+            self._publishers[news.watch].put(payload, encoding=codec.encoding_of(rows))
+        if news.ended and (publisher := self._publishers.pop(news.watch, None)) is not None:
+            publisher.undeclare()

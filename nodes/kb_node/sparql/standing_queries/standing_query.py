@@ -1,0 +1,68 @@
+"""A standing query: the rows that it has, and what a commit does to them."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from semmap.nodes.kb_node.sparql.triples.dataset import Delta
+from semmap.schemas import errors
+from semmap.schemas.commands import Watch
+from semmap.schemas.sparql import Row, RowsChanged
+
+if TYPE_CHECKING:
+    from semmap.nodes.kb_node.sparql.queries.footprint import Footprint
+
+
+@dataclass
+class StandingQuery:
+    """One of them. `ends` is when its lease does [s, monotonic], which begins with its first rows."""
+
+    watch: str
+    query: str
+    inferred: bool
+    lease_s: float
+    looks_at: Footprint
+    demand: int = 0
+    """What was measured under this number it needs; 0 for nothing."""
+    ends: float = math.inf
+    rows: Counter[Row] = field(default_factory=Counter)
+
+    @classmethod
+    def of(cls, command: Watch, name: str, demand: int) -> StandingQuery:
+        """The one that a command asks for, without its rows."""
+        # rdflib's parser takes longer to load than all else that the first look-up waits for
+        from semmap.nodes.kb_node.sparql.queries.footprint import footprint
+
+        if command.query is None:
+            raise errors.InternalError("a standing query has no text")
+        return cls(
+            watch=name,
+            query=command.query,
+            inferred=command.inferred,
+            lease_s=command.lease,
+            looks_at=footprint(command.query),
+            demand=demand if command.inferred else 0,
+        )
+
+    def is_touched(self, delta: Delta) -> bool:
+        """May a commit change its rows?"""
+        return self.looks_at.is_touched(delta.everything if self.inferred else delta.asserted)
+
+    def take(self, rows: Iterable[Row], since: int, seq: int) -> RowsChanged | None:
+        """Its rows after commit `seq`; the news, if there is any."""
+        now = Counter(rows)
+        appeared, disappeared = now - self.rows, self.rows - now
+        self.rows = now
+        if not appeared and not disappeared:
+            return None
+        return RowsChanged(
+            watch=self.watch,
+            seq=seq,
+            since=since,
+            appeared=tuple(appeared.elements()),
+            disappeared=tuple(disappeared.elements()),
+        )

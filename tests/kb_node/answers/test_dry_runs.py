@@ -1,0 +1,97 @@
+"""A dry run: what would be committed and what would follow, with nothing done."""
+
+import pytest
+
+from semmap.nodes.kb_node.answers import dry_runs
+from semmap.nodes.kb_node.documents.tbox import tbox_validation
+from semmap.nodes.kb_node.undo import undo
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.bridge import TakeBack
+from tests.kb_node import home
+from tests.kb_node.home import chair, transaction, turtle
+from tests.kb_node.stating import TBOX, adding, editing, stated, statement
+
+
+def tried_commit(semantic_map, transaction):
+    """The effects of trying a transaction."""
+    return tried(semantic_map, lambda: semantic_map.commit(transaction))
+
+
+def tried(semantic_map, change):
+    """The effects of a trial, after which everything must be as before, on disk, too."""
+    before = home.state(semantic_map), set(semantic_map.reasoner.inferred()), semantic_map._journal.last
+    try:
+        return dry_runs.of(semantic_map, change)
+    finally:
+        after = home.state(semantic_map), set(semantic_map.reasoner.inferred()), semantic_map._journal.last
+        assert after == before
+
+
+def test_what_would_be_and_what_would_follow(stateful_map):
+    effects = tried(
+        stateful_map, lambda: stateful_map.commit(adding("stool1", set=(statement("isOn", "chair1"),)))
+    )
+    assert (effects.seq, [e.name for e in effects.changed]) == (stateful_map.seq + 1, ["stool1"])
+    assert (effects.trial.inserted, effects.trial.retracted, effects.trial.changed) == (2, 0, ("stool1",))
+    assert {"stool1 type Seat", "stool1 type Object"} <= set(effects.trial.gained)
+    assert effects.trial.lost == ()
+
+
+def test_what_would_no_longer_follow(stateful_map):
+    stated(stateful_map, "hasMainColor", "red")
+    effects = tried(
+        stateful_map, lambda: stateful_map.commit(editing(stateful_map, unset=(statement("hasMainColor"),)))
+    )
+    assert effects.trial.lost == ("chair1 hasColor color_red",)
+    gone = tried_commit(stateful_map, transaction("go", remove=["chair1"]))
+    assert [departed.name for departed in gone.removed] == ["chair1"]
+    assert "chair1 type Seat" in gone.trial.lost
+
+
+def test_what_would_be_refused_is_refused(stateful_map):
+    with pytest.raises(errors.Inconsistent):
+        tried(
+            stateful_map,
+            lambda: stateful_map.commit(editing(stateful_map, set=(statement("isLocatedIn", "chair1"),))),
+        )
+    with pytest.raises(errors.NameTaken):
+        tried_commit(stateful_map, adding("chair1"))
+
+
+def test_what_would_change_nothing_is_nothing(stateful_map):
+    assert (
+        tried(
+            stateful_map, lambda: stateful_map.commit(editing(stateful_map, class_iri=v.bare(v.dm("Chair"))))
+        )
+        is None
+    )
+
+
+def test_a_trial_can_be_done_afterwards_under_the_same_id(stateful_map):
+    addition = adding("stool1")
+    tried_commit(stateful_map, addition)
+    assert stateful_map.commit(addition).seq == 2
+    assert tried_commit(stateful_map, addition) is None
+
+
+def test_an_undo_and_a_large_load_are_tried(stateful_map):
+    stated(stateful_map, "isOpen", "true")
+    journal = stateful_map._journal
+    back = tried(
+        stateful_map, lambda: undo(stateful_map, journal, TakeBack(id="u", source="operator", commit=2))
+    )
+    assert (back.undoes, back.changed[0].properties) == ((2,), {})
+    many = [t for i in range(400) for t in chair(f"c{i}")]
+    assert len(tried_commit(stateful_map, transaction("many", many)).trial.changed) == 400
+
+
+def test_another_tbox_is_tried(stateful_map):
+    thrones = frozenset(TBOX) | set(turtle("dm:Throne a owl:Class ; rdfs:subClassOf dm:Chair ."))
+    replacing = transaction("tbox")
+    effects = tried(stateful_map, lambda: stateful_map.replace_tbox(replacing, thrones))
+    assert effects.tbox
+    assert "Throne" not in stateful_map.classes.iris
+    without = frozenset(t for t in TBOX if v.dm("Chair") not in t)
+    with pytest.raises(tbox_validation.DoesNotFit):
+        tried(stateful_map, lambda: stateful_map.replace_tbox(replacing, without))

@@ -1,0 +1,194 @@
+"""What is answered of where things are, with what was asserted and what follows."""
+
+import pytest
+
+from semmap.nodes.kb_node.answers import entity_queries, fact_intervals, questions
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.relations.measuring.phrases import SPOKEN
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.history import Past
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.bridge import Entities
+from semmap.schemas.commands import Could, Explain, Get, Relations
+from semmap.schemas.commits import Edit, NewEntity, Transaction
+from semmap.schemas.entities import Pose
+from semmap.schemas.relations import Where
+from tests.kb_node import home
+
+
+def new_flat(folder, further=b""):
+    if further:
+        triples = rdf.parse(HOUSEHOLD_TTL.read_bytes() + further, "household.ttl", label_prefix="h")
+        made = home.new_map(folder, triples)
+    else:
+        made = SemanticMap(home.new_household_journal(folder))
+    made.commit(home.transaction(1, rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f")))
+    made.ensure_derived()
+    return made
+
+
+@pytest.fixture(scope="module")
+def flat(tmp_path_factory):
+    made = new_flat(tmp_path_factory.mktemp("flat"))
+    yield made
+    home.close(made)
+
+
+@pytest.fixture
+def own(tmp_path):
+    """A flat to change."""
+    made = new_flat(tmp_path)
+    yield made
+    home.close(made)
+
+
+def explained(semantic_map, name, predicate, value, *, negated=False):
+    query = Explain(name=name, predicate=predicate, value=value, negated=negated)
+    now = entity_queries.Now(semantic_map)
+    if (measured := now.measured(query)) is not None:
+        return measured
+    found = now.explained(query, questions.parse_explain(semantic_map, query))
+    return found and found.dated(lambda facts: began(semantic_map, facts))
+
+
+def began(semantic_map, facts):
+    journal = semantic_map._journal
+    return fact_intervals.looked_up(journal, Past(journal), facts, semantic_map.classes.limits)
+
+
+def refused(semantic_map, name, predicate, value):
+    with pytest.raises(errors.Refused) as caught:
+        explained(semantic_map, name, predicate, value)
+    return str(caught.value)
+
+
+def test_list_says_of_on_what_a_path_says_in_sparql(flat):
+    listed = {e.name for e in entity_queries.Now(flat).entities(Entities(where=Where(on="table1")))}
+    held = flat.reasoner
+    on, inside, table = v.dm("isOn"), v.dm("isInside"), v.iri(flat.entity("table1").iri)
+    direct = {s for s, _, _ in held.given(None, on, table)}
+    assert v.entity_name(v.iri(flat.entity("apple1").iri)) in listed
+    assert v.iri(flat.entity("apple1").iri) not in direct
+    waiting, all_on = list(direct), set(direct)
+    while waiting:
+        lower = waiting.pop()
+        above = {s for p in (on, inside) for s, _, _ in held.given(None, p, lower)} - all_on
+        all_on |= above
+        waiting += above
+    assert listed == {v.entity_name(s) for s in all_on}
+
+
+def test_the_commit_is_the_one_since_which_the_relation_holds(own):
+    def change(**what):
+        own.commit(Transaction(id=f"c{own.seq}", source="operator", **what))
+
+    def since(name, other, predicate="isOn"):
+        return explained(own, name, predicate, other).text.rpartition(" (")[2]
+
+    def put(name, *at):
+        change(edit=(Edit(name=name, at=at),))
+
+    assert since("milk1", "counter1") == "since commit 1)"
+    change(
+        add=(NewEntity(name="cup9", class_iri=v.bare(v.dm("Cup")), pose=Pose(position_m=(8.2, 0.3, 0.9))),)
+    )
+    put("cup9", 8.1, 0.3, 0.9)
+    assert since("cup9", "counter1") == "since commit 2)"
+    assert since("cup9", "kitchen1", "isLocatedIn") == "since commit 2)"
+    put("cup9", 8.2, 2.2, 0.74)
+    put("cup9", 8.2, 0.3, 0.9)
+    assert since("cup9", "counter1") == "since commit 5)"
+    assert "(since commit 5)" in explained(own, "counter1", "supports", "cup9").text
+
+
+def test_a_relation_may_begin_with_what_goes_from_between(own):
+    def change(**what):
+        own.commit(Transaction(id=f"c{own.seq}", source="operator", **what))
+
+    def new(class_, name, size, *at):
+        iri = v.bare(v.dm(class_))
+        return NewEntity(name=name, class_iri=iri, size=size, pose=Pose(position_m=at))
+
+    change(add=(new("Book", "book9", (0.2, 0.2, 0.02), 8.2, 0.3, 0.9),))
+    change(add=(new("Cup", "cup9", (0.08, 0.08, 0.1), 8.2, 0.3, 0.92),))
+    assert explained(own, "cup9", "isOn", "book9").text.endswith("(since commit 3)")
+    change(remove=("book9",))
+    assert explained(own, "cup9", "isOn", "counter1").text.endswith("(since commit 4)")
+
+
+def test_a_chain_is_as_old_as_the_latest_of_its_steps(tmp_path):
+    chain = b"dm:restsOver a owl:ObjectProperty ; owl:propertyChainAxiom ( dm:isOn dm:isOn ) ."
+    own = new_flat(tmp_path, chain)
+    for seq, (class_, name, size, z) in enumerate(
+        (("Book", "book9", (0.2, 0.2, 0.02), 0.9), ("Cup", "cup9", (0.08, 0.08, 0.1), 0.92)), start=2
+    ):
+        iri, pose = v.bare(v.dm(class_)), Pose(position_m=(8.2, 0.3, z))
+        new = NewEntity(name=name, class_iri=iri, size=size, pose=pose)
+        own.commit(Transaction(id=f"c{seq}", source="operator", add=(new,)))
+    text = explained(own, "cup9", "restsOver", "counter1").text
+    assert "over it (since commit 3)" in text
+    assert "over it (since commit 2)" in text
+    assert text.endswith(". So it is since commit 3")
+    home.close(own)
+
+
+def test_why_not_says_by_what_way(flat):
+    text = refused(flat, "apple1", "isOn", "table1")
+    assert text == "apple1 is not on table1: it is inside bowl1, which is on table1"
+    assert "table1 has no hollow" in refused(flat, "apple1", "isInside", "table1")
+    assert refused(flat, "table1", "supports", "apple1") == text
+
+
+@pytest.mark.parametrize("relation", SPOKEN)
+def test_each_relation_is_answered_by_measuring(flat, relation):
+    answers = []
+    for other in ("table1", "chair1", "bowl1"):
+        try:
+            answers.append(explained(flat, "apple1", relation, other).text)
+        except errors.Refused as error:
+            answers.append(str(error))
+    assert all(answer.startswith("apple1 ") for answer in answers)
+    assert not any("nothing excludes" in answer for answer in answers)
+
+
+def test_what_was_asserted_and_denied_is_said_to_be(flat):
+    said = (v.iri(flat.entity("milk1").iri), v.dm("isOn"), v.iri(flat.entity("table1").iri))
+    assert "asserted" not in refused(flat, "milk1", "isOn", "table1")
+    flat.commit(home.transaction(2, [said]))
+    flat.ensure_derived()
+    assert "it was asserted, but is left out" in refused(flat, "milk1", "isOn", "table1")
+
+
+def test_what_could_be_says_what_geometry_says(flat):
+    asked = questions.parse_could(flat, Could(name="water1", predicate="isOn", value="chair1"))
+    against = entity_queries.Now(flat).against(asked.triples[0])
+    text = questions.could(flat.reasoner, asked, against=against).text
+    assert text.startswith("yes: nothing excludes")
+    assert "but as things are, it stands" in text
+
+
+def test_why_not_is_told_by_what_was_measured(flat):
+    why_not = explained(flat, "apple1", "isOn", "counter1", negated=True)
+    assert why_not.text.startswith("apple1 is not on counter1: ")
+    assert why_not.text == refused(flat, "apple1", "isOn", "counter1")
+    assert explained(flat, "apple1", "isInside", "bowl1", negated=True) is None  # it is, and a rule says so
+
+
+def test_where_a_place_is_was_asserted_and_nothing_stands_against_it(flat):
+    assert "as it stands" not in explained(flat, "kitchen1", "isLocatedIn", "flat1").text
+
+
+def test_get_says_how_high_a_thing_is_that_nothing_bears(own):
+    def hovering(name):
+        return entity_queries.Now(own).entity(Get(name=name, where=True)).on_nothing
+
+    assert hovering("milk1") == hovering("light1") == hovering("kitchen1") == ""  # lights are fixed
+    edit = Edit(name="milk1", at=(2.0, 2.0, 0.42))
+    own.commit(Transaction(id="lifted", source="operator", edit=(edit,)))
+    text = "milk1 is on nothing: its bottom is 42.0 cm above the floor of livingroom1"
+    assert hovering("milk1") == text
+    told = [r.text for r in entity_queries.Now(own).relations(Relations(name="milk1")) if not r.object]
+    assert told == [text]
+    assert not entity_queries.Now(own).entity(Get(name="milk1")).on_nothing
