@@ -15,7 +15,7 @@ from semmap.nodes.kb_node.entities import entity_changes, entity_reading
 from semmap.nodes.kb_node.entities.fast_reading import Patterns
 from semmap.nodes.kb_node.map_state import MapState
 from semmap.nodes.kb_node.places import truncate_notes
-from semmap.nodes.kb_node.progress import parts, steadily
+from semmap.nodes.kb_node.progress import split_batches, with_progress
 from semmap.nodes.kb_node.reasoner import Change, Inconsistent
 from semmap.ontology import vocabulary as v
 from semmap.schemas.commits import Commit
@@ -50,22 +50,23 @@ class Applier:
         subjects = preconditions.subjects(commit.retracted, commit.inserted)
         known = state.reasoner.mentioned(subjects)
         about = (
-            entity_reading.owners(state.reasoner, state.classes, s) for s in steadily(known, state.progress)
+            entity_reading.find_owners(state.reasoner, state.classes, s)
+            for s in with_progress(known, state.progress)
         )
         owners, new = (subjects.union(*about), subjects - known) if known else (subjects, subjects)
         state.derived_facts.begin()
         restores = bool(commit.undoes)
         contradicted = state.derived_facts.contradicted.keys() if restores else frozenset()
-        lenient = restores or not state.follows
+        lenient = restores or not state.derives_at_commits
         change = self.change(delete=commit.retracted, insert=commit.inserted, lenient=lenient)
         try:
             if not lenient:
                 self._require_agreement(commit)
             commit = noted(self._with_effects(commit, owners, change, new))
             del owners, subjects, known, new, change  # of a large commit a third of the memory that it takes
-            if state.follows:
+            if state.derives_at_commits:
                 commit = self._with_places(commit)
-            if restores and state.follows:
+            if restores and state.derives_at_commits:
                 self._require_no_more_than(contradicted)
             commit = make_durable(commit)
         except BaseException:
@@ -81,12 +82,12 @@ class Applier:
         before = state.tbox, state.reasoner, state.classes, state.derived_facts
         abox = {*state.abox(), *commit.inserted}.difference(commit.retracted, tbox)
         try:
-            state.exchange_tbox(tbox, tbox_validation.compiled(tbox))
+            state.exchange_tbox(tbox, tbox_validation.compile_tbox(tbox))
             self.change(insert=abox, lenient=True)
             concerned = {v.iri(entity.iri) for entity in state.by_name.values()}
             concerned.update(i for c in state.classes.spatial for i in state.reasoner.instances(c))
             commit = self._with_effects(commit, set(), Change(frozenset(concerned)), set())
-            if state.follows:
+            if state.derives_at_commits:
                 commit = self._with_all_places(commit, before[-1].suppressed.keys())
             commit = make_durable(commit)
         except BaseException:
@@ -98,7 +99,7 @@ class Applier:
         """Let the reasoner have all as it was before the last commit; `before` are that one's entities."""
         state = self._state
         self.change(delete=commit.inserted, insert=commit.retracted, lenient=True)
-        if not state.follows:
+        if not state.derives_at_commits:
             return
         after: dict[str, Entity | None] = {departed.name: None for departed in commit.removed}
         after.update((entity.name, entity) for entity in commit.changed)
@@ -123,7 +124,7 @@ class Applier:
                 return state.derived_facts.change(delete, insert, lenient=lenient)
             return self._change_in_parts(delete, insert, lenient)
         except Inconsistent as error:
-            raise proofs.refusal(error) from None
+            raise proofs.to_error(error) from None
 
     def _change_in_parts(
         self, delete: Collection[Triple], insert: Collection[Triple], lenient: bool
@@ -133,10 +134,10 @@ class Applier:
         reasoner, changes = state.derived_facts, list[Change]()
         deleted = inserted = 0
         try:
-            for part in parts(delete, PART, state.progress):
+            for part in split_batches(delete, PART, state.progress):
                 changes.append(reasoner.change(part, (), lenient=lenient))
                 deleted += len(part)
-            for part in parts(insert, PART, state.progress):
+            for part in split_batches(insert, PART, state.progress):
                 changes.append(reasoner.change((), part, lenient=lenient))
                 inserted += len(part)
         except BaseException:
@@ -147,7 +148,7 @@ class Applier:
     def _with_effects(self, commit: Commit, owners: Set[Term], change: Change, new: Set[Term]) -> Commit:
         state = self._state
         reading = entity_changes.Reading(state.reasoner, state.classes, self._patterns, state.progress)
-        return entity_changes.of(commit, change, state.by_name, reading, owners=owners, new=new)
+        return entity_changes.add_effects(commit, change, state.by_name, reading, owners=owners, new=new)
 
     def _with_places(self, commit: Commit) -> Commit:
         """`commit` with the entities, too, whose classes change by where things are."""
@@ -206,7 +207,7 @@ class Applier:
         try:
             self._state.derived_facts.require_agreement(commit.inserted)
         except Inconsistent as error:
-            raise proofs.refusal(error) from None
+            raise proofs.to_error(error) from None
 
     def _require_no_more_than(self, contradicted: Set[Triple]) -> None:
         """Raises Inconsistent when assertions contradict one another that geometry does not deny.
@@ -215,4 +216,4 @@ class Applier:
         """
         newly = {t: why for t, why in self._state.derived_facts.contradicted.items() if t not in contradicted}
         if newly:
-            raise proofs.refusal(Inconsistent(newly[min(newly)]))
+            raise proofs.to_error(Inconsistent(newly[min(newly)]))

@@ -21,13 +21,13 @@ class CommitPublisher:
         self,
         session: bus.Session,
         entities: Iterable[Entity],
-        described: Callable[[str], Described | None],
+        describe: Callable[[str], Described | None],
     ) -> None:
-        """`entities` are those that are in the map already; `described(name)` is one with its whereabouts."""
+        """`entities` are those that are in the map already; `describe(name)` is one with its whereabouts."""
         self._session = session
-        self._described = described
+        self._describe = describe
         self._commits = bus.publisher(session, keys.COMMIT)
-        self._untold = bus.publisher(session, keys.UNTOLD)
+        self._effects = bus.publisher(session, keys.UNTOLD)
         self._entities_are_watched = bus.watched(session, keys.ENTITY)
         self._types = {entity.name: entity.types for entity in entities}
 
@@ -44,13 +44,13 @@ class CommitPublisher:
             payload = codec.encode(passed_on)
         if not told:
             effects = Effects.of(passed_on)
-            self._untold.put(codec.encode(effects), encoding=codec.encoding_of(effects))
+            self._effects.put(codec.encode(effects), encoding=codec.encoding_of(effects))
         self._commits.put(payload, encoding=codec.encoding_of(passed_on))
         if self._entities_are_watched():
             for gone in commit.removed:
                 self._delete(gone.name, self._types.get(gone.name, gone.types))
             for name in dict.fromkeys((*(e.name for e in commit.changed), *derived_changes.subjects)):
-                if (described := self._described(name)) is not None:
+                if (described := self._describe(name)) is not None:
                     self._put(described)
         for gone in commit.removed:
             self._types.pop(gone.name, None)

@@ -12,7 +12,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from itertools import islice
 from typing import NamedTuple
 
-from semmap.nodes.kb_node.progress import parts
+from semmap.nodes.kb_node.progress import split_batches
 from semmap.nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner.explain import sentences
 from semmap.nodes.kb_node.reasoner.explanations import Explanation
@@ -271,7 +271,7 @@ class DerivedFacts:
         yield from self.computed.facts.working_out()
         said = self._asserted_places()
         if self.is_compared_in_steps(said):
-            for names in parts(tuple(entities), _STEP, self._progress):
+            for names in split_batches(tuple(entities), _STEP, self._progress):
                 self._compare(names, entities.get)
                 yield
             return
@@ -353,7 +353,7 @@ class DerivedFacts:
         reasoner, taken = self._reasoner, list[Triple]()
         self._moved.update(reasoner.believe(gone=gone, aside=aside, back=back).others)
         try:
-            for part in parts(come, PART, self._progress):
+            for part in split_batches(come, PART, self._progress):
                 self._moved.update(reasoner.believe(come=part).others)
                 taken += part
         except Inconsistent:

@@ -13,7 +13,7 @@ from semmap.nodes.kb_node.derived_facts import DerivedChanges, DerivedFacts
 from semmap.nodes.kb_node.entities import entity_changes, entity_reading, new_entities
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.places import Places
-from semmap.nodes.kb_node.progress import parts, steadily
+from semmap.nodes.kb_node.progress import split_batches, with_progress
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.relations.facts.ahead import Ahead
 from semmap.nodes.kb_node.relations.facts.foreseen import Foreseen
@@ -43,15 +43,15 @@ class MapState:
         """
         self.progress = progress
         self.exchange_tbox(tbox, reasoner)
-        self._following: Iterator[None] | None = None
-        self.follows = False
+        self._derivation: Iterator[None] | None = None
+        self.derives_at_commits = False
         """Whether what is computed is worked out at each commit; not yet after a start."""
-        self._follows_all = False
+        self._derived_all = False
         """Whether all of it was; if not, a commit works out what it concerns."""
         self.has_derived = False
         """Whether the reasoner has what is computed; after a start it does if its columns were kept."""
         self.by_name: dict[str, Entity] = {}
-        """The entities; changed by `take` and `revert_entities` only."""
+        """The entities; changed by `apply_commit` and `revert_entities` only."""
         self.places = Places(
             self.by_name,
             self.entities,
@@ -89,7 +89,7 @@ class MapState:
         if class_iri is None:
             return (self.by_name[name] for name in sorted(self.by_name))
         self.ensure_derived()
-        found = filter(None, map(self.known, self.reasoner.instances(class_iri)))
+        found = filter(None, map(self.find_by_iri, self.reasoner.instances(class_iri)))
         return iter(sorted(found, key=lambda entity: entity.name))
 
     def snapshot(self) -> Snapshot:
@@ -102,13 +102,13 @@ class MapState:
         iris = [v.iri(self.entity(name).iri) for name in names]
         leaving = frozenset(iris)
         return tuple(
-            entity_reading.read_star(self.reasoner, self.classes, iri, self.seq, leaving, self.tbox)
+            entity_reading.read_entity_triples(self.reasoner, self.classes, iri, self.seq, leaving, self.tbox)
             for iri in iris
         )
 
     def class_table(self) -> Iterator[ClassInfo]:
         """The classes with the number of entities of each, asserted and inferred."""
-        return self.classes.counted(self.by_name.values())
+        return self.classes.with_counts(self.by_name.values())
 
     def abox(self) -> list[Triple]:
         """The asserted triples that are not the TBox's."""
@@ -121,9 +121,9 @@ class MapState:
         for entity in [self.entity(name)] if name is not None else self.entities():
             yield from sorted(self.reasoner.inferred(v.iri(entity.iri), None, None))
 
-    def steadily(self, items: Iterable[T]) -> Iterator[T]:
+    def with_progress(self, items: Iterable[T]) -> Iterator[T]:
         """The items, for long work on them: the node tells meanwhile that it lives."""
-        return steadily(items, self.progress)
+        return with_progress(items, self.progress)
 
     def all_derived(self) -> DerivedChanges:
         """What is computed and what is set aside."""
@@ -134,7 +134,7 @@ class MapState:
         """Where everything is."""
         return tuple(map(Placed.of, self.by_name.values()))
 
-    def has(self, triple: Triple) -> bool:
+    def is_asserted(self, triple: Triple) -> bool:
         """Is it asserted?"""
         return any(self.reasoner.asserted(*triple))
 
@@ -142,7 +142,7 @@ class MapState:
         """The classes of an entity as it is now, by what is computed, too."""
         return self.classes.type_names(self.reasoner.types(v.iri(entity.iri)))
 
-    def known(self, iri: Term) -> Entity | None:
+    def find_by_iri(self, iri: Term) -> Entity | None:
         """The entity with this IRI, as of the last commit."""
         return entity_changes.known(self.by_name, iri)
 
@@ -162,28 +162,28 @@ class MapState:
         If it only puts things somewhere and nobody asserts where things are, it suffices to know where all of
         them are; what holds of them is worked out between other work.
         """
-        while not self._follows_all and not (self.follows and _only_places(transaction)):
+        while not self._derived_all and not (self.derives_at_commits and _only_places(transaction)):
             self.derive_some()
             self.progress()
 
     def derive_some(self) -> bool:
         """Do a part of that, some tens of milliseconds; whether there is more to do."""
-        if self._follows_all:
+        if self._derived_all:
             return False
-        following, self._following = self._following or self._follow(), None
+        following, self._derivation = self._derivation or self._derivation_steps(), None
         with gc_pause.uncollected(freeze=True):
             for _ in following:
-                self._following = following
+                self._derivation = following
                 return True
         return False
 
-    def _follow(self) -> Iterator[None]:
+    def _derivation_steps(self) -> Iterator[None]:
         self.derived_facts.begin()
         yield from self.derived_facts.placing(self.by_name)
-        self.follows = self.has_derived and self.derived_facts.is_compared_in_steps()
+        self.derives_at_commits = self.has_derived and self.derived_facts.is_compared_in_steps()
         yield from self.derived_facts.comparing(self.by_name)
-        self.follows = self.has_derived = self._follows_all = True
-        for names in parts(tuple(self.by_name), _STEP, self.progress):
+        self.derives_at_commits = self.has_derived = self._derived_all = True
+        for names in split_batches(tuple(self.by_name), _STEP, self.progress):
             for name in names:
                 entity = self.by_name.get(name)
                 if entity is not None and (types := self.types_of(entity)) != entity.types:
@@ -197,7 +197,7 @@ class MapState:
 
     def _crowds(self, names: Collection[str] | None) -> list[str]:
         """The sentences on crowds, if relations are computed."""
-        if not self.follows or names is None:
+        if not self.derives_at_commits or names is None:
             self.derive_all()
         return (
             []
@@ -215,13 +215,13 @@ class MapState:
         """Within, a process of its own works out where everything is after a large transaction."""
         computed = self.derived_facts.computed
         if _HAS_CORES and not computed.is_idle:
-            self._foresee(transaction)
+            self._predict_places(transaction)
         try:
             yield
         finally:
             computed.facts.give_up_ahead()
 
-    def _foresee(self, transaction: Transaction) -> None:
+    def _predict_places(self, transaction: Transaction) -> None:
         coming, facts = (
             new_entities.predict_new_entities(transaction, self.classes),
             self.derived_facts.computed.facts,
@@ -231,7 +231,7 @@ class MapState:
             with suppress(OSError):  # then it is worked out here
                 facts.work_ahead(Ahead(foreseen, self.progress))
 
-    def tidy(self) -> None:
+    def clean_up(self) -> None:
         """What a commit leaves to be done when nobody waits for it."""
         self.derived_facts.computed.facts.forget()
 
@@ -243,13 +243,13 @@ class MapState:
         self.classes = ClassTable(reasoner)
         self.derived_facts = DerivedFacts(reasoner, self.classes.limits, self.progress)
 
-    def take(self, commit: Commit) -> None:
+    def apply_commit(self, commit: Commit) -> None:
         """Let the entities show a commit that the reasoner has taken in already."""
         self.seq, self.digest = commit.seq, commit.digest
-        self.places.take(commit.names, commit.retracted, commit.inserted)
+        self.places.update(commit.names, commit.retracted, commit.inserted)
         for gone in commit.removed:
             del self.by_name[gone.name]
-        self.show(commit.changed)
+        self.update_entities(commit.changed)
 
     def revert_entities(self, commit: Commit, before: Mapping[str, Entity | None], digest: str) -> None:
         """Let the entities be as before the last commit: those that it touched, None for what was not there.
@@ -257,14 +257,14 @@ class MapState:
         `digest` is that of the commit before.
         """
         self.seq, self.digest = commit.seq - 1, digest
-        self.places.take(commit.names, commit.inserted, commit.retracted)
+        self.places.update(commit.names, commit.inserted, commit.retracted)
         for name, entity in before.items():
             if entity is None:
                 self.by_name.pop(name, None)
             else:
                 self.by_name[name] = entity
 
-    def show(self, changed: Iterable[Entity]) -> None:
+    def update_entities(self, changed: Iterable[Entity]) -> None:
         """Let entities be as these."""
         for entity in changed:
             self.by_name[entity.name] = entity

@@ -46,7 +46,7 @@ class KnowledgeBase:
         self._node = node
         self.map = SemanticMap(journal, progress=node.beat)
         self._publisher = CommitPublisher(
-            node.session, self.map.entities(), entity_queries.Now(self.map).described
+            node.session, self.map.entities(), entity_queries.CurrentState(self.map).describe
         )
         self._checkpointing = Checkpointing(self.map, journal, node.soon)
         self._sparql = SparqlService(
@@ -66,7 +66,7 @@ class KnowledgeBase:
         changes = ChangeHandlers(
             self.map,
             journal,
-            spread=self._spread,
+            publish=self._publish,
             not_written=self._not_written,
             reporting_progress=reporting_progress,
         )
@@ -83,14 +83,14 @@ class KnowledgeBase:
         self._player: Player | None = None
         if config.replay is not None:
             handlers.update(rejecting_handlers())
-            tell = partial(self._spread, told=False, at_once=True)
+            tell = partial(self._publish, told=False, at_once=True)
             self._player = Player(node, self.map, config.data, config.replay, tell)
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
             for prefix in (keys.CMD, keys.commands_as()):
                 node.serve_one(prefix, handlers[verb])
-        node.follow_newest(keys.LIVE_POSES, self._queries.live.take)
-        node.follow(keys.OBSERVATIONS, self._queries.sightings.see)
+        node.follow_newest(keys.LIVE_POSES, self._queries.live.update)
+        node.follow(keys.OBSERVATIONS, self._queries.sightings.record)
         node.every(CHECKPOINT_PERIOD_S, self._checkpointing.begin_if_due)
         node.every(CHECKPOINT_PERIOD_S, self._location_queries.drop_expired)
         node.note(self._notes())
@@ -108,7 +108,7 @@ class KnowledgeBase:
         elif self.map.derive_some():
             self._node.soon(self._derive_places)
 
-    def _spread(self, commit: Commit, *, told: bool, at_once: bool) -> None:
+    def _publish(self, commit: Commit, *, told: bool, at_once: bool) -> None:
         """Tell everybody, `at_once` or when the reply is on its way: nobody else is answered before that."""
         derived_changes = self.map.take_derived_changes(commit)
         publish = partial(self._publisher.publish, commit, derived_changes, told=told)
@@ -127,7 +127,7 @@ class KnowledgeBase:
         """What this node does with a commit when the reply is on its way."""
         self._sparql.follow(commit, derived_changes)
         self._location_queries.follow(commit.seq, commit.names)
-        self.map.tidy()
+        self.map.clean_up()
 
     def _not_written(self, error: NotWritten) -> None:
         self._node.report(error.text)

@@ -61,15 +61,15 @@ class Places:
         asserted: Callable[[Term], Iterable[Triple]],
         limits: Callable[[], Thresholds],
         facts: Callable[[], Facts | None] = lambda: None,
-        told_crowds: Callable[[Collection[str] | None], Iterable[str]] = lambda _: (),
+        describe_crowds: Callable[[Collection[str] | None], Iterable[str]] = lambda _: (),
     ) -> None:
         """`entities` by name, as they change; `asserted(property)` are the triples of one.
 
         `limits()` are the thresholds of the TBox, `facts()` the relations, if somebody keeps them, and
-        `told_crowds(names)` has a sentence on each crowd, of which these names are.
+        `describe_crowds(names)` has a sentence on each crowd, of which these names are.
         """
         self._facts = facts
-        self._told_crowds = told_crowds
+        self._describe_crowds = describe_crowds
         self._entities = entities
         self._surroundings = Surroundings(in_order, entities.get, limits)
         self._sayings = Sayings(asserted)
@@ -79,7 +79,7 @@ class Places:
         facts = self._facts()
         return self._surroundings.space() if facts is None else facts.space
 
-    def upward(self, names: Iterable[str]) -> Collection[str]:
+    def with_supported(self, names: Iterable[str]) -> Collection[str]:
         """These, what is on, inside or in them, and what is on or inside that; all, where nothing is kept."""
         facts = self._facts()
         return self._entities.keys() if facts is None else facts.upward(names)
@@ -98,25 +98,25 @@ class Places:
 
         With `names`, only where one of these is. Nothing where no relations are kept.
         """
-        return tuple(islice(self._told_crowds(names), _FEW))
+        return tuple(islice(self._describe_crowds(names), _FEW))
 
     def loads(self) -> Loads:
         """What things bear now."""
         return Loads(self.space(), self._facts())
 
-    def take(self, names: Iterable[str], gone: Collection[Triple], come: Collection[Triple]) -> None:
+    def update(self, names: Iterable[str], gone: Collection[Triple], come: Collection[Triple]) -> None:
         """A commit touched these entities, and triples went and came."""
         self._surroundings.touch(names)
         self._sayings.change(gone, come)
 
-    def load_of(self, edit: Edit, edits: Iterable[Edit]) -> list[Edit]:
+    def load_edits(self, edit: Edit, edits: Iterable[Edit]) -> list[Edit]:
         """The edits of what goes along with an edit that carries; not of what `edits` are about themselves.
 
-        Raises BadRequest for one that moves nothing, and what `borne_by` raises.
+        Raises BadRequest for one that moves nothing, and what `supported_by` raises.
         """
         if not edit.places:
             raise errors.BadRequest("--carry is for moving: add --at, --yaw or --orientation")
-        names = self.borne_by(edit.name, edit.leave, (other.name for other in edits))
+        names = self.supported_by(edit.name, edit.leave, (other.name for other in edits))
         was = self._entities[edit.name].pose
         now = edit.pose_after(was)
         load: list[Edit] = []
@@ -130,7 +130,7 @@ class Places:
             load.append(Edit(name=name, at=there.position_m, orientation=there.orientation_wxyz))
         return load
 
-    def borne_by(self, name: str, leave: Iterable[str] = (), besides: Iterable[str] = ()) -> list[str]:
+    def supported_by(self, name: str, leave: Iterable[str] = (), besides: Iterable[str] = ()) -> list[str]:
         """What a thing bears, what bears before what is borne; not what is to be left, or `besides`.
 
         Raises UnknownName for names to be left, too; Refused for a place or what has no position.
@@ -147,7 +147,7 @@ class Places:
             raise errors.Refused(f"{name} has no position yet, so nothing stands on it to be carried")
         return self.loads().all_of(name, {*leave, *besides})
 
-    def taken_back(
+    def find_denied_locations(
         self, reasoner: Reasoner, classes: ClassTable, gone: Collection[Triple], come: Collection[Triple]
     ) -> RetractedLocations:
         """What was said of the places of those that a change moves or resizes, and geometry then denies."""
@@ -174,10 +174,12 @@ class Places:
         if leaving.issuperset(self._entities):
             return ()
         loads = self.loads()
-        notes = (note for name in islice(names, _MANY) for note in self._left_by(name, loads, leaving))
+        notes = (
+            note for name in islice(names, _MANY) for note in self._left_behind_notes(name, loads, leaving)
+        )
         return tuple(islice(notes, _FEW))
 
-    def _left_by(self, name: str, loads: Loads, leaving: Collection[str]) -> Iterator[str]:
+    def _left_behind_notes(self, name: str, loads: Loads, leaving: Collection[str]) -> Iterator[str]:
         inside: dict[str, None] = {}
         on: dict[str, None] = {}
         for other, bearer in loads.directly_on(name):
@@ -190,7 +192,7 @@ class Places:
             if stay:
                 yield f"{where} {name} {'was' if len(stay) == 1 else 'were'} {wording.few(stay)}"
 
-    def doubts(self, commit: Commit) -> tuple[str, ...]:
+    def conflict_notes(self, commit: Commit) -> tuple[str, ...]:
         """What a commit says of places that geometry denies as things stand after it; the first of it."""
         said = of_places(commit.inserted)
         if not said:
@@ -220,18 +222,20 @@ def _moved(
     own_words = not classes.alignments
     changed = chain(gone, come)
     touched = subjects(t for t in changed if t[1] in _GEOMETRY) if own_words else subjects(gone, come)
-    about = _about_after(reasoner, gone, come)
+    about = _lookup_after(reasoner, gone, come)
     opened = subjects(t for t in chain(gone, come) if t[1] in _OPENING)
     concerned = {
-        iri for node in reasoner.mentioned(touched) for iri in entity_reading.owners(reasoner, classes, node)
+        iri
+        for node in reasoner.mentioned(touched)
+        for iri in entity_reading.find_owners(reasoner, classes, node)
     }
     for iri in sorted(concerned):
         was = entity_changes.known(entities, iri)
         if was is not None:
             pose, size_m = entity_reading.read_place(about, classes, iri)
             is_reshaped = was.place or iri in opened
-            stated = classes.stated.stated(about(iri)) if is_reshaped else was.properties
-            model = entity_reading.model_of(was, classes, about(iri), size_m)
+            stated = classes.property_table.read_values(about(iri)) if is_reshaped else was.properties
+            model = entity_reading.choose_model(was, classes, about(iri), size_m)
             if (pose, size_m, model) != (was.pose, was.size_m, was.model) or any(
                 stated.get(name) != was.properties.get(name) for name in _SHAPING
             ):
@@ -239,7 +243,7 @@ def _moved(
                 yield was.name, now
 
 
-def _about_after(
+def _lookup_after(
     reasoner: Reasoner, gone: Iterable[Triple], come: Iterable[Triple]
 ) -> Callable[[Term], dict[Term, list[Term]]]:
     """What will be asserted of each subject."""

@@ -29,7 +29,7 @@ class Plan(NamedTuple):
     """What is to be known of that."""
 
 
-def of(state: MapState, transaction: Transaction) -> Plan | None:
+def make_plan(state: MapState, transaction: Transaction) -> Plan | None:
     """What a transaction changes of the map as it is; None when it changes nothing.
 
     Raises PreconditionFailed; NameTaken; UnknownName for an intent about what is not there; BadRequest for
@@ -37,17 +37,17 @@ def of(state: MapState, transaction: Transaction) -> Plan | None:
     """
     if transaction.unchanged:
         preconditions.require_unchanged(transaction, state.by_name)
-    retract, insert, notes = _spelled_out(state, transaction)
-    held = preconditions.held(state.reasoner, (transaction.require, retract, insert), state.progress)
+    retract, insert, notes = _expand_intents(state, transaction)
+    held = preconditions.find_asserted(state.reasoner, (transaction.require, retract, insert), state.progress)
     preconditions.require(transaction, held)
     wanted = set(insert) if retract else frozenset[Triple]()
     retracted = tuple([t for t in dict.fromkeys(retract) if t not in wanted and t in held])
-    inserted = _each_once(insert)
+    inserted = _unique(insert)
     if held:
         inserted = tuple([t for t in inserted if t not in held])
     if not retracted and not inserted:
         return None
-    denied = state.places.taken_back(state.reasoner, state.classes, retracted, inserted)
+    denied = state.places.find_denied_locations(state.reasoner, state.classes, retracted, inserted)
     if denied.triples:
         wanted = wanted or set(insert)
         retracted += tuple(t for t in denied.triples if t not in state.tbox and t not in wanted)
@@ -57,7 +57,7 @@ def of(state: MapState, transaction: Transaction) -> Plan | None:
     return Plan(retracted, inserted, (*notes, *denied.notes))
 
 
-def _each_once(triples: Collection[Triple]) -> tuple[Triple, ...]:
+def _unique(triples: Collection[Triple]) -> tuple[Triple, ...]:
     """Each of some triples once, in their order.
 
     Of very many it is told by their hashes, which takes a tenth of the memory, that all of them differ.
@@ -72,7 +72,7 @@ def _each_once(triples: Collection[Triple]) -> tuple[Triple, ...]:
     return tuple(triples) if differ else tuple(dict.fromkeys(triples))
 
 
-def signed(transaction: Transaction, plan: Plan, seq: int, *, tbox: bool = False) -> Commit:
+def make_commit(transaction: Transaction, plan: Plan, seq: int, *, tbox: bool = False) -> Commit:
     """The commit `seq` of a plan, by the transaction's author, without its effects and its digest."""
     return Commit(
         seq=seq,
@@ -92,7 +92,7 @@ def signed(transaction: Transaction, plan: Plan, seq: int, *, tbox: bool = False
     )
 
 
-def _spelled_out(
+def _expand_intents(
     state: MapState, transaction: Transaction
 ) -> tuple[Collection[Triple], Collection[Triple], list[str]]:
     """The triples that a transaction takes away and adds, its intents said in triples, too; and notes."""
@@ -102,17 +102,17 @@ def _spelled_out(
     draft = entity_writing.Draft(state.reasoner, state.classes, state.tbox, state.by_name)
     notes: list[str] = []
     if remove:
-        draft.remove([state.entity(name) for name in state.steadily(remove)])
+        draft.remove([state.entity(name) for name in state.with_progress(remove)])
         notes += state.places.describe_left_behind(remove)
-    for one in state.steadily(edit):
+    for one in state.with_progress(edit):
         draft.edit(state.entity(one.name), one)
         if one.carry:
-            load = state.places.load_of(one, edit)
+            load = state.places.load_edits(one, edit)
             for other in load:
                 draft.edit(state.by_name[other.name], other)
             if load or transaction.source == "operator":
                 notes.append(wording.carried(one.name, [other.name for other in load], one.leave))
-    for new in state.steadily(add):
+    for new in state.with_progress(add):
         draft.add(new)
     if not (transaction.retract or transaction.insert):
         return draft.retract, draft.insert, notes

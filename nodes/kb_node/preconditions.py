@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Container, Iterable, Mapping
 from itertools import chain, islice
 from operator import itemgetter
 
-from semmap.nodes.kb_node.progress import steadily
+from semmap.nodes.kb_node.progress import with_progress
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -27,12 +27,12 @@ def subjects(*groups: Iterable[Triple]) -> set[Term]:
     return set(map(itemgetter(0), chain(*groups)))
 
 
-def is_much(groups: Iterable[Collection[Triple]], reasoner: Reasoner) -> bool:
+def is_large_share(groups: Iterable[Collection[Triple]], reasoner: Reasoner) -> bool:
     """Whether some triples are so many that it is quicker to go through all that are asserted."""
     return sum(map(len, groups)) > max(_FEW_AT_ALL, len(reasoner) // _FEW_OF_ALL)
 
 
-def held(
+def find_asserted(
     reasoner: Reasoner, groups: Iterable[Collection[Triple]], progress: Callable[[], None] = lambda: None
 ) -> set[Triple]:
     """Those of some triples that are asserted already. `progress` is called now and then."""
@@ -41,11 +41,11 @@ def held(
     if not known:
         return set()
     named = {t for triples in groups for t in triples if t[0] in known}
-    if is_much((named,), reasoner):
-        return named.intersection(chain.from_iterable(steadily(reasoner.by_subject(), progress)))
+    if is_large_share((named,), reasoner):
+        return named.intersection(chain.from_iterable(with_progress(reasoner.by_subject(), progress)))
     found: set[Triple] = set()
     many: set[Term] = set()
-    for subject in steadily(known, progress):
+    for subject in with_progress(known, progress):
         said = list(islice(reasoner.asserted(subject), _FEW))
         found.update(said)
         if len(said) == _FEW:

@@ -11,7 +11,7 @@ T = TypeVar("T")
 _STEP: Final = 1000
 
 
-def steadily(items: Iterable[T], progress: Callable[[], None]) -> Iterator[T]:
+def with_progress(items: Iterable[T], progress: Callable[[], None]) -> Iterator[T]:
     """The items; `progress` is called now and then."""
     for i, item in enumerate(items, start=1):
         if i % _STEP == 0:
@@ -19,7 +19,7 @@ def steadily(items: Iterable[T], progress: Callable[[], None]) -> Iterator[T]:
         yield item
 
 
-def parts(items: Iterable[T], size: int, progress: Callable[[], None]) -> Iterator[Sequence[T]]:
+def split_batches(items: Iterable[T], size: int, progress: Callable[[], None]) -> Iterator[Sequence[T]]:
     """The items in parts of that size; `progress` is called before each."""
     rest = iter(items)
     while part := list(islice(rest, size)):

@@ -8,7 +8,7 @@ from semmap.schemas import errors
 from semmap.schemas.explanations import Explanation, Step
 
 
-def message(found: reasoner.Explanation) -> Explanation:
+def to_message(found: reasoner.Explanation) -> Explanation:
     """An explanation as it goes over the wire."""
     return Explanation(
         conclusion=found.conclusion,
@@ -21,9 +21,9 @@ def message(found: reasoner.Explanation) -> Explanation:
     )
 
 
-def refusal(found: Inconsistent, *, of: str = "") -> errors.Inconsistent:
+def to_error(found: Inconsistent, *, of: str = "") -> errors.Inconsistent:
     """The error that callers over the wire get; its sentence may begin with what is inconsistent (`of`)."""
     text = found.explanation.text
     return errors.Inconsistent(
-        f"{of} is inconsistent: {text}" if of else text, explanation=message(found.explanation)
+        f"{of} is inconsistent: {text}" if of else text, explanation=to_message(found.explanation)
     )

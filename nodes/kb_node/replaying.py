@@ -25,8 +25,8 @@ from semmap.schemas.commands import Compact, Status
 from semmap.schemas.commits import Commit, Transaction
 from semmap.schemas.replies import SystemStatus
 
-_LOOK_S: Final = 0.3
-_MOST_LOOKS: Final = 100
+_CHECK_PERIOD_S: Final = 0.3
+_MAX_CHECKS: Final = 100
 """So often it is looked whether all others are ready; then the replay begins without them."""
 
 CHANGES: Final = (Transaction, Transactions, LoadDocument, LoadTBox, TakeBack, Compact)
@@ -41,17 +41,17 @@ class Player:
         semantic_map: SemanticMap,
         data: Path,
         replay: Replay,
-        spread: Callable[[Commit], None],
+        publish: Callable[[Commit], None],
     ) -> None:
-        """`data` is the folder of the replay; `spread(commit)` tells everybody of a new commit."""
+        """`data` is the folder of the replay; `publish(commit)` tells everybody of a new commit."""
         self._node = node
         self._map = semantic_map
         self._source = Journal(data / SOURCE)
         self._replay = replay
-        self._spread = spread
-        self._looks = 0
+        self._publish = publish
+        self._checks = 0
         self._waits_for: tuple[str, ...] = ()
-        node.later(_LOOK_S, self._look)
+        node.later(_CHECK_PERIOD_S, self._check_ready)
 
     def close(self) -> None:
         """Let go of the journal."""
@@ -62,23 +62,23 @@ class Player:
         until, now = self._replay.until, self._map.seq
         return f"replayed up to commit {until}" if now >= until else f"replaying, at commit {now} of {until}"
 
-    def _look(self) -> None:
+    def _check_ready(self) -> None:
         """Begin when all nodes are ready and the bodies stand."""
-        self._looks += 1
-        if self._looks > _MOST_LOOKS:
+        self._checks += 1
+        if self._checks > _MAX_CHECKS:
             self._node.report(f"the replay begins before all is ready: {'; '.join(self._waits_for)}")
             self._schedule()
             return
 
-        def told(done: Future[SystemStatus]) -> None:
+        def on_status(done: Future[SystemStatus]) -> None:
             failed = done.exception()
-            self._waits_for = (str(failed),) if failed else missing(done.result(), self._replay.nodes)
+            self._waits_for = (str(failed),) if failed else find_missing(done.result(), self._replay.nodes)
             if self._waits_for:
-                self._node.later(_LOOK_S, self._look)
+                self._node.later(_CHECK_PERIOD_S, self._check_ready)
             else:
                 self._schedule()
 
-        self._node.ask_later(keys.CMD, Status()).add_done_callback(told)
+        self._node.ask_later(keys.CMD, Status()).add_done_callback(on_status)
 
     def _schedule(self) -> None:
         """Have the next commit made when its time has come."""
@@ -99,11 +99,11 @@ class Player:
         commit = self._source.commit(self._map.seq + 1)
         tbox = self._source.tbox(commit.seq) if commit.tbox else None
         as_made = structs.replace(commit, changed=(), removed=(), digest="")
-        self._spread(self._map.restate(as_made, tbox))
+        self._publish(self._map.restate(as_made, tbox))
         self._schedule()
 
 
-def missing(status: SystemStatus, nodes: Collection[str]) -> tuple[str, ...]:
+def find_missing(status: SystemStatus, nodes: Collection[str]) -> tuple[str, ...]:
     """Return what a replay with these nodes has to wait for, a sentence each.
 
     It waits until every entity has its body. Bodies that move or stand elsewhere do not hold it up.

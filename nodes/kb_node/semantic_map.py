@@ -38,7 +38,7 @@ C = TypeVar("C", Commit, Commit | None)
 log = logging.getLogger(__name__)
 
 
-class _Tried(Exception):
+class _DryRunDone(Exception):
     """A change was tried, up to where it would be durable. `seen` is what there was to see."""
 
     def __init__(self, seen: Any) -> None:
@@ -81,7 +81,7 @@ class SemanticMap(MapState):
         """False when an unexpected error (no memory) may have left a change half done: then start anew."""
         self.on_failure: Callable[[], None] = lambda: None
         """Called when that happens."""
-        self._look: Callable[[Commit], Any] | None = None
+        self._inspect: Callable[[Commit], Any] | None = None
         """While a change is only tried: who looks at it."""
         self._undo_log: list[_Memento] | None = None
         """While commits are made together: what takes them back, in their order."""
@@ -111,18 +111,18 @@ class SemanticMap(MapState):
         if self._undo_log is None:
             self._applier.derived_changes.clear()
         try:
-            made = self._carried_out(lambda: self._commit(transaction))
+            made = self._run_change(lambda: self._commit(transaction))
         except errors.SemmapError:
             if not self.is_sound or (known := self._journal.commit_of(transaction.id)) is None:
                 raise
             return known
         return made or self._journal.commit_of(transaction.id)
 
-    def _carried_out(self, change: Callable[[], C]) -> C:
+    def _run_change(self, change: Callable[[], C]) -> C:
         """What `change` commits. Raises NoAnswer for an error that nobody expects."""
         try:
             return change()
-        except (errors.SemmapError, _Tried):
+        except (errors.SemmapError, _DryRunDone):
             raise
         except Exception as error:
             self.is_sound = False
@@ -136,55 +136,55 @@ class SemanticMap(MapState):
     def _commit(self, transaction: Transaction) -> Commit | None:
         self.derive_for(transaction)
         if transaction.is_quick:
-            return self._made(transaction)
+            return self._make_commit(transaction)
         with gc_pause.uncollected(), self.predicted_places(transaction):
-            return self._made(transaction)
+            return self._make_commit(transaction)
 
-    def _made(self, transaction: Transaction) -> Commit | None:
-        plan, apply = planning.of(self, transaction), self._applier.apply
+    def _make_commit(self, transaction: Transaction) -> Commit | None:
+        plan, apply = planning.make_plan(self, transaction), self._applier.apply
         if plan is None:
             return None
-        commit = planning.signed(transaction, plan, self.seq + 1)
-        if self._look is not None:
-            return self._taken(apply(commit, self._write, self._noted))
-        give_up, begun = self.prepare(commit), commit_encoding.early(commit, self.digest)
-        write, noted = partial(self._write, begun=begun), partial(self._noted, begun=begun)
+        commit = planning.make_commit(transaction, plan, self.seq + 1)
+        if self._inspect is not None:
+            return self._accept(apply(commit, self._write, self._with_notes))
+        rollback, begun = self.prepare(commit), commit_encoding.early(commit, self.digest)
+        write, noted = partial(self._write, begun=begun), partial(self._with_notes, begun=begun)
         try:
-            return self._taken(apply(commit, write, noted))
+            return self._accept(apply(commit, write, noted))
         except BaseException:
-            give_up()
+            rollback()
             if begun is not None:
                 begun.give_up()
             raise
 
-    def _noted(self, commit: Commit, *, begun: commit_encoding.EarlyBody | None = None) -> Commit:
+    def _with_notes(self, commit: Commit, *, begun: commit_encoding.EarlyBody | None = None) -> Commit:
         """With a word on what it says of places and is not so. The body that was `begun` has its entities."""
         if begun is not None:
             begun.expect(commit)
-        doubts = self.places.doubts(commit)
+        doubts = self.places.conflict_notes(commit)
         return structs.replace(commit, notes=(*commit.notes, *doubts)) if doubts else commit
 
-    def try_out(self, change: Callable[[], Commit | None], look: Callable[[Commit], T]) -> T | None:
-        """What `look(commit)` sees once `change` would be durable; then all is taken back.
+    def try_out(self, change: Callable[[], Commit | None], inspect: Callable[[Commit], T]) -> T | None:
+        """What `inspect(commit)` sees once `change` would be durable; then all is taken back.
 
         None if it changes nothing, or was done before. Raises what `change` raises.
         """
-        self._look = look
+        self._inspect = inspect
         try:
             change()
-        except _Tried as tried:
+        except _DryRunDone as tried:
             seen: T = tried.seen
             return seen
         finally:
-            self._look = None
+            self._inspect = None
         return None
 
     def _write(
         self, commit: Commit, tbox: bytes | None = None, *, begun: commit_encoding.EarlyBody | None = None
     ) -> Commit:
-        """The commit, durable and with its digest. Raises NotWritten; _Tried if it is only tried."""
-        if self._look is not None:
-            raise _Tried(self._look(commit))
+        """The commit, durable and with its digest. Raises NotWritten; _DryRunDone if it is only tried."""
+        if self._inspect is not None:
+            raise _DryRunDone(self._inspect(commit))
         return structs.replace(commit, digest=self._journal.append(commit, tbox, begun=begun).hex())
 
     def replace_tbox(self, transaction: Transaction, tbox: Iterable[Triple]) -> Commit:
@@ -201,7 +201,7 @@ class SemanticMap(MapState):
             inserted=(*transaction.insert, *sorted(new - self.tbox)),
             notes=(),
         )
-        commit = planning.signed(transaction, plan, self.seq + 1, tbox=True)
+        commit = planning.make_commit(transaction, plan, self.seq + 1, tbox=True)
         self.derive_all()
         before = self.classes
 
@@ -209,7 +209,7 @@ class SemanticMap(MapState):
             tbox_validation.require_fit(self.abox(), before, self.classes)
             return self._write(commit, rdf.serialise(new, "ntriples"))
 
-        return self._carried_out(lambda: self._taken(self._applier.switch(commit, new, make_durable)))
+        return self._run_change(lambda: self._accept(self._applier.switch(commit, new, make_durable)))
 
     def restate(self, commit: Commit, tbox: bytes | None = None) -> Commit:
         """Commit what another journal has, under its number and in its author's name, as it is.
@@ -219,9 +219,9 @@ class SemanticMap(MapState):
         """
         self.derive_all()
         if tbox is None:
-            return self._taken(self._applier.apply(commit, self._write))
+            return self._accept(self._applier.apply(commit, self._write))
         new = frozenset(rdf.parse(tbox, "the TBox"))
-        return self._taken(self._applier.switch(commit, new, lambda whole: self._write(whole, tbox)))
+        return self._accept(self._applier.switch(commit, new, lambda whole: self._write(whole, tbox)))
 
     def commit_together(
         self, transactions: Sequence[Transaction]
@@ -248,7 +248,7 @@ class SemanticMap(MapState):
             if not self.is_sound:
                 raise
             for memento in reversed(log):
-                self._take_back(memento)
+                self._roll_back(memento)
             if not isinstance(error, NotWritten):
                 raise
             return [error] * len(transactions)
@@ -256,18 +256,18 @@ class SemanticMap(MapState):
             self._undo_log = None
         return results
 
-    def _take_back(self, memento: _Memento) -> None:
+    def _roll_back(self, memento: _Memento) -> None:
         """Undo the last commit, of which the journal keeps nothing."""
         commit, before = memento
         self._applier.reverse(commit, before)
         self.revert_entities(commit, before, self._journal.digest(commit.seq - 1).hex())
 
-    def _taken(self, commit: Commit) -> Commit:
+    def _accept(self, commit: Commit) -> Commit:
         if self._undo_log is not None:
             before = {name: self.by_name.get(name) for name in commit.names}
             self._undo_log.append(_Memento(commit, before))
         self._schedule.count(commit)
-        self.take(commit)
+        self.apply_commit(commit)
         return commit
 
     # Restarting
@@ -321,26 +321,26 @@ class SemanticMap(MapState):
             self._applier.change(insert=tuple(start.said()), lenient=True)
         self.seq, self.digest = start.seq, self._journal.digest(start.seq).hex()
         if start.seq == 0:
-            self.show(entity_reading.of_the_tbox(self.reasoner, self.classes))
+            self.update_entities(entity_reading.read_tbox_entities(self.reasoner, self.classes))
         elif is_ours:
-            self.show(start.entities)
+            self.update_entities(start.entities)
         else:
             read = (entity_reading.read_again(self.reasoner, self.classes, e) for e in start.entities)
-            self.show(entity for entity in read if entity is not None)
+            self.update_entities(entity for entity in read if entity is not None)
         for commit in self._journal.commits(after=start.seq):
             try:
                 if commit.tbox:
-                    made = self._applier.switch(commit, self.tbox_at(commit.seq), _as_it_is)
+                    made = self._applier.switch(commit, self.tbox_at(commit.seq), _unchanged)
                 else:
-                    made = self._applier.apply(commit, _as_it_is)
+                    made = self._applier.apply(commit, _unchanged)
             except errors.SemmapError as error:
                 raise errors.Refused(f"commit {commit.seq} no longer fits its TBox: {error.text}") from None
-            self._taken(made)
+            self._accept(made)
             self.progress()
         if self.seq > start.seq or start.read_by != conclusions_format.mark():
             self.derive_all()  # else the entities have the classes that they have by their places
 
 
-def _as_it_is(commit: Commit) -> Commit:
+def _unchanged(commit: Commit) -> Commit:
     """One that is durable already."""
     return commit

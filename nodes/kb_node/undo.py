@@ -72,8 +72,8 @@ def _reverse_tbox(semantic_map: SemanticMap, journal: Journal, command: TakeBack
     if again := [commit for commit in _in_force(later) if not commit.undoes]:
         raise errors.Refused(_what_rests_on(target, again))
     before, after = (semantic_map.tbox_at(seq) for seq in (target.seq - 1, target.seq))
-    retract = tuple(t for t in target.inserted if t not in after and semantic_map.has(t))
-    insert = tuple(t for t in target.retracted if t not in before and not semantic_map.has(t))
+    retract = tuple(t for t in target.inserted if t not in after and semantic_map.is_asserted(t))
+    insert = tuple(t for t in target.retracted if t not in before and not semantic_map.is_asserted(t))
     return semantic_map.replace_tbox(_transaction(command, [target], retract, insert), before)
 
 
@@ -189,16 +189,17 @@ def _is_disturbed(
     semantic_map: SemanticMap, inserted: tuple[Triple, ...], retracted: tuple[Triple, ...]
 ) -> bool:
     """Is something no longer as it was left, or was more said of the individuals that were brought in?"""
-    mine, reasoner, steadily = set(inserted), semantic_map.reasoner, semantic_map.steadily
+    mine, reasoner, with_progress = set(inserted), semantic_map.reasoner, semantic_map.with_progress
     changed = {s for s, p, _ in retracted if p == v.RDF_TYPE}
     brought = {s for s, p, _ in inserted if p == v.RDF_TYPE} - changed
-    if preconditions.is_much((inserted, retracted), reasoner):
-        held = set(chain.from_iterable(steadily(reasoner.by_subject())))
+    if preconditions.is_large_share((inserted, retracted), reasoner):
+        held = set(chain.from_iterable(with_progress(reasoner.by_subject())))
         about = [t for t in held - mine if t[0] in brought or t[2] in brought]
     else:
-        held = preconditions.held(reasoner, (inserted, retracted), semantic_map.progress)
+        held = preconditions.find_asserted(reasoner, (inserted, retracted), semantic_map.progress)
         asserted = chain.from_iterable(
-            chain(reasoner.asserted(term), reasoner.asserted(None, None, term)) for term in steadily(brought)
+            chain(reasoner.asserted(term), reasoner.asserted(None, None, term))
+            for term in with_progress(brought)
         )
         about = [t for t in asserted if t not in mine]
     return bool(about) or not held >= mine or not held.isdisjoint(retracted)

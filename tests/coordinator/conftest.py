@@ -68,7 +68,7 @@ def door(semantic_map):
             for result in semantic_map.commit_together(several.transactions)
         ),
         "infer": lambda query: kb_answers.infer(semantic_map, query.name),
-        "properties": lambda _: tuple(semantic_map.classes.stated.rows()),
+        "properties": lambda _: tuple(semantic_map.classes.property_table.rows()),
         "made-by": lambda query: tuple(_effects(semantic_map._journal.commit_of(i)) for i in query.ids),
         "undo": lambda command: _changed(
             semantic_map, lambda: undo(semantic_map, semantic_map._journal, command), command.dry_run
@@ -96,4 +96,4 @@ def _effects(commit):
 
 
 def _changed(semantic_map, change, dry_run):
-    return dry_runs.of(semantic_map, change) if dry_run else _effects(change())
+    return dry_runs.dry_run(semantic_map, change) if dry_run else _effects(change())

@@ -5,7 +5,7 @@ import queue
 import pytest
 
 from semmap.nodes import bus
-from semmap.nodes.kb_node.answers.entity_queries import Now
+from semmap.nodes.kb_node.answers.entity_queries import CurrentState
 from semmap.nodes.kb_node.commit_publisher import CommitPublisher
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
@@ -34,7 +34,7 @@ class Told:
             bus.follow(session, keys.COMMIT, lambda _, commit: self.commits.put(commit)),
             bus.follow(session, keys.ENTITY, lambda key, entity: self.news.put((key, entity))),
         ]
-        self._publisher = CommitPublisher(session, (), Now(self.map).described)
+        self._publisher = CommitPublisher(session, (), CurrentState(self.map).described)
 
     def commit(self, **what):
         made = self.map.commit(Transaction(id=str(self.map.seq), source="operator", **what))

@@ -52,7 +52,7 @@ def at(semantic_map, dice):
 
 
 def begin(semantic_map, steps=0):
-    while not semantic_map.follows:
+    while not semantic_map.derives_at_commits:
         semantic_map.derive_some()
     for _ in range(steps):
         semantic_map.derive_some()
@@ -92,7 +92,7 @@ def test_what_is_computed_for_a_commit_holds_at_once(restarted):
     edit = (Edit(name=cup.name, at=(x, y, z + table.size_m[2])),)
     restarted.commit(Transaction(id="on", source="operator", edit=edit))
     assert restarted.reasoner.is_computed((v.entity_iri("more1"), v.dm("isOn"), v.entity_iri("more3")))
-    assert not restarted._follows_all
+    assert not restarted._derived_all
 
 
 def test_a_commit_that_is_refused_leaves_all(restarted):
@@ -108,4 +108,4 @@ def test_what_is_asserted_of_places_needs_all_of_it(restarted):
     begin(restarted)
     said = (v.entity_iri("more1"), v.dm("isOn"), v.entity_iri("more2"))
     restarted.commit(Transaction(id="said", source="operator", insert=(said,)))
-    assert restarted._follows_all
+    assert restarted._derived_all

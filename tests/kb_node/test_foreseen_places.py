@@ -194,7 +194,7 @@ def test_a_load_that_is_refused_leaves_no_process_and_nothing_behind(new_map, fe
 
 def test_a_dry_run_foresees_too_and_changes_nothing(new_map, helped):
     semantic_map, load = new_map(), wanted(things())
-    tried = dry_runs.of(semantic_map, lambda: semantic_map.commit(load))
+    tried = dry_runs.dry_run(semantic_map, lambda: semantic_map.commit(load))
     assert helped == [True]
     assert not semantic_map.by_name
     assert semantic_map.commit(load).names == tried.names

@@ -201,7 +201,7 @@ def test_a_dry_run_shows_it_and_does_nothing(room):
     say(room, "cup1", "isOn", "table1")
     before = home.state(room)
     wanted = Transaction(id="dry", source="operator", edit=(Edit(name="cup1", at=(0.0, 2.0, 0.0)),))
-    tried = dry_runs.of(room, lambda: room.commit(wanted))
+    tried = dry_runs.dry_run(room, lambda: room.commit(wanted))
     assert stands(tried.notes) == ["taken back: cup1 was said to be on table1; it stands"]
     assert home.state(room) == before
     assert said(room) == {("cup1", "table1")}
@@ -259,7 +259,7 @@ def test_undo_brings_contradictory_assertions_back_that_geometry_denies(room, mo
     assert len(moved.retracted) > len(moved.inserted)
     take_back(room)
     assert (triples(room), {*room.all_derived().aside}) == before
-    assert dry_runs.of(room, lambda: move(room, "table1", (0.0, 3.0, 0.0))).notes
+    assert dry_runs.dry_run(room, lambda: move(room, "table1", (0.0, 3.0, 0.0))).notes
     assert (triples(room), {*room.all_derived().aside}) == before
 
 
@@ -434,7 +434,7 @@ def test_a_dry_run_of_a_removal_leaves_set_aside_what_is(room):
     before = room.all_derived(), set(room.inferred())
     for names in (("cup1",), ("table2",), ("cup1", "table2")):
         tried = Transaction(id=f"dry {names}", source="operator", remove=names)
-        effects = dry_runs.of(room, lambda wanted=tried: room.commit(wanted))
+        effects = dry_runs.dry_run(room, lambda wanted=tried: room.commit(wanted))
         assert "table2 supports cup1" not in effects.trial.lost
         after = room.all_derived(), set(room.inferred())
         assert set(after[0].aside) == set(before[0].aside)

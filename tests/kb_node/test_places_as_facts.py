@@ -6,7 +6,7 @@ import pytest
 
 from semmap.nodes.kb_node import undo
 from semmap.nodes.kb_node.answers import answers, dry_runs, questions
-from semmap.nodes.kb_node.answers.entity_queries import Now
+from semmap.nodes.kb_node.answers.entity_queries import CurrentState
 from semmap.nodes.kb_node.answers.location_queries import LocationQueries
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
@@ -89,7 +89,7 @@ def test_who_is_in_another_class_by_where_things_are_is_in_the_commit(flat):
 
 def test_a_dry_run_tells_what_would_be_and_leaves_all(flat):
     before = state(flat)
-    effects = dry_runs.of(flat, lambda: flat.commit(moved(flat, "cup1", (2.0, 2.0, 0.0))))
+    effects = dry_runs.dry_run(flat, lambda: flat.commit(moved(flat, "cup1", (2.0, 2.0, 0.0))))
     assert any("cup1 isLocatedIn livingroom1" in line for line in effects.trial.gained)
     assert state(flat) == before
 
@@ -133,7 +133,7 @@ def test_a_removal_that_is_only_tried_or_not_taken_leaves_all(flat, monkeypatch)
     before = state(flat)
     for name in ("milk1", "counter1", "kitchen1"):
         removal = Transaction(id=f"without {name}", source="operator", remove=(name,))
-        dry_runs.of(flat, lambda wanted=removal: flat.commit(wanted))
+        dry_runs.dry_run(flat, lambda wanted=removal: flat.commit(wanted))
         assert state(flat) == before
         with monkeypatch.context() as patched:
             patched.setattr(flat._journal, "append", _full)
@@ -178,7 +178,7 @@ def choosy(flat):
 
 def test_all_questions_agree_with_what_is_withheld(choosy):
     semantic_map, _ = choosy
-    now = Now(semantic_map)
+    now = CurrentState(semantic_map)
     assert not semantic_map.reasoner.holds(on("milk1", "counter1"))
     there = now.entities(Entities(where=Where(on="counter1")))
     assert "milk1" not in {entity.name for entity in there}
@@ -192,19 +192,19 @@ def test_all_questions_agree_with_what_is_withheld(choosy):
     assert told.text.endswith("so it is no fact (for the reason see: semmap check)")
     question = Explain(name="milk1", predicate="isOn", value="counter1")
     with pytest.raises(errors.Refused, match=r"measured.* would contradict the map"):
-        now.explained(question, questions.parse_explain(semantic_map, question))
+        now.explain(question, questions.parse_explain(semantic_map, question))
 
 
 def test_what_bears_tells_of_what_is_withheld_on_it_too(choosy):
     semantic_map, _ = choosy
-    counter = Now(semantic_map).entity(Get(name="counter1", where=True))
+    counter = CurrentState(semantic_map).entity(Get(name="counter1", where=True))
     assert ["milk1 is on counter1 (measured) would contradict" in text for text in counter.withheld] == [True]
 
 
 def test_a_dry_run_of_another_tbox_notes_what_it_would_withhold(flat):
     tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes() + ONLY_SHELVES, "household.ttl", label_prefix="t")
     seen = []
-    tried = dry_runs.of(
+    tried = dry_runs.dry_run(
         flat,
         lambda: flat.replace_tbox(Transaction(id="choosy", source="operator"), tbox),
         lambda: seen.append(flat.tbox),
@@ -219,7 +219,7 @@ def test_what_is_said_to_be_in_itself_is_noted(flat):
     commit = flat.commit(Transaction(id="self", source="operator", insert=(said,)))
     note = "kitchen1 was said to be in kitchen1; nothing is on, in or inside itself"
     assert commit.notes == (note,)
-    assert [relation.text for relation in Now(flat).denied()] == [note]
+    assert [relation.text for relation in CurrentState(flat).find_denied()] == [note]
 
 
 def test_what_contradicts_something_denied_by_way_of_others_is_refused(flat):
@@ -255,7 +255,7 @@ def test_the_commit_that_lets_something_be_withheld_notes_it_once(choosy):
     assert not away.notes
     assert not semantic_map.derived_facts.suppressed
     there = (8.2, 0.3, 0.9)
-    tried = dry_runs.of(semantic_map, lambda: semantic_map.commit(moved(semantic_map, "milk1", there)))
+    tried = dry_runs.dry_run(semantic_map, lambda: semantic_map.commit(moved(semantic_map, "milk1", there)))
     back = semantic_map.commit(moved(semantic_map, "milk1", there))
     assert back.notes == tried.notes == (note,)
     assert not semantic_map.commit(moved(semantic_map, "milk1", (8.21, 0.3, 0.9))).notes

@@ -27,7 +27,7 @@ def test_what_is_there_is_held_wherever_it_is_named(reasoner):
     for where in ("require", "retract", "insert"):
         asked = transaction(1, **{where: (TYPE, *MANY, ABSENT, (NEW, v.RDF_TYPE, v.dm("Cup")))})
         groups = asked.require, asked.retract, asked.insert
-        assert preconditions.held(reasoner, groups) == {TYPE, *said}
+        assert preconditions.find_asserted(reasoner, groups) == {TYPE, *said}
 
 
 def test_what_is_required_must_be_held():
@@ -38,8 +38,8 @@ def test_what_is_required_must_be_held():
 
 def test_what_is_much_is_looked_up_otherwise_and_is_the_same(reasoner, monkeypatch):
     groups = [(TYPE, *MANY, ABSENT, (NEW, v.RDF_TYPE, v.dm("Cup")))]
-    one_by_one = preconditions.held(reasoner, groups)
-    assert not preconditions.is_much(groups, reasoner)
+    one_by_one = preconditions.find_asserted(reasoner, groups)
+    assert not preconditions.is_large_share(groups, reasoner)
     monkeypatch.setattr(preconditions, "_FEW_AT_ALL", 1)
-    assert preconditions.is_much(groups, reasoner)
-    assert preconditions.held(reasoner, groups) == one_by_one
+    assert preconditions.is_large_share(groups, reasoner)
+    assert preconditions.find_asserted(reasoner, groups) == one_by_one

@@ -32,7 +32,7 @@ def test_both_forms_have_the_same_fields(ours, theirs):
 
 def test_a_proof_crosses_the_wire_with_all_it_says(reasoner):
     proof = reasoner.explain(("<urn:cup1>", v.RDF_TYPE, DISH))
-    arrived = crossed(proofs.message(proof))
+    arrived = crossed(proofs.to_message(proof))
     assert proof.steps
     assert isinstance(arrived, wire.Explanation)
     assert [structs.asdict(step) for step in arrived.steps] == [structs.asdict(step) for step in proof.steps]
@@ -41,14 +41,14 @@ def test_a_proof_crosses_the_wire_with_all_it_says(reasoner):
 
 
 def test_a_refutation_keeps_what_was_supposed(reasoner):
-    assert crossed(proofs.message(refute(reasoner, FOOD1))).supposed == FOOD1
+    assert crossed(proofs.to_message(refute(reasoner, FOOD1))).supposed == FOOD1
 
 
 @pytest.mark.parametrize(("of", "beginning"), [("", ""), ("the TBox", "the TBox is inconsistent: ")])
 def test_a_refusal_says_why(reasoner, of, beginning):
     with pytest.raises(Inconsistent) as found:
         reasoner.apply(insert=[FOOD1])
-    refusal = proofs.refusal(found.value, of=of)
+    refusal = proofs.to_error(found.value, of=of)
     assert isinstance(refusal, errors.Inconsistent)
     assert refusal.text == beginning + found.value.explanation.text
-    assert refusal.explanation == proofs.message(found.value.explanation)
+    assert refusal.explanation == proofs.to_message(found.value.explanation)

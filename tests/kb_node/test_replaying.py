@@ -8,7 +8,7 @@ from concurrent.futures import Future
 import pytest
 
 from semmap.nodes.kb_node.config import Replay
-from semmap.nodes.kb_node.replaying import CHANGES, Player, missing, rejecting_handlers
+from semmap.nodes.kb_node.replaying import CHANGES, Player, find_missing, rejecting_handlers
 from semmap.nodes.kb_node.storage.journal import FILENAME
 from semmap.nodes.kb_node.storage.replay.preparing import SOURCE
 from semmap.schemas import errors
@@ -74,10 +74,10 @@ def replay(tmp_path):
     made = []
 
     def play(loop, nodes=("kb_node",)):
-        spread = []
-        player = Player(loop, here, tmp_path / "here", Replay(began + 3, 1.0, 5.0, nodes), spread.append)
+        publish = []
+        player = Player(loop, here, tmp_path / "here", Replay(began + 3, 1.0, 5.0, nodes), publish.append)
         made.append(player)
-        return player, spread, here, began
+        return player, publish, here, began
 
     yield play
     for player in made:
@@ -87,12 +87,12 @@ def replay(tmp_path):
 
 def test_the_commits_are_made_again_in_their_order_and_it_says_how_far_it_is(replay):
     loop = Loop(status("kb_node"))
-    player, spread, here, began = replay(loop)
+    player, publish, here, began = replay(loop)
     assert player.describe() == f"replaying, at commit {began} of {began + 3}"
     loop.go_on()
     for number in range(1, 4):
         loop.go_on()
-        assert [commit.seq for commit in spread] == [*range(began + 1, began + number + 1)]
+        assert [commit.seq for commit in publish] == [*range(began + 1, began + number + 1)]
     assert {entity.name for entity in here.entities()} == {"chair1", "chair2", "chair3"}
     assert player.describe() == f"replayed up to commit {began + 3}"
     assert loop.due == []
@@ -112,31 +112,31 @@ def test_the_commits_are_made_again_in_their_order_and_it_says_how_far_it_is(rep
 )
 def test_it_begins_when_all_nodes_are_ready_and_the_bodies_stand(replay, nodes, first):
     loop = Loop(first, status("kb_node", "coordinator", "sim_node"))
-    _, spread, _, began = replay(loop, nodes=nodes)
+    _, publish, _, began = replay(loop, nodes=nodes)
     loop.go_on()
     loop.go_on()
-    assert (spread, loop.asked) == ([], 2)
+    assert (publish, loop.asked) == ([], 2)
     loop.go_on()
-    assert [commit.seq for commit in spread] == [began + 1]
+    assert [commit.seq for commit in publish] == [began + 1]
 
 
 def test_without_a_simulator_nobody_waits_for_bodies(replay):
     loop = Loop(status("kb_node", in_agreement=None))
-    _, spread, _, _ = replay(loop)
+    _, publish, _, _ = replay(loop)
     loop.go_on()
     loop.go_on()
-    assert len(spread) == 1
+    assert len(publish) == 1
 
 
 def test_after_a_while_it_begins_without_the_others(replay):
     loop = Loop()
-    _, spread, _, _ = replay(loop)
+    _, publish, _, _ = replay(loop)
     for _ in range(101):
         loop.go_on()
-    assert (spread, loop.asked) == ([], 100)
+    assert (publish, loop.asked) == ([], 100)
     assert loop.reported == ["the replay begins before all is ready: nobody"]
     loop.go_on()
-    assert len(spread) == 1
+    assert len(publish) == 1
 
 
 def test_such_a_map_is_not_changed_by_anybody():
@@ -148,17 +148,17 @@ def test_such_a_map_is_not_changed_by_anybody():
 
 
 def test_it_waits_for_its_nodes_and_then_for_the_bodies():
-    assert missing(status("kb_node"), NODES) == ("sim_node is not ready",)
-    assert missing(status(*NODES, in_agreement=None), NODES) == ("the scene is not known yet",)
+    assert find_missing(status("kb_node"), NODES) == ("sim_node is not ready",)
+    assert find_missing(status(*NODES, in_agreement=None), NODES) == ("the scene is not known yet",)
     pending = ("cup1 has no body yet",)
-    assert missing(status(*NODES, in_agreement=False, pending=pending), NODES) == pending
-    assert missing(status(*NODES), NODES) == ()
+    assert find_missing(status(*NODES, in_agreement=False, pending=pending), NODES) == pending
+    assert find_missing(status(*NODES), NODES) == ()
 
 
 def test_a_body_that_moves_does_not_hold_it_up():
     moving = ("robot1 is moving: 1.2 m from its committed pose",)
-    assert missing(status(*NODES, in_agreement=False, displaced=moving), NODES) == ()
+    assert find_missing(status(*NODES, in_agreement=False, displaced=moving), NODES) == ()
 
 
 def test_without_a_simulator_it_waits_for_no_bodies():
-    assert missing(status("kb_node", in_agreement=None), ("kb_node",)) == ()
+    assert find_missing(status("kb_node", in_agreement=None), ("kb_node",)) == ()

@@ -250,7 +250,7 @@ def test_a_checkpoint_of_other_code_is_read_again(semantic_map, monkeypatch):
     assert [e.provenance.commit for e in before.entities] == [2]
     with monkeypatch.context() as other:
         other.setattr(conclusions_format, "mark", lambda: b"other")
-        semantic_map.show([structs.replace(entity, class_="Stool") for entity in semantic_map.entities()])
+        semantic_map.update_entities([structs.replace(entity, class_="Stool") for entity in semantic_map.entities()])
         semantic_map.checkpoint()
     again = home.reopened(semantic_map)
     assert again.snapshot() == before
@@ -455,7 +455,7 @@ def test_after_an_error_in_the_middle_of_a_change_the_map_is_to_be_started_again
     def fail(*_):
         raise MemoryError
 
-    where, what = (semantic_map, "take") if durable else (semantic_map._applier, "_with_effects")
+    where, what = (semantic_map, "apply_commit") if durable else (semantic_map._applier, "_with_effects")
     monkeypatch.setattr(where, what, fail)
     wanted = [transaction("a", chair("chair2")), transaction("b", chair("chair3"))]
     with pytest.raises(errors.NoAnswer, match="starts again from its journal, because a change failed in"):

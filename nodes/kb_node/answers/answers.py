@@ -226,7 +226,7 @@ def check(triples: Iterable[Triple], engine: str, is_over: Callable[[], bool] = 
         try:
             Reasoner(triples, scattered=True)
         except Inconsistent as error:
-            explanation = proofs.message(error.explanation)
+            explanation = proofs.to_message(error.explanation)
         reason = explanation.text if explanation else ""
     return Checked(
         consistent=not reason,

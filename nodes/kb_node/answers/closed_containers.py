@@ -25,7 +25,7 @@ class Closed(NamedTuple):
     joints: tuple[str, ...] = ()
 
 
-def closed_around(semantic_map: SemanticMap, entity: Entity) -> Closed | None:
+def find_closed_container(semantic_map: SemanticMap, entity: Entity) -> Closed | None:
     """The closed thing that an entity is inside, as far as the map says; of several the innermost."""
     seen = {entity.name}
     inside = [entity]
@@ -38,14 +38,14 @@ def closed_around(semantic_map: SemanticMap, entity: Entity) -> Closed | None:
                 continue
             if outer.properties.get(IS_OPEN) is False:
                 return Closed(outer)
-            if shut := _shut_around(semantic_map, inner, outer):
+            if shut := _find_closing_joints(semantic_map, inner, outer):
                 return Closed(outer, shut)
             seen.add(name)
             inside.append(outer)
     return None
 
 
-def _shut_around(semantic_map: SemanticMap, inner: Entity, outer: Entity) -> tuple[str, ...]:
+def _find_closing_joints(semantic_map: SemanticMap, inner: Entity, outer: Entity) -> tuple[str, ...]:
     """The joints that close the hollow that a thing is in, if all of them are shut and others are open."""
     solids = semantic_map.places.space().solids
     one, around = solids.get(inner.name), solids.get(outer.name)
@@ -62,7 +62,7 @@ def _shut_around(semantic_map: SemanticMap, inner: Entity, outer: Entity) -> tup
     return tuple(shares) if are_shut else ()
 
 
-def in_words(closed: Closed) -> str:
+def describe(closed: Closed) -> str:
     """`it cannot be seen there: fridge1 has been closed since commit 7, 5 min ago`."""
     entity, joints = closed
     said = entity.joint_provenance or entity.provenance

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Set
 
 from semmap.nodes.kb_node.answers import answers
-from semmap.nodes.kb_node.answers.entity_queries import Now
+from semmap.nodes.kb_node.answers.entity_queries import CurrentState
 from semmap.nodes.kb_node.answers.inventories import LARGEST, Inventories
 from semmap.nodes.kb_node.answers.sightings import Sightings
 from semmap.nodes.kb_node.relations.selection import only_meant
@@ -26,7 +26,7 @@ from semmap.schemas.joints import JOINT_POSITIONS, SWITCH_POSITIONS
 class Descriptions:
     """Tells what is there; owned by the node's thread."""
 
-    def __init__(self, semantic_map: SemanticMap, now: Now, sightings: Sightings) -> None:
+    def __init__(self, semantic_map: SemanticMap, now: CurrentState, sightings: Sightings) -> None:
         self._map = semantic_map
         self._now = now
         self._sightings = sightings
@@ -64,7 +64,7 @@ class Descriptions:
         for entity in self._map.entities():
             if entity.conflict and (about is None or entity.name in about):
                 yield f"{entity.name}, {entity.conflict}"
-        for relation in self._now.denied():
+        for relation in self._now.find_denied():
             if about is None or relation.subject in about:
                 yield relation.text
         if about is None:
@@ -89,8 +89,8 @@ class Descriptions:
             yield f"It is called {' or '.join(f'“{text}”' for text in called)}."
         if troubles := list(self._problems({entity.name})):
             yield f"Not as it should be: {'; '.join(troubles).removeprefix(f'{entity.name}, ')}."
-        wrong = {(r.subject, r.relation, r.object) for r in self._now.denied()}
-        known = {row.name: row for row in self._map.classes.stated.rows()}
+        wrong = {(r.subject, r.relation, r.object) for r in self._now.find_denied()}
+        known = {row.name: row for row in self._map.classes.property_table.rows()}
         for property_, stated in entity.properties.items():
             for_programs = property_ in (JOINT_POSITIONS, SWITCH_POSITIONS)
             if not for_programs and (row := known.get(property_)) is not None:
@@ -105,8 +105,8 @@ class Descriptions:
             measures_ = "" if size is None else f" measures {' x '.join(f'{e:g}' for e in size)} m and"
             x, y, z = (round(value, 3) + 0.0 for value in entity.pose.position_m)
             yield f"It{measures_} stands at ({x:g}, {y:g}, {z:g}) m."
-        if not self._sightings.is_gone(entity):
-            text = self._sightings.there(entity).text
+        if not self._sightings.is_missing(entity):
+            text = self._sightings.describe_present(entity).text
             yield f"It was {text}." if text.startswith(("placed", "last")) else f"It is {text}."
 
 

@@ -6,8 +6,7 @@ import time
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, get_args
 
-from semmap.nodes.kb_node.answers.fact_intervals import Moves
-from semmap.nodes.kb_node.answers.fact_intervals import spells as spells_of
+from semmap.nodes.kb_node.answers.fact_intervals import PoseChanges, find_intervals
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact, Facts
 from semmap.nodes.kb_node.relations.geometry.placed import Placed
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
@@ -29,7 +28,7 @@ _LONGEST = 10
 """How many spells are told one by one in words."""
 
 
-def difference(journal: Journal, past: Past, query: Diff, limits: Thresholds) -> Difference:
+def compute_difference(journal: Journal, past: Past, query: Diff, limits: Thresholds) -> Difference:
     """What changed between `query.since` and `query.until`. Raises Refused, BadRequest."""
     first = past.commit_at(query.since)
     last = past.last if query.until is None else past.commit_at(query.until)
@@ -45,7 +44,7 @@ def difference(journal: Journal, past: Past, query: Diff, limits: Thresholds) ->
     was, is_ = (_facts(there.values(), limits) for there in (then, now))
     differing = sorted([(fact, False) for fact in was - is_] + [(fact, True) for fact in is_ - was])
     relations = tuple(
-        Related(subject=s, relation=_KEPT[relation], object=o, came=came, text=_said(relation, came, o))
+        Related(subject=s, relation=_KEPT[relation], object=o, came=came, text=_phrase(relation, came, o))
         for (s, relation, o), came in differing
     )
     return Difference(
@@ -64,7 +63,7 @@ def _stamp_ns(journal: Journal, seq: int) -> int:
     return begins.stamp_ns if begins.seq and seq <= begins.seq else journal.stamps.of(max(seq, 1))
 
 
-def _said(relation: RelationName, came: bool, other: str) -> str:
+def _phrase(relation: RelationName, came: bool, other: str) -> str:
     words = SPOKEN[relation]
     return f"{words if came else words.replace('is ', 'is no longer ', 1)} {other}"
 
@@ -76,14 +75,14 @@ def _facts(there: Iterable[Entity], limits: Thresholds) -> set[Fact]:
     return set(facts)
 
 
-def spells(journal: Journal, past: Past, query: WasWhen, limits: Thresholds) -> Spells:
+def find_spells(journal: Journal, past: Past, query: WasWhen, limits: Thresholds) -> Spells:
     """When the relation held. Raises UnknownName, BadRequest for a word that several things have."""
     there = {entity.name: entity for entity in past.entities(past.last)} if past.last else {}
     one, other = (_name(word, there, past) for word in (query.name, query.other))
-    text, told = _told(one, query.relation, other, journal, past, limits)
-    if not told and (bearer := _borne_by(one, query.relation, other, there, limits)) is not None:
+    text, told = _find_spells(one, query.relation, other, journal, past, limits)
+    if not told and (bearer := _find_support(one, query.relation, other, there, limits)) is not None:
         relation, below = bearer
-        borne = _told(one, relation, below, journal, past, limits)[0].replace(one, "it", 1)
+        borne = _find_spells(one, relation, below, journal, past, limits)[0].replace(one, "it", 1)
         where = f"{_spoken(query.relation)} {other}"
         text = f"{one} was never itself {where}; {borne}, and {below} is {where}"
     return Spells(
@@ -96,13 +95,13 @@ def spells(journal: Journal, past: Past, query: WasWhen, limits: Thresholds) -> 
     )
 
 
-def _told(
+def _find_spells(
     one: str, relation: KeptRelation, other: str, journal: Journal, past: Past, limits: Thresholds
 ) -> tuple[str, tuple[Spell, ...]]:
     """When a relation held, in words and as spells."""
     fact = (one, relation, other)
     first = past.at_the_beginning().values()
-    found = spells_of(journal.outlines(Moves), first, [fact], limits, in_any_place=True)[fact]
+    found = find_intervals(journal.outlines(PoseChanges), first, [fact], limits, in_any_place=True)[fact]
     told = tuple(
         Spell(
             since=since,
@@ -112,14 +111,14 @@ def _told(
         )
         for since, until in found
     )
-    return _in_words(one, f"{_spoken(relation)} {other}", told, time.time_ns()), told
+    return _describe(one, f"{_spoken(relation)} {other}", told, time.time_ns()), told
 
 
 def _spoken(relation: KeptRelation) -> str:
     return SPOKEN[relation].removeprefix("is ")
 
 
-def _borne_by(
+def _find_support(
     one: str, relation: KeptRelation, other: str, there: Mapping[str, Entity], limits: Thresholds
 ) -> tuple[KeptRelation, str] | None:
     """What a thing is on or inside now, where that is in turn on or inside the other; else None."""
@@ -146,7 +145,7 @@ def _name(word: str, there: Mapping[str, Entity], past: Past) -> str:
     return only_meant(tuple(there.values()), word)
 
 
-def _in_words(name: str, where: str, told: Sequence[Spell], now_ns: int) -> str:
+def _describe(name: str, where: str, told: Sequence[Spell], now_ns: int) -> str:
     """`cup1 has been on table1 since commit 4 (for 2 min); before that from commit 1 until commit 3 ...`."""
     if not told:
         return f"{name} was never {where}"

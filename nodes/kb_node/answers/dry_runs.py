@@ -17,7 +17,7 @@ _FEW = 50
 """Entities of which it is said what follows."""
 
 
-def of(
+def dry_run(
     semantic_map: SemanticMap,
     change: Callable[[], Commit | None],
     meanwhile: Callable[[], None] = lambda: None,
@@ -27,24 +27,24 @@ def of(
     `meanwhile` is called while the map is as it would be. Raises what `change` raises.
     """
 
-    def look(commit: Commit) -> _After:
+    def inspect(commit: Commit) -> _After:
         meanwhile()
         return _After(semantic_map, commit)
 
-    seen = semantic_map.try_out(change, look)
-    if seen is None:
+    after = semantic_map.try_out(change, inspect)
+    if after is None:
         return None
-    held = _asserted(semantic_map, seen.concerned)
-    followed = _inferred(semantic_map, seen.concerned)
-    commit, names = seen.commit, semantic_map.classes.qualified_names
+    held = _asserted(semantic_map, after.concerned)
+    followed = _inferred(semantic_map, after.concerned)
+    commit, names = after.commit, semantic_map.classes.qualified_names
     return structs.replace(
         Effects.of(commit),
         trial=Trial(
             inserted=len(commit.inserted),
             retracted=len(commit.retracted),
             changed=tuple(entity.name for entity in commit.changed),
-            gained=_spoken(seen.followed - followed - held, names),
-            lost=_spoken(followed - seen.followed - seen.held, names),
+            gained=_spoken(after.followed - followed - held, names),
+            lost=_spoken(followed - after.followed - after.held, names),
         ),
     )
 

@@ -41,19 +41,19 @@ class Explained(NamedTuple):
     before: str = ""
     measured: tuple[tuple[Fact, str], ...] = ()
 
-    def dated(self, look_up: Callable[[Collection[Fact]], FactStarts]) -> Explanation:
+    def with_dates(self, look_up: Callable[[Collection[Fact]], FactStarts]) -> Explanation:
         """With words for since when each measured fact holds and, of several, since when all do."""
         if not self.measured:
             return self.explanation
         facts = [fact for fact, _ in self.measured]
         began = look_up(facts)
-        told = [f"{text} ({since})" if (since := began.spoken([f])) else text for f, text in self.measured]
-        if len(facts) > 1 and (since := began.spoken(facts)) is not None:
+        told = [f"{text} ({since})" if (since := began.describe([f])) else text for f, text in self.measured]
+        if len(facts) > 1 and (since := began.describe(facts)) is not None:
             told[-1] += f". So it is {since}"
         return structs.replace(self.explanation, text=self.before + "; ".join(told))
 
 
-class Now:
+class CurrentState:
     """The map as it is; owned by the node's thread."""
 
     def __init__(self, semantic_map: SemanticMap) -> None:
@@ -82,7 +82,7 @@ class Now:
         found = self._with_where(entity)
         return structs.replace(found, on_nothing=_on_nothing(self._map.places.space(), entity))
 
-    def described(self, name: str) -> Described | None:
+    def describe(self, name: str) -> Described | None:
         """The entity of that name with where it is, if it is there."""
         entity = self._map.find(name)
         return None if entity is None else self._with_where(entity)
@@ -95,7 +95,7 @@ class Now:
         withheld = tuple(answers.suppressed_facts(self._map, entity))
         return Described.of(entity, tuple(there), tuple(wrong), withheld)
 
-    def denied(self) -> tuple[Relation, ...]:
+    def find_denied(self) -> tuple[Relation, ...]:
         """What was said of where things are and is not so."""
         space = self._map.places.space()
         return tuple(denied(space, filter(None, map(fact_of, sorted(self._map.reasoner.set_aside())))))
@@ -106,9 +106,9 @@ class Now:
         left_out = self._map.derived_facts.left_out
         is_fixed = self._map.entity(named.name).fixed
         found = relations(self._map.places.space(), named, is_fixed=is_fixed)
-        return tuple(_as_left_out(r) if left_out and _fact(r) in left_out else r for r in found)
+        return tuple(_mark_suppressed(r) if left_out and _fact(r) in left_out else r for r in found)
 
-    def measured(self, query: Explain) -> Explanation | None:
+    def explain_measured(self, query: Explain) -> Explanation | None:
         """What was measured of a relation that the TBox has no property for; None of any other.
 
         Raises Refused when it does not hold, UnknownName.
@@ -130,12 +130,12 @@ class Now:
             raise errors.Refused(seen.text)
         return Explanation(conclusion=None, support=(), steps=(), text=seen.text)
 
-    def explained(self, query: Explain, asked: questions.StatementQuestion) -> Explained | None:
+    def explain(self, query: Explain, asked: questions.StatementQuestion) -> Explained | None:
         """Why something holds, with what was measured where that is a reason; None if that is not known yet.
 
         Raises Refused when a measurement denies it.
         """
-        seen = self._seen(asked.triples[0])
+        seen = self._measure(asked.triples[0])
         found = questions.why(self._map.reasoner, asked)
         if query.negated:
             if seen is None or seen.holds or found is not None:
@@ -147,12 +147,15 @@ class Now:
             ) is not None:
                 raise errors.Refused(f"it does not hold: {self._map.derived_facts.describe(withheld)}")
             if seen is not None and not seen.holds:
-                is_said = self._map.has(asked.triples[0]) and self.against(asked.triples[0]) is not None
+                is_said = (
+                    self._map.is_asserted(asked.triples[0])
+                    and self.describe_conflict(asked.triples[0]) is not None
+                )
                 aside = "; it was asserted, but is left out of what holds as long as it is not so"
                 raise errors.Refused(seen.text + (aside if is_said else ""))
-            return None if seen is None else Explained(self._measured(seen))
+            return None if seen is None else Explained(self._explain_relation(seen))
         if found.conclusion is not None and self._map.reasoner.is_computed(found.conclusion):
-            return Explained(found, measured=(self._told(found.conclusion),))
+            return Explained(found, measured=(self._describe_fact(found.conclusion),))
         if seen is not None and not seen.holds:
             # What is on a thing touches it with a gap, and where places are is asserted, not measured.
             seen = None if seen.relation == "touches" or self._is_place(seen.subject) else seen
@@ -161,17 +164,19 @@ class Now:
                 text = f"{found.text.rstrip('.')}; but as it stands {seen.text}"
                 return Explained(structs.replace(found, text=text))
             return Explained(found, f"{found.text.rstrip('.')}; and ", ((_fact(seen), seen.text),))
-        told = tuple(self._told(fact) for fact in found.support if self._map.reasoner.is_computed(fact))
+        told = tuple(
+            self._describe_fact(fact) for fact in found.support if self._map.reasoner.is_computed(fact)
+        )
         return Explained(found, f"{found.text.rstrip('.')}; measured: ", told) if told else Explained(found)
 
-    def against(self, triple: Triple) -> str | None:
+    def describe_conflict(self, triple: Triple) -> str | None:
         """What geometry says against a fact about a place, as a clause; None where it says nothing."""
         if (fact := fact_of(triple)) is None:
             return None
         found = denial(self._map.places.space(), fact)
         return None if found is None else found.text.partition("; ")[2]
 
-    def _seen(self, triple: Triple) -> Relation | None:
+    def _measure(self, triple: Triple) -> Relation | None:
         """What is measured of a relation of two entities, or of its inverse; None for any other triple."""
         s, p, o = triple
         if p not in _MEASURED or o.startswith('"'):
@@ -188,13 +193,13 @@ class Now:
     def _is_place(self, name: str) -> bool:
         return self._map.entity(name).place
 
-    def _measured(self, seen: Relation) -> Explanation:
+    def _explain_relation(self, seen: Relation) -> Explanation:
         subject, object_ = (v.iri(self._map.entity(name).iri) for name in (seen.subject, seen.object))
         return Explanation(
             conclusion=(subject, v.dm(seen.relation), object_), support=(), steps=(), text=seen.text
         )
 
-    def _told(self, fact: Triple) -> tuple[Fact, str]:
+    def _describe_fact(self, fact: Triple) -> tuple[Fact, str]:
         """A computed fact, and what was measured of it."""
         relation = COMPUTED[fact[1]]
         name, other = v.entity_name(fact[0]), v.entity_name(fact[2])
@@ -202,7 +207,7 @@ class Now:
         return (name, relation, other), v.spoken(fact) if seen is None else seen.text
 
 
-class Then:
+class PastState:
     """The map as of `query.as_of`, read from the journal; for any thread."""
 
     def __init__(self, semantic_map: SemanticMap, past: Past) -> None:
@@ -210,7 +215,7 @@ class Then:
         self._past = past
 
     def entities(self, query: Entities) -> tuple[Entity, ...]:
-        """See `Now.entities`."""
+        """See `CurrentState.entities`."""
         if query.as_of is None:
             raise errors.InternalError("the question names no moment")
         found = self._past.entities(query.as_of, query.class_, tuple(self._map.classes.iris))
@@ -220,7 +225,7 @@ class Then:
         return tuple(selected(self._space(everyone), found, query.where, everyone))
 
     def entity(self, query: Get) -> Described:
-        """See `Now.entity`; what was wrongly said is not looked for."""
+        """See `CurrentState.entity`; what was wrongly said is not looked for."""
         if query.as_of is None:
             raise errors.InternalError("the question names no moment")
         entity = self._past.entity(query.name, query.as_of)
@@ -231,7 +236,7 @@ class Then:
         return Described.of(entity, there, on_nothing=_on_nothing(space, entity))
 
     def relations(self, query: Relations) -> tuple[Relation, ...]:
-        """See `Now.relations`."""
+        """See `CurrentState.relations`."""
         if query.as_of is None:
             raise errors.InternalError("the question names no moment")
         everyone = self._past.entities(query.as_of, None, ())
@@ -255,7 +260,7 @@ def _on_nothing(space: Space, entity: Entity) -> str:
     return "" if found is None else found.text
 
 
-def _as_left_out(relation: Relation) -> Relation:
+def _mark_suppressed(relation: Relation) -> Relation:
     """A relation that is measured and withheld."""
     note = "but it would contradict the map, so it is no fact (for the reason see: semmap check)"
     return structs.replace(relation, text=f"{relation.text}; {note}")

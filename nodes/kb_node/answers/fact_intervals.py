@@ -32,7 +32,7 @@ _MARGIN_M = 1.5
 """Beyond what can touch the thing: so all of the cells of the spatial index that it is in are complete."""
 
 
-class _Stood(Struct, frozen=True):
+class _PlacedEntity(Struct, frozen=True):
     """An entity as far as relations need it."""
 
     name: str
@@ -60,16 +60,16 @@ class _Stood(Struct, frozen=True):
         )
 
 
-class _Left(Struct, frozen=True):
+class _RemovedEntity(Struct, frozen=True):
     name: str
 
 
-class Moves(Struct, frozen=True):
+class PoseChanges(Struct, frozen=True):
     """The part of a commit that tells who is where after it."""
 
     seq: int
-    changed: tuple[_Stood, ...] = ()
-    removed: tuple[_Left, ...] = ()
+    changed: tuple[_PlacedEntity, ...] = ()
+    removed: tuple[_RemovedEntity, ...] = ()
 
 
 class FactStarts(NamedTuple):
@@ -79,7 +79,7 @@ class FactStarts(NamedTuple):
     """By commit; 0 is before the first one that the journal has."""
     first: int = 1
 
-    def spoken(self, facts: Collection[Fact]) -> str | None:
+    def describe(self, facts: Collection[Fact]) -> str | None:
         """Since when all of these have held at once: "since commit 7". None where one is not known."""
         if not facts or not self.since.keys() >= set(facts):
             return None
@@ -87,25 +87,25 @@ class FactStarts(NamedTuple):
         return f"since commit {latest}" if latest else f"since before commit {self.first}"
 
 
-def looked_up(journal: Journal, past: Past, facts: Collection[Fact], limits: Thresholds) -> FactStarts:
+def look_up_starts(journal: Journal, past: Past, facts: Collection[Fact], limits: Thresholds) -> FactStarts:
     """Since when each fact has held without a break."""
-    found = beginnings(journal.outlines(Moves), past.at_the_beginning().values(), facts, limits)
+    found = find_fact_starts(journal.outlines(PoseChanges), past.at_the_beginning().values(), facts, limits)
     return FactStarts(found, journal.first)
 
 
-def beginnings(
-    history: Iterable[Moves], first: Iterable[Entity], facts: Collection[Fact], limits: Thresholds
+def find_fact_starts(
+    history: Iterable[PoseChanges], first: Iterable[Entity], facts: Collection[Fact], limits: Thresholds
 ) -> dict[Fact, int]:
     """The commit since which each fact has held without a break; what does not hold at the end is left out.
 
-    Commits and thresholds are as for `spells`.
+    Commits and thresholds are as for `find_intervals`.
     """
-    found = spells(history, first, facts, limits)
+    found = find_intervals(history, first, facts, limits)
     return {fact: spans[-1][0] for fact, spans in found.items() if spans and spans[-1][1] is None}
 
 
-def spells(
-    history: Iterable[Moves],
+def find_intervals(
+    history: Iterable[PoseChanges],
     first: Iterable[Entity],
     facts: Collection[Fact],
     limits: Thresholds,
@@ -121,7 +121,7 @@ def spells(
     """
     there = {entity.name: Placed.of(entity) for entity in first}
     by_name = groupby(sorted(facts), key=lambda fact: fact[0])
-    spots = [_Spot(name, frozenset(about), limits, there, in_any_place) for name, about in by_name]
+    spots = [_Neighbourhood(name, frozenset(about), limits, there, in_any_place) for name, about in by_name]
     found: dict[Fact, list[tuple[int, int | None]]] = {fact: [] for fact in facts}
     since = {fact: 0 for spot in spots for fact in spot.holding()}
     for moves in history:
@@ -143,11 +143,11 @@ def spells(
     return found
 
 
-def _names(moves: Moves) -> list[str]:
+def _names(moves: PoseChanges) -> list[str]:
     return [*(stood.name for stood in moves.changed), *(left.name for left in moves.removed)]
 
 
-class _Spot:
+class _Neighbourhood:
     """A thing and what is near it."""
 
     def __init__(

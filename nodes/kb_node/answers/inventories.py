@@ -74,7 +74,7 @@ class Inventories:
         if entity.place:
             places = Inventory((), self._places())
             names |= set(places.parts_of(entity.name))
-        found = filter(None, map(self._map.find, sorted(self._map.places.upward(names))))
+        found = filter(None, map(self._map.find, sorted(self._map.places.with_supported(names))))
         return self._of(found)
 
     def _of(self, entities: Iterable[Entity]) -> Inventory:
@@ -173,7 +173,7 @@ class Nouns:
         }
         self.states = {
             row.name: label.removeprefix("is ")
-            for row in classes.stated.rows()
+            for row in classes.property_table.rows()
             if row.range == ("boolean",) and (label := row.labels.get("en", "")).startswith("is ")
         }
         """Of properties that are true or false, what they say of a thing."""

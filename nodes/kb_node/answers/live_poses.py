@@ -12,7 +12,7 @@ from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.schemas.entities import Entity, Live, distance_m
 from semmap.schemas.live import LivePoses
 
-_LOST_S = 3.0
+_TIMEOUT_S = 3.0
 """Live poses are told at least once a second while there are any: who tells them is gone after that."""
 _SLIGHT_M = 0.001
 _SLIGHT_TURN = 1e-3
@@ -26,32 +26,36 @@ class LiveEntities:
         self._map = semantic_map
         self._clock = clock
         self._live: dict[str, Live] = {}
-        self._heard_s = -_LOST_S
+        self._received_s = -_TIMEOUT_S
 
-    def take(self, message: LivePoses) -> None:
+    def update(self, message: LivePoses) -> None:
         """The coordinator tells where all tracked entities are."""
-        self._live, self._heard_s = message.entities, self._clock()
+        self._live, self._received_s = message.entities, self._clock()
 
     @contextmanager
-    def supposed(self) -> Iterator[None]:
+    def applied(self) -> Iterator[None]:
         """Within, what is tracked or held is where it is just now, and everything else where the map says."""
-        elsewhere = list(self._elsewhere())
+        elsewhere = list(self._moved_entities())
         if not elsewhere:
             yield
             return
         with self._map.places.space().supposing(elsewhere):
             yield
 
-    def _elsewhere(self) -> Iterator[Entity]:
-        if not self._live or self._clock() - self._heard_s > _LOST_S:
+    def _moved_entities(self) -> Iterator[Entity]:
+        if not self._live or self._clock() - self._received_s > _TIMEOUT_S:
             return
         for name, live in self._live.items():
             entity = self._map.find(name)
-            if entity is not None and (entity.tracked or entity.grip_provenance) and _differs(entity, live):
+            if (
+                entity is not None
+                and (entity.tracked or entity.grip_provenance)
+                and _is_different(entity, live)
+            ):
                 yield structs.replace(entity, pose=live.pose)
 
 
-def _differs(entity: Entity, live: Live) -> bool:
+def _is_different(entity: Entity, live: Live) -> bool:
     if entity.pose is None or distance_m(entity.pose, live.pose) > _SLIGHT_M:
         return True
     pairs = zip(entity.pose.orientation_wxyz, live.pose.orientation_wxyz, strict=True)

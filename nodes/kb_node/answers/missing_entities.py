@@ -7,7 +7,7 @@ from collections.abc import Iterator, Set
 from itertools import islice
 from typing import Final
 
-from semmap.nodes.kb_node.answers.differences import spells
+from semmap.nodes.kb_node.answers.differences import find_spells
 from semmap.nodes.kb_node.answers.search_vocabulary import item
 from semmap.nodes.kb_node.relations.measuring.phrases import SPOKEN
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
@@ -23,7 +23,7 @@ _LOOKED_AT: Final = 200
 """So many of those that went last are looked at."""
 
 
-def gone(
+def describe_missing(
     journal: Journal, past: Past, sought: Missing, there: Set[str], limits: Thresholds
 ) -> tuple[str, ...]:
     """Sentences on when it was last there, the newest first; for any thread. there: who is there now."""
@@ -48,7 +48,7 @@ def _moved(journal: Journal, past: Past, sought: Missing, limits: Thresholds) ->
     """Those that are there, and were where they were said to be."""
     for name, relation, other in sought.pairs:
         asked = WasWhen(name=name, relation=relation, other=other)
-        held = spells(journal, past, asked, limits).spells
+        held = find_spells(journal, past, asked, limits).spells
         if held and (until := held[-1].until) is not None:
             where = SPOKEN[relation].removeprefix("is ")
             yield f"{name} was {where} {other} until commit {until}, {_at(journal, until)}"

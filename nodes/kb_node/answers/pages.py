@@ -25,7 +25,7 @@ class Pages:
         """When a page was asked for that others follow, or when it was time to begin."""
 
     @property
-    def may_follow(self) -> bool:
+    def is_request_expected(self) -> bool:
         """Whether somebody is likely to ask for a page in a moment: then nothing else should delay it."""
         return time.monotonic() - self._asked_s < _PATIENCE_S
 

@@ -82,7 +82,7 @@ def copy_reasoner(held: Held, names: Mapping[Term, str]) -> Reasoner:
 def _to_message(reasoner: Reasoner, found: reasons.Explanation) -> Explanation:
     """An explanation as it goes over the wire; what is computed in it is told as measured."""
     computed = [fact for fact in found.support if reasoner.is_computed(fact)]
-    message = proofs.message(found)
+    message = proofs.to_message(found)
     if not computed:
         return message
     return structs.replace(message, text=as_measured(message.text, computed, reasoner.words))

@@ -29,7 +29,7 @@ def terms(reasoner: Reasoner, classes: ClassTable) -> Terms:
     named = [(language, row.name, text) for row in rows for language, text in row.labels.items()]
     named += [("", row.name, text) for row in rows for text in row.also]
     named += [("en" if row.labels else "", row.name, row.name) for row in rows]
-    values = {value for row in classes.stated.rows() if row.kind == "object" for value in row.values}
+    values = {value for row in classes.property_table.rows() if row.kind == "object" for value in row.values}
     affordances = {v.local_name(i) for i in reasoner.instances(v.dm("Affordance"))}
     return Terms(
         tuple(named),

@@ -27,27 +27,29 @@ class Sightings:
         self._past = past
         self._seen_ns: dict[str, int] = {}
 
-    def see(self, seen: Observations) -> None:
+    def record(self, seen: Observations) -> None:
         """Take note of one look."""
         self._seen_ns.update((one.entity, seen.stamp_ns) for one in seen.observations if one.entity)
 
-    def is_gone(self, entity: Entity) -> bool:
+    def is_missing(self, entity: Entity) -> bool:
         """Whether perception has said that an entity of the map is not where it should be."""
         return entity.conflict in (MISSING, DISPLACED)
 
-    def there(self, entity: Entity) -> Sighting:
+    def describe_present(self, entity: Entity) -> Sighting:
         """Where an entity of the map is, as far as anybody knows."""
-        return self._told(sighting(entity, None), None)
+        return self._describe(sighting(entity, None), None)
 
-    def gone(self, name: str, entity: Entity | None) -> Sighting:
+    def describe_removed(self, name: str, entity: Entity | None) -> Sighting:
         """Where an entity was that was removed, or is seen to be gone. For any thread. Raises UnknownName."""
         if entity is not None:
-            return self._told(sighting(entity, None), self._past.in_conflict_since(entity), entity.conflict)
+            return self._describe(
+                sighting(entity, None), self._past.in_conflict_since(entity), entity.conflict
+            )
         found = self._past.last_seen(name)
         by_sight = found.removed is not None and found.removed.source == "perception"
-        return self._told(found, found.removed if by_sight else None)
+        return self._describe(found, found.removed if by_sight else None)
 
-    def _told(self, found: Sighting, gone: Provenance | None, how: str = "") -> Sighting:
+    def _describe(self, found: Sighting, gone: Provenance | None, how: str = "") -> Sighting:
         seen_ns = self._seen_ns.get(found.name)
         if seen_ns is not None and seen_ns <= found.provenance.stamp_ns:
             seen_ns = None  # of its former place
@@ -57,11 +59,11 @@ class Sightings:
         elif found.removed is not None:
             text = f"removed {_at(found.removed, now_ns)} by {_author(found.removed)}"
         else:
-            text = _of_what_is_there(found.provenance, seen_ns, now_ns)
+            text = _describe_observed(found.provenance, seen_ns, now_ns)
         return structs.replace(found, gone=gone, seen_ns=seen_ns, text=text)
 
 
-def _of_what_is_there(placed: Provenance, seen_ns: int | None, now_ns: int) -> str:
+def _describe_observed(placed: Provenance, seen_ns: int | None, now_ns: int) -> str:
     if seen_ns is not None:
         ago_s = (now_ns - seen_ns) / 1e9
         if ago_s < _JUST_NOW_S:

@@ -142,7 +142,7 @@ def _is_data(reasoner: Reasoner, predicate: Term) -> bool:
 
 def _literal(semantic_map: SemanticMap, predicate: Term, text: str) -> Term:
     """The value that `text` denotes for a property, as `set` understands it; without a range a text."""
-    known = semantic_map.classes.stated.by_iri.get(predicate)
+    known = semantic_map.classes.property_table.by_iri.get(predicate)
     if known is not None:
         return property_values.literal(known.name, known.ranges, text)
     ranges = frozenset(o for _, _, o in semantic_map.reasoner.asserted(predicate, v.RDFS_RANGE))

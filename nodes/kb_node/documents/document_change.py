@@ -15,7 +15,7 @@ from semmap.schemas.explanations import Triple
 from semmap.schemas.packing import unpacked
 
 
-def of_document(
+def make_document_transaction(
     semantic_map: SemanticMap, load: LoadDocument, triples: Iterable[Triple]
 ) -> tuple[Transaction, abox_document.FilteredDocument]:
     """What of an ABox may come into the map, and what is to be said of the rest.
@@ -37,7 +37,7 @@ def of_document(
     return transaction, filtered
 
 
-def is_all(triples: Sequence[Triple], transaction: Transaction) -> bool:
+def is_exact_copy(triples: Sequence[Triple], transaction: Transaction) -> bool:
     """Is a transaction nothing but what a document says, word by word?"""
     insert = transaction.insert
     return not transaction.retract and len(insert) == len(triples) and all(map(is_, insert, triples))
@@ -49,14 +49,14 @@ def _outside(triples: list[Triple], tbox: frozenset[Triple]) -> Iterable[Triple]
     return (t for t in triples if t not in said) if said else triples
 
 
-def tbox_of(semantic_map: SemanticMap, load: LoadTBox, *, label_prefix: str) -> list[Triple]:
+def read_tbox(semantic_map: SemanticMap, load: LoadTBox, *, label_prefix: str) -> list[Triple]:
     """The triples of a TBox, with its prefixes and what is in space.
 
     The present TBox's declared spatial roots stay until others are declared.
     Raises BadFile, UnknownClass.
     """
     content = unpacked(load.content, load.filename)
-    triples = tbox_declarations.declared(
+    triples = tbox_declarations.with_declarations(
         rdf.parse(content, load.filename, label_prefix=label_prefix),
         of_file=rdf.prefixes(content),
         spatial_root=load.spatial_root,
@@ -79,13 +79,15 @@ def require_no_map(semantic_map: SemanticMap, load: LoadTBox, tbox: Iterable[Tri
         )
 
 
-def of_tbox(semantic_map: SemanticMap, load: LoadTBox, tbox: frozenset[Triple]) -> Transaction | None:
+def make_tbox_transaction(
+    semantic_map: SemanticMap, load: LoadTBox, tbox: frozenset[Triple]
+) -> Transaction | None:
     """What another TBox changes of the ABox: its imports. None if it is the one that holds."""
-    imports, before = tbox_validation.imports(tbox), tbox_validation.imports(semantic_map.tbox)
+    imports, before = tbox_validation.import_triples(tbox), tbox_validation.import_triples(semantic_map.tbox)
     transaction = _transaction(
         load,
-        retract=(t for t in before if t not in imports and semantic_map.has(t)),
-        insert=(t for t in imports if not semantic_map.has(t)),
+        retract=(t for t in before if t not in imports and semantic_map.is_asserted(t)),
+        insert=(t for t in imports if not semantic_map.is_asserted(t)),
     )
     imports_differ = transaction.retract or transaction.insert
     if not imports_differ and tbox == semantic_map.tbox:

@@ -17,7 +17,7 @@ _STAR: Final = 64
 """Triples of a star, at most."""
 
 
-def in_parts(transaction: Transaction, size: int = PART) -> list[Transaction]:
+def split(transaction: Transaction, size: int = PART) -> list[Transaction]:
     """The same, part by part: the last one has its command's id, so that this is done when all are."""
     triples = transaction.insert
     ends = list(_ends(triples, size))

@@ -32,7 +32,7 @@ _SYNTAX = {
     "ntriples": pyoxigraph.RdfFormat.N_TRIPLES,
     "jsonld": pyoxigraph.RdfFormat.JSON_LD,
 }
-_SPOKEN: dict[RdfFormat | OwlSyntax, str] = {
+_SYNTAX_NAMES: dict[RdfFormat | OwlSyntax, str] = {
     "rdfxml": "RDF/XML",
     "turtle": "Turtle",
     "ntriples": "N-Triples",
@@ -47,7 +47,7 @@ MEDIA_TYPES: dict[str, str] = {
     "ntriples": "application/n-triples",
     "jsonld": "application/ld+json",
 }
-_TOLD_EVERY = 50_000
+_PROGRESS_EVERY = 50_000
 _LARGE = 1 << 20
 """Bytes from which on it pays to look whether a document can be read faster."""
 _BOM = b"\xef\xbb\xbf"
@@ -57,7 +57,7 @@ _LINE = re.compile(r"\bline \d")
 _NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 
 
-_LONG_WORD = "buffer maximal size"
+_BUFFER_ERROR = "buffer maximal size"
 """What pyoxigraph says, as a MemoryError, of a term that does not fit into its buffer."""
 
 
@@ -103,12 +103,12 @@ def parse(
         if syntax in ("rdfxml", "jsonld") and isinstance(error, SyntaxError) and not _LINE.search(reason):
             line = find_error_line(content, _SYNTAX[syntax], v.ABOX)
             reason += f" (line {line})" if syntax == "rdfxml" else f" (at or before line {line})"
-        raise errors.BadFile(f"{name} is not valid {_SPOKEN[syntax]}: {reason}") from None
+        raise errors.BadFile(f"{name} is not valid {_SYNTAX_NAMES[syntax]}: {reason}") from None
     except MemoryError as error:
-        if _LONG_WORD not in str(error):
+        if _BUFFER_ERROR not in str(error):
             raise
         raise errors.BadFile(
-            f"{name} is not valid {_SPOKEN[syntax]}: it has a word or a text of more than 16 MB"
+            f"{name} is not valid {_SYNTAX_NAMES[syntax]}: it has a word or a text of more than 16 MB"
         ) from None
 
 
@@ -134,7 +134,7 @@ def _triples(
         if o[0] == "_" or o[:2] == "<<":
             o = _label(o, label_prefix)
         add((s, shared(p, p), shared(o, o)))
-        if len(triples) % _TOLD_EVERY == 0:
+        if len(triples) % _PROGRESS_EVERY == 0:
             progress(len(triples))
     return triples
 
@@ -165,14 +165,14 @@ def _require_well_formed(content: bytes) -> None:
     Expat notices the one and bounds the other. Raises ValueError.
     """
     parser = expat.ParserCreate()
-    parser.EntityDeclHandler = _require_within
+    parser.EntityDeclHandler = _reject_external_entity
     try:
         parser.Parse(content, True)
     except expat.ExpatError as error:
         raise ValueError(str(error)) from None
 
 
-def _require_within(name: str, _: bool, text: str | None, *where: str | None) -> None:
+def _reject_external_entity(name: str, _: bool, text: str | None, *where: str | None) -> None:
     if text is None:
         raise ValueError(
             f"the entity '{name}' is elsewhere ({where[1]}), and nothing but this document is read"

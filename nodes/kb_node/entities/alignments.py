@@ -98,7 +98,7 @@ class Alignment(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
         return frozenset((*poses, *sizes, *self.names, v.RDFS_LABEL))
 
 
-def of_namespaces(namespaces: Iterable[str]) -> tuple[Alignment, ...]:
+def find_for_namespaces(namespaces: Iterable[str]) -> tuple[Alignment, ...]:
     """The shipped alignments of the vocabularies with these namespaces."""
     there = set(namespaces)
     return tuple(known for known in shipped() if not there.isdisjoint(known.namespaces))

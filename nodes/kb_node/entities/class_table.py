@@ -59,7 +59,7 @@ class ClassTable:
         self.prefixed: dict[Term, str] = {c: prefixes.prefixed(c, self.prefixes) for c in self.names}
         """Class to name with its prefix, which always means that class."""
         reasoner.words.tell_apart(self.prefixed)
-        self.alignments: tuple[Alignment, ...] = alignments.of_namespaces(self.prefixes.values())
+        self.alignments: tuple[Alignment, ...] = alignments.find_for_namespaces(self.prefixes.values())
         """Those that say how the TBox's vocabulary tells positions, sizes and names."""
         self.edges = frozenset(stars.STAR_PROPERTIES).union(*(known.edges for known in self.alignments))
         """The properties that lead from an entity to the individuals that describe it, and on."""
@@ -78,7 +78,7 @@ class ClassTable:
         places = self._named_below(v.LOCATION, *(c for known in self.alignments for c in known.places))
         self.places: frozenset[Term] = places - self._solid
         self.property_names = PropertyNames(reasoner, self.properties, self.prefixes)
-        self.stated = PropertyTable(
+        self.property_table = PropertyTable(
             reasoner, self.property_names, self.names, self.prefixes, self.edges | self.entry_properties
         )
         self._depth = {c: len(reasoner.superclasses(c)) for c in self.names}
@@ -164,7 +164,7 @@ class ClassTable:
         """One row a class, by name, without counts."""
         return sorted(map(self._row, self.names), key=lambda row: row.name)
 
-    def counted(self, entities: Iterable[Entity]) -> Iterator[ClassInfo]:
+    def with_counts(self, entities: Iterable[Entity]) -> Iterator[ClassInfo]:
         """The rows with the number of entities of each class, asserted and inferred."""
         asserted: dict[str, int] = {}
         inferred: dict[str, int] = {}

@@ -11,8 +11,8 @@ from msgspec import structs
 from semmap.nodes.kb_node import preconditions
 from semmap.nodes.kb_node.entities import entity_reading
 from semmap.nodes.kb_node.entities.class_table import ClassTable
-from semmap.nodes.kb_node.entities.fast_reading import Pattern, Patterns, read_at_sight
-from semmap.nodes.kb_node.progress import steadily
+from semmap.nodes.kb_node.entities.fast_reading import Pattern, Patterns, read_regular
+from semmap.nodes.kb_node.progress import with_progress
 from semmap.nodes.kb_node.reasoner import Change, Reasoner
 from semmap.ontology import stars
 from semmap.ontology import vocabulary as v
@@ -34,7 +34,7 @@ class Reading(NamedTuple):
     """Called now and then."""
 
 
-def of(
+def add_effects(
     commit: Commit,
     change: Change,
     before: Mapping[str, Entity],
@@ -53,7 +53,7 @@ def of(
     removed: list[Departed] = []
     reasoner, classes, _, progress = reading
     provenance = commit.provenance
-    at_sight, seen, unseen = _read_at_sight(change, reading, provenance)
+    at_sight, seen, unseen = _read_regular(change, reading, provenance)
     others = (owners - seen) | change.others | unseen
     about = entity_reading.about(reasoner, commit.inserted, others & new)
     concerned = (
@@ -62,11 +62,11 @@ def of(
         if not reasoner.types(iri).isdisjoint(classes.spatial) or (iri not in new and known(before, iri))
     )
     moved = _moved_nodes(commit, change)
-    for iri in steadily(sorted({*at_sight, *concerned}), progress):
+    for iri in with_progress(sorted({*at_sight, *concerned}), progress):
         was = None if iri in new else known(before, iri)
         entity: Entity | None
         if moved and was is not None and iri not in moved:
-            entity = entity_reading.moved(reasoner, was, provenance)
+            entity = entity_reading.read_moved(reasoner, was, provenance)
         else:
             entity = at_sight.get(iri) or entity_reading.read_entity(
                 reasoner, classes, iri, provenance, about
@@ -82,13 +82,13 @@ def of(
             removed += [Departed(name=was.name, types=was.types)] if was is not None else []
             continue
         if was is not None:
-            entity = entity_reading.inherit(entity, was, concerned=iri in owners)
+            entity = entity_reading.inherit_provenance(entity, was, concerned=iri in owners)
         if (other := changed.setdefault(entity.name, entity)) is not entity:
-            raise _taken(other)
+            raise _name_taken(other)
     gone = {departed.name for departed in removed}
     for name, entity in changed.items():
         if name not in gone and (holder := before.get(name, entity)).iri != entity.iri:
-            raise _taken(holder)
+            raise _name_taken(holder)
     return structs.replace(
         commit,
         changed=tuple(e for name, e in changed.items() if e != before.get(name)),
@@ -116,7 +116,7 @@ def _moved_nodes(commit: Commit, change: Change) -> set[Term]:
     return nodes if change.others <= nodes else set()
 
 
-def _read_at_sight(
+def _read_regular(
     change: Change, reading: Reading, provenance: Provenance
 ) -> tuple[dict[Term, Entity], set[Term], set[Term]]:
     """The new entities whose stars are of known shapes, the individuals of these stars, and of the others."""
@@ -130,7 +130,7 @@ def _read_at_sight(
             entity: Entity | None = None
             if change.others.isdisjoint(individuals):
                 pattern = pattern or reading.patterns.of(alike, star, reading.reasoner, reading.classes)
-                entity = read_at_sight(pattern, star, provenance, reading.classes) if pattern else None
+                entity = read_regular(pattern, star, provenance, reading.classes) if pattern else None
             if entity is None:
                 unseen.update(individuals[place] for place in alike.shape.touched)
             else:
@@ -139,5 +139,5 @@ def _read_at_sight(
     return read, seen, unseen
 
 
-def _taken(holder: Entity) -> errors.NameTaken:
+def _name_taken(holder: Entity) -> errors.NameTaken:
     return errors.NameTaken(f"the name '{holder.name}' is taken by <{holder.iri}>")

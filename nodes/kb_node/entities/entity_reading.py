@@ -26,7 +26,7 @@ _NAME = re.compile(NAME_PATTERN)
 _FEW = 16
 _MANY_TRIPLES = 100
 """For one subject: to look through so many takes longer than to look it up."""
-_LONGEST_WAY = 8
+_MAX_PATH = 8
 _IRI = re.compile("<(https?|urn|file):", re.IGNORECASE)
 _OF_THE_TBOX = Provenance(commit=0, stamp_ns=0, source="file", reason="the TBox says so")
 
@@ -78,7 +78,7 @@ def read_entity(
     preferred = _references(about, said.get(v.HAS_PREFERRED_REFERENCE, ()))
     if classes.alignments:
         preferred = preferred or aligned_values.names(classes.alignments, about, iri)[:1]
-    return entity_of(
+    return make_entity(
         iri,
         kind,
         provenance,
@@ -86,10 +86,10 @@ def read_entity(
         size_m=size_m,
         preferred=preferred,
         alternatives=_references(about, said.get(v.HAS_ALTERNATIVE_REFERENCE, ())),
-        conflict="; ".join(sorted(map(_said, said.get(v.CONFLICTING_OBSERVATION, ())))),
+        conflict="; ".join(sorted(map(_text, said.get(v.CONFLICTING_OBSERVATION, ())))),
         tracked=_tracked(iri, said.get(v.TRACKED_FROM, ())),
         model=stated_model(said),
-        properties=classes.stated.stated(said),
+        properties=classes.property_table.read_values(said),
     )
 
 
@@ -122,7 +122,7 @@ def _around(iri: Term, extents: Sequence[Term], pose: Pose | None, size_m: Size 
     return Pose(position_m=at), size
 
 
-def entity_of(
+def make_entity(
     iri: Term,
     kind: Kind,
     provenance: Provenance,
@@ -168,7 +168,7 @@ def entity_of(
     )
 
 
-def model_of(known: Entity, classes: ClassTable, said: Objects, size_m: Size | None) -> str:
+def choose_model(known: Entity, classes: ClassTable, said: Objects, size_m: Size | None) -> str:
     """The model of an entity of the same class of which this is asserted, of this size."""
     class_ = classes.iris.get(known.class_)
     usual = known.model if class_ is None else classes.models[class_]
@@ -178,10 +178,10 @@ def model_of(known: Entity, classes: ClassTable, said: Objects, size_m: Size | N
 def stated_model(said: Objects) -> str:
     """The model that an entity is stated to have, or ""."""
     terms = said.get(v.MODEL, ())
-    return _said(min(terms)) if terms else ""
+    return _text(min(terms)) if terms else ""
 
 
-def moved(reasoner: Reasoner, known: Entity, provenance: Provenance) -> Entity:
+def read_moved(reasoner: Reasoner, known: Entity, provenance: Provenance) -> Entity:
     """`known` where it is now, of whose star nothing but coordinates is otherwise. Raises BadRequest."""
     iri = v.iri(known.iri)
     said = reasoner.about(iri)
@@ -207,14 +207,14 @@ def read_again(reasoner: Reasoner, classes: ClassTable, known: Entity) -> Entity
     )
 
 
-def of_the_tbox(reasoner: Reasoner, classes: ClassTable) -> list[Entity]:
+def read_tbox_entities(reasoner: Reasoner, classes: ClassTable) -> list[Entity]:
     """The entities that a TBox itself has; `reasoner` may hold more, then theirs too."""
     iris = {i for c in classes.spatial for i in reasoner.instances(c)}
     read = (read_entity(reasoner, classes, iri, _OF_THE_TBOX) for iri in sorted(iris))
     return [entity for entity in read if entity is not None]
 
 
-def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
+def inherit_provenance(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
     """`entity` with the provenance of what is still as in `known`; `concerned`: something was said of it."""
     same_shape = (entity.class_, entity.size_m, entity.model, entity.fixed) == (
         known.class_,
@@ -263,22 +263,22 @@ def _name(iri: Term, class_name: str) -> str:
     return name
 
 
-def owners(reasoner: Reasoner, classes: ClassTable, subject: Term) -> set[Term]:
+def find_owners(reasoner: Reasoner, classes: ClassTable, subject: Term) -> set[Term]:
     """The individuals to whose star a triple about `subject` may belong: itself, and who points to it.
 
     With alignments also who points to these, as far as the way to a pose or a size may be long.
     """
-    found = {subject, *users(reasoner, subject)}
+    found = {subject, *find_users(reasoner, subject)}
     if classes.alignments:
         latest = {subject}
-        for _ in range(_LONGEST_WAY):
+        for _ in range(_MAX_PATH):
             pointing = (triple for node in latest for triple in reasoner.asserted(None, None, node))
             latest = {s for s, p, _ in pointing if p in classes.edges} - found
             found |= latest
     return found
 
 
-def read_star(
+def read_entity_triples(
     reasoner: Reasoner,
     classes: ClassTable,
     iri: Term,
@@ -286,8 +286,8 @@ def read_star(
     leaving: Set[Term],
     tbox: frozenset[Triple],
 ) -> Star:
-    """The triples about an entity, as `star_of` has them. Raises Refused."""
-    own, incoming = star_of(reasoner, classes, iri, leaving, tbox)
+    """The triples about an entity, as `entity_triples` has them. Raises Refused."""
+    own, incoming = entity_triples(reasoner, classes, iri, leaving, tbox)
     aside = reasoner.set_aside_about([iri]) if reasoner.sets_aside else ()
     return Star(
         seq=seq,
@@ -300,7 +300,7 @@ def read_star(
     )
 
 
-def star_of(
+def entity_triples(
     reasoner: Reasoner, classes: ClassTable, iri: Term, leaving: Set[Term], tbox: frozenset[Triple]
 ) -> tuple[list[Triple], list[Triple]]:
     """The triples about an entity: its own, and what others say of it.
@@ -313,15 +313,17 @@ def star_of(
         raise errors.Refused(f"{v.local_name(iri)} is part of the TBox, which no command changes")
     nodes = {o for _, p, o in own if p in stars.STAR_PROPERTIES} - leaving
     for node in sorted(nodes):
-        if all(user in leaving for user in users(reasoner, node)):
+        if all(user in leaving for user in find_users(reasoner, node)):
             own += [t for t in reasoner.asserted(node) if t not in tbox]
     if classes.alignments:
-        for node in sorted(_belongings(reasoner, classes, iri, leaving) - nodes):
+        for node in sorted(_find_describing_nodes(reasoner, classes, iri, leaving) - nodes):
             own += [t for t in reasoner.asserted(node) if t not in tbox]
     return own, [t for t in reasoner.asserted(None, None, iri) if t[0] != iri]
 
 
-def _belongings(reasoner: Reasoner, classes: ClassTable, iri: Term, leaving: Set[Term]) -> set[Term]:
+def _find_describing_nodes(
+    reasoner: Reasoner, classes: ClassTable, iri: Term, leaving: Set[Term]
+) -> set[Term]:
     """The individuals that describe an entity by an alignment's words, or namelessly, and nobody else."""
     found: set[Term] = set()
     pending = [iri]
@@ -337,7 +339,7 @@ def _belongings(reasoner: Reasoner, classes: ClassTable, iri: Term, leaving: Set
     return found
 
 
-def users(reasoner: Reasoner, node: Term) -> Iterable[Term]:
+def find_users(reasoner: Reasoner, node: Term) -> Iterable[Term]:
     """The individuals in whose star `node` is; one that uses it twice comes twice."""
     incoming = list(islice(reasoner.asserted(None, None, node), _FEW))
     if len(incoming) < _FEW:  # one look at all of them is quicker than one for each property
@@ -386,7 +388,7 @@ def _numbers(iri: Term, predicates: Sequence[Term], said: Objects) -> tuple[floa
             value = math.nan
         if not abs(value) <= REACH_M:
             raise errors.BadRequest(
-                f"{v.local_name(iri)}: {v.local_name(predicate)} is {_said(term)}; it must be a number"
+                f"{v.local_name(iri)}: {v.local_name(predicate)} is {_text(term)}; it must be a number"
                 f" from -{REACH_M:g} to {REACH_M:g}"
             )
         found.append(value)
@@ -397,7 +399,7 @@ def _tracked(iri: Term, terms: Sequence[Term]) -> Tracked:
     """Raises BadRequest for what is no source of live poses."""
     if not terms:
         return ""
-    source = _said(min(terms))
+    source = _text(min(terms))
     if source == "sim":
         return "sim"
     if source == "stream":
@@ -407,7 +409,7 @@ def _tracked(iri: Term, terms: Sequence[Term]) -> Tracked:
     )
 
 
-def _said(term: Term) -> str:
+def _text(term: Term) -> str:
     return v.lexical(term) if term[0] == '"' else v.local_name(term)
 
 

@@ -15,7 +15,7 @@ from semmap.nodes.kb_node.entities import aligned_values, entity_reading, implie
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.entities.entity_reading import Objects
 from semmap.nodes.kb_node.entities.property_table import Property
-from semmap.nodes.kb_node.entities.property_values import same, spoken
+from semmap.nodes.kb_node.entities.property_values import is_same_value, to_text
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import stars
 from semmap.ontology import vocabulary as v
@@ -53,7 +53,9 @@ class Draft:
         iris = [v.iri(entity.iri) for entity in leaving]
         together = frozenset(iris)
         for iri in iris:
-            own, incoming = entity_reading.star_of(self._reasoner, self._classes, iri, together, self._tbox)
+            own, incoming = entity_reading.entity_triples(
+                self._reasoner, self._classes, iri, together, self._tbox
+            )
             self.retract.update(dict.fromkeys(own))
             self.retract.update(dict.fromkeys(incoming))
 
@@ -83,7 +85,7 @@ class Draft:
         self.insert += triples
         if new.set:
             for prop, terms in self._typed(new.set, new.name):
-                self._come((iri, prop.iri, term) for term in terms)
+                self._insert((iri, prop.iri, term) for term in terms)
         if new.tracked:
             self.insert.append((iri, v.TRACKED_FROM, v.literal(new.tracked)))
         for word in new.affordances:
@@ -110,37 +112,39 @@ class Draft:
             )
         if edit.class_iri is not None and v.iri(edit.class_iri) != self._classes.iris.get(entity.class_):
             class_iri = self._class(edit.class_iri)
-            self._go((iri, v.RDF_TYPE, o) for o in said.get(v.RDF_TYPE, ()) if o != v.OWL_NAMED_INDIVIDUAL)
-            self._come([(iri, v.RDF_TYPE, class_iri)])
+            self._retract(
+                (iri, v.RDF_TYPE, o) for o in said.get(v.RDF_TYPE, ()) if o != v.OWL_NAMED_INDIVIDUAL
+            )
+            self._insert([(iri, v.RDF_TYPE, class_iri)])
         if edit.size is not None:
             self._resize(entity, said.get(v.HAS_SIZE, ()), edit.size)
         if edit.ref is not None and edit.ref != entity.preferred_reference:
             nodes = said.get(v.HAS_PREFERRED_REFERENCE, ())
             (node,) = self._references(entity, v.HAS_PREFERRED_REFERENCE, nodes, ["preferred_reference"])
-            self._come(stars.preferred_reference(iri, node, edit.ref))
+            self._insert(stars.preferred_reference(iri, node, edit.ref))
         if edit.alt is not None and edit.alt != entity.alternative_references:
             nodes = said.get(v.HAS_ALTERNATIVE_REFERENCE, ())
             names = [f"alternative_reference_{i}" for i in range(1, len(edit.alt) + 1)]
             found = self._references(entity, v.HAS_ALTERNATIVE_REFERENCE, nodes, names)
             for node, text in zip(found, edit.alt, strict=True):
-                self._come(stars.alternative_reference(iri, node, text))
+                self._insert(stars.alternative_reference(iri, node, text))
         if edit.conflict is not None and edit.conflict != entity.conflict:
             known = said.get(v.CONFLICTING_OBSERVATION, ())
-            self._go((iri, v.CONFLICTING_OBSERVATION, o) for o in known)
+            self._retract((iri, v.CONFLICTING_OBSERVATION, o) for o in known)
             if edit.conflict:
-                self._come([(iri, v.CONFLICTING_OBSERVATION, v.literal(edit.conflict))])
+                self._insert([(iri, v.CONFLICTING_OBSERVATION, v.literal(edit.conflict))])
         if edit.tracked is not None and edit.tracked != entity.tracked:
-            self._go((iri, v.TRACKED_FROM, o) for o in said.get(v.TRACKED_FROM, ()))
+            self._retract((iri, v.TRACKED_FROM, o) for o in said.get(v.TRACKED_FROM, ()))
             if edit.tracked:
-                self._come([(iri, v.TRACKED_FROM, v.literal(edit.tracked))])
+                self._insert([(iri, v.TRACKED_FROM, v.literal(edit.tracked))])
 
     def _require(self, name: str, said: Objects, only_if: Sequence[Statement]) -> None:
         """Raises PreconditionFailed unless each property has one of these values (none, if none is given)."""
         for prop, terms in self._typed(only_if, name):
             known = said.get(prop.iri, ())
-            if not any(same(one, other) for one in known for other in terms) and (known or terms):
-                now = " and ".join(spoken(term) for term in sorted(known)) or "not set"
-                wanted = " or ".join(map(spoken, terms)) or "unset"
+            if not any(is_same_value(one, other) for one in known for other in terms) and (known or terms):
+                now = " and ".join(to_text(term) for term in sorted(known)) or "not set"
+                wanted = " or ".join(map(to_text, terms)) or "unset"
                 raise errors.PreconditionFailed(f"{name}: {prop.name} is {now}, not {wanted}")
 
     def _state(self, entity: Entity, said: Objects, edit: Edit) -> None:
@@ -153,29 +157,32 @@ class Draft:
         left: dict[Term, list[Term]] = {}
         for prop, terms in self._typed(edit.unset, entity.name):
             for term in terms:
-                if any(prop.iri == other.iri and any(same(term, o) for o in new) for other, new in wanted):
+                if any(
+                    prop.iri == other.iri and any(is_same_value(term, o) for o in new)
+                    for other, new in wanted
+                ):
                     raise errors.BadRequest(
-                        f"{prop.name} {spoken(term)} is both set and unset; give one of the two"
+                        f"{prop.name} {to_text(term)} is both set and unset; give one of the two"
                     )
             known = left.get(prop.iri, list(said.get(prop.iri, ())))
-            left[prop.iri] = [k for k in known if terms and not any(same(k, term) for term in terms)]
+            left[prop.iri] = [k for k in known if terms and not any(is_same_value(k, term) for term in terms)]
         for prop, terms in wanted:
             given = [term for other, new in wanted if other.iri == prop.iri for term in new]
-            if prop.functional and not all(same(given[0], term) for term in given):
+            if prop.functional and not all(is_same_value(given[0], term) for term in given):
                 raise errors.BadRequest(f"{prop.name} has one value at most; give one")
             known = left.get(prop.iri, list(said.get(prop.iri, ())))
-            new = [term for term in terms if not any(same(k, term) for k in known)]
+            new = [term for term in terms if not any(is_same_value(k, term) for k in known)]
             left[prop.iri] = [*([] if prop.functional and new else known), *new]
         left.update(implied_values.imply_joint_values(left, said))
         left.update(implied_values.imply_attachment_values(left, said))
         for property_, now in left.items():
             before = said.get(property_, ())
-            self._go((iri, property_, term) for term in before if term not in now)
-            self._come((iri, property_, term) for term in now if term not in before)
+            self._retract((iri, property_, term) for term in before if term not in now)
+            self._insert((iri, property_, term) for term in now if term not in before)
 
     def _typed(self, statements: Sequence[Statement], name: str) -> Iterator[tuple[Property, list[Term]]]:
         """The properties and values that are meant. Raises BadRequest, UnknownName."""
-        table = self._classes.stated
+        table = self._classes.property_table
         for statement in statements:
             prop = table.find(statement.property, name)
             yield (
@@ -192,38 +199,38 @@ class Draft:
     def _place(self, entity: Entity, nodes: Sequence[Term], pose: Pose, size_m: Size | None) -> None:
         about = self._reasoner.about
         said = None if nodes else aligned_values.find_pose(self._classes.alignments, about, v.iri(entity.iri))
-        if said is not None and self._is_own_way(said.nodes):
+        if said is not None and self._is_own_path(said.nodes):
             self._change(aligned_values.pose_triples(said, pose, size_m, about))
             return
         if said is not None:
-            self._leave(said.nodes, said.words.path, said.words.position)
+            self._detach(said.nodes, said.words.path, said.words.position)
         numbers = stars.COORDINATE_PROPERTIES
         node = self._numbers(entity, v.HAS_POSITION, nodes, "coordinates", numbers)
         if list(nodes) == [node]:
-            self._come(stars.coordinates(node, pose))
+            self._insert(stars.coordinates(node, pose))
         else:
-            self._come(stars.position(v.iri(entity.iri), node, pose))
+            self._insert(stars.position(v.iri(entity.iri), node, pose))
 
     def _resize(self, entity: Entity, nodes: Sequence[Term], size_m: Size) -> None:
         iri, about = v.iri(entity.iri), self._reasoner.about
         said = None if nodes else aligned_values.find_size(self._classes.alignments, about, iri)
-        if said is not None and self._is_own_way(said.nodes):
+        if said is not None and self._is_own_path(said.nodes):
             self._change(aligned_values.size_triples(said, size_m, about))
             return
         if said is not None:
-            self._leave(said.nodes, said.words.path, said.words.x)
+            self._detach(said.nodes, said.words.path, said.words.x)
         node = self._numbers(entity, v.HAS_SIZE, nodes, "size", v.SIZE_XYZ)
-        self._come(stars.size(iri, node, size_m))
+        self._insert(stars.size(iri, node, size_m))
 
-    def _is_own_way(self, nodes: Sequence[Term]) -> bool:
+    def _is_own_path(self, nodes: Sequence[Term]) -> bool:
         """Do the individuals between an entity and its pose or size describe nothing else?"""
         return all(s in nodes for node in nodes[1:] for s, _, _ in self._reasoner.asserted(None, None, node))
 
-    def _leave(self, nodes: Sequence[Term], path: Sequence[Term], last: Term) -> None:
+    def _detach(self, nodes: Sequence[Term], path: Sequence[Term], last: Term) -> None:
         """An entity no longer has what it shares with others; the others keep it."""
         for s, p, o in zip(nodes, (*path, last), (*nodes[1:], None), strict=True):
-            self._go(self._reasoner.asserted(s, p, o))
-            if o is not None and not self._is_own_way((s, o)):
+            self._retract(self._reasoner.asserted(s, p, o))
+            if o is not None and not self._is_own_path((s, o)):
                 return
 
     def _numbers(
@@ -233,9 +240,9 @@ class Draft:
         iri = v.iri(entity.iri)
         if len(nodes) == 1 and self._is_own(nodes[0]):
             said = self._reasoner.about(nodes[0])
-            self._go((nodes[0], p, o) for p in numbers for o in said.get(p, ()))
+            self._retract((nodes[0], p, o) for p in numbers for o in said.get(p, ()))
             return nodes[0]
-        self._drop(iri, edge, nodes)
+        self._remove_nodes(iri, edge, nodes)
         return self._free(entity.name, word)
 
     def _references(
@@ -246,21 +253,21 @@ class Draft:
         kept = own[: len(words)]
         for node in kept:
             texts = self._reasoner.about(node).get(v.LEXICAL_REFERENCE, ())
-            self._go((node, v.LEXICAL_REFERENCE, o) for o in texts)
-        self._drop(v.iri(entity.iri), edge, [node for node in nodes if node not in kept])
+            self._retract((node, v.LEXICAL_REFERENCE, o) for o in texts)
+        self._remove_nodes(v.iri(entity.iri), edge, [node for node in nodes if node not in kept])
         new = [self._free(entity.name, word) for word in words[len(kept) :]]
         return sorted((*kept, *new))
 
-    def _drop(self, iri: Term, edge: Term, nodes: Iterable[Term]) -> None:
+    def _remove_nodes(self, iri: Term, edge: Term, nodes: Iterable[Term]) -> None:
         """An entity no longer has these individuals; what only it used goes."""
         for node in nodes:
-            self._go([(iri, edge, node)])
+            self._retract([(iri, edge, node)])
             if self._is_own(node):
-                self._go(t for t in self._reasoner.asserted(node) if t not in self._tbox)
+                self._retract(t for t in self._reasoner.asserted(node) if t not in self._tbox)
 
     def _is_own(self, node: Term) -> bool:
         """Is it in the star of one entity only, and once?"""
-        return len(list(entity_reading.users(self._reasoner, node))) == 1
+        return len(list(entity_reading.find_users(self._reasoner, node))) == 1
 
     def _free(self, name: str, word: str) -> Term:
         """The usual name of an individual of a star, or the next one that is not in use."""
@@ -295,12 +302,12 @@ class Draft:
             self._known_classes[iri] = term
         return term
 
-    def _go(self, triples: Iterable[Triple]) -> None:
+    def _retract(self, triples: Iterable[Triple]) -> None:
         self.retract.update(dict.fromkeys(triples))
 
     def _change(self, changes: tuple[list[Triple], list[Triple]]) -> None:
-        self._go(changes[0])
-        self._come(changes[1])
+        self._retract(changes[0])
+        self._insert(changes[1])
 
-    def _come(self, triples: Iterable[Triple]) -> None:
+    def _insert(self, triples: Iterable[Triple]) -> None:
         self.insert += triples

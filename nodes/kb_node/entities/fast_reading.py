@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 from weakref import WeakKeyDictionary
 
 from semmap.nodes.kb_node.entities.class_table import ClassTable, Kind
-from semmap.nodes.kb_node.entities.entity_reading import entity_of
+from semmap.nodes.kb_node.entities.entity_reading import make_entity
 from semmap.nodes.kb_node.reasoner import Alike, Form, Reasoner
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -25,7 +25,7 @@ _Star = tuple[Sequence[Term], Sequence[Term]]
 """The individuals of a run, the entity first, and its other objects."""
 """Which of a run's other objects."""
 
-_OF_FEW = (v.CONFLICTING_OBSERVATION, v.TRACKED_FROM, v.MODEL)
+_RARE = (v.CONFLICTING_OBSERVATION, v.TRACKED_FROM, v.MODEL)
 
 
 class _Text(NamedTuple):
@@ -77,9 +77,7 @@ class Patterns:
             return found
 
 
-def read_at_sight(
-    pattern: Pattern, star: _Star, provenance: Provenance, classes: ClassTable
-) -> Entity | None:
+def read_regular(pattern: Pattern, star: _Star, provenance: Provenance, classes: ClassTable) -> Entity | None:
     """The entity that this is the star of; None if it is not to be told at sight.
 
     Raises BadRequest for one that cannot be named.
@@ -98,7 +96,7 @@ def read_at_sight(
             return None
     except ValueError:
         return None
-    return entity_of(
+    return make_entity(
         names[0],
         pattern.kind,
         provenance,
@@ -106,7 +104,7 @@ def read_at_sight(
         size_m=size,  # type: ignore[arg-type]
         preferred=_texts(pattern.preferred, names, others),
         alternatives=_texts(pattern.alternatives, names, others),
-        properties=classes.stated.stated(
+        properties=classes.property_table.read_values(
             {
                 said.property: [names[i] for i in said.nodes] + [others[i] for i in said.places]
                 for said in pattern.stated
@@ -141,8 +139,8 @@ def _pattern(form: Form, star: _Star, reasoner: Reasoner, classes: ClassTable) -
     entity, *nodes = map(reasoner.types, names)
     if entity.isdisjoint(classes.spatial) or not all(map(classes.spatial.isdisjoint, nodes)):
         return None
-    said = _Said(form, others)
-    if said.is_out_of_the_ordinary or said.speaks(classes.entry_properties) or said.speaks(_EXTENT):
+    said = _RunContent(form, others)
+    if said.is_unusual or said.uses(classes.entry_properties) or said.uses(_EXTENT):
         return None
     kind = classes.kind(entity, frozenset(said.classes))
     if kind is None:
@@ -162,7 +160,7 @@ def _pattern(form: Form, star: _Star, reasoner: Reasoner, classes: ClassTable) -
         return None
 
 
-class _Said:
+class _RunContent:
     """What a star says of its first individual and of the others, by place."""
 
     def __init__(self, form: Form, others: Sequence[Term]) -> None:
@@ -181,11 +179,11 @@ class _Said:
                 self._places.setdefault((subject, p), []).append(next(place))
 
     @property
-    def is_out_of_the_ordinary(self) -> bool:
+    def is_unusual(self) -> bool:
         """Whether it says what few entities do: perception against it, tracking, a model."""
-        return any((0, p) in by for p in _OF_FEW for by in (self._nodes, self._places))
+        return any((0, p) in by for p in _RARE for by in (self._nodes, self._places))
 
-    def speaks(self, words: Set[Term]) -> bool:
+    def uses(self, words: Set[Term]) -> bool:
         """Whether the entity says anything by one of these properties."""
         return any(place == 0 and p in words for by in (self._nodes, self._places) for place, p in by)
 
@@ -221,7 +219,7 @@ class _Said:
 
     def stated(self, classes: ClassTable) -> Iterator[_Stated]:
         """The other properties of the entity."""
-        for predicate in classes.stated.by_iri:
+        for predicate in classes.property_table.by_iri:
             nodes, places = (by.get((0, predicate), []) for by in (self._nodes, self._places))
             if nodes or places:
                 yield _Stated(predicate, tuple(nodes), tuple(places))

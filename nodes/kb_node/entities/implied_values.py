@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from semmap.nodes.kb_node.entities.property_values import plain
+from semmap.nodes.kb_node.entities.property_values import to_json_value
 from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Term
 from semmap.schemas.joints import OPEN_FROM
@@ -35,7 +35,7 @@ def imply_joint_values(
         outdated = (p for p in properties[most_exact + 1 :] if before.get(p) and p not in stated)
         found.update({p: [] for p in outdated})
     if v.OPENNESS in new and v.IS_OPEN not in stated and len(stated[v.OPENNESS]) == 1:
-        share = plain(stated[v.OPENNESS][0])
+        share = to_json_value(stated[v.OPENNESS][0])
         if isinstance(share, (int, float)):
             found[v.IS_OPEN] = [v.literal(str(share > OPEN_FROM).lower(), v.XSD_BOOLEAN)]
     return found

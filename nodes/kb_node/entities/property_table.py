@@ -88,7 +88,7 @@ class PropertyTable:
                 else frozenset(o for q in above for _, _, o in reasoner.asserted(q, v.RDFS_RANGE, None)),
             )
 
-    def stated(self, said: Mapping[Term, Iterable[Term]]) -> dict[str, property_values.Stated]:
+    def read_values(self, said: Mapping[Term, Iterable[Term]]) -> dict[str, property_values.Stated]:
         """The properties of an individual of which this is asserted, by name: functional ones as scalars."""
         known = said.keys() & self.by_iri.keys()
         if not known:
@@ -225,7 +225,7 @@ class PropertyTable:
 
 
 def _shown(prop: Property, terms: Iterable[Term]) -> tuple[str, property_values.Stated]:
-    values = tuple(sorted(map(property_values.plain, terms), key=str))
+    values = tuple(sorted(map(property_values.to_json_value, terms), key=str))
     return prop.name, values[0] if prop.functional and len(values) == 1 else values
 
 

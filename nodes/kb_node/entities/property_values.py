@@ -68,7 +68,7 @@ def literal(name: str, ranges: Set[Term], text: str) -> Term:
     return _checked(name, ranges, text, v.literal(written, datatype))
 
 
-def same(one: Term, other: Term) -> bool:
+def is_same_value(one: Term, other: Term) -> bool:
     """Do two terms denote the same value, or individual by the same name?"""
     if one == other:
         return True
@@ -76,7 +76,7 @@ def same(one: Term, other: Term) -> bool:
     return value is not None and other.startswith('"') and value == datatypes.value(other)
 
 
-def plain(term: Term) -> Value:
+def to_json_value(term: Term) -> Value:
     """A term as JSON has it: booleans, numbers, text (with @ and its language), individuals by name."""
     if not term.startswith('"'):
         return v.local_name(term)
@@ -95,22 +95,22 @@ def plain(term: Term) -> Value:
     return text
 
 
-def spoken(term: Term) -> str:
+def to_text(term: Term) -> str:
     """A term as people write it."""
-    return value_in_words(plain(term))
+    return value_in_words(to_json_value(term))
 
 
 def _checked(name: str, ranges: Set[Term], text: str, term: Term) -> Term:
     """Raises BadRequest for a literal that is known not to be in the range."""
     if datatypes.is_ill_typed(term):
-        raise _refusal(name, text, v.datatype_of(term))
+        raise _range_error(name, text, v.datatype_of(term))
     for datatype in sorted(r for r in ranges if datatypes.is_datatype(r)):
         if datatypes.excludes(datatype, term):
-            raise _refusal(name, text, datatype)
+            raise _range_error(name, text, datatype)
     return term
 
 
-def _refusal(name: str, text: str, datatype: Term) -> errors.BadRequest:
+def _range_error(name: str, text: str, datatype: Term) -> errors.BadRequest:
     kind = f"xsd:{v.local_name(datatype)}"
     if _LITERAL.fullmatch(text):
         return errors.BadRequest(f"{name} takes a literal of {kind}, not {text}")

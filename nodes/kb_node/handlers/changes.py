@@ -22,8 +22,8 @@ ReportingProgress = Callable[[str], AbstractContextManager[Tell]]
 """Of a large change, which begins with a word of WORKING: lets the heartbeat tell how far it is."""
 
 
-class Spread(Protocol):
-    """`spread(commit)` has everybody told of it: `at_once`, or else when the reply is on its way.
+class PublishCommit(Protocol):
+    """`publish(commit)` has everybody told of it: `at_once`, or else when the reply is on its way.
 
     The coordinator is `told` of it by the reply.
     """
@@ -45,17 +45,17 @@ class ChangeHandlers:
         semantic_map: SemanticMap,
         journal: Journal,
         *,
-        spread: Spread,
+        publish: PublishCommit,
         not_written: Callable[[NotWritten], None],
         reporting_progress: ReportingProgress,
     ) -> None:
-        """`spread` is called with each new commit, in order, before it is replied.
+        """`publish` is called with each new commit, in order, before it is replied.
 
         `not_written` is called with each one that the disk does not take.
         """
         self._map = semantic_map
         self._journal = journal
-        self._spread = spread
+        self._publish = publish
         self._not_written = not_written
         self._reporting_progress = reporting_progress
 
@@ -73,14 +73,16 @@ class ChangeHandlers:
         term_syntax.require_triples(transaction.insert)
         coming, going = len(transaction.add), len(transaction.remove)
         if coming + going <= _FEW:
-            return self._transacted(transaction)
+            return self._commit(transaction)
         file = transaction.reason.removeprefix("load ") or "a file"
         with self._reporting_progress(f"loading {file}" if coming else "removing entities") as tell:
             tell(f"{coming or going:,} entities to check and write")
-            return self._transacted(transaction)
+            return self._commit(transaction)
 
-    def _transacted(self, transaction: Transaction) -> Effects | None:
-        return self.changed(lambda: self._map.commit(transaction), transaction.dry_run, told=transaction.told)
+    def _commit(self, transaction: Transaction) -> Effects | None:
+        return self.run_change(
+            lambda: self._map.commit(transaction), transaction.dry_run, told=transaction.told
+        )
 
     def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
         """Several transactions, each by itself, made durable once for all.
@@ -99,7 +101,7 @@ class ChangeHandlers:
         for transaction, result in zip(several.transactions, results, strict=True):
             if isinstance(result, Commit) and result.seq > before:
                 before = result.seq
-                self._spread(result, told=transaction.told, at_once=False)
+                self._publish(result, told=transaction.told, at_once=False)
         return tuple(map(_outcome, results))
 
     def on_undo(self, command: TakeBack) -> Effects | None:
@@ -108,7 +110,7 @@ class ChangeHandlers:
         def change() -> Commit:
             return undo.undo(self._map, self._journal, command, self._undoing)
 
-        return self.changed(change, command.dry_run, told=command.told)
+        return self.run_change(change, command.dry_run, told=command.told)
 
     @contextmanager
     def _undoing(self, target: Commit) -> Iterator[None]:
@@ -125,15 +127,15 @@ class ChangeHandlers:
         """The commits that some commands have made."""
         return tuple(effects(self._journal.commit_of(id_)) for id_ in query.ids)
 
-    def changed(
+    def run_change(
         self, change: Callable[[], Commit | None], dry_run: bool, *, told: bool = False
     ) -> Effects | None:
         """What `change` commits, and publishes; or would commit, in a dry run."""
         if dry_run:
-            return dry_runs.of(self._map, change)
-        return effects(self.published_if_new(change, told=told))
+            return dry_runs.dry_run(self._map, change)
+        return effects(self.commit_and_publish(change, told=told))
 
-    def published_if_new(self, change: Callable[[], C], *, told: bool = False, at_once: bool = False) -> C:
+    def commit_and_publish(self, change: Callable[[], C], *, told: bool = False, at_once: bool = False) -> C:
         """What `change` commits; published unless it is the answer to an old command.
 
         `at_once`: its reply comes after others have been committed, which may take long.
@@ -145,7 +147,7 @@ class ChangeHandlers:
             self._not_written(error)
             raise
         if commit is not None and commit.seq > before:
-            self._spread(commit, told=told and not commit.tbox, at_once=at_once)
+            self._publish(commit, told=told and not commit.tbox, at_once=at_once)
         return commit
 
 

@@ -53,12 +53,12 @@ class LoadHandlers:
             return self._load(load)
         finally:
             if self._map.seq == before:
-                self._sparql.forget()
+                self._sparql.discard_prepared()
 
     def _load(self, load: LoadDocument) -> Loaded:
         content = unpacked(load.content, load.filename)
         if rdf.syntax_of(content) == "turtle" and not (load.replace or load.parts or load.dry_run):
-            self._sparql.foresee(load.id, content, v.ABOX, packed=load.content)
+            self._sparql.prefetch(load.id, content, v.ABOX, packed=load.content)
         label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # the same when sent again
         with self._reporting_progress(f"loading {load.filename or 'a file'}") as tell:
             triples = rdf.parse(
@@ -69,11 +69,11 @@ class LoadHandlers:
             )
             del content
             tell(f"{len(triples):,} triples to check and write")
-            transaction, filtered = document_change.of_document(self._map, load, triples)
-            if not document_change.is_all(triples, transaction):
-                self._sparql.forget()
+            transaction, filtered = document_change.make_document_transaction(self._map, load, triples)
+            if not document_change.is_exact_copy(triples, transaction):
+                self._sparql.discard_prepared()
             if load.dry_run:
-                names, tried = self._tried_load(transaction)
+                names, tried = self._dry_run_load(transaction)
                 return Loaded(
                     commit=tried,
                     names=names,
@@ -82,7 +82,7 @@ class LoadHandlers:
                 )
             skipped, notes = tuple(filtered.skipped), filtered.notes
             del triples, filtered  # of very many triples each list takes its memory
-            parts = load_parts.in_parts(transaction) if load.parts else [transaction]
+            parts = load_parts.split(transaction) if load.parts else [transaction]
             commit = partial(self._commit, told=load.told)
             commits = load_parts.commit_each(parts, commit, tell if load.parts else lambda _: None)
             return Loaded(
@@ -93,17 +93,17 @@ class LoadHandlers:
                 notes=(*notes, *(note for earlier in commits[:-1] for note in earlier.notes)),
             )
 
-    def _tried_load(self, transaction: Transaction) -> tuple[tuple[str, ...], Effects | None]:
+    def _dry_run_load(self, transaction: Transaction) -> tuple[tuple[str, ...], Effects | None]:
         """The names of all entities that a load would change, and what it would commit."""
-        tried = dry_runs.of(self._map, lambda: self._map.commit(transaction))
+        tried = dry_runs.dry_run(self._map, lambda: self._map.commit(transaction))
         return (tried.trial.changed if tried is not None and tried.trial is not None else (), tried)
 
     def on_load_tbox(self, load: LoadTBox) -> Loaded:
         """Another TBox, in one commit (none for the one that holds), and what is to be known of it."""
-        read = document_change.tbox_of(self._map, load, label_prefix=f"t{uuid.uuid4().hex[:8]}")
+        read = document_change.read_tbox(self._map, load, label_prefix=f"t{uuid.uuid4().hex[:8]}")
         tbox = blank_nodes.relabel_like(read, self._map.tbox)
         document_change.require_no_map(self._map, load, tbox)
-        transaction = document_change.of_tbox(self._map, load, tbox)
+        transaction = document_change.make_tbox_transaction(self._map, load, tbox)
         if transaction is None:
             commit = self._journal.commit_of(load.id)
             return Loaded(commit=effects(commit), skipped=(), notes=self._notes())
@@ -114,9 +114,9 @@ class LoadHandlers:
 
         try:
             if load.dry_run:
-                tried = dry_runs.of(self._map, replace, lambda: noted.extend(self._notes()))
+                tried = dry_runs.dry_run(self._map, replace, lambda: noted.extend(self._notes()))
                 return Loaded(commit=tried, skipped=(), notes=tuple(noted))
-            made = self._changing.changed(replace, dry_run=False)
+            made = self._changing.run_change(replace, dry_run=False)
             return Loaded(commit=made, skipped=(), notes=self._notes())
         except tbox_validation.DoesNotFit as error:
             raise tbox_validation.DoesNotFit(
@@ -124,7 +124,9 @@ class LoadHandlers:
             ) from None
 
     def _commit(self, transaction: Transaction, *, told: bool) -> Commit | None:
-        return self._changing.published_if_new(lambda: self._map.commit(transaction), told=told, at_once=True)
+        return self._changing.commit_and_publish(
+            lambda: self._map.commit(transaction), told=told, at_once=True
+        )
 
 
 def _described(commit: Commit) -> Iterator[str]:

@@ -24,7 +24,7 @@ from semmap.nodes.kb_node.answers.descriptions import Descriptions
 from semmap.nodes.kb_node.answers.entity_search import Finding
 from semmap.nodes.kb_node.answers.live_poses import LiveEntities
 from semmap.nodes.kb_node.answers.location_queries import LocationQueries
-from semmap.nodes.kb_node.answers.missing_entities import gone
+from semmap.nodes.kb_node.answers.missing_entities import describe_missing
 from semmap.nodes.kb_node.answers.pages import Pages
 from semmap.nodes.kb_node.answers.route_planning import RoutePlanning
 from semmap.nodes.kb_node.answers.sightings import Sightings
@@ -101,12 +101,12 @@ class QueryHandlers:
         self._journal = journal
         self._past = history.Past(journal)
         self._pages = Pages(semantic_map)
-        self._now = entity_queries.Now(semantic_map)
+        self._now = entity_queries.CurrentState(semantic_map)
         self.live = LiveEntities(semantic_map)
         """To be told where tracked entities are."""
         self._finding = Finding(semantic_map)
         self._understanding = Understanding(semantic_map, self._finding)
-        self._then = entity_queries.Then(semantic_map, self._past)
+        self._then = entity_queries.PastState(semantic_map, self._past)
         self.sightings = Sightings(self._past)
         """To be told of what perception sees."""
         self._descriptions = Descriptions(semantic_map, self._now, self.sightings)
@@ -151,7 +151,7 @@ class QueryHandlers:
     @property
     def is_being_fetched(self) -> bool:
         """Whether somebody fetches the map page by page, or is about to as after a start."""
-        return self._pages.may_follow
+        return self._pages.is_request_expected
 
     def on_snapshot(self, query: SnapshotQuery) -> Snapshot:
         """The entities as of the last commit, or a page of them."""
@@ -185,7 +185,7 @@ class QueryHandlers:
 
     def on_load_of(self, query: LoadOf) -> tuple[str, ...]:
         """What a thing bears."""
-        return tuple(self._map.places.borne_by(query.name, query.leave))
+        return tuple(self._map.places.supported_by(query.name, query.leave))
 
     def on_classes(self, _: Classes) -> tuple[ClassInfo, ...]:
         """The class table."""
@@ -193,21 +193,21 @@ class QueryHandlers:
 
     def on_properties(self, _: Properties) -> tuple[PropertyInfo, ...]:
         """The property table."""
-        return tuple(self._map.classes.stated.rows())
+        return tuple(self._map.classes.property_table.rows())
 
     def on_list(self, query: Entities) -> tuple[Entity, ...] | Future[tuple[Entity, ...]]:
         """The entities of a class, now or as of then; with `where` those that are there."""
         if query.as_of is None:
             if query.where is None:
                 return self._now.entities(query)
-            with self.live.supposed():
+            with self.live.applied():
                 return self._now.entities(query)
         return self._aside.submit(self._then.entities, query)
 
     def on_relations(self, query: Relations) -> tuple[Relation, ...] | Future[tuple[Relation, ...]]:
         """Where a thing is relative to others, now or as of then."""
         if query.as_of is None:
-            with self.live.supposed():
+            with self.live.applied():
                 return self._now.relations(query)
         return self._aside.submit(self._then.relations, query)
 
@@ -216,7 +216,7 @@ class QueryHandlers:
         if query.as_of is None:
             if not query.where:
                 return self._now.entity(query)
-            with self.live.supposed():
+            with self.live.applied():
                 return self._now.entity(query)
         return self._aside.submit(self._then.entity, query)
 
@@ -228,36 +228,36 @@ class QueryHandlers:
 
     def on_explain(self, query: Explain) -> Explanation | Future[Explanation]:
         """Why it follows or cannot, or what was measured of where a thing is; or why it does not hold."""
-        if (measured := self._now.measured(query)) is not None:
+        if (measured := self._now.explain_measured(query)) is not None:
             return measured
         asked = questions.parse_explain(self._map, query)
-        found = self._now.explained(query, asked)
+        found = self._now.explain(query, asked)
         if found is None:
-            return self._tried(questions.explain, asked)
+            return self._test_on_copy(questions.explain, asked)
         if not found.measured:
             return found.explanation
         look_up = partial(
-            fact_intervals.looked_up, self._journal, self._past, limits=self._map.classes.limits
+            fact_intervals.look_up_starts, self._journal, self._past, limits=self._map.classes.limits
         )
-        return self._aside.submit(found.dated, look_up)
+        return self._aside.submit(found.with_dates, look_up)
 
     def on_diff(self, query: Diff) -> Future[Difference]:
         """What changed between two commits or times."""
         limits = self._map.classes.limits
-        return self._aside.submit(differences.difference, self._journal, self._past, query, limits)
+        return self._aside.submit(differences.compute_difference, self._journal, self._past, query, limits)
 
     def on_when(self, query: WasWhen) -> Future[Spells]:
         """When one thing was on, in or at another."""
         limits = self._map.classes.limits
-        return self._aside.submit(differences.spells, self._journal, self._past, query, limits)
+        return self._aside.submit(differences.find_spells, self._journal, self._past, query, limits)
 
     def on_could(self, query: Could) -> Possible | Future[Possible]:
         """Whether it could be."""
         asked = questions.parse_could(self._map, query)
-        against = self._now.against(asked.triples[0])
-        return self._tried(partial(questions.could, against=against), asked)
+        against = self._now.describe_conflict(asked.triples[0])
+        return self._test_on_copy(partial(questions.could, against=against), asked)
 
-    def _tried(self, answer: Callable[..., R], asked: questions.StatementQuestion) -> R | Future[R]:
+    def _test_on_copy(self, answer: Callable[..., R], asked: questions.StatementQuestion) -> R | Future[R]:
         """Answer by supposing something of the map itself, or, if that takes long, of a copy beside it."""
         reasoner, names = self._map.reasoner, self._map.classes.prefixed
         held: Held | None = None
@@ -289,29 +289,29 @@ class QueryHandlers:
     def on_last_seen(self, query: LastSeen) -> Sighting | Future[Sighting]:
         """Where an entity was last; where it is, if it is there."""
         entity = self._map.find(query.name)
-        if entity is not None and not self.sightings.is_gone(entity):
-            found = self.sightings.there(entity)
-            closed = closed_containers.closed_around(self._map, entity)
+        if entity is not None and not self.sightings.is_missing(entity):
+            found = self.sightings.describe_present(entity)
+            closed = closed_containers.find_closed_container(self._map, entity)
             if closed is None:
                 return found
-            return structs.replace(found, text=f"{found.text}; {closed_containers.in_words(closed)}")
-        return self._aside.submit(self.sightings.gone, query.name, entity)
+            return structs.replace(found, text=f"{found.text}; {closed_containers.describe(closed)}")
+        return self._aside.submit(self.sightings.describe_removed, query.name, entity)
 
     def on_find(self, query: Find) -> Found | Future[Found]:
         """What a description means; where nothing fits, also when it was last there."""
-        with self.live.supposed():
+        with self.live.applied():
             sought = self._finding.find(query)
         if sought.missing is None:
             return sought.found
         missing, there, limits = sought.missing, frozenset(self._map.names), self._map.classes.limits
         return self._aside.submit(
-            lambda: sought.with_the_past(gone(self._journal, self._past, missing, there, limits))
+            lambda: sought.with_the_past(describe_missing(self._journal, self._past, missing, there, limits))
         )
 
     def on_check(self, query: Check) -> Future[Checked]:
         """Consistency, worked out beside the node's own work."""
         self._map.derive_all()
-        held, denied = self._map.reasoner.held(), self._now.denied()
+        held, denied = self._map.reasoner.held(), self._now.find_denied()
         withheld, crowds = tuple(answers.suppressed_facts(self._map)), self._map.places.crowds()
 
         def check() -> Checked:

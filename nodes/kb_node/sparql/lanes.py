@@ -39,7 +39,7 @@ from semmap.schemas.sparql import SparqlResult
 
 LANES: Final = 6
 """How many queries are evaluated at once."""
-AT_LENGTH: Final = 3
+LONG_RUNNING: Final = 3
 """How many of them may take long while others wait."""
 LONG_S: Final = 0.3
 """What takes longer takes long."""
@@ -58,7 +58,7 @@ class _Query:
     began_s: float = 0.0
     was_preempted: bool = False
 
-    def takes_long(self, now_s: float) -> bool:
+    def is_long_running(self, now_s: float) -> bool:
         """By what is known now."""
         return self.was_preempted or now_s - self.began_s >= LONG_S
 
@@ -81,7 +81,7 @@ class Lanes:
         self._send = send
         pairs = [Pipe() for _ in range(LANES)]
         self._lanes = [_Lane(number, here) for number, (here, _) in enumerate(pairs)]
-        self.others: Sequence[Connection] = [there for _, there in pairs]
+        self.remote_ends: Sequence[Connection] = [there for _, there in pairs]
         """The other ends; who hands them over closes them here."""
         self._waiting: FairQueue[_Query] = FairQueue(each=_EACH, everyone=_ALL)
         self._set_aside: FairQueue[_Query] = FairQueue()
@@ -113,23 +113,23 @@ class Lanes:
                     f"{len(self._waiting)} SPARQL queries wait already; try again in {again_s:.1f} s",
                     again_s=again_s,
                 )
-            self._hand_out()
+            self._dispatch()
         return query.future
 
-    def leave(self, left: ReaderExited) -> None:
+    def on_reader_exit(self, left: ReaderExited) -> None:
         """A reader is no more."""
         lane = self._lanes[left.lane]
         with self._lock:
             lane.has_reader = lane.is_closing = False
             query = lane.query
             if query is None:
-                self._hand_out()
+                self._dispatch()
                 return
             if not left.signal:  # it did not take the question, or has given it back
-                self._hire(lane)
+                self._start_reader(lane)
                 return
             lane.query = None
-            self._hand_out()
+            self._dispatch()
         query.future.set_exception(error_for_signal(left.signal, query.question.timeout_s))
 
     def close(self, error: Exception) -> None:
@@ -144,46 +144,48 @@ class Lanes:
         for query in filter(None, left):
             query.future.set_exception(error)
 
-    def _hand_out(self) -> None:
+    def _dispatch(self) -> None:
         """Give the questions that wait to lanes that are free, those with readers first."""
         free = [lane for lane in self._lanes if lane.query is None and not lane.is_closing]
         for lane in sorted(free, key=lambda lane: not lane.has_reader):
-            if (query := self._next()) is None:
+            if (query := self._next_query()) is None:
                 return
             lane.query, query.began_s = query, time.monotonic()
             if not lane.has_reader:
-                self._hire(lane)
+                self._start_reader(lane)
             self._put(lane, query)
         if len(self._waiting):
-            self._look_again()
+            self._schedule_preemption()
 
-    def _next(self) -> _Query | None:
+    def _next_query(self) -> _Query | None:
         """The query that is to begin; one that was set aside if few enough are taking long."""
         query = None
-        if len(self._set_aside) and len(self._taking_long(time.monotonic())) < AT_LENGTH:
+        if len(self._set_aside) and len(self._long_running(time.monotonic())) < LONG_RUNNING:
             query = self._set_aside.take()
         return query or self._waiting.take()
 
-    def _taking_long(self, now_s: float) -> list[_Lane]:
+    def _long_running(self, now_s: float) -> list[_Lane]:
         """The lanes whose queries do: first those that were set aside before, then by their age."""
-        lanes = [lane for lane in self._lanes if lane.query is not None and lane.query.takes_long(now_s)]
+        lanes = [lane for lane in self._lanes if lane.query is not None and lane.query.is_long_running(now_s)]
         return sorted(lanes, key=lambda lane: (not lane.query.was_preempted, lane.query.began_s))  # type: ignore[union-attr]
 
-    def _look_again(self) -> None:
+    def _schedule_preemption(self) -> None:
         """When the next query will have taken long."""
         if self._timer is None:
             now_s = time.monotonic()
-            quick = [lane.query for lane in self._lanes if lane.query and not lane.query.takes_long(now_s)]
+            quick = [
+                lane.query for lane in self._lanes if lane.query and not lane.query.is_long_running(now_s)
+            ]
             wait_s = min((query.began_s + LONG_S - now_s for query in quick), default=LONG_S)
-            self._timer = threading.Timer(wait_s, self._make_room)
+            self._timer = threading.Timer(wait_s, self._preempt)
             self._timer.daemon = True
             self._timer.start()
 
-    def _make_room(self) -> None:
+    def _preempt(self) -> None:
         """Set aside what takes long, but for a few, as far as others wait."""
         with self._lock:
             self._timer = None
-            beyond = self._taking_long(time.monotonic())[AT_LENGTH:]
+            beyond = self._long_running(time.monotonic())[LONG_RUNNING:]
             for lane in beyond[: len(self._waiting)]:
                 query, lane.query, lane.is_closing = lane.query, None, True
                 if query is None:
@@ -192,9 +194,9 @@ class Lanes:
                 self._set_aside.put(query.asker, query)
                 self._send(StopReader(lane=lane.number), None)
             if len(self._waiting):
-                self._look_again()
+                self._schedule_preemption()
 
-    def _hire(self, lane: _Lane) -> None:
+    def _start_reader(self, lane: _Lane) -> None:
         lane.has_reader = True
         self._send(StartReader(lane=lane.number), None)
 
@@ -220,7 +222,7 @@ class Lanes:
                 self._put(lane, query)
                 return
             lane.query = None
-            self._hand_out()
+            self._dispatch()
         if outcome.error is not None:
             query.future.set_exception(errors.from_message(outcome.error))
         else:

@@ -21,7 +21,7 @@ from msgspec import Raw, msgpack
 
 from semmap.nodes.kb_node.sparql.protocol import QueryOutcome, QueryRequest, questions
 from semmap.nodes.kb_node.sparql.queries import text
-from semmap.nodes.kb_node.sparql.queries.evaluation import answer
+from semmap.nodes.kb_node.sparql.queries.evaluation import evaluate
 from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, DiskDataset
 from semmap.nodes.kb_node.sparql.triples.disk_stores import remove_clone
 from semmap.nodes.kb_node.sparql.triples.log import Log
@@ -44,7 +44,7 @@ class Reader:
     def __init__(self, lane: Connection, dataset: Dataset, log: Log, *, infers: bool) -> None:
         """`infers`: what follows is in the dataset, too."""
         self.log = log
-        self._kept_at = dataset.path if isinstance(dataset, DiskDataset) else None
+        self._store_path = dataset.path if isinstance(dataset, DiskDataset) else None
         self.control, there = Pipe()
         self._pid = os.fork()
         if self._pid == 0:
@@ -65,8 +65,8 @@ class Reader:
     def reap(self) -> int:
         """Wait for its end; the signal that it died of, or 0."""
         _, status = os.waitpid(self._pid, 0)
-        if self._kept_at is not None:
-            remove_clone(self._kept_at, self._pid)
+        if self._store_path is not None:
+            remove_clone(self._store_path, self._pid)
         self.control.close()
         return max(0, -os.waitstatus_to_exitcode(status))
 
@@ -85,7 +85,7 @@ def error_for_signal(number: int, timeout_s: float) -> errors.Refused:
 def _serve(lane: Connection, control: Connection, dataset: Dataset, log: Log, infers: bool) -> NoReturn:
     """The child's life: it ends with its parent's or its asker's, when it is let go, or with a signal."""
     try:
-        dataset = _opened(dataset, log, {lane.fileno(), control.fileno(), log.fileno()})
+        dataset = _open_dataset(dataset, log, {lane.fileno(), control.fileno(), log.fileno()})
         poll = select.poll()
         for connection in (lane, control):
             poll.register(connection, select.POLLIN)
@@ -97,18 +97,18 @@ def _serve(lane: Connection, control: Connection, dataset: Dataset, log: Log, in
             lane.send_bytes(
                 msgpack.encode(QueryOutcome(number=question.number, old=True))
                 if is_old
-                else _answered(question, dataset)
+                else _answer(question, dataset)
             )
     finally:
         os._exit(0)
 
 
-def _opened(dataset: Dataset, log: Log, fds: set[int]) -> Dataset:
+def _open_dataset(dataset: Dataset, log: Log, fds: set[int]) -> Dataset:
     """The triples, with nothing else left open that a query could reach."""
     _close_all_but(fds)
-    opened = dataset.opened()
+    opened = dataset.open_in_reader()
     if opened is not dataset:
-        for delta in log.everything():
+        for delta in log.read_all():
             opened.apply(delta)
     _confine(0 if opened is dataset else _FILES_OF_A_STORE)
     return opened
@@ -118,7 +118,7 @@ def _is_ready(question: QueryRequest, dataset: Dataset, log: Log, infers: bool) 
     """Whether the dataset is what is asked about, after the commits that have come."""
     wanted = max(question.seq, dataset.settled)
     if dataset.seq < wanted or dataset.demand < question.demand:
-        for delta in log.news():
+        for delta in log.read_new():
             dataset.apply(delta)
             if dataset.seq >= wanted and dataset.demand >= question.demand:
                 break
@@ -126,7 +126,7 @@ def _is_ready(question: QueryRequest, dataset: Dataset, log: Log, infers: bool) 
     return is_there and (infers or not question.inferred)
 
 
-def _answered(question: QueryRequest, dataset: Dataset) -> bytes:
+def _answer(question: QueryRequest, dataset: Dataset) -> bytes:
     """The outcome, encoded, if it comes in time: else the process ends."""
     signal.setitimer(signal.ITIMER_REAL, question.timeout_s)
     outcome = msgpack.encode(_evaluate(question, dataset))
@@ -140,7 +140,7 @@ def _answered(question: QueryRequest, dataset: Dataset) -> bytes:
 def _evaluate(question: QueryRequest, dataset: Dataset) -> QueryOutcome:
     try:
         text.require_reading(question.query)
-        result = answer(
+        result = evaluate(
             question.query,
             dataset,
             inferred=question.inferred,

@@ -35,9 +35,9 @@ from semmap.nodes.kb_node.sparql.protocol import (
     StandingCommand,
     from_worker,
 )
-from semmap.nodes.kb_node.sparql.queries.predicates import may_name
+from semmap.nodes.kb_node.sparql.queries.predicates import may_use_properties
 from semmap.nodes.kb_node.sparql.triples.dataset import Delta
-from semmap.nodes.kb_node.sparql.triples.large_map import Filled, LargeMap, delta_of
+from semmap.nodes.kb_node.sparql.triples.large_map import FilledStore, LargeMap, delta_of
 from semmap.nodes.runtime.futures import settle
 from semmap.ontology import vocabulary as v
 from semmap.schemas import codec, errors
@@ -86,7 +86,7 @@ class SparqlService:
         self._seq = 0
         self._since_filling: list[Delta] | None = None
         """While a store is made: the commits since it was begun."""
-        self._later: list[Callable[[], None]] = []
+        self._deferred: list[Callable[[], None]] = []
         """Commands about standing queries that came meanwhile."""
 
     @overload
@@ -112,7 +112,7 @@ class SparqlService:
         if self._since_filling is None or isinstance(command, Sparql):  # which waits for its commit by itself
             return self._worker.ask(command, seq, demand, asker)
         worker, future = self._worker, Future[Any]()
-        self._later.append(lambda: settle(future, lambda: worker.ask(command, self._seq)))
+        self._deferred.append(lambda: settle(future, lambda: worker.ask(command, self._seq)))
         return future
 
     def _demand(self, worker: _Worker, command: Sparql | Watch) -> int:
@@ -120,7 +120,7 @@ class SparqlService:
         query = command.query
         if self._placements is None or not command.inferred or not self._measured or query is None:
             return 0
-        if not may_name(query, self._measured):
+        if not may_use_properties(query, self._measured):
             return 0
         if not self._measures:
             self._measures = True
@@ -129,18 +129,18 @@ class SparqlService:
         worker.send(MeasurementRequest(demand=demand, query=query))
         return demand
 
-    def foresee(self, commit_id: str, turtle: bytes, base: str, *, packed: bytes = b"") -> None:
+    def prefetch(self, commit_id: str, turtle: bytes, base: str, *, packed: bytes = b"") -> None:
         """What a Turtle document says will be inserted by a commit of that id, unless `forget` comes.
 
         `packed` is the same as it came, if that was packed.
         """
         if self._large is not None and not self._infers and self._since_filling is None:
-            self._large.foresee(commit_id, turtle, base, packed=packed)
+            self._large.prefetch(commit_id, turtle, base, packed=packed)
 
-    def forget(self) -> None:
+    def discard_prepared(self) -> None:
         """What was foreseen does not come."""
         if self._large is not None:
-            self._large.forget()
+            self._large.discard()
 
     def prepare(self, commit: Commit) -> Callable[[], None]:
         """A commit that `follow` will get if it stands the check. What is returned says that it will not."""
@@ -151,7 +151,7 @@ class SparqlService:
     def follow(self, commit: Commit, derived_changes: DerivedChanges = UNCHANGED) -> None:
         """Every commit, in order, and what it changed of what is computed."""
         self._seq = commit.seq
-        is_much = self._large is not None and self._large.is_much(commit)
+        is_much = self._large is not None and self._large.is_large_change(commit)
         if self._since_filling is not None and not commit.tbox:
             self._since_filling.append(delta_of(commit))
         elif is_much and not self._infers:
@@ -178,11 +178,11 @@ class SparqlService:
             self._since_filling = None
             self._load_into_memory(self._worker)
         elif self._since_filling is None:
-            kept = self._large.kept(self._seq)
+            kept = self._large.find_store(self._seq)
             if kept is None:
                 self._fill()
             else:
-                self._take_over(*kept)
+                self._use_store(*kept)
 
     def _fill(self, commit: Commit | None = None) -> None:
         if self._large is None:
@@ -190,12 +190,12 @@ class SparqlService:
         since: list[Delta] = []
         self._since_filling = since
 
-        def on_done(done: Future[Filled]) -> None:
+        def on_done(done: Future[FilledStore]) -> None:
             if self._since_filling is not since:
                 return  # it is not wanted any more
             self._since_filling = None
             if (error := done.exception()) is None:
-                self._take_over(done.result(), since)
+                self._use_store(done.result(), since)
             elif self._worker is not None:
                 log.warning("SPARQL keeps its triples in memory: %s", error)
                 self._load_into_memory(self._worker)
@@ -219,18 +219,18 @@ class SparqlService:
                 placements=placements,
             )
         )
-        self._go_on()
+        self._run_deferred()
 
-    def _take_over(self, store: Filled, since: Iterable[Delta]) -> None:
+    def _use_store(self, store: FilledStore, since: Iterable[Delta]) -> None:
         if self._worker is not None:
             self._worker.send(LoadFromDisk(path=str(store.path), seq=store.seq, settled=store.settled))
             for delta in since:
                 self._worker.send(Committed(delta=delta))
-        self._go_on()
+        self._run_deferred()
 
-    def _go_on(self) -> None:
+    def _run_deferred(self) -> None:
         """The triples are on their way: now for what had to wait for them."""
-        later, self._later = self._later, []
+        later, self._deferred = self._deferred, []
         for ask in later:
             ask()
 
@@ -255,7 +255,7 @@ class _Worker:
         self.is_alive = True
         self._connection, there = Pipe()
         self._lanes = Lanes(self.send)
-        theirs = [there, *self._lanes.others]
+        theirs = [there, *self._lanes.remote_ends]
         fds = [connection.fileno() for connection in theirs]
         self._process = subprocess.Popen(
             [sys.executable, "-P", "-m", "semmap.nodes.kb_node.sparql.worker", *map(str, fds)],
@@ -307,7 +307,7 @@ class _Worker:
                     case QueryUpdate() as news:
                         self._publish(news)
                     case ReaderExited() as left:
-                        self._lanes.leave(left)
+                        self._lanes.on_reader_exit(left)
                     case answered:
                         self._answer(answered)
         except (EOFError, OSError):

@@ -115,13 +115,13 @@ class Worker:
                 del self._readers[lane]
                 self._send(ReaderExited(lane=lane, signal=reader.reap()))
                 return
-        self.monitor.done(connection)
+        self.monitor.on_ready(connection)
 
     def end(self) -> None:
         """Leave nobody behind."""
         for reader in self._readers.values():
             reader.end()
-        self.monitor.end()
+        self.monitor.stop_readers()
 
     def _load(self, load: Load) -> None:
         """Begin anew; the standing queries go on, with a look at what has changed for them."""
@@ -168,7 +168,7 @@ class Worker:
         come: tuple[Triple, ...] = ()
         if self._measured is not None:
             standing = map(self._needs, self.monitor.inferred_queries)
-            gone, come = self._measured.need(Needs.together((*self._needed, *standing)))
+            gone, come = self._measured.update_needs(Needs.merge((*self._needed, *standing)))
         delta = Delta(seq=self._dataset.seq, unmeasured=gone, measured=come, demand=demand)
         self._log.append(delta)
         self._dataset.apply(delta)
@@ -177,7 +177,7 @@ class Worker:
     def _begin_log_if_long(self) -> None:
         if self._log.size > BACKLOG:
             if isinstance(self._dataset, DiskDataset):
-                self._dataset.renew(self._log.everything())
+                self._dataset.merge_log(self._log.read_all())
             self._begin_log()
 
     def _begin_log(self) -> None:
@@ -208,7 +208,7 @@ def main(node: Connection, lanes: Sequence[Connection]) -> None:
                     if not isinstance(ready, Connection):
                         raise errors.InternalError("the SPARQL process waits for connections only")
                     worker.done(ready)
-            worker.monitor.go_on()
+            worker.monitor.advance()
     except (EOFError, ConnectionError, KeyboardInterrupt):
         pass
     finally:

@@ -176,7 +176,7 @@ class Past:
         if not tbox_validation.has_individuals(tbox):
             return ()
         reasoner = Reasoner(tbox)
-        return entity_reading.of_the_tbox(reasoner, ClassTable(reasoner))
+        return entity_reading.read_tbox_entities(reasoner, ClassTable(reasoner))
 
     def commit_at(self, when: When) -> int:
         """The commit after which the map was as then. Raises Refused for the future and before it all."""

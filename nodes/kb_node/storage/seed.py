@@ -49,12 +49,15 @@ def seed(
     tboxes = (tbox,) if isinstance(tbox, Path) else tuple(tbox)
     name = ", ".join(map(str, tboxes))
     gathered = ontology_files.gather(tboxes, imports)
-    tbox_triples = tbox_declarations.declared(
+    tbox_triples = tbox_declarations.with_declarations(
         gathered.triples, of_file=gathered.prefixes, spatial_root=spatial_root
     )
-    reasoner = tbox_validation.compiled(tbox_triples, name)
+    reasoner = tbox_validation.compile_tbox(tbox_triples, name)
     closed = reasoner.closed  # as it is before the ABox may add to the schema
-    abox_triples = [(v.ABOX_ONTOLOGY, v.RDF_TYPE, v.OWL_ONTOLOGY), *tbox_validation.imports(tbox_triples)]
+    abox_triples = [
+        (v.ABOX_ONTOLOGY, v.RDF_TYPE, v.OWL_ONTOLOGY),
+        *tbox_validation.import_triples(tbox_triples),
+    ]
     notes: list[str] = []
     if abox is not None:
         said = ontology_files.read(abox, "a")

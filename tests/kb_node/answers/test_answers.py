@@ -141,7 +141,7 @@ def test_classes_that_are_called_alike_are_told_apart_in_what_follows(tmp_path):
         "@prefix lab: <http://lab.org/lab#> . lab:Chair a owl:Class . dm:Chair rdfs:subClassOf lab:Chair ."
     )
     semantic_map = home.new_map(tmp_path, [*home.TBOX, *other])
-    tried = dry_runs.of(semantic_map, lambda: semantic_map.commit(transaction(1, chair("chair1"))))
+    tried = dry_runs.dry_run(semantic_map, lambda: semantic_map.commit(transaction(1, chair("chair1"))))
     semantic_map.commit(transaction(1, chair("chair1")))
     for said in (
         tried.trial.gained,

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from semmap.nodes.kb_node.answers.closed_containers import closed_around, in_words
+from semmap.nodes.kb_node.answers.closed_containers import describe, find_closed_container
 from semmap.ontology import vocabulary as v
 from semmap.schemas.commits import Edit, NewEntity, Statement, Transaction
 from semmap.schemas.entities import Pose
@@ -32,23 +32,23 @@ def say(kitchen, number, value, property_="isOpen", name="fridge1"):
 
 
 def test_of_a_fridge_of_which_nobody_said_that_it_is_closed_nothing_is_claimed(kitchen):
-    assert closed_around(kitchen, kitchen.entity("carton1")) is None
+    assert find_closed_container(kitchen, kitchen.entity("carton1")) is None
 
 
 def test_milk_in_a_closed_fridge_cannot_be_seen_since_it_was_closed(kitchen):
     say(kitchen, 2, "false")
-    closed = closed_around(kitchen, kitchen.entity("carton1"))
+    closed = find_closed_container(kitchen, kitchen.entity("carton1"))
     assert closed is not None
     said = r"it cannot be seen there: fridge1 has been closed since commit 2, \d+ s ago"
-    assert re.fullmatch(said, in_words(closed))
-    assert closed_around(kitchen, kitchen.entity("cup1")) is None
-    assert closed_around(kitchen, kitchen.entity("fridge1")) is None
+    assert re.fullmatch(said, describe(closed))
+    assert find_closed_container(kitchen, kitchen.entity("cup1")) is None
+    assert find_closed_container(kitchen, kitchen.entity("fridge1")) is None
 
 
 def test_once_it_is_open_it_can(kitchen):
     say(kitchen, 2, "false")
     say(kitchen, 3, "true")
-    assert closed_around(kitchen, kitchen.entity("carton1")) is None
+    assert find_closed_container(kitchen, kitchen.entity("carton1")) is None
 
 
 def test_a_door_that_stands_open_shows_what_is_behind_it_and_nothing_else(kitchen):
@@ -61,10 +61,10 @@ def test_a_door_that_stands_open_shows_what_is_behind_it_and_nothing_else(kitche
         ),
     )
     kitchen.commit(Transaction(id="2", source="scene", edit=(edit,)))
-    assert closed_around(kitchen, milk) == (kitchen.entity("fridge1"), ("door",))
+    assert find_closed_container(kitchen, milk) == (kitchen.entity("fridge1"), ("door",))
     edit = Edit(name="fridge1", set=(Statement(property="jointPositions", values=("door=1 freezer=0",)),))
     kitchen.commit(Transaction(id="3", source="scene", edit=(edit,)))
-    assert closed_around(kitchen, milk) is None
+    assert find_closed_container(kitchen, milk) is None
 
 
 def test_of_a_chest_only_what_is_in_a_drawer_that_was_pulled_out_can_be_seen(tmp_path):
@@ -88,14 +88,14 @@ def test_of_a_chest_only_what_is_in_a_drawer_that_was_pulled_out_can_be_seen(tmp
     )
     made.commit(Transaction(id="2", source="scene", edit=edits))
     try:
-        assert closed_around(made, made.entity("apple1")) is None
-        closed = closed_around(made, made.entity("apple2"))
+        assert find_closed_container(made, made.entity("apple1")) is None
+        closed = find_closed_container(made, made.entity("apple2"))
         assert closed == (made.entity("chest1"), ("drawer_2",))
-        assert "it cannot be seen there: drawer_2 of chest1 is closed (last stated in commit 2" in in_words(
+        assert "it cannot be seen there: drawer_2 of chest1 is closed (last stated in commit 2" in describe(
             closed
         )
         say(made, 3, "false", name="chest1")
         made.commit(Transaction(id="4", source="scene", edit=(Edit(name="apple1", at=(0.05, 0.0, 0.72)),)))
-        assert closed_around(made, made.entity("apple1")) == (made.entity("chest1"), ())
+        assert find_closed_container(made, made.entity("apple1")) == (made.entity("chest1"), ())
     finally:
         home.close(made)

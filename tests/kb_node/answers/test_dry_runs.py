@@ -22,7 +22,7 @@ def tried(semantic_map, change):
     """The effects of a trial, after which everything must be as before, on disk, too."""
     before = home.state(semantic_map), set(semantic_map.reasoner.inferred()), semantic_map._journal.last
     try:
-        return dry_runs.of(semantic_map, change)
+        return dry_runs.dry_run(semantic_map, change)
     finally:
         after = home.state(semantic_map), set(semantic_map.reasoner.inferred()), semantic_map._journal.last
         assert after == before

@@ -46,16 +46,16 @@ def own(tmp_path):
 
 def explained(semantic_map, name, predicate, value, *, negated=False):
     query = Explain(name=name, predicate=predicate, value=value, negated=negated)
-    now = entity_queries.Now(semantic_map)
-    if (measured := now.measured(query)) is not None:
+    now = entity_queries.CurrentState(semantic_map)
+    if (measured := now.explain_measured(query)) is not None:
         return measured
-    found = now.explained(query, questions.parse_explain(semantic_map, query))
-    return found and found.dated(lambda facts: began(semantic_map, facts))
+    found = now.explain(query, questions.parse_explain(semantic_map, query))
+    return found and found.with_dates(lambda facts: began(semantic_map, facts))
 
 
 def began(semantic_map, facts):
     journal = semantic_map._journal
-    return fact_intervals.looked_up(journal, Past(journal), facts, semantic_map.classes.limits)
+    return fact_intervals.look_up_starts(journal, Past(journal), facts, semantic_map.classes.limits)
 
 
 def refused(semantic_map, name, predicate, value):
@@ -65,7 +65,7 @@ def refused(semantic_map, name, predicate, value):
 
 
 def test_list_says_of_on_what_a_path_says_in_sparql(flat):
-    listed = {e.name for e in entity_queries.Now(flat).entities(Entities(where=Where(on="table1")))}
+    listed = {e.name for e in entity_queries.CurrentState(flat).entities(Entities(where=Where(on="table1")))}
     held = flat.reasoner
     on, inside, table = v.dm("isOn"), v.dm("isInside"), v.iri(flat.entity("table1").iri)
     direct = {s for s, _, _ in held.given(None, on, table)}
@@ -163,7 +163,7 @@ def test_what_was_asserted_and_denied_is_said_to_be(flat):
 
 def test_what_could_be_says_what_geometry_says(flat):
     asked = questions.parse_could(flat, Could(name="water1", predicate="isOn", value="chair1"))
-    against = entity_queries.Now(flat).against(asked.triples[0])
+    against = entity_queries.CurrentState(flat).describe_conflict(asked.triples[0])
     text = questions.could(flat.reasoner, asked, against=against).text
     assert text.startswith("yes: nothing excludes")
     assert "but as things are, it stands" in text
@@ -182,13 +182,15 @@ def test_where_a_place_is_was_asserted_and_nothing_stands_against_it(flat):
 
 def test_get_says_how_high_a_thing_is_that_nothing_bears(own):
     def hovering(name):
-        return entity_queries.Now(own).entity(Get(name=name, where=True)).on_nothing
+        return entity_queries.CurrentState(own).entity(Get(name=name, where=True)).on_nothing
 
     assert hovering("milk1") == hovering("light1") == hovering("kitchen1") == ""  # lights are fixed
     edit = Edit(name="milk1", at=(2.0, 2.0, 0.42))
     own.commit(Transaction(id="lifted", source="operator", edit=(edit,)))
     text = "milk1 is on nothing: its bottom is 42.0 cm above the floor of livingroom1"
     assert hovering("milk1") == text
-    told = [r.text for r in entity_queries.Now(own).relations(Relations(name="milk1")) if not r.object]
+    told = [
+        r.text for r in entity_queries.CurrentState(own).relations(Relations(name="milk1")) if not r.object
+    ]
     assert told == [text]
-    assert not entity_queries.Now(own).entity(Get(name="milk1")).on_nothing
+    assert not entity_queries.CurrentState(own).entity(Get(name="milk1")).on_nothing

@@ -4,7 +4,7 @@ import pytest
 from msgspec import structs
 
 from semmap.nodes.kb_node.answers.entity_search import Finding
-from semmap.nodes.kb_node.answers.missing_entities import gone
+from semmap.nodes.kb_node.answers.missing_entities import describe_missing
 from semmap.nodes.kb_node.storage.history import Past
 from semmap.ontology import stars
 from semmap.ontology import vocabulary as v
@@ -225,12 +225,14 @@ def test_what_is_gone_is_told_with_when(flat):
     flat.commit(Transaction(id="2", source="operator", retract=tuple(spoon)))
     sought = finding.find(Find(text="the spoon"))
     past = Past(flat._journal)
-    told = gone(flat._journal, past, sought.missing, frozenset(flat.names), flat.classes.limits)
+    told = describe_missing(flat._journal, past, sought.missing, frozenset(flat.names), flat.classes.limits)
     assert len(told) == 1
     assert told[0].startswith("spoon1 was there until commit 3, ")
     assert sought.with_the_past(told) == structs.replace(sought.found, gone=told)
     other = finding.find(Find(text="the fork"))
-    assert gone(flat._journal, past, other.missing, frozenset(flat.names), flat.classes.limits) == ()
+    assert (
+        describe_missing(flat._journal, past, other.missing, frozenset(flat.names), flat.classes.limits) == ()
+    )
 
 
 def test_what_has_been_moved_is_told_with_when_it_was_there(flat):
@@ -242,7 +244,7 @@ def test_what_has_been_moved_is_told_with_when_it_was_there(flat):
     after = stars.position(v.iri(apple.iri), coordinates, at)
     flat.commit(Transaction(id="1", source="operator", retract=tuple(before), insert=tuple(after)))
     sought = finding.find(Find(text="the apple in the bowl"))
-    told = gone(
+    told = describe_missing(
         flat._journal, Past(flat._journal), sought.missing, frozenset(flat.names), flat.classes.limits
     )
     assert sought.found.outcome == "none"

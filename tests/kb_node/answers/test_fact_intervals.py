@@ -5,7 +5,7 @@ import random
 import pytest
 from msgspec import structs
 
-from semmap.nodes.kb_node.answers.fact_intervals import Moves, beginnings
+from semmap.nodes.kb_node.answers.fact_intervals import PoseChanges, find_fact_starts
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.schemas import codec
@@ -45,20 +45,20 @@ def test_one_pass_tells_what_looks_at_the_whole_map_tell(seed):
         for fact in gone:
             del since[fact]
         since.update(dict.fromkeys(come, commit.seq))
-    outlines = [codec.decode(codec.encode(commit), Moves) for commit in commits]
-    assert beginnings(outlines, FIRST, list(since), Thresholds()) == since
+    outlines = [codec.decode(codec.encode(commit), PoseChanges) for commit in commits]
+    assert find_fact_starts(outlines, FIRST, list(since), Thresholds()) == since
     assert len(set(since.values())) > 3
 
 
 def test_what_does_not_hold_began_at_no_commit():
     cup = thing("cup1", (2.0, 2.0, 0.0))
-    came = Moves(seq=1, changed=codec.decode(codec.encode(commit_of(cup)), Moves).changed)
-    assert beginnings([came], FIRST, [("cup1", "isOn", "table1")], Thresholds()) == {}
+    came = PoseChanges(seq=1, changed=codec.decode(codec.encode(commit_of(cup)), PoseChanges).changed)
+    assert find_fact_starts([came], FIRST, [("cup1", "isOn", "table1")], Thresholds()) == {}
     on = structs.replace(cup, pose=Pose(position_m=(0.0, 0.0, TOP)))
-    moved = Moves(seq=2, changed=codec.decode(codec.encode(commit_of(on)), Moves).changed)
+    moved = PoseChanges(seq=2, changed=codec.decode(codec.encode(commit_of(on)), PoseChanges).changed)
     fact = ("cup1", "isOn", "table1")
-    assert beginnings([came, moved], FIRST, [fact], Thresholds()) == {fact: 2}
-    assert beginnings([moved, came], FIRST, [fact], Thresholds()) == {}
+    assert find_fact_starts([came, moved], FIRST, [fact], Thresholds()) == {fact: 2}
+    assert find_fact_starts([moved, came], FIRST, [fact], Thresholds()) == {}
 
 
 def commit_of(entity):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from semmap.nodes.kb_node.answers.entity_queries import Now
+from semmap.nodes.kb_node.answers.entity_queries import CurrentState
 from semmap.nodes.kb_node.answers.live_poses import LiveEntities
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import Journal
@@ -48,31 +48,31 @@ def heard(x: float) -> LivePoses:
 
 
 def nearest(semantic_map) -> list[str]:
-    found = Now(semantic_map).entities(Entities(where=Where(nearest=1, to="robot1")))
+    found = CurrentState(semantic_map).entities(Entities(where=Where(nearest=1, to="robot1")))
     return [entity.name for entity in found]
 
 
 def test_the_nearest_are_those_of_now(semantic_map):
     now_s = 0.0
     live = LiveEntities(semantic_map, lambda: now_s)
-    with live.supposed():
+    with live.applied():
         assert nearest(semantic_map) == ["chair1"]
-    live.take(heard(9.0))
-    with live.supposed():
+    live.update(heard(9.0))
+    with live.applied():
         assert nearest(semantic_map) == ["chair2"]
-        near = Now(semantic_map).relations(Relations(name="robot1", other="chair2"))
+        near = CurrentState(semantic_map).relations(Relations(name="robot1", other="chair2"))
         assert "isNear" in {relation.relation for relation in near if relation.holds}
     assert nearest(semantic_map) == ["chair1"]  # as committed
     assert semantic_map.entity("robot1").pose == Pose(position_m=(2.0, 0.0, 0.0))
     now_s = 10.0  # whoever told is gone
-    with live.supposed():
+    with live.applied():
         assert nearest(semantic_map) == ["chair1"]
 
 
 def test_only_what_is_tracked_is_put_elsewhere(semantic_map):
     live = LiveEntities(semantic_map, lambda: 0.0)
-    live.take(heard(9.0))
-    with live.supposed():
+    live.update(heard(9.0))
+    with live.applied():
         assert semantic_map.places.space().solids["chair1"].position[0] == 0.0
         assert "nobody1" not in semantic_map.places.space().solids
 

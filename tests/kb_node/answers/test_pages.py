@@ -55,13 +55,13 @@ def test_whoever_fetches_pages_is_expected_to_ask_for_the_next(semantic_map, mon
     clock = [100.0]
     monkeypatch.setattr(pages_module.time, "monotonic", lambda: clock[0])
     pages = Pages(semantic_map)
-    assert pages.may_follow  # after a start
+    assert pages.is_request_expected  # after a start
     clock[0] += 10.0
-    assert not pages.may_follow
+    assert not pages.is_request_expected
     pages.snapshot(SnapshotQuery(limit=2))
-    assert pages.may_follow
+    assert pages.is_request_expected
     pages.snapshot(SnapshotQuery(limit=200, after="chair2"))
-    assert not pages.may_follow
+    assert not pages.is_request_expected
     pages.snapshot(SnapshotQuery(limit=2))
     clock[0] += 10.0
-    assert not pages.may_follow  # it has given up
+    assert not pages.is_request_expected  # it has given up

@@ -51,40 +51,43 @@ def look(name, stamp_ns):
 
 def test_what_is_marked_missing_was_seen_to_be_gone_since_that_was_said(sightings, semantic_map):
     entity = semantic_map.entity("chair1")
-    assert sightings.is_gone(entity)
-    told = sightings.gone("chair1", entity)
+    assert sightings.is_missing(entity)
+    told = sightings.describe_removed("chair1", entity)
     assert (told.gone.commit, told.removed, told.provenance.commit) == (2, None, 1)
     assert re.fullmatch(r"seen to be gone at commit 2, \d+ s ago: not seen where it should stand", told.text)
 
 
 def test_what_perception_removed_was_seen_to_be_gone_and_what_ann_removed_was_not(sightings):
-    seen, tidied = sightings.gone("chair2", None), sightings.gone("chair3", None)
+    seen, tidied = sightings.describe_removed("chair2", None), sightings.describe_removed("chair3", None)
     assert seen.gone == seen.removed
     assert seen.text.endswith("ago: chair2 is gone: its place was empty in 10 looks")
     assert (tidied.gone, tidied.removed.commit) == (None, 5)
     assert re.fullmatch(r"removed at commit 5, \d+ s ago by operator/ann", tidied.text)
     with pytest.raises(errors.UnknownName):
-        sightings.gone("chair9", None)
+        sightings.describe_removed("chair9", None)
 
 
 def test_what_is_there_is_in_sight_or_has_not_been_seen_since(sightings, semantic_map):
     entity = semantic_map.entity("chair4")
-    assert not sightings.is_gone(entity)
+    assert not sightings.is_missing(entity)
     assert re.fullmatch(
         r"placed by operator/ann at commit 1, \d+ s ago; not seen since, nor seen to be gone",
-        sightings.there(entity).text,
+        sightings.describe_present(entity).text,
     )
-    sightings.see(look("chair4", entity.pose_provenance.stamp_ns - 1))
-    assert sightings.there(entity).seen_ns is None  # before it came there
+    sightings.record(look("chair4", entity.pose_provenance.stamp_ns - 1))
+    assert sightings.describe_present(entity).seen_ns is None  # before it came there
     now_ns = time.time_ns()
-    sightings.see(look("chair4", now_ns))
-    told = sightings.there(entity)
+    sightings.record(look("chair4", now_ns))
+    told = sightings.describe_present(entity)
     assert (told.seen_ns, told.text) == (now_ns, "in sight of a camera just now")
 
 
 def test_a_look_of_long_ago_is_no_look_of_now(sightings, semantic_map, monkeypatch):
     entity = semantic_map.entity("chair4")
-    sightings.see(look("chair4", time.time_ns()))
+    sightings.record(look("chair4", time.time_ns()))
     later_ns = time.time_ns() + 180 * 10**9
     monkeypatch.setattr("time.time_ns", lambda: later_ns)
-    assert sightings.there(entity).text == "last in sight 3 min ago; not seen since, nor seen to be gone"
+    assert (
+        sightings.describe_present(entity).text
+        == "last in sight 3 min ago; not seen since, nor seen to be gone"
+    )

@@ -221,7 +221,7 @@ def test_a_quaternion_is_in_the_vocabularys_order(kitchen):
 def test_the_shipped_alignments_can_be_read():
     titles = [known.title for known in alignments.shipped()]
     assert {"DUL", "SOMA and KnowRob", "oro"} <= set(titles)
-    assert alignments.of_namespaces([v.TBOX]) == ()
+    assert alignments.find_for_namespaces([v.TBOX]) == ()
 
 
 @pytest.mark.parametrize("text", ["title = 3", "nonsense", 'title = "x"\nnamespaces = ["y"]', 'title = "x"'])
@@ -233,5 +233,5 @@ def test_what_is_no_alignment_is_told(text):
 def test_what_is_said_of_places_in_other_words_is_compared_with_the_poses(kitchen):
     cup = DRAWER.replace("drawer1", "cup1").replace("soma:Drawer", "soma:Cup").replace("1.4 0.9", "5.0 0.9")
     kitchen.commit(home.transaction(2, triples(cup + "map:cup1 soma:isOntopOf map:drawer1 .", "b")))
-    (wrong,) = entity_queries.Now(kitchen).entity(Get(name="cup1", where=True)).denied
+    (wrong,) = entity_queries.CurrentState(kitchen).entity(Get(name="cup1", where=True)).denied
     assert wrong.text.startswith("cup1 was said to be on drawer1; it ")

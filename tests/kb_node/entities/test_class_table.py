@@ -94,7 +94,7 @@ def test_a_class_is_found_by_its_names_and_labels():
 
 def test_what_properties_take_is_named_as_classes_are():
     lab = "<http://a.org/lab.owl#seats> a owl:ObjectProperty ; rdfs:domain dm:Chair ; rdfs:range dm:Seat ."
-    rows = {row.name: row for row in table(TWINS + lab).stated.rows()}
+    rows = {row.name: row for row in table(TWINS + lab).property_table.rows()}
     assert (rows["seats"].domain, rows["seats"].range) == (("dm:Chair",), ("Seat",))
 
 

@@ -181,4 +181,4 @@ def test_what_the_tbox_says_is_nobody_s_own(tmp_path):
 def test_owners_are_the_thing_and_who_points_to_it(semantic_map):
     semantic_map.commit(transaction(1, chair()))
     node = v.entity_iri("chair1_coordinates")
-    assert entity_reading.owners(semantic_map.reasoner, semantic_map.classes, node) == {node, CHAIR1}
+    assert entity_reading.find_owners(semantic_map.reasoner, semantic_map.classes, node) == {node, CHAIR1}

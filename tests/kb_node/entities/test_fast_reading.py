@@ -110,7 +110,7 @@ def check_alike(tmp_path_factory, shape, numbers):
 def _each_by_itself(semantic_map):
     reasoner, classes = semantic_map.reasoner, semantic_map.classes
     for iri in sorted(reasoner.instances(v.dm("Chair"))):
-        known = semantic_map.known(iri)
+        known = semantic_map.find_by_iri(iri)
         yield entity_reading.read_entity(
             reasoner, classes, iri, known.provenance if known else entity_reading._OF_THE_TBOX
         )
@@ -124,7 +124,7 @@ def _said(read):
         return error.text
 
 
-def test_the_usual_star_is_read_at_sight(semantic_map, monkeypatch):
+def test_the_usual_star_is_read_regular(semantic_map, monkeypatch):
     numbers = count()
 
     def usual(name):

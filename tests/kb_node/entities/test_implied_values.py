@@ -1,6 +1,6 @@
 """Who states one thing of how far open something is takes back what it makes untrue."""
 
-from semmap.nodes.kb_node.entities.implied_values import implied
+from semmap.nodes.kb_node.entities.implied_values import imply_joint_values
 from semmap.ontology import vocabulary as v
 
 TRUE, FALSE = (v.literal(word, v.XSD_BOOLEAN) for word in ("true", "false"))
@@ -10,27 +10,27 @@ OPEN = {v.IS_OPEN: [TRUE], v.OPENNESS: [HALF], v.JOINT_POSITIONS: [DOOR]}
 
 
 def test_to_say_that_it_is_shut_takes_back_how_far_open_it_was():
-    assert implied({v.IS_OPEN: [FALSE]}, OPEN) == {v.OPENNESS: [], v.JOINT_POSITIONS: []}
+    assert imply_joint_values({v.IS_OPEN: [FALSE]}, OPEN) == {v.OPENNESS: [], v.JOINT_POSITIONS: []}
 
 
 def test_how_far_open_says_whether_it_is_open():
-    assert implied({v.OPENNESS: [NONE]}, OPEN) == {v.IS_OPEN: [FALSE], v.JOINT_POSITIONS: []}
-    assert implied({v.OPENNESS: [HALF]}, {}) == {v.IS_OPEN: [TRUE]}
+    assert imply_joint_values({v.OPENNESS: [NONE]}, OPEN) == {v.IS_OPEN: [FALSE], v.JOINT_POSITIONS: []}
+    assert imply_joint_values({v.OPENNESS: [HALF]}, {}) == {v.IS_OPEN: [TRUE]}
 
 
 def test_what_is_said_together_stays():
     said = {v.IS_OPEN: [FALSE], v.OPENNESS: [NONE], v.JOINT_POSITIONS: [v.literal("door=0")]}
-    assert implied(said, OPEN) == {}
+    assert imply_joint_values(said, OPEN) == {}
 
 
 def test_what_says_nothing_new_changes_nothing():
-    assert implied({v.IS_OPEN: [TRUE]}, OPEN) == {}
-    assert implied({v.dm("hasColor"): [v.dm("color_red")]}, OPEN) == {}
+    assert imply_joint_values({v.IS_OPEN: [TRUE]}, OPEN) == {}
+    assert imply_joint_values({v.dm("hasColor"): [v.dm("color_red")]}, OPEN) == {}
 
 
 def test_switches_and_doors_do_not_concern_one_another():
     said = {**OPEN, v.IS_SWITCHED_ON: [TRUE], v.SWITCH_POSITIONS: [v.literal("knob=1")]}
-    assert implied({v.IS_SWITCHED_ON: [FALSE]}, said) == {v.SWITCH_POSITIONS: []}
-    assert implied({v.IS_OPEN: [FALSE]}, said) == {v.OPENNESS: [], v.JOINT_POSITIONS: []}
+    assert imply_joint_values({v.IS_SWITCHED_ON: [FALSE]}, said) == {v.SWITCH_POSITIONS: []}
+    assert imply_joint_values({v.IS_OPEN: [FALSE]}, said) == {v.OPENNESS: [], v.JOINT_POSITIONS: []}
     both = {v.IS_OPEN: [FALSE], v.IS_SWITCHED_ON: [FALSE]}
-    assert implied(both, said) == {v.OPENNESS: [], v.JOINT_POSITIONS: [], v.SWITCH_POSITIONS: []}
+    assert imply_joint_values(both, said) == {v.OPENNESS: [], v.JOINT_POSITIONS: [], v.SWITCH_POSITIONS: []}

@@ -93,12 +93,12 @@ def test_one_model_at_most_is_stated(household):
 
 
 def test_it_is_among_the_properties_that_may_be_stated(household):
-    (row,) = (row for row in household.classes.stated.rows() if row.name == "model")
+    (row,) = (row for row in household.classes.property_table.rows() if row.name == "model")
     assert (row.kind, row.functional, row.range) == ("data", True, ("string",))
 
 
 def test_a_tbox_that_does_not_know_models_has_no_such_property(semantic_map):
-    assert "model" not in {row.name for row in semantic_map.classes.stated.rows()}
+    assert "model" not in {row.name for row in semantic_map.classes.property_table.rows()}
 
 
 def on(name, other):

@@ -167,7 +167,7 @@ def test_a_set_is_undone_by_its_triples(stateful_map):
 
 
 def test_the_rows_say_what_a_property_takes(stateful_map):
-    rows = {row.name: row for row in stateful_map.classes.stated.rows()}
+    rows = {row.name: row for row in stateful_map.classes.property_table.rows()}
     assert rows["isOpen"] == PropertyInfo(
         name="isOpen",
         iri=v.bare(v.dm("isOpen")),

@@ -2,7 +2,7 @@
 
 import pytest
 
-from semmap.nodes.kb_node.entities.property_values import literal, plain, same
+from semmap.nodes.kb_node.entities.property_values import is_same_value, literal, to_json_value
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 
@@ -41,8 +41,8 @@ ANY_TEXT = v.iri(f"{v.RDFS}Literal")
 )
 def test_text_is_typed_by_the_range(ranges, text, term, shown):
     assert literal("p", frozenset(ranges), text) == term
-    assert plain(term) == shown
-    assert type(plain(term)) is type(shown)
+    assert to_json_value(term) == shown
+    assert type(to_json_value(term)) is type(shown)
 
 
 @pytest.mark.parametrize(
@@ -67,10 +67,10 @@ def test_what_is_outside_the_range_is_refused(datatype, text, said):
 
 
 def test_values_are_compared_and_not_their_spelling():
-    assert same(v.literal("01", INTEGER), v.literal("1.0", DECIMAL))
-    assert not same(v.literal("1", INTEGER), v.literal("1"))
-    assert not same(v.literal("x", INTEGER), v.literal("y", INTEGER))
-    assert same(v.dm("a"), v.dm("a"))
-    assert not same(v.dm("a"), v.literal("a"))
-    assert plain(v.dm("color_red")) == "color_red"
-    assert plain('"x"^^<http://www.w3.org/2001/XMLSchema#integer>') == "x"
+    assert is_same_value(v.literal("01", INTEGER), v.literal("1.0", DECIMAL))
+    assert not is_same_value(v.literal("1", INTEGER), v.literal("1"))
+    assert not is_same_value(v.literal("x", INTEGER), v.literal("y", INTEGER))
+    assert is_same_value(v.dm("a"), v.dm("a"))
+    assert not is_same_value(v.dm("a"), v.literal("a"))
+    assert to_json_value(v.dm("color_red")) == "color_red"
+    assert to_json_value('"x"^^<http://www.w3.org/2001/XMLSchema#integer>') == "x"

@@ -4,7 +4,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from semmap.nodes.kb_node.handlers import changing
+from semmap.nodes.kb_node.handlers import changes as changes_module
 from semmap.nodes.kb_node.handlers.changes import ChangeHandlers
 from semmap.schemas import errors
 from semmap.schemas.bridge import MadeBy, TakeBack, Transactions
@@ -41,7 +41,7 @@ def changes(semantic_map, listener):
     return ChangeHandlers(
         semantic_map,
         semantic_map._journal,
-        spread=listener.spread,
+        publish=listener.spread,
         not_written=listener.refused.append,
         reporting_progress=listener.reporting_progress,
     )
@@ -82,7 +82,7 @@ def test_what_the_disk_does_not_take_is_told_as_such(changes, listener, semantic
 
 
 def test_large_changes_say_how_far_they_are(changes, listener, monkeypatch):
-    monkeypatch.setattr(changing, "_FEW", 2)
+    monkeypatch.setattr(changes_module, "_FEW", 2)
     changes.on_commit(new("a", "b"))
     assert listener.work == []
     changes.on_commit(new("c", "d", "e", reason="load five.json"))

@@ -12,10 +12,10 @@ from semmap.schemas.entities import Pose
 
 
 class NoSparql:
-    def foresee(self, *document, packed):
+    def prefetch(self, *document, packed):
         """Nothing."""
 
-    def forget(self):
+    def discard_prepared(self):
         """Nothing."""
 
 
@@ -26,7 +26,7 @@ def loading(semantic_map, said):
     changing = ChangeHandlers(
         semantic_map,
         semantic_map._journal,
-        spread=lambda commit, **how: None,
+        publish=lambda commit, **how: None,
         not_written=said.append,
         reporting_progress=reporting_progress,
     )

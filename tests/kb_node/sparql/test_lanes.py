@@ -6,7 +6,7 @@ import pytest
 from msgspec import Raw, msgpack
 
 from semmap.nodes.kb_node.sparql import lanes
-from semmap.nodes.kb_node.sparql.lanes import AT_LENGTH, LANES, Lanes
+from semmap.nodes.kb_node.sparql.lanes import LANES, LONG_RUNNING, Lanes
 from semmap.nodes.kb_node.sparql.protocol import (
     QueryOutcome,
     ReaderExited,
@@ -40,23 +40,23 @@ class Readers:
 
     def asked(self):
         """The lanes in which a question waits for a reader."""
-        return [number for number, lane in enumerate(self.lanes.others) if lane.poll(0)]
+        return [number for number, lane in enumerate(self.lanes.remote_ends) if lane.poll(0)]
 
     def take(self, lane):
-        assert self.lanes.others[lane].poll(WAIT_S)
-        return questions.decode(self.lanes.others[lane].recv_bytes())
+        assert self.lanes.remote_ends[lane].poll(WAIT_S)
+        return questions.decode(self.lanes.remote_ends[lane].recv_bytes())
 
     def answer(self, lane, question, **outcome):
         result = Raw(msgpack.encode(SparqlResult(kind="ask", seq=7, verdict=True)))
         message = QueryOutcome(number=question.number, **({"result": result} | outcome))
-        self.lanes.others[lane].send_bytes(msgpack.encode(message))
+        self.lanes.remote_ends[lane].send_bytes(msgpack.encode(message))
 
 
 @pytest.fixture
 def readers():
     made = Readers()
     yield made
-    for connection in made.lanes.others:
+    for connection in made.lanes.remote_ends:
         connection.close()
 
 
@@ -76,7 +76,7 @@ def test_each_question_has_a_lane_and_the_warm_one_comes_first(readers):
 def test_what_finds_no_lane_waits_for_the_next(readers):
     futures = [readers.ask(str(number)) for number in range(LANES + 1)]
     taken = [readers.take(lane) for lane in range(LANES)]
-    assert not readers.lanes.others[2].poll(0)
+    assert not readers.lanes.remote_ends[2].poll(0)
     readers.answer(2, taken[2])
     assert futures[2].result(WAIT_S).verdict
     assert readers.take(2).query == str(LANES)
@@ -85,7 +85,7 @@ def test_what_finds_no_lane_waits_for_the_next(readers):
 def test_a_reader_that_dies_of_its_query_takes_the_answer_with_it(readers):
     future = readers.ask("endless")
     late = readers.take(0)
-    readers.lanes.leave(ReaderExited(lane=0, signal=signal.SIGALRM))
+    readers.lanes.on_reader_exit(ReaderExited(lane=0, signal=signal.SIGALRM))
     with pytest.raises(errors.Refused, match=r"cancelled after 1.5 s"):
         future.result(WAIT_S)
     following = readers.ask("next")
@@ -97,11 +97,11 @@ def test_a_reader_that_dies_of_its_query_takes_the_answer_with_it(readers):
 
 def test_a_reader_that_goes_leaves_the_question_to_the_next(readers):
     future = readers.ask("unread")
-    readers.lanes.leave(ReaderExited(lane=0, signal=0))
+    readers.lanes.on_reader_exit(ReaderExited(lane=0, signal=0))
     assert readers.sent == [StartReader(lane=0), StartReader(lane=0)]
     given_back = readers.take(0)
     readers.answer(0, given_back, old=True)
-    readers.lanes.leave(ReaderExited(lane=0, signal=0))
+    readers.lanes.on_reader_exit(ReaderExited(lane=0, signal=0))
     again = readers.take(0)
     assert again == given_back
     readers.answer(0, again)
@@ -132,28 +132,28 @@ def test_where_all_lanes_take_long_one_is_set_aside_for_who_waits_and_begun_anew
     monkeypatch.setattr(lanes, "LONG_S", 0.05)
     futures, taken = begun(readers, LANES)
     quick = readers.ask("quick")
-    until(lambda: StopReader(lane=AT_LENGTH) in readers.sent, "one is set aside")
-    readers.lanes.leave(ReaderExited(lane=AT_LENGTH, signal=0))
-    assert readers.sent[-1] == StartReader(lane=AT_LENGTH)
-    question = readers.take(AT_LENGTH)
+    until(lambda: StopReader(lane=LONG_RUNNING) in readers.sent, "one is set aside")
+    readers.lanes.on_reader_exit(ReaderExited(lane=LONG_RUNNING, signal=0))
+    assert readers.sent[-1] == StartReader(lane=LONG_RUNNING)
+    question = readers.take(LONG_RUNNING)
     assert question.query == "quick"
-    readers.answer(AT_LENGTH, question)
+    readers.answer(LONG_RUNNING, question)
     assert quick.result(WAIT_S).verdict
     assert readers.asked() == []  # still enough others take long
     readers.answer(0, taken[0])
-    for lane in range(AT_LENGTH + 1, LANES):
+    for lane in range(LONG_RUNNING + 1, LANES):
         readers.answer(lane, taken[lane])
     (again,) = until(readers.asked, "it is begun anew")
     question = readers.take(again)
-    assert question == taken[AT_LENGTH]
+    assert question == taken[LONG_RUNNING]
     readers.answer(again, question)
-    assert futures[AT_LENGTH].result(WAIT_S).verdict
+    assert futures[LONG_RUNNING].result(WAIT_S).verdict
 
 
 def test_nothing_is_set_aside_while_nobody_waits(readers, monkeypatch):
     monkeypatch.setattr(lanes, "LONG_S", 0.0)
     begun(readers, LANES)
-    readers.lanes._make_room()
+    readers.lanes._preempt()
     assert all(isinstance(sent, StartReader) for sent in readers.sent)
     assert readers.lanes._timer is None
 

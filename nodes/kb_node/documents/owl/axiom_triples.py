@@ -105,25 +105,25 @@ class _Part(Expressions):
     def of(self, annotated: m.AnnotatedComponent) -> _Part:
         """Take in an axiom with its annotations."""
         axiom: Any = annotated.component
-        about = self._mapped(axiom)
+        about = self._map_axiom(axiom)
         for said in about:
             self._annotate(said, annotated.ann, _AXIOM)
         return self
 
-    def _mapped(self, axiom: Any) -> Sequence[Triple | Term]:
+    def _map_axiom(self, axiom: Any) -> Sequence[Triple | Term]:
         """Say it; what its annotations are about: triples, or the blank node that stands for the axiom."""
         kind = type(axiom)
         if kind in _DECLARATIONS:
-            return self.say(self.term(axiom.first), v.RDF_TYPE, _DECLARATIONS[kind])
+            return self.add(self.term(axiom.first), v.RDF_TYPE, _DECLARATIONS[kind])
         if kind in _CHARACTERISTICS:
-            return self.say(self.term(axiom.first), v.RDF_TYPE, _CHARACTERISTICS[kind])
+            return self.add(self.term(axiom.first), v.RDF_TYPE, _CHARACTERISTICS[kind])
         if kind in _OF_TWO:
             subject, predicate, value = _OF_TWO[kind]
-            return self.say(self.term(getattr(axiom, subject)), predicate, self.term(getattr(axiom, value)))
+            return self.add(self.term(getattr(axiom, subject)), predicate, self.term(getattr(axiom, value)))
         if kind in _CHAINED:
             terms = list(map(self.term, axiom.first))
             pairs = itertools.pairwise(terms)
-            return [t for a, b in pairs for t in self.say(a, _CHAINED[kind], b)]
+            return [t for a, b in pairs for t in self.add(a, _CHAINED[kind], b)]
         if kind in _APART:
             return self._apart(axiom.first, *_APART[kind])
         return _OTHERS.get(kind, _Part._nothing)(self, axiom)
@@ -131,9 +131,9 @@ class _Part(Expressions):
     def _apart(self, members: Sequence[Any], predicate: Term, kind: Term) -> Sequence[Triple | Term]:
         terms = list(map(self.term, members))
         if len(terms) == 2:
-            return self.say(terms[0], predicate, terms[1])
-        node = self.blank(kind)
-        self.say(node, owl("members"), self.list_of(terms))
+            return self.add(terms[0], predicate, terms[1])
+        node = self.new_blank_node(kind)
+        self.add(node, owl("members"), self.list_of(terms))
         return [node]
 
     def _annotate(
@@ -147,12 +147,12 @@ class _Part(Expressions):
             return
         node = about if isinstance(about, str) else self._reified(about, kind)
         for (predicate, value), own in said:
-            self._annotate(self.say(node, predicate, value)[0], own)
+            self._annotate(self.add(node, predicate, value)[0], own)
 
     def _reified(self, triple: Triple, kind: Term) -> Term:
-        node = self.blank(kind)
+        node = self.new_blank_node(kind)
         for name, term in zip(("Source", "Property", "Target"), triple, strict=True):
-            self.say(node, owl(f"annotated{name}"), term)
+            self.add(node, owl(f"annotated{name}"), term)
         return node
 
     # The axioms that are like no other
@@ -162,72 +162,72 @@ class _Part(Expressions):
 
     def _identity(self, axiom: m.OntologyID) -> list[Triple]:
         if axiom.viri is not None:
-            self.say(self._ontology, owl("versionIRI"), self.term(axiom.viri))
-        return self.say(self._ontology, v.RDF_TYPE, v.OWL_ONTOLOGY)
+            self.add(self._ontology, owl("versionIRI"), self.term(axiom.viri))
+        return self.add(self._ontology, v.RDF_TYPE, v.OWL_ONTOLOGY)
 
     def _import(self, axiom: m.Import) -> list[Triple]:
-        return self.say(self._ontology, v.OWL_IMPORTS, self.term(axiom.first))
+        return self.add(self._ontology, v.OWL_IMPORTS, self.term(axiom.first))
 
     def _ontology_annotation(self, axiom: m.OntologyAnnotation) -> list[Triple]:
         self._annotate(self._ontology, [axiom.first])
         return []
 
     def _annotation_assertion(self, axiom: m.AnnotationAssertion) -> list[Triple]:
-        said = self.say(self.term(axiom.subject), self.term(axiom.ann.ap), self.term(axiom.ann.av))
+        said = self.add(self.term(axiom.subject), self.term(axiom.ann.ap), self.term(axiom.ann.av))
         self._annotate(said[0], axiom.ann.ann, _AXIOM)
         return said
 
     def _sub_object_property(self, axiom: m.SubObjectPropertyOf) -> list[Triple]:
         wider = self.term(axiom.sup)
         if isinstance(axiom.sub, list):
-            return self.say(wider, owl("propertyChainAxiom"), self.list_of(map(self.term, axiom.sub)))
-        return self.say(self.term(axiom.sub), v.RDFS_SUB_PROPERTY_OF, wider)
+            return self.add(wider, owl("propertyChainAxiom"), self.list_of(map(self.term, axiom.sub)))
+        return self.add(self.term(axiom.sub), v.RDFS_SUB_PROPERTY_OF, wider)
 
     def _disjoint_union(self, axiom: m.DisjointUnion) -> list[Triple]:
         whole = self.term(axiom.first)
-        return self.say(whole, owl("disjointUnionOf"), self.list_of(map(self.term, axiom.second)))
+        return self.add(whole, owl("disjointUnionOf"), self.list_of(map(self.term, axiom.second)))
 
     def _key(self, axiom: m.HasKey) -> list[Triple]:
-        return self.say(self.term(axiom.ce), owl("hasKey"), self.list_of(map(self.term, axiom.vpe)))
+        return self.add(self.term(axiom.ce), owl("hasKey"), self.list_of(map(self.term, axiom.vpe)))
 
     def _property_assertion(self, axiom: m.ObjectPropertyAssertion | m.DataPropertyAssertion) -> list[Triple]:
         p: Any = axiom.ope if isinstance(axiom, m.ObjectPropertyAssertion) else axiom.dp
         s, o = self.term(axiom.source), self.term(axiom.target)
         if isinstance(p, m.InverseObjectProperty):
-            return self.say(o, self.term(p.first), s)
-        return self.say(s, self.term(p), o)
+            return self.add(o, self.term(p.first), s)
+        return self.add(s, self.term(p), o)
 
     def _negative(
         self, axiom: m.NegativeObjectPropertyAssertion | m.NegativeDataPropertyAssertion
     ) -> list[Term]:
         of_objects = isinstance(axiom, m.NegativeObjectPropertyAssertion)
         p: Any = axiom.ope if isinstance(axiom, m.NegativeObjectPropertyAssertion) else axiom.dp
-        node = self.blank(owl("NegativePropertyAssertion"))
-        self.say(node, owl("sourceIndividual"), self.term(axiom.source))
-        self.say(node, owl("assertionProperty"), self.term(p))
-        self.say(node, owl("targetIndividual" if of_objects else "targetValue"), self.term(axiom.target))
+        node = self.new_blank_node(owl("NegativePropertyAssertion"))
+        self.add(node, owl("sourceIndividual"), self.term(axiom.source))
+        self.add(node, owl("assertionProperty"), self.term(p))
+        self.add(node, owl("targetIndividual" if of_objects else "targetValue"), self.term(axiom.target))
         return [node]
 
     def _rule(self, axiom: m.Rule) -> list[Term]:
-        node = self.blank(swrl("Imp"))
+        node = self.new_blank_node(swrl("Imp"))
         for name, atoms in (("body", axiom.body), ("head", axiom.head)):
-            self.say(node, swrl(name), self.list_of(map(self._atom, atoms), swrl("AtomList")))
+            self.add(node, swrl(name), self.list_of(map(self._atom, atoms), swrl("AtomList")))
         return [node]
 
     def _atom(self, atom: Any) -> Term:
         kind, predicate = _ATOMS[type(atom)]
-        node = self.blank(swrl(kind))
+        node = self.new_blank_node(swrl(kind))
         if isinstance(atom, (m.SameIndividualAtom, m.DifferentIndividualsAtom)):
             arguments = [atom.first, atom.second]
         else:
-            self.say(node, predicate, self.term(atom.pred))
+            self.add(node, predicate, self.term(atom.pred))
             arguments = atom.args if hasattr(atom, "args") else [atom.arg]
         terms = list(map(self.term, arguments))
         if isinstance(atom, m.BuiltInAtom):
-            self.say(node, swrl("arguments"), self.list_of(terms))
+            self.add(node, swrl("arguments"), self.list_of(terms))
         else:
             for number, term in enumerate(terms, start=1):
-                self.say(node, swrl(f"argument{number}"), term)
+                self.add(node, swrl(f"argument{number}"), term)
         return node
 
 

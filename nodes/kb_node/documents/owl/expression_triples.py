@@ -65,7 +65,7 @@ class Expressions:
         self.triples: list[Triple] = []
         self._blanks = 0
 
-    def say(self, s: Term, p: Term, o: Term) -> list[Triple]:
+    def add(self, s: Term, p: Term, o: Term) -> list[Triple]:
         """Add a triple; a list of just that."""
         self.triples.append((s, p, o))
         return [(s, p, o)]
@@ -75,10 +75,10 @@ class Expressions:
         kind = type(x)
         if kind in _COMBINED:
             meta, predicate = _COMBINED[kind]
-            return self._described(meta, (predicate, self.list_of(map(self.term, x.first))))
+            return self._describe(meta, (predicate, self.list_of(map(self.term, x.first))))
         if kind in _COMPLEMENTS:
             meta, predicate = _COMPLEMENTS[kind]
-            return self._described(meta, (predicate, self.term(x.first)))
+            return self._describe(meta, (predicate, self.term(x.first)))
         if kind in _VALUES:
             on, predicate, value = _VALUES[kind]
             return self._restriction(getattr(x, on), (predicate, self.term(getattr(x, value))))
@@ -87,19 +87,19 @@ class Expressions:
         if isinstance(x, m.ObjectHasSelf):
             return self._restriction(x.first, (owl("hasSelf"), v.literal("true", v.XSD_BOOLEAN)))
         if isinstance(x, m.DatatypeRestriction):
-            facets = self.list_of([self._described(None, self._facet(f)) for f in x.second])
+            facets = self.list_of([self._describe(None, self._facet(f)) for f in x.second])
             base = self.term(x.first)
-            return self._described(DATATYPE, (owl("onDatatype"), base), (owl("withRestrictions"), facets))
+            return self._describe(DATATYPE, (owl("onDatatype"), base), (owl("withRestrictions"), facets))
         if isinstance(x, m.InverseObjectProperty):
-            return self._described(None, (owl("inverseOf"), self.term(x.first)))
+            return self._describe(None, (owl("inverseOf"), self.term(x.first)))
         if isinstance(x, m.Variable):
             variable = self.term(x.first)
-            self.say(variable, v.RDF_TYPE, swrl("Variable"))
+            self.add(variable, v.RDF_TYPE, swrl("Variable"))
             return variable
         return _atomic(x)
 
     def _restriction(self, on: Any, *said: tuple[Term, Term]) -> Term:
-        return self._described(_RESTRICTION, (owl("onProperty"), self.term(on)), *said)
+        return self._describe(_RESTRICTION, (owl("onProperty"), self.term(on)), *said)
 
     def _cardinality(self, x: Any, on: str, bound: str, of: Term, filler: str) -> Term:
         """Those of whatever there is are unqualified, as in the RDF of other tools."""
@@ -116,25 +116,25 @@ class Expressions:
         space = v.RDF if name == "LangRange" else v.XSD
         return v.iri(space + name[0].lower() + name[1:]), self.term(restriction.l)
 
-    def _described(self, kind: Term | None, *said: tuple[Term, Term]) -> Term:
-        node = self.blank(kind)
+    def _describe(self, kind: Term | None, *said: tuple[Term, Term]) -> Term:
+        node = self.new_blank_node(kind)
         for predicate, value in said:
-            self.say(node, predicate, value)
+            self.add(node, predicate, value)
         return node
 
-    def blank(self, kind: Term | None) -> Term:
+    def new_blank_node(self, kind: Term | None) -> Term:
         """A new blank node, of a class if that is said."""
         node = f"_:{self._blanks}"
         self._blanks += 1
         if kind is not None:
-            self.say(node, v.RDF_TYPE, kind)
+            self.add(node, v.RDF_TYPE, kind)
         return node
 
     def list_of(self, members: Iterable[Term], kind: Term | None = None) -> Term:
         """An RDF list."""
         rest = v.RDF_NIL
         for member in reversed(list(members)):
-            rest = self._described(kind, (v.RDF_FIRST, member), (v.RDF_REST, rest))
+            rest = self._describe(kind, (v.RDF_FIRST, member), (v.RDF_REST, rest))
         return rest
 
 

@@ -86,7 +86,7 @@ def parse(text: str, syntax: OwlSyntax) -> list[Triple]:
     try:
         ontology = pyhornedowl.open_ontology_from_string(prepared, serialization=_HORNED[syntax])
     except ValueError as error:
-        raise ValueError(_spoken(str(error), text, prepared)) from None
+        raise ValueError(_describe_error(str(error), text, prepared)) from None
     triples = triples_of(ontology.get_components())
     for term in {term for triple in triples for term in triple}:
         if term.startswith("<") and not _IRI.fullmatch(term):
@@ -133,7 +133,7 @@ def _prepared_xml(text: str) -> str:
     return _REFERENCE.sub(written_out, body)
 
 
-def _spoken(fault: str, text: str, prepared: str) -> str:
+def _describe_error(fault: str, text: str, prepared: str) -> str:
     """The complaint about a text, as it was prepared on the same lines, for people and with the line."""
     if place := _LINE.search(fault):
         line, shown = int(place[1]), text.splitlines()[int(place[1]) - 1 :][:1]

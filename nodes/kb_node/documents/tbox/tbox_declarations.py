@@ -20,7 +20,7 @@ from semmap.schemas.explanations import Term, Triple
 _TRUE = v.literal("true", v.XSD_BOOLEAN)
 
 
-def declared(
+def with_declarations(
     tbox: Iterable[Triple],
     *,
     of_file: Prefixes = MappingProxyType({}),
@@ -32,7 +32,7 @@ def declared(
 
     Each word of `spatial_root` is an IRI or a class's name. Raises UnknownClass.
     """
-    triples = _without_what_is_set_aside(list(tbox))
+    triples = _without_ignored_statements(list(tbox))
     triples += prefixes.declarations(of_file, triples)
     if spatial_root:
         find = _ClassFinder(triples)
@@ -40,10 +40,10 @@ def declared(
     return list(dict.fromkeys(triples))
 
 
-def _without_what_is_set_aside(triples: list[Triple]) -> list[Triple]:
+def _without_ignored_statements(triples: list[Triple]) -> list[Triple]:
     there = set(triples)
     namespaces = {prefixes.split(c)[0] for c in _classes(triples)}
-    for aside in (aside for known in alignments.of_namespaces(namespaces) for aside in known.set_aside):
+    for aside in (aside for known in alignments.find_for_namespaces(namespaces) for aside in known.set_aside):
         if aside.triple in there:
             there.remove(aside.triple)
             subject, predicate, _ = aside.triple

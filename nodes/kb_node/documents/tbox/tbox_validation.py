@@ -17,13 +17,13 @@ class DoesNotFit(errors.Refused):
     """The map says what a TBox has no room for."""
 
 
-def compiled(tbox: Iterable[Triple], name: str = "") -> Reasoner:
+def compile_tbox(tbox: Iterable[Triple], name: str = "") -> Reasoner:
     """A reasoner with no more than the TBox. Raises Inconsistent, BadFile for what is no TBox."""
     what = f"the TBox {name}".strip()
     try:
         reasoner = Reasoner(tbox)
     except Inconsistent as error:
-        raise proofs.refusal(error, of=what) from None
+        raise proofs.to_error(error, of=what) from None
     if not ClassTable(reasoner).names:
         raise errors.BadFile(f"{name or what} has no class: is it a TBox (an OWL ontology with classes)?")
     return reasoner
@@ -59,7 +59,7 @@ def described_by(tbox: Iterable[Triple], classes: ClassTable) -> list[str]:
     return sorted({v.entity_name(s) for s, p, o in tbox if p == v.RDF_TYPE and o in classes.spatial})
 
 
-def imports(tbox: Iterable[Triple]) -> list[Triple]:
+def import_triples(tbox: Iterable[Triple]) -> list[Triple]:
     """`owl:imports` of the TBox, for the ABox: it is resolved to the loaded file, never to the network."""
     ontologies = [term for term in ontology_files.header(tbox).ontologies if term.startswith("<")]
     return [(v.ABOX_ONTOLOGY, v.OWL_IMPORTS, iri) for iri in ontologies]

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 from typing import NamedTuple
 
-from semmap.nodes.kb_node.progress import parts
+from semmap.nodes.kb_node.progress import split_batches
 from semmap.nodes.kb_node.relations.facts.ahead import Ahead
 from semmap.nodes.kb_node.relations.facts.foreseen import Found
 from semmap.nodes.kb_node.relations.facts.rules import RULES, About, Rule
@@ -119,10 +119,10 @@ class Facts:
 
     def working_out(self) -> Iterator[None]:
         """The second half, between whose steps there may be updates: these see to what they concern first."""
-        for some in parts(by_place(list(self._waiting.values())), _STEP, _nothing):
+        for some in split_batches(by_place(list(self._waiting.values())), _STEP, _nothing):
             self._work_out_those(solid for solid in some if self._waiting.get(solid.name) is solid)
             yield
-        for solids in parts(tuple(self.space.solids.values()), _STEP, _nothing):
+        for solids in split_batches(tuple(self.space.solids.values()), _STEP, _nothing):
             for solid in solids:
                 solid.forget()
             if len(solids) == _STEP:
@@ -164,7 +164,7 @@ class Facts:
     ) -> Iterator[None]:
         """Work out the facts of many, `step` at a time, and add what is otherwise to `gone` and `come`."""
         space = self.space
-        for some in parts(by_place(solids) if len(solids) > step else solids, step, _nothing):
+        for some in split_batches(by_place(solids) if len(solids) > step else solids, step, _nothing):
             survey = Survey(space, some) if len(some) >= MANY else None
             with space.remembering():
                 for kept in self._kept:

@@ -8,7 +8,7 @@ from typing import Final
 import pyoxigraph as ox
 
 from semmap.nodes.kb_node.sparql.queries.text import query_prefixes, syntax_error
-from semmap.nodes.kb_node.sparql.queries.unknown_terms import unknown
+from semmap.nodes.kb_node.sparql.queries.unknown_terms import unknown_term_notes
 from semmap.nodes.kb_node.sparql.triples.dataset import ASSERTED, INFERRED, MEASURED, Dataset
 from semmap.ontology import prefixes
 from semmap.ontology import vocabulary as v
@@ -21,7 +21,7 @@ _ZERO: Final = f'"0"^^<{v.XSD}integer>'
 _SPO: Final = ("subject", "predicate", "object")
 
 
-def answer(
+def evaluate(
     query: str, dataset: Dataset, *, inferred: bool, limit: int, measured: bool = False
 ) -> SparqlResult:
     """The answer over what is asserted or, with `inferred`, over all that is so, asserted or not.
@@ -43,11 +43,11 @@ def answer(
         )
         if isinstance(found, ox.QueryBoolean):
             verdict = bool(found)
-            notes = () if verdict else tuple(unknown(query, dataset, known))
+            notes = () if verdict else tuple(unknown_term_notes(query, dataset, known))
             return SparqlResult(kind="ask", verdict=verdict, notes=notes, seq=dataset.seq)
         if isinstance(found, ox.QueryTriples):
             rows: tuple[Row, ...] = _graph(found, limit)
-            notes = () if rows else tuple(unknown(query, dataset, known))
+            notes = () if rows else tuple(unknown_term_notes(query, dataset, known))
             return SparqlResult(kind="graph", variables=_SPO, rows=rows, notes=notes, seq=dataset.seq)
         rows = tuple(tuple(map(_term, row)) for row in islice(found, limit + 1))
     except SyntaxError as error:
@@ -56,7 +56,7 @@ def answer(
         raise errors.Refused(f"the query cannot be evaluated: {' '.join(str(error).split())}") from None
     _require_few(len(rows), limit)
     variables = tuple(variable.value for variable in found.variables)
-    notes = tuple(unknown(query, dataset, known)) if _is_nothing(rows) else ()
+    notes = tuple(unknown_term_notes(query, dataset, known)) if _is_nothing(rows) else ()
     return SparqlResult(kind="select", variables=variables, rows=rows, notes=notes, seq=dataset.seq)
 
 

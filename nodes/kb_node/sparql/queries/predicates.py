@@ -32,7 +32,7 @@ _PREDICATE: Final = re.compile(r"[tv\];\[]v[tv\[(]")
 
 
 @lru_cache(maxsize=1000)
-def may_name(query: str, names: frozenset[str]) -> bool:
+def may_use_properties(query: str, names: frozenset[str]) -> bool:
     """Whether one of these local names may be a predicate in a query, or a variable is one."""
     return any(name in query for name in names) or "\\" in query or has_variable_predicate(query)
 

@@ -25,7 +25,7 @@ _COMPARED = 2000
 """Individuals that are looked through for those that are called similarly: a query may be asked often."""
 
 
-def unknown(query: str, dataset: Dataset, known: Mapping[str, str]) -> Iterator[str]:
+def unknown_term_notes(query: str, dataset: Dataset, known: Mapping[str, str]) -> Iterator[str]:
     """A note for each IRI of a query that is in no triple, with those that are called similarly.
 
     `known` are the prefixes that the query need not declare.

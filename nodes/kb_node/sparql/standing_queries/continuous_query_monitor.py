@@ -105,14 +105,14 @@ class ContinuousQueryMonitor:
         if isinstance(command, Watch):
             text.require_select(command.query or "")
             self._evaluations.append(
-                Evaluation(self._admit(command, demand), since=seq, seq=seq, number=number)
+                Evaluation(self._register(command, demand), since=seq, seq=seq, number=number)
             )
             return
         if command.watch not in self._standing:
             raise errors.UnknownName(f"there is no standing query '{command.watch}', or it has ended")
         standing = self._standing[command.watch]
         if command.end:
-            self._drop(standing)
+            self._end_query(standing)
         standing.ends = time.monotonic() + standing.lease_s
         said = "has ended" if command.end else f"goes on for {standing.lease_s:g} s"
         self._send(CommandReply(number=number, reply=_encoded(Done(text=f"{command.watch} {said}"))))
@@ -136,21 +136,21 @@ class ContinuousQueryMonitor:
         elif self._active is not None:
             self._evaluations.append(self._new_reader())
 
-    def done(self, connection: Connection) -> None:
+    def on_ready(self, connection: Connection) -> None:
         """The reader has answered, or died."""
         if self._active is not None and connection is self._active.lane:
             self._finish()
 
-    def go_on(self) -> None:
+    def advance(self) -> None:
         """Begin the next evaluation; let leases end."""
         for standing in [s for s in self._standing.values() if s.ends <= time.monotonic()]:
-            self._drop(standing)
+            self._end_query(standing)
         if self._running is None and self._is_behind:
-            self.end()
+            self.stop_readers()
         while self._running is None and self._evaluations:
             self._begin()
 
-    def end(self) -> None:
+    def stop_readers(self) -> None:
         """Part with all readers; what is left to do is left to the next, in one step."""
         reliefs = [evaluation for evaluation in self._evaluations if isinstance(evaluation, ReaderSwitch)]
         for reader in filter(None, (self._active, *reliefs)):
@@ -162,7 +162,7 @@ class ContinuousQueryMonitor:
 
     # StandingQuery queries
 
-    def _admit(self, command: Watch, demand: int) -> StandingQuery:
+    def _register(self, command: Watch, demand: int) -> StandingQuery:
         name = command.watch or f"q{uuid.uuid4().hex[:12]}"
         if name in self._standing:
             raise errors.NameTaken(f"there is a standing query '{name}' already")
@@ -171,7 +171,7 @@ class ContinuousQueryMonitor:
         self._standing[name] = StandingQuery.of(command, name, demand)
         return self._standing[name]
 
-    def _drop(self, standing: StandingQuery, error: errors.SemmapError | None = None) -> None:
+    def _end_query(self, standing: StandingQuery, error: errors.SemmapError | None = None) -> None:
         """It is over; with an error, its followers are told why."""
         self._standing.pop(standing.watch, None)
         left = (
@@ -187,7 +187,7 @@ class ContinuousQueryMonitor:
 
     def _begin(self) -> None:
         if self._active is None:
-            self.end()
+            self.stop_readers()
             if not self._evaluations:
                 return
             self._active = self._new_reader()
@@ -225,9 +225,9 @@ class ContinuousQueryMonitor:
             if evaluation.number is not None:
                 self._send(CommandReply(number=evaluation.number, error=errors.to_message(error)))
             if evaluation.standing.watch in self._standing:
-                self._drop(evaluation.standing, error)
+                self._end_query(evaluation.standing, error)
             return
-        news = evaluation.standing.take(result.rows, evaluation.since, evaluation.seq)
+        news = evaluation.standing.update_rows(result.rows, evaluation.since, evaluation.seq)
         if evaluation.number is not None:
             evaluation.standing.ends = time.monotonic() + evaluation.standing.lease_s
             self._send(

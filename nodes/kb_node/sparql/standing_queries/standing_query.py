@@ -52,7 +52,7 @@ class StandingQuery:
         """May a commit change its rows?"""
         return self.looks_at.is_touched(delta.everything if self.inferred else delta.asserted)
 
-    def take(self, rows: Iterable[Row], since: int, seq: int) -> RowsChanged | None:
+    def update_rows(self, rows: Iterable[Row], since: int, seq: int) -> RowsChanged | None:
         """Its rows after commit `seq`; the news, if there is any."""
         now = Counter(rows)
         appeared, disappeared = now - self.rows, self.rows - now

@@ -15,7 +15,7 @@ from pathlib import Path
 import pyoxigraph as ox
 from msgspec import Struct
 
-from semmap.nodes.kb_node.sparql.triples.disk_stores import cloned
+from semmap.nodes.kb_node.sparql.triples.disk_stores import clone_store
 from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Term, Triple
 
@@ -87,7 +87,7 @@ class Dataset:
         if len(self.store) < len(asserted):
             self._count_spellings(asserted)
 
-    def opened(self) -> Dataset:
+    def open_in_reader(self) -> Dataset:
         """As a reader has it, once it is forked."""
         return self
 
@@ -205,13 +205,13 @@ class DiskDataset(Dataset):
         """The readers do that."""
         self.seq = delta.seq
 
-    def opened(self) -> Dataset:
+    def open_in_reader(self) -> Dataset:
         """A clone, as it was before the log began."""
-        opened = Dataset(self._first, (), cloned(self.path))
+        opened = Dataset(self._first, (), clone_store(self.path))
         opened.settled = self.settled
         return opened
 
-    def renew(self, deltas: Iterable[Delta]) -> None:
+    def merge_log(self, deltas: Iterable[Delta]) -> None:
         """Take in the log, in a process of its own, so that another log can begin."""
         if (pid := os.fork()) == 0:
             try:

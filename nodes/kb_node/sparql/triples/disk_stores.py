@@ -1,4 +1,4 @@
-"""The triples of a large map on disk: made once, kept between starts, and cloned for whoever reads them.
+"""The triples of a large map on disk: made once, kept between starts, and clone_store for whoever reads them.
 
 A store is a folder of Oxigraph's (RocksDB). Nobody works in a store itself: its large files never change, so
 that a clone shares them by hard links and costs milliseconds, whatever the size of the map.
@@ -61,7 +61,7 @@ def forget(data: Path) -> None:
     shutil.rmtree(data / FOLDER, ignore_errors=True)
 
 
-def cloned(path: Path) -> ox.Store:
+def clone_store(path: Path) -> ox.Store:
     """A store of this process's own, which begins as the one at `path` is. Raises OSError."""
     clone = clone_path(path, os.getpid())
     shutil.rmtree(clone, ignore_errors=True)

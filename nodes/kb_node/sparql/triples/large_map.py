@@ -43,7 +43,7 @@ _FAR_BEHIND_BYTES: Final = 16 << 20
 """Commits, and their size in the journal: a store that lacks more is made anew."""
 
 
-class Filled(NamedTuple):
+class FilledStore(NamedTuple):
     """A store: it has all commits up to `seq` and some of those up to `settled`."""
 
     path: Path
@@ -76,11 +76,11 @@ class LargeMap:
         """Is it worth a store on disk?"""
         return len(self._reasoner()) > self._large
 
-    def is_much(self, commit: Commit) -> bool:
+    def is_large_change(self, commit: Commit) -> bool:
         """Is a commit so large that the store is better made anew?"""
         return len(commit.inserted) + len(commit.retracted) > self._large
 
-    def kept(self, seq: int) -> tuple[Filled, list[Delta]] | None:
+    def find_store(self, seq: int) -> tuple[FilledStore, list[Delta]] | None:
         """The store that was kept, and the commits since, up to `seq`; None if it does not do."""
         for number, digest, path in self._stores.found():
             if number > seq or self._journal.digest(number).hex() != digest:
@@ -88,10 +88,12 @@ class LargeMap:
             count, size = self._journal.extent(after=number)
             if count > _FAR_BEHIND or size > _FAR_BEHIND_BYTES or self._journal.tbox_changes(number):
                 continue
-            return Filled(path, number, number), [delta_of(c) for c in self._journal.commits(after=number)]
+            return FilledStore(path, number, number), [
+                delta_of(c) for c in self._journal.commits(after=number)
+            ]
         return None
 
-    def foresee(self, commit_id: str, turtle: bytes, base: str, *, packed: bytes = b"") -> None:
+    def prefetch(self, commit_id: str, turtle: bytes, base: str, *, packed: bytes = b"") -> None:
         """What a document says will be inserted by a commit of that id: begin its store if that is worth it.
 
         `packed` is the same as it came, if that was packed: so much is kept until the store is filled.
@@ -109,32 +111,32 @@ class LargeMap:
         What is returned gives it up again.
         """
         if self._prepared is None or self._prepared[0] != commit.id or commit.retracted:
-            self.forget()  # what was taken back
-            if self.is_much(commit) and not (commit.retracted or self.is_large):
+            self.discard()  # what was taken back
+            if self.is_large_change(commit) and not (commit.retracted or self.is_large):
                 self._begin(commit.id, commit.inserted)
-        return self.forget
+        return self.discard
 
-    def forget(self) -> None:
+    def discard(self) -> None:
         """What was foreseen or foretold does not come."""
         if self._prepared is not None:
-            self._prepared[1].give_up()
+            self._prepared[1].abort()
             self._prepared = None
 
     def _begin(self, commit_id: str, inserted: Sequence[Triple], turtle: bytes = b"", base: str = "") -> None:
-        self.forget()
+        self.discard()
         with suppress(OSError):  # `fill` says so
             path = self._stores.begin()
             before = list(self._reasoner().asserted())
             self._prepared = commit_id, StoreFiller(path, _frames(before, inserted), turtle, base=base)
 
-    def fill(self, seq: int, now: Callable[[], int], commit: Commit | None = None) -> Future[Filled]:
+    def fill(self, seq: int, now: Callable[[], int], commit: Commit | None = None) -> Future[FilledStore]:
         """Make the store of the map after commit `seq`, as it is; the node's thread resolves the future.
 
         `commit` is that one if it was just made: its store may be there already. `now()` is the number of the
         last commit. The future's error is Refused when the disk does not take it, or when literals differ in
         nothing but how they are spelled.
         """
-        future: Future[Filled] = Future()
+        future: Future[FilledStore] = Future()
         count: int | None = None
         if commit is not None and self._prepared is not None and self._prepared[0] == commit.id:
             (_, filler), self._prepared = self._prepared, None
@@ -147,7 +149,7 @@ class LargeMap:
                 return future
         self._filler = filler
 
-        def finish(done: Future[tuple[int, int]]) -> Filled:
+        def finish(done: Future[tuple[int, int]]) -> FilledStore:
             sent, found = done.result()
             return self._finished(filler.path, found == (sent if count is None else count), seq, now())
 
@@ -168,12 +170,12 @@ class LargeMap:
         self._soon(lambda: settle(future, take))
         return future.result()
 
-    def _finished(self, path: Path, is_whole: bool, seq: int, settled: int) -> Filled:
+    def _finished(self, path: Path, is_whole: bool, seq: int, settled: int) -> FilledStore:
         if not is_whole:
             shutil.rmtree(path, ignore_errors=True)
             raise errors.Refused("some literals differ only in spelling")
         try:
-            return Filled(self._stores.finish(path, seq, self._journal.digest(seq)), seq, settled)
+            return FilledStore(self._stores.finish(path, seq, self._journal.digest(seq)), seq, settled)
         except OSError as error:
             raise errors.Refused(f"the SPARQL store could not be kept: {error.strerror}") from None
 
@@ -181,7 +183,7 @@ class LargeMap:
         """Give up what is being made."""
         for filler in (self._filler, self._prepared and self._prepared[1]):
             if filler is not None and not filler.outcome.done():
-                filler.give_up()
+                filler.abort()
 
 
 def _frames(*groups: Sequence[Triple]) -> Iterator[Sequence[Triple]]:

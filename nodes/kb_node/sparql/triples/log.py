@@ -37,12 +37,12 @@ class Log:
         self.size += len(delta.everything)
         self._read_to = os.lseek(self._file, 0, os.SEEK_CUR)
 
-    def everything(self) -> Iterator[Delta]:
+    def read_all(self) -> Iterator[Delta]:
         """From the first on; they count as read."""
         self._read_to = 0
-        return self.news()
+        return self.read_new()
 
-    def news(self) -> Iterator[Delta]:
+    def read_new(self) -> Iterator[Delta]:
         """Those that came since it was last read here; each counts as read when it is given."""
         while len(head := os.pread(self._file, _LENGTH_BYTES, self._read_to)) == _LENGTH_BYTES:
             length = int.from_bytes(head, "big")

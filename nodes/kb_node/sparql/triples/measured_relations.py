@@ -27,7 +27,7 @@ class Needs(NamedTuple):
     names: frozenset[str] = frozenset()
 
     @classmethod
-    def together(cls, several: Iterable[Needs]) -> Needs:
+    def merge(cls, several: Iterable[Needs]) -> Needs:
         """What satisfies several."""
         several = tuple(several)
         return cls(
@@ -63,9 +63,9 @@ class MeasuredRelations:
         self._pairs = Beside(Space(placements.placed, placements.limits))
         self._iris: dict[str, Term] = {}
         self._names: dict[Term, str] = {}
-        self._meet(placements.placed)
+        self._register(placements.placed)
 
-    def need(self, needs: Needs) -> tuple[tuple[Triple, ...], tuple[Triple, ...]]:
+    def update_needs(self, needs: Needs) -> tuple[tuple[Triple, ...], tuple[Triple, ...]]:
         """What is no longer in the dataset, and what comes in, for what is needed from now on."""
         return self._differing(self._triples(self._pairs.ask(*needs), self._iris))
 
@@ -81,12 +81,12 @@ class MeasuredRelations:
         for name in removed:
             if (iri := self._iris.pop(name, None)) is not None:
                 del self._names[iri]
-        self._meet(placed)
+        self._register(placed)
         candidates |= self._triples(self._pairs.update(placed), self._iris)
         candidates.update(triple for triple in delta.everything if triple[1] in self._derived.sources)
         return self._differing(candidates)
 
-    def _meet(self, placed: Iterable[Placed]) -> None:
+    def _register(self, placed: Iterable[Placed]) -> None:
         for entity in placed:
             self._iris[entity.name] = v.iri(entity.iri)
             self._names[v.iri(entity.iri)] = entity.name

@@ -36,7 +36,7 @@ class StoreFiller:
         self._is_wanted = True
         threading.Thread(target=self._run, args=(pieces,), name="sparql-filling", daemon=True).start()
 
-    def give_up(self) -> None:
+    def abort(self) -> None:
         """Nobody wants it any more."""
         self._is_wanted = False
         if self._process is not None:

@@ -15,7 +15,7 @@ from typing import Final
 
 from msgspec import Struct, msgpack
 
-from semmap.nodes.kb_node.progress import parts
+from semmap.nodes.kb_node.progress import split_batches
 from semmap.nodes.kb_node.reasoner.abox.columns import Columns
 from semmap.nodes.kb_node.storage.encoding import columns_encoding, dense
 from semmap.nodes.kb_node.storage.encoding.columns_encoding import StoredColumns
@@ -84,7 +84,8 @@ def encode(checkpoint: Checkpoint, progress: Callable[[], None] = lambda: None) 
         columns = None if checkpoint.columns is None else columns_encoding.store(checkpoint.columns, beside)
         triples = [beside.dense(frame) for frame in _frames_of_triples(checkpoint.triples, progress)]
         entities = [
-            beside.dense(msgpack.encode(part)) for part in parts(checkpoint.entities, _ENTITIES, progress)
+            beside.dense(msgpack.encode(part))
+            for part in split_batches(checkpoint.entities, _ENTITIES, progress)
         ]
         body = _Body(
             seq=checkpoint.seq,
@@ -127,7 +128,7 @@ def decode(body: bytes, progress: Callable[[], None] = lambda: None) -> Checkpoi
 def _frames_of_triples(triples: Iterable[Triple], progress: Callable[[], None]) -> Iterator[bytes]:
     known: dict[str, int] = {}
     number = known.setdefault
-    for part in parts(triples, _TRIPLES, progress):
+    for part in split_batches(triples, _TRIPLES, progress):
         before = len(known)
         numbers = array("I", [number(term, len(known)) for term in chain.from_iterable(part)])
         new_terms = list(islice(reversed(known), len(known) - before))[::-1]

@@ -4,7 +4,7 @@ import pytest
 
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.documents.tbox import tbox_notes
-from semmap.nodes.kb_node.documents.tbox.tbox_declarations import declared, with_spatial_roots_of
+from semmap.nodes.kb_node.documents.tbox.tbox_declarations import with_declarations, with_spatial_roots_of
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import vocabulary as v
@@ -29,23 +29,23 @@ def table(tbox):
 
 @pytest.mark.parametrize("word", ["Animal", "zoo:Animal", "http://zoo.org/zoo#Animal", ANIMAL, "bestia"])
 def test_a_root_is_given_by_iri_or_name(word):
-    tbox = declared(triples(), spatial_root=[word])
+    tbox = with_declarations(triples(), spatial_root=[word])
     assert table(tbox).spatial_roots == (ANIMAL,)
 
 
 def test_several_roots():
-    assert len(table(declared(triples(), spatial_root=["Cat", "Idea"])).spatial) == 2
+    assert len(table(with_declarations(triples(), spatial_root=["Cat", "Idea"])).spatial) == 2
 
 
 def test_a_root_that_there_is_not_is_refused():
     with pytest.raises(errors.UnknownClass, match=r"--spatial-root Anmal: .* did you mean Animal"):
-        declared(triples(), spatial_root=["Anmal"])
+        with_declarations(triples(), spatial_root=["Anmal"])
 
 
 def test_the_prefix_of_a_file_is_kept():
-    tbox = declared(triples(), of_file=rdf.prefixes(ZOO.encode()))
+    tbox = with_declarations(triples(), of_file=rdf.prefixes(ZOO.encode()))
     assert "z" in table(tbox).prefixes
-    assert declared(tbox) == tbox
+    assert with_declarations(tbox) == tbox
 
 
 @pytest.mark.parametrize(
@@ -67,9 +67,9 @@ def test_prefixes_are_read_from_every_syntax(text, prefixes):
 
 
 def test_roots_stay_until_others_are_declared():
-    before = table(declared(triples(), spatial_root=["Animal"]))
+    before = table(with_declarations(triples(), spatial_root=["Animal"]))
     assert table(with_spatial_roots_of(triples(), before)).spatial_roots == (ANIMAL,)
-    other = declared(triples(), spatial_root=["Idea"])
+    other = with_declarations(triples(), spatial_root=["Idea"])
     assert table(with_spatial_roots_of(other, before)).spatial_roots == ("<http://zoo.org/zoo#Idea>",)
     without = [t for t in triples() if ANIMAL not in t]
     assert table(with_spatial_roots_of(without, before)).spatial_roots == ()
@@ -98,7 +98,7 @@ COLOR = (
 
 def test_what_no_map_could_be_kept_with_is_set_aside_and_told():
     region = "<http://www.ease-crc.org/ont/SOMA.owl#ColorRegion>"
-    tbox = declared(triples(SOMA))
+    tbox = with_declarations(triples(SOMA))
     assert (region, v.RDFS_SUB_CLASS_OF, REGION) in tbox
     reasoner = Reasoner(tbox)
     reasoner.apply(insert=triples(COLOR))
@@ -106,5 +106,5 @@ def test_what_no_map_could_be_kept_with_is_set_aside_and_told():
     assert note.startswith(
         "ignored, because no map could be kept with it: ColorRegion subClassOf PhysicalAtt"
     )
-    assert declared(tbox) == tbox
+    assert with_declarations(tbox) == tbox
     assert tbox_notes.set_aside(triples()) == ""

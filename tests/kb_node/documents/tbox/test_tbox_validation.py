@@ -155,7 +155,7 @@ def test_a_full_disk_leaves_the_tbox(furnished):
 
 
 def test_imports_name_the_ontology(semantic_map):
-    (said,) = tbox_validation.imports(semantic_map.tbox)
+    (said,) = tbox_validation.import_triples(semantic_map.tbox)
     assert said[:2] == (v.ABOX_ONTOLOGY, v.OWL_IMPORTS)
 
 

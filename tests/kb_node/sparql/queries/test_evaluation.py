@@ -1,6 +1,6 @@
 import pytest
 
-from semmap.nodes.kb_node.sparql.queries.evaluation import answer
+from semmap.nodes.kb_node.sparql.queries.evaluation import evaluate
 from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, Delta
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -17,7 +17,7 @@ def dataset():
 
 
 def ask(dataset, query, *, inferred=False, limit=100):
-    return answer(query, dataset, inferred=inferred, limit=limit)
+    return evaluate(query, dataset, inferred=inferred, limit=limit)
 
 
 def test_the_four_forms(dataset):

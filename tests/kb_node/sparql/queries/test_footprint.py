@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from semmap.nodes.kb_node.sparql.queries.evaluation import answer
+from semmap.nodes.kb_node.sparql.queries.evaluation import evaluate
 from semmap.nodes.kb_node.sparql.queries.footprint import Footprint, footprint
 from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, Delta
 from semmap.ontology import vocabulary as v
@@ -51,7 +51,7 @@ def test_rows_change_only_when_the_footprint_is_touched(changes):
 
 
 def _rows(dataset, query):
-    return sorted(map(str, answer(query, dataset, inferred=False, limit=100).rows))
+    return sorted(map(str, evaluate(query, dataset, inferred=False, limit=100).rows))
 
 
 FOOTPRINTS = {query: footprint(query) for query in QUERIES}

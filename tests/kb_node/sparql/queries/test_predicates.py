@@ -3,7 +3,7 @@
 import pytest
 
 from semmap.nodes.kb_node.sparql.queries.footprint import patterns_of
-from semmap.nodes.kb_node.sparql.queries.predicates import has_variable_predicate, may_name
+from semmap.nodes.kb_node.sparql.queries.predicates import has_variable_predicate, may_use_properties
 from semmap.ontology import vocabulary as v
 
 WITH = [
@@ -53,14 +53,14 @@ def test_a_variable_predicate_is_found(query):
 @pytest.mark.parametrize("query", WITHOUT)
 def test_other_variables_are_no_predicates(query):
     assert not has_variable_predicate(query)
-    assert not may_name(query, NAMES)
+    assert not may_use_properties(query, NAMES)
 
 
 def test_a_name_is_found_in_any_spelling():
-    assert may_name("SELECT ?x { ?x dm:isNear ?y }", NAMES)
-    assert may_name("SELECT ?x { ?x <http://x/#isNear> ?y }", NAMES)
-    assert may_name("SELECT ?x { ?x dm:is\\u004Eear ?y }", NAMES)
-    assert not may_name("SELECT ?x { ?x dm:isOn ?y }", NAMES)
+    assert may_use_properties("SELECT ?x { ?x dm:isNear ?y }", NAMES)
+    assert may_use_properties("SELECT ?x { ?x <http://x/#isNear> ?y }", NAMES)
+    assert may_use_properties("SELECT ?x { ?x dm:is\\u004Eear ?y }", NAMES)
+    assert not may_use_properties("SELECT ?x { ?x dm:isOn ?y }", NAMES)
 
 
 def test_the_ends_of_patterns_are_told():

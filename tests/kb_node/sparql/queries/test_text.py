@@ -1,7 +1,7 @@
 import pytest
 
 from semmap.nodes.kb_node.sparql.queries import text
-from semmap.nodes.kb_node.sparql.queries.evaluation import answer
+from semmap.nodes.kb_node.sparql.queries.evaluation import evaluate
 from semmap.nodes.kb_node.sparql.triples.dataset import Dataset
 from semmap.schemas import errors
 
@@ -72,7 +72,7 @@ def test_only_a_select_is_watched():
 )
 def test_a_syntax_error_has_a_place_and_a_reason(query, said):
     with pytest.raises(errors.BadRequest) as error:
-        answer(query, Dataset(0, ()), inferred=False, limit=10)
+        evaluate(query, Dataset(0, ()), inferred=False, limit=10)
     assert error.value.text.startswith("not a valid SPARQL query: ")
     assert said in error.value.text
     assert "\n" not in error.value.text

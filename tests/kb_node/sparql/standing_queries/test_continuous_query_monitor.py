@@ -40,12 +40,12 @@ def test_a_lease_begins_with_the_first_rows_however_long_they_take():
     monitor.handle(1, Watch(query="SELECT ?c { ?c a dm:Chair }", watch="w", lease=0.01), seq=3)
     assert monitor.timeout_s is None
     time.sleep(0.02)
-    monitor.go_on()
+    monitor.advance()
     readers[0].answer()
-    monitor.done(*monitor.connections)
+    monitor.on_ready(*monitor.connections)
     assert [type(message) for message in sent] == [CommandReply]
     time.sleep(0.02)
-    monitor.go_on()
+    monitor.advance()
     assert [type(message) for message in sent] == [CommandReply, QueryUpdate]
     assert sent[1].ended
-    monitor.end()
+    monitor.stop_readers()

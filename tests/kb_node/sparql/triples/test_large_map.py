@@ -11,7 +11,7 @@ from semmap.nodes.kb_node.sparql import worker
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.sparql.triples import large_map
 from semmap.nodes.kb_node.sparql.triples.dataset import Delta
-from semmap.nodes.kb_node.sparql.triples.disk_stores import FOLDER, clone_path, cloned
+from semmap.nodes.kb_node.sparql.triples.disk_stores import FOLDER, clone_path, clone_store
 from semmap.nodes.kb_node.sparql.triples.large_map import LargeMap
 from semmap.nodes.kb_node.storage import seed
 from semmap.nodes.kb_node.storage.journal import Journal
@@ -228,7 +228,7 @@ def test_the_store_is_filled_from_a_document_while_it_is_read(tmp_path, monkeypa
     try:
         said = [*chairs(30), *chairs(2), *chair("one")]  # some of it twice, and some that is there already
         packed = gzip.compress(turtle(said)) if is_packed else b""
-        node.service.foresee("many", turtle(said), v.ABOX, packed=packed)
+        node.service.prefetch("many", turtle(said), v.ABOX, packed=packed)
         monkeypatch.setattr(node.map.reasoner, "by_subject", None)  # nothing is read again
         monkeypatch.setattr(large_map, "_frames", None)
         node.commit("many", said)
@@ -243,9 +243,9 @@ def test_a_document_that_was_not_committed_leaves_no_store(tmp_path, why):
     node = Node(new_map(tmp_path), large=50)
     node.map.commit(transaction("one", chair("one")))
     try:
-        node.service.foresee("many", turtle(chairs(30)), v.ABOX)
+        node.service.prefetch("many", turtle(chairs(30)), v.ABOX)
         if why in ("no commit", "something else in it"):
-            node.service.forget()
+            node.service.discard_prepared()
         if why != "no commit":
             gone = chair("one") if "too" in why else ()
             node.commit("other" if "another" in why else "many", chairs(29), gone)
@@ -263,7 +263,7 @@ def test_what_may_say_something_else_to_the_map_is_not_foreseen_nor_a_short_docu
     node = Node(new_map(tmp_path), large=50)
     try:
         content = text.encode() + b"#" * (3000 if text != ":a :p 1 ." else 100)
-        node.service.foresee("many", content, v.ABOX)
+        node.service.prefetch("many", content, v.ABOX)
         assert not (tmp_path / FOLDER).exists()
     finally:
         node.close()
@@ -332,7 +332,7 @@ def test_a_long_log_is_taken_into_the_store(node, monkeypatch):
     commit = node.commit("more", chair("more"))
     kept.apply(Delta(seq=commit.seq, inserted=commit.inserted))
     kept.renew([Delta(seq=commit.seq, inserted=commit.inserted)])
-    opened = kept.opened()
+    opened = kept.open_in_reader()
     assert opened.seq == commit.seq
     triple = commit.inserted[0]
     assert len(list(opened.store.quads_for_pattern(ox.NamedNode(v.bare(triple[0])), None, None))) > 0
@@ -346,7 +346,7 @@ def test_a_clone_changes_nothing_in_the_store(tmp_path):
     store.bulk_extend([quad])
     store.flush()
     del store
-    clone = cloned(path)
+    clone = clone_store(path)
     clone.remove(quad)
     assert len(clone) == 0
     assert len(ox.Store(str(path))) == 1

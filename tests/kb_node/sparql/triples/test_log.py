@@ -20,8 +20,8 @@ def test_a_child_reads_on_from_where_it_was_forked():
     if child == 0:
         try:
             os.read(proceed, 1)
-            after = list(log.news())
-            sound = after == [delta(2), delta(300)] and list(log.news()) == []
+            after = list(log.read_new())
+            sound = after == [delta(2), delta(300)] and list(log.read_new()) == []
             os.write(outbox, b"1" if sound else b"0")
         finally:
             os._exit(0)
@@ -42,8 +42,8 @@ def test_what_is_half_written_is_left_for_later():
     whole = os.pread(log.fileno(), 10_000, 0)
     for end in range(len(whole)):
         os.pwrite(half.fileno(), whole[:end], 0)
-        assert list(half.news()) == []
+        assert list(half.read_new()) == []
     os.pwrite(half.fileno(), whole, 0)
-    assert list(half.news()) == [delta(1)]
+    assert list(half.read_new()) == [delta(1)]
     log.close()
     half.close()
