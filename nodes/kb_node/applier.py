@@ -1,4 +1,4 @@
-"""Takes a commit in, checked and with its effects, before it is durable; and gives it back."""
+"""Applies commits to the reasoner with their checks and effects, before they are durable, and reverts them."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Term, Triple
 
 PART: Final = 250_000
-"""Triples that the reasoner takes in at once, in a second or two; in smaller parts it takes longer in all."""
+"""Triples that the reasoner takes in one call, a second or two. Smaller parts take longer in total."""
 
 
 class Applier:
-    """Changes what a map's reasoner holds. The entities show it only when `MapState.take` is called."""
+    """Changes the reasoner of a map. The entities change only with `MapState.apply_commit`."""
 
     def __init__(self, state: MapState) -> None:
-        """`state` is what is changed."""
+        """Change `state`."""
         self._state = state
         self._patterns = Patterns()
         self.derived_changes: dict[int, DerivedChanges] = {}
-        """What the last commits changed of what is computed, until somebody asks."""
+        """The changes of computed facts by recent commits, until they are read."""
 
     def apply(
         self,
@@ -42,9 +42,11 @@ class Applier:
         make_durable: Callable[[Commit], Commit],
         noted: Callable[[Commit], Commit] = lambda commit: commit,
     ) -> Commit:
-        """The commit, durable and with its effects. Raises Inconsistent, and what `make_durable` raises.
+        """Return the commit, durable and with its effects.
 
-        On any error all is as before. `noted` adds a word on the change while the reasoner has it already.
+        Raises Inconsistent, and what `make_durable` raises.
+
+        On any error everything is as before. `noted` adds notes when the reasoner has the change already.
         """
         state = self._state
         subjects = preconditions.subjects(commit.retracted, commit.inserted)
@@ -63,7 +65,7 @@ class Applier:
             if not lenient:
                 self._require_agreement(commit)
             commit = noted(self._with_effects(commit, owners, change, new))
-            del owners, subjects, known, new, change  # of a large commit a third of the memory that it takes
+            del owners, subjects, known, new, change  # for a large commit these take a third of the memory
             if state.derives_at_commits:
                 commit = self._with_places(commit)
             if restores and state.derives_at_commits:
@@ -77,7 +79,7 @@ class Applier:
     def switch(
         self, commit: Commit, tbox: frozenset[Triple], make_durable: Callable[[Commit], Commit]
     ) -> Commit:
-        """Like `apply`, for a commit that replaces the TBox: all is worked out anew beside the old."""
+        """Apply a commit that replaces the TBox: everything is computed again in a new reasoner."""
         state = self._state
         before = state.tbox, state.reasoner, state.classes, state.derived_facts
         abox = {*state.abox(), *commit.inserted}.difference(commit.retracted, tbox)
@@ -96,7 +98,7 @@ class Applier:
         return commit
 
     def reverse(self, commit: Commit, before: Mapping[str, Entity | None]) -> None:
-        """Let the reasoner have all as it was before the last commit; `before` are that one's entities."""
+        """Revert the reasoner to the state before the last commit; `before` holds the entities of that state."""
         state = self._state
         self.change(delete=commit.inserted, insert=commit.retracted, lenient=True)
         if not state.derives_at_commits:
@@ -114,9 +116,9 @@ class Applier:
     def change(
         self, *, delete: Collection[Triple] = (), insert: Collection[Triple], lenient: bool = False
     ) -> Change:
-        """What the reasoner makes of triples that are there and of some that are not. Raises Inconsistent.
+        """Pass triples to the reasoner and return its changes. Raises Inconsistent.
 
-        When it is `lenient`, what is asserted of places and contradicts the rest is set aside.
+        If `lenient`, asserted locations that contradict the rest are suppressed.
         """
         state = self._state
         try:
@@ -129,7 +131,10 @@ class Applier:
     def _change_in_parts(
         self, delete: Collection[Triple], insert: Collection[Triple], lenient: bool
     ) -> Change:
-        """Whatever is a part of a consistent map is consistent, so nothing is refused that should not be."""
+        """Pass a large change to the reasoner in parts.
+
+        A part of a consistent map is consistent, so no valid change is rejected.
+        """
         state = self._state
         reasoner, changes = state.derived_facts, list[Change]()
         deleted = inserted = 0
@@ -151,7 +156,7 @@ class Applier:
         return entity_changes.add_effects(commit, change, state.by_name, reading, owners=owners, new=new)
 
     def _with_places(self, commit: Commit) -> Commit:
-        """`commit` with the entities, too, whose classes change by where things are."""
+        """Return `commit` with the entities whose classes change because of their locations."""
         state = self._state
         entities = state.by_name
         moved = state.derived_facts.follow(
@@ -178,9 +183,9 @@ class Applier:
         return structs.replace(commit, changed=tuple(e for n, e in changed.items() if e != entities.get(n)))
 
     def _with_all_places(self, commit: Commit, suppressed: Set[Triple]) -> Commit:
-        """The same for a commit that replaces the TBox, so that everything is worked out anew.
+        """Do the same for a commit that replaces the TBox, where everything is computed again.
 
-        `suppressed` is what was before.
+        `suppressed` are the facts that were suppressed before.
         """
         state = self._state
         gone = {departed.name for departed in commit.removed}
@@ -194,7 +199,7 @@ class Applier:
         return structs.replace(commit, changed=changed)
 
     def _with_suppressed(self, commit: Commit, facts: Collection[Triple]) -> Commit:
-        """`commit` with a note on what it lets contradict the map, so that it is left out."""
+        """Return `commit` with notes on the facts that are suppressed because of it."""
         if not facts:
             return commit
         return structs.replace(
@@ -203,16 +208,17 @@ class Applier:
         )
 
     def _require_agreement(self, commit: Commit) -> None:
-        """Raises Inconsistent for a commit that contradicts what was said before and geometry denies."""
+        """Raise Inconsistent for a commit that contradicts an assertion that the geometry denies now."""
         try:
             self._state.derived_facts.require_agreement(commit.inserted)
         except Inconsistent as error:
             raise proofs.to_error(error) from None
 
     def _require_no_more_than(self, contradicted: Set[Triple]) -> None:
-        """Raises Inconsistent when assertions contradict one another that geometry does not deny.
+        """Raise Inconsistent if assertions contradict one another although the geometry denies neither.
 
-        Taking something back may bring such together that did at the time, since geometry denied them.
+        An undo may restore assertions that contradicted one another before, when the geometry denied one of
+        them.
         """
         newly = {t: why for t, why in self._state.derived_facts.contradicted.items() if t not in contradicted}
         if newly:

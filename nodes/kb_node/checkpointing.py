@@ -1,4 +1,4 @@
-"""Writes the map down now and then, beside the node's other work, so that the next start is quick."""
+"""Writes checkpoints of the map in the background, so that the next start is quick."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from semmap.nodes.runtime import heap
 
 
 class Checkpointing:
-    """One checkpoint at a time; the map goes on changing meanwhile."""
+    """Writes one checkpoint at a time while the map keeps changing."""
 
     def __init__(
         self, semantic_map: SemanticMap, journal: Journal, soon: Callable[[Callable[[], None]], None]
     ) -> None:
-        """`soon(handle)` calls `handle()` on the map's own thread."""
+        """Write checkpoints of `semantic_map`; `soon(handle)` calls `handle()` on the map's own thread."""
         self._map = semantic_map
         self._journal = journal
         self._soon = soon
@@ -26,18 +26,18 @@ class Checkpointing:
         self._seq_then = 0
 
     def begin_if_due(self) -> None:
-        """Begin one in a quiet moment, if there is one: when nothing has changed since this was called."""
+        """Begin a checkpoint if it is due. The time is quiet if nothing has changed since the last call."""
         quiet, self._seq_then = self._map.seq == self._seq_then, self._map.seq
         if self._map.checkpoint_is_due(quiet=quiet):
             self._begin()
 
     def begin_if_urgent(self) -> None:
-        """Begin one if the next start would have to replay most of the map."""
+        """Begin a checkpoint if the next start would have to replay most of the map."""
         if self._map.checkpoint_is_urgent:
             self._begin()
 
     def close(self) -> None:
-        """Leave a checkpoint for a quick start, unless that takes long. Raises Refused by a full disk."""
+        """Write a checkpoint for a quick start, unless that takes long. Raises Refused if the disk is full."""
         if self._writing is not None:
             self._map.written(self._writing.result())
         if not self._map.is_large or self._map.checkpoint_is_due(quiet=True):

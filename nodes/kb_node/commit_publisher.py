@@ -1,4 +1,4 @@
-"""What the knowledge base tells everybody: its commits, and the entities under their classes' keys."""
+"""Publishes commits, and entities under the keys of their classes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from semmap.schemas.relations import Described
 
 
 class CommitPublisher:
-    """Publishes each commit, and under each of its classes an entity or, where it is no more, a delete."""
+    """Publishes each commit, and each changed entity under its classes; a removed entity as a delete."""
 
     def __init__(
         self,
@@ -23,7 +23,10 @@ class CommitPublisher:
         entities: Iterable[Entity],
         describe: Callable[[str], Described | None],
     ) -> None:
-        """`entities` are those that are in the map already; `describe(name)` is one with its whereabouts."""
+        """Publish on `session`.
+
+        `entities` are in the map already; `describe(name)` returns one with its location.
+        """
         self._session = session
         self._describe = describe
         self._commits = bus.publisher(session, keys.COMMIT)
@@ -32,10 +35,10 @@ class CommitPublisher:
         self._types = {entity.name: entity.types for entity in entities}
 
     def publish(self, commit: Commit, derived_changes: DerivedChanges = UNCHANGED, *, told: bool) -> None:
-        """Tell of the commit, abridged if it is large; of its entities only if somebody follows them.
+        """Publish the commit, abridged if it is large, and its entities if there are subscribers.
 
-        `derived_changes` is how what holds of places changed with it. If the coordinator is `told` of it by the
-        reply, it is not told of it here.
+        `derived_changes` are the changes of computed facts. If the reply has `told` the coordinator about the
+        commit, its effects are not published to it again.
         """
         passed_on = abridged(_with_places(commit, derived_changes))
         payload = codec.encode(passed_on)
@@ -62,7 +65,7 @@ class CommitPublisher:
         self._delete(entity.name, sorted(lost))
         payload, encoding = codec.encode(entity), codec.encoding_of(entity)
         if len(payload) > bus.PUBLISHED:
-            return  # whoever wants to know it asks
+            return  # subscribers can request it with `get`
         for class_name in entity.types:
             self._session.put(keys.entity_key(class_name, entity.name), payload, encoding=encoding)
 
@@ -72,7 +75,7 @@ class CommitPublisher:
 
 
 def _with_places(commit: Commit, derived_changes: DerivedChanges) -> Commit:
-    """The commit as it is published: with what changed of what holds of places."""
+    """Return the commit as published, with the changes of computed facts."""
     if commit.tbox or not any(derived_changes):
         return commit
     places = PlaceChanges(

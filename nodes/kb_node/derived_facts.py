@@ -1,9 +1,11 @@
-"""What the reasoner holds to be so beyond what is asserted: where things are, as their poses tell.
+"""Keeps the computed facts of the reasoner up to date: spatial relations that follow from poses.
 
-Computed facts never refuse a commit. One that contradicts what is asserted is *suppressed*, and of several that
-together contradict it, the last in alphabetical order. Which are suppressed is a function of what is asserted
-alone, whatever the order of the commits. What somebody asserted of a place, and is not so, is *set aside*.
-When it is so again it comes back, unless it contradicts what was asserted since: then it is suppressed, too.
+Computed facts never cause a commit to be rejected. A computed fact that contradicts asserted facts is
+*suppressed*. If several facts together cause the contradiction, the last one in alphabetical order is. Which
+facts are suppressed depends only on the asserted facts, not on the order of the commits.
+
+An asserted location that contradicts the geometry is suppressed, too. It is restored when the geometry agrees
+again, unless it contradicts facts that were asserted since.
 """
 
 from __future__ import annotations
@@ -29,28 +31,29 @@ from semmap.schemas.explanations import Term, Triple
 _STEP = 2000
 """Entities that are compared in some tens of milliseconds."""
 PART = 20_000
-"""Facts that the reasoner takes in at once, in some tenths of a second."""
+"""Facts that are passed to the reasoner at once, which takes some tenths of a second."""
 
 
 FEW_ASIDE = 100
-"""What is set aside: so much is looked at for whatever is asserted, some hundredths of a second."""
+"""Up to this number, all suppressed facts are checked against each assertion, which takes some hundredths of
+a second."""
 _MEASURES = frozenset((*stars.COORDINATE_PROPERTIES, *v.SIZE_XYZ, v.LEXICAL_REFERENCE))
-"""What is asserted by these joins no individuals."""
+"""Properties whose values do not relate individuals."""
 
 
 class DerivedChanges(NamedTuple):
-    """How the reasoner's derived_facts differ from those before a commit, besides what the commit asserts."""
+    """How the computed and suppressed facts differ from those before a commit."""
 
     gone: tuple[Triple, ...] = ()
-    """Computed facts."""
+    """Computed facts that do not hold any more."""
     come: tuple[Triple, ...] = ()
     aside: tuple[Triple, ...] = ()
-    """Asserted facts that do not hold."""
+    """Asserted facts that are suppressed."""
     back: tuple[Triple, ...] = ()
 
     @property
     def subjects(self) -> Iterator[str]:
-        """The names of those that they are about; some more than once."""
+        """Yield the names of the subjects; some occur more than once."""
         return (v.entity_name(triple[0]) for triples in self for triple in triples)
 
 
@@ -58,7 +61,7 @@ UNCHANGED = DerivedChanges()
 
 
 class DerivedFacts:
-    """Keeps a reasoner's derived_facts in step with a map."""
+    """Keeps the computed facts of a reasoner in step with a map."""
 
     def __init__(
         self,
@@ -66,24 +69,28 @@ class DerivedFacts:
         limits: Thresholds | None = None,
         progress: Callable[[], None] = lambda: None,
     ) -> None:
-        """`reasoner` holds what is asserted; `progress` is called between the steps of long work."""
+        """Wrap `reasoner`, which holds the asserted facts.
+
+        `progress` is called between the steps of long work.
+        """
         self._reasoner = reasoner
         self._progress = progress
         self.computed = Computed(_declared(reasoner), limits)
         self.suppressed: dict[Triple, Explanation] = {}
-        """Facts that contradict the rest, and how."""
+        """Facts that contradict the rest, with the explanation."""
         self._dependents: dict[Triple, set[Triple]] = {}
-        """By a triple of an explanation, who is suppressed because of it."""
+        """By triple of an explanation: the facts that are suppressed because of it."""
         self._newly: dict[Triple, None] = {}
-        """What was suppressed since `begin`, and may not be any more."""
+        """Facts that were suppressed since `begin`, and may have been restored again."""
         self._formerly: set[Triple] = set()
-        """What was suppressed at `begin`, and has been looked at again since."""
+        """Facts that were suppressed at `begin` and have been checked again since."""
         self._moved: set[Term] = set()
         self._net: dict[bool, dict[Triple, bool]] = {True: {}, False: {}}
-        """Of computed triples, and of asserted ones, that came or went since `begin`: do they hold now?"""
+        """Computed (True) and asserted (False) triples that changed since `begin`, with whether they hold
+        now."""
 
     def begin(self) -> None:
-        """What differs is counted from here on."""
+        """Start to record changes."""
         for net in self._net.values():
             net.clear()
         self._moved.clear()
@@ -92,7 +99,7 @@ class DerivedFacts:
 
     @property
     def derived_changes(self) -> DerivedChanges:
-        """What differs since `begin`."""
+        """Return the changes since `begin`."""
         if not any(self._net.values()):
             return UNCHANGED
 
@@ -102,16 +109,17 @@ class DerivedFacts:
         return DerivedChanges(those(True, False), those(True, True), those(False, False), those(False, True))
 
     def all(self) -> DerivedChanges:
-        """All that is computed or set aside."""
+        """Return all computed and all suppressed facts."""
         return DerivedChanges(come=tuple(self._reasoner.computed()), aside=tuple(self._reasoner.set_aside()))
 
     def change(
         self, delete: Collection[Triple], insert: Collection[Triple], *, lenient: bool = False
     ) -> Change:
-        """Let the reasoner assert and retract; computed facts that are in the way are suppressed.
+        """Assert and retract triples, and suppress computed facts that contradict them.
 
-        When it is `lenient`, so is what is asserted of places, which may be there because it was set aside
-        before a restart. Raises Inconsistent, with everything as it was, when nothing computed is in the way.
+        If `lenient`, contradicting asserted locations are suppressed, too, as they may have been before a
+        restart. Raises Inconsistent, with everything as before, if no computed fact is part of the
+        contradiction.
         """
         suppressed: list[Triple] = []
         insert = list(insert)
@@ -137,10 +145,10 @@ class DerivedFacts:
                 return change
 
     def require_agreement(self, inserted: Iterable[Triple]) -> None:
-        """What was just asserted must not contradict what is asserted and set aside, directly or in a chain.
+        """Require that new assertions do not contradict suppressed assertions, directly or in a chain.
 
-        Geometry may deny either, but a later change of poses, or taking one back, would bring both together.
-        The reasoner's derived_facts are as before, also when this raises Inconsistent.
+        The geometry may deny either now, but a later change of poses, or undoing one, would restore both. The
+        computed facts are as before, also if this raises Inconsistent.
         """
         if not self._reasoner.sets_aside:
             return
@@ -156,9 +164,10 @@ class DerivedFacts:
                 self._reasoner.believe(aside=given, come=gone)
 
     def _suppressed_about(self, asserted: Iterable[Triple]) -> list[Triple]:
-        """What is set aside and may contradict triples: all of it, as long as that is not much.
+        """Return the suppressed facts that may contradict triples: all of them, unless there are many.
 
-        Of very much it is what is about the same individuals, about those that this is about, and so on.
+        If there are many, these are the facts about the same individuals, about individuals related to those,
+        and so on.
         """
         about = [triple for triple in asserted if triple[1] not in _MEASURES]
         aside = list(islice(self._reasoner.set_aside(), FEW_ASIDE + 1))
@@ -173,9 +182,10 @@ class DerivedFacts:
         return sorted(found)
 
     def _is_restorable(self, triple: Triple, asserted: Set[Triple], gone: list[Triple]) -> bool:
-        """Let a triple hold that is set aside, without the computed facts that are in its way (`gone`).
+        """Restore a suppressed triple and remove the computed facts that contradict it, which are added to
+        `gone`.
 
-        False when it contradicted the rest before. Raises Inconsistent for one that contradicts `asserted`.
+        Return False if it contradicted the rest before. Raises Inconsistent if it contradicts `asserted`.
         """
         while True:
             try:
@@ -194,12 +204,12 @@ class DerivedFacts:
 
     @property
     def contradicted(self) -> dict[Triple, Explanation]:
-        """What is asserted of places and suppressed, as it contradicts other assertions."""
+        """Return the asserted locations that are suppressed because they contradict other assertions."""
         return {t: found for t, found in self.suppressed.items() if self._is_asserted(t)}
 
     @property
     def left_out(self) -> frozenset[Fact]:
-        """What is measured and suppressed."""
+        """Return the measured facts that are suppressed."""
         if not self.suppressed:
             return frozenset()
         return frozenset(
@@ -210,11 +220,11 @@ class DerivedFacts:
 
     @property
     def newly_suppressed(self) -> list[Triple]:
-        """What is suppressed and was not at `begin`."""
+        """Return the facts that are suppressed now and were not at `begin`."""
         return sorted(self._newly.keys() & self.suppressed.keys())
 
     def describe(self, fact: Triple) -> str:
-        """What is suppressed, and why, in a sentence."""
+        """Return a sentence that says which fact is suppressed, and why."""
         words, found = self._reasoner.words, self.suppressed[fact]
         measured = [t for t in found.support if t[1] in COMPUTED and not self._is_asserted(t)]
         clause, reason = sentences.said(fact, words), sentences.as_measured(found.text, measured, words)
@@ -229,42 +239,46 @@ class DerivedFacts:
         retracted: Collection[Triple],
         inserted: Collection[Triple],
     ) -> frozenset[Term]:
-        """Entities and assertions are otherwise: whose named classes changed by what is computed now.
+        """Update the computed facts after a change of entities and assertions.
 
-        `before` knows the entities as they were.
+        `before` returns the entities as they were. Return the individuals whose named classes changed through
+        computed facts.
         """
         if self.computed.is_idle:
             return frozenset()
         step = self.computed.after(changed, removed, before, retracted, inserted)
-        if not self.computed.facts.are_worked_out:  # and what comes may have been there before the start
+        if not self.computed.facts.are_worked_out:  # some of the new facts may be known from before the start
             step = step._replace(come={t for t in step.come if not self._reasoner.is_computed(t)})
         self._carry_out(step, retracted)
         return frozenset(self._moved)
 
     def fill(self, entities: Mapping[str, Entity]) -> None:
-        """Begin with these entities, and all that is asserted."""
+        """Derive the facts of these entities and of all that is asserted."""
         for _ in self.filling(entities):
             self._progress()
 
     def filling(self, entities: Mapping[str, Entity]) -> Iterator[None]:
-        """The same in steps, between which nothing changes; the last may take long.
+        """Do the same in steps; nothing may change in between. The last step may take long.
 
-        What the reasoner has already, of a map before, stays if it is so.
+        Facts that the reasoner holds from a previous map stay if they still hold.
         """
         yield from self.placing(entities)
         yield from self.comparing(entities)
 
     def placing(self, entities: Mapping[str, Entity]) -> Iterator[None]:
-        """The first half of `filling`: where everything is, between whose steps nothing changes."""
+        """Compute the positions of all entities, the first half of `filling`.
+
+        Nothing may change between the steps.
+        """
         if not self.computed.is_idle:
             yield from self.computed.facts.placing(entities.values())
             self.computed.placed()
 
     def comparing(self, entities: Mapping[str, Entity]) -> Iterator[None]:
-        """The second half: what follows from that, compared with what the reasoner has.
+        """Compute the facts and compare them with those of the reasoner, the second half of `filling`.
 
-        If it had that before, and nobody asserts where things are (`is_compared_in_steps`), `follow` may be
-        called between the steps; it is told of each entity that is otherwise, by `entities` too.
+        If the reasoner held them before and no locations are asserted (`is_compared_in_steps`), `follow` may
+        be called between the steps. `entities` must then be up to date.
         """
         if self.computed.is_idle:
             return
@@ -288,7 +302,7 @@ class DerivedFacts:
         self._carry_out(step, ())
 
     def is_compared_in_steps(self, said: Sequence[Triple] | None = None) -> bool:
-        """Whether the reasoner has what was computed, and nothing is asserted of places (`said`)."""
+        """Return whether the reasoner holds computed facts and no locations are asserted (`said`)."""
         if self._reasoner.sets_aside or next(iter(self._reasoner.computed()), None) is None:
             return False
         return not (self._asserted_places() if said is None else said)
@@ -297,7 +311,7 @@ class DerivedFacts:
         return [t for p in PROPERTIES for t in self._reasoner.asserted(None, p, None)]
 
     def _compare(self, names: Iterable[str], known: Known) -> None:
-        """Let the reasoner believe of some entities what is computed of them now."""
+        """Update the computed facts of some entities in the reasoner."""
         subjects = {name: v.iri(entity.iri) for name in names if (entity := known(name)) is not None}
         now = self.computed.of(subjects, known)
         there = {t for iri in subjects.values() for t in self._reasoner.computed(iri)}
@@ -323,7 +337,10 @@ class DerivedFacts:
         aside: Collection[Triple] = (),
         back: Collection[Triple] = (),
     ) -> None:
-        """Raises Inconsistent, with everything as it was, when what comes contradicts the rest."""
+        """Pass changes to the reasoner.
+
+        Raises Inconsistent, with everything as before, if new facts contradict the rest.
+        """
         if not (gone or come or aside or back):
             return
         if len(come) <= PART:
@@ -360,10 +377,10 @@ class DerivedFacts:
             reasoner.believe(gone=taken, come=gone, aside=back, back=aside)
             raise
 
-    # What contradicts
+    # Contradictions
 
     def _believe_consistent(self, facts: Sequence[Triple]) -> None:
-        """Believe all that contradicts nothing."""
+        """Add all facts that contradict nothing, and suppress the others."""
         if not facts:
             return
         said = [t for t in facts if self._is_asserted(t)]
@@ -378,7 +395,9 @@ class DerivedFacts:
                 self._resolve_conflict(facts[0], error.explanation)
 
     def _resolve_conflict(self, fact: Triple, found: Explanation) -> None:
-        """Withhold a fact that contradicts the rest, or one that counts less and has its part in that."""
+        """Suppress a fact that contradicts the rest, or a less important fact that is part of the
+        contradiction.
+        """
         doubtful = [t for t in found.support if self._reasoner.is_computed(t)]
         if self._is_asserted(fact):
             doubtful += [t for t in found.support if fact_of(t) is not None and t not in doubtful]
@@ -391,7 +410,7 @@ class DerivedFacts:
         self._reconsider([last])
 
     def _withhold(self, fact: Triple, found: Explanation, *, is_there: bool = True) -> None:
-        """Believe a fact no longer."""
+        """Remove a fact from those that hold."""
         if not is_there:
             self._reasoner.believe(aside=[fact])
         elif self._reasoner.is_computed(fact):
@@ -410,7 +429,7 @@ class DerivedFacts:
                 self._dependents.setdefault(triple, set()).add(fact)
 
     def _clear_suppressed(self, fact: Triple) -> None:
-        """A fact is no longer suppressed."""
+        """Mark a fact as not suppressed."""
         found = self.suppressed.pop(fact, None)
         if found is not None and fact not in self._newly:
             self._formerly.add(fact)
@@ -421,7 +440,7 @@ class DerivedFacts:
                 self._dependents.pop(triple, None)
 
     def _reconsider(self, lost: Iterable[Triple]) -> None:
-        """What contradicted something that is not derived_changes any more may not do so now."""
+        """Check again the facts that were suppressed because of facts that do not hold any more."""
         waiting = {fact for triple in lost for fact in self._dependents.get(triple, ())}
         waiting.update(triple for triple in lost if triple in self.suppressed)
         for fact in sorted(waiting, key=self._order):
@@ -430,14 +449,17 @@ class DerivedFacts:
                 self._believe_consistent([fact])
 
     def _is_asserted(self, fact: Triple) -> bool:
-        """Whether a fact is asserted."""
+        """Return whether a fact is asserted."""
         return any(self._reasoner.asserted(*fact))
 
     def _order(self, fact: Triple) -> tuple[bool, Triple]:
-        """Of two that contradict each other the greater is suppressed: said ones count more than computed."""
+        """Return a sort key.
+
+        Of two facts in conflict the greater is suppressed: computed before asserted ones.
+        """
         return (not self._is_asserted(fact), fact)
 
 
 def _declared(reasoner: Reasoner) -> frozenset[Term]:
-    """The properties that are computed and that the TBox has."""
+    """Return the properties that are computed and that the TBox declares."""
     return frozenset(p for p in COMPUTED if any(reasoner.asserted(p, v.RDF_TYPE, None)))

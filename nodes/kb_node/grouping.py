@@ -1,4 +1,4 @@
-"""Very many triples, looked at property by property instead of one by one."""
+"""Grouping of many triples by property."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from semmap.schemas.explanations import Term, Triple
 
 
 def group_by_property(triples: Iterable[Triple]) -> dict[Term, list[Triple]]:
-    """The triples of each property, in their order."""
+    """Return the triples of each property, in their order."""
     found = defaultdict[Term, list[Triple]](list)
     for triple in triples:
         found[triple[1]].append(triple)

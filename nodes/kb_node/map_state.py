@@ -1,4 +1,4 @@
-"""What the map says as of its last commit, and everything that can be asked of it."""
+"""The state of the map after the last commit, and the queries on it."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ _HAS_CORES = (os.cpu_count() or 1) > 1
 
 
 class MapState:
-    """The TBox, what is asserted and computed, and the entities that these make. Owned by one thread."""
+    """The TBox, the asserted and computed facts, and the entities that they describe. Owned by one thread."""
 
     def __init__(self, tbox: frozenset[Triple], reasoner: Reasoner, progress: Callable[[], None]) -> None:
-        """A map of nothing but its TBox, which `reasoner` holds.
+        """Create a map that contains only its TBox, which `reasoner` holds.
 
         `progress` is called between the steps of long work.
         """
@@ -45,13 +45,13 @@ class MapState:
         self.exchange_tbox(tbox, reasoner)
         self._derivation: Iterator[None] | None = None
         self.derives_at_commits = False
-        """Whether what is computed is worked out at each commit; not yet after a start."""
+        """Whether facts are derived from poses at each commit. It is False right after a start."""
         self._derived_all = False
-        """Whether all of it was; if not, a commit works out what it concerns."""
+        """Whether the facts of all entities are derived. If not, a commit derives those that it concerns."""
         self.has_derived = False
-        """Whether the reasoner has what is computed; after a start it does if its columns were kept."""
+        """Whether the reasoner holds the computed facts. After a start it does if its columns were stored."""
         self.by_name: dict[str, Entity] = {}
-        """The entities; changed by `apply_commit` and `revert_entities` only."""
+        """The entities. Only `apply_commit`, `revert_entities` and `update_entities` change them."""
         self.places = Places(
             self.by_name,
             self.entities,
@@ -62,30 +62,31 @@ class MapState:
         )
         self.seq = 0
         self.digest = ""
-        """That of the last commit, and so of the whole history, in hexadecimal; empty before the first."""
+        """The digest of the last commit, and so of the whole history, in hexadecimal. Empty before the first
+        commit."""
 
-    # Asking
+    # Queries
 
     def __len__(self) -> int:
         return len(self.by_name)
 
     def entity(self, name: str) -> Entity:
-        """The entity of that name. Raises UnknownName with the nearest ones."""
+        """Return the entity of that name. Raises UnknownName with the most similar names."""
         if name in self.by_name:
             return self.by_name[name]
         raise errors.UnknownName(f"no entity is named '{name}'{errors.did_you_mean(name, self.by_name)}")
 
     def find(self, name: str) -> Entity | None:
-        """The entity of that name, if there is one."""
+        """Return the entity of that name, or None."""
         return self.by_name.get(name)
 
     @property
     def names(self) -> Collection[str]:
-        """Those of the entities."""
+        """The names of the entities."""
         return self.by_name.keys()
 
     def entities(self, class_iri: Term | None = None) -> Iterator[Entity]:
-        """The entities, or those of a class by inference, in the order of their names."""
+        """Yield the entities in the order of their names, or those of a class, including inferred ones."""
         if class_iri is None:
             return (self.by_name[name] for name in sorted(self.by_name))
         self.ensure_derived()
@@ -93,11 +94,14 @@ class MapState:
         return iter(sorted(found, key=lambda entity: entity.name))
 
     def snapshot(self) -> Snapshot:
-        """Every entity, as of the last commit."""
+        """Return all entities as of the last commit."""
         return Snapshot(seq=self.seq, entities=tuple(self.entities()), digest=self.digest)
 
     def stars(self, names: Iterable[str]) -> tuple[Star, ...]:
-        """The triples about some entities, taken together. Raises UnknownName, Refused for the TBox's."""
+        """Return the triples about some entities, taken together.
+
+        Raises UnknownName; Refused for entities of the TBox.
+        """
         self.ensure_derived()
         iris = [v.iri(self.entity(name).iri) for name in names]
         leaving = frozenset(iris)
@@ -107,67 +111,67 @@ class MapState:
         )
 
     def class_table(self) -> Iterator[ClassInfo]:
-        """The classes with the number of entities of each, asserted and inferred."""
+        """Yield the classes with the number of their asserted and inferred entities."""
         return self.classes.with_counts(self.by_name.values())
 
     def abox(self) -> list[Triple]:
-        """The asserted triples that are not the TBox's."""
+        """Return the asserted triples that are not part of the TBox."""
         tbox = self.tbox
         return [t for said in self.reasoner.by_subject() for t in said if t not in tbox]
 
     def inferred(self, name: str | None = None) -> Iterator[Triple]:
-        """What follows and was not said, about one entity or all. Raises UnknownName."""
+        """Yield the inferred triples about one entity, or about all. Raises UnknownName."""
         self.ensure_derived()
         for entity in [self.entity(name)] if name is not None else self.entities():
             yield from sorted(self.reasoner.inferred(v.iri(entity.iri), None, None))
 
     def with_progress(self, items: Iterable[T]) -> Iterator[T]:
-        """The items, for long work on them: the node tells meanwhile that it lives."""
+        """Yield the items and send heartbeats in between."""
         return with_progress(items, self.progress)
 
     def all_derived(self) -> DerivedChanges:
-        """What is computed and what is set aside."""
+        """Return all computed and all suppressed facts."""
         self.ensure_derived()
         return self.derived_facts.all()
 
     def placed(self) -> tuple[Placed, ...]:
-        """Where everything is."""
+        """Return the poses and shapes of all entities."""
         return tuple(map(Placed.of, self.by_name.values()))
 
     def is_asserted(self, triple: Triple) -> bool:
-        """Is it asserted?"""
+        """Return whether a triple is asserted."""
         return any(self.reasoner.asserted(*triple))
 
     def types_of(self, entity: Entity) -> tuple[str, ...]:
-        """The classes of an entity as it is now, by what is computed, too."""
+        """Return the current classes of an entity, including those that follow from computed facts."""
         return self.classes.type_names(self.reasoner.types(v.iri(entity.iri)))
 
     def find_by_iri(self, iri: Term) -> Entity | None:
-        """The entity with this IRI, as of the last commit."""
+        """Return the entity with this IRI as of the last commit."""
         return entity_changes.known(self.by_name, iri)
 
-    # What is computed of where things are
+    # Facts that are computed from poses
 
     def derive_all(self) -> None:
-        """Work out where everything is, if that was not done since the start.
+        """Derive the facts of all entities from their poses, unless that is already done.
 
-        Whoever asks what follows needs it, and the first commit.
+        The first commit after a start and queries for inferred facts need it.
         """
         while self.derive_some():
             self.progress()
 
     def derive_for(self, transaction: Transaction) -> None:
-        """As much of that as a transaction needs.
+        """Derive as many facts as a transaction needs.
 
-        If it only puts things somewhere and nobody asserts where things are, it suffices to know where all of
-        them are; what holds of them is worked out between other work.
+        A transaction that only places entities needs no more than the poses of all entities, if no locations
+        are asserted. The remaining facts are derived between other work.
         """
         while not self._derived_all and not (self.derives_at_commits and _only_places(transaction)):
             self.derive_some()
             self.progress()
 
     def derive_some(self) -> bool:
-        """Do a part of that, some tens of milliseconds; whether there is more to do."""
+        """Derive facts for some tens of milliseconds. Return whether there is more to do."""
         if self._derived_all:
             return False
         following, self._derivation = self._derivation or self._derivation_steps(), None
@@ -191,12 +195,12 @@ class MapState:
             yield
 
     def ensure_derived(self) -> None:
-        """Let the reasoner have what is computed of where things are, if it has not."""
+        """Make sure that the reasoner holds the computed facts."""
         if not self.has_derived:
             self.derive_all()
 
     def _crowds(self, names: Collection[str] | None) -> list[str]:
-        """The sentences on crowds, if relations are computed."""
+        """Return the notes on crowds, if relations are computed."""
         if not self.derives_at_commits or names is None:
             self.derive_all()
         return (
@@ -206,13 +210,13 @@ class MapState:
         )
 
     def _facts(self) -> Facts | None:
-        """The relations that are computed, if any are, with their solids."""
+        """Return the computed relations with their solids, or None if none are computed."""
         self.derive_all()
         return None if self.derived_facts.computed.is_idle else self.derived_facts.computed.facts
 
     @contextmanager
     def predicted_places(self, transaction: Transaction) -> Iterator[None]:
-        """Within, a process of its own works out where everything is after a large transaction."""
+        """Within this context, a separate process computes the relations after a large transaction."""
         computed = self.derived_facts.computed
         if _HAS_CORES and not computed.is_idle:
             self._predict_places(transaction)
@@ -228,23 +232,23 @@ class MapState:
         )
         if coming is not None and len(self) <= len(coming):
             foreseen = Foreseen(facts.space.limits, self.placed(), coming)
-            with suppress(OSError):  # then it is worked out here
+            with suppress(OSError):  # then they are computed in this process
                 facts.work_ahead(Ahead(foreseen, self.progress))
 
     def clean_up(self) -> None:
-        """What a commit leaves to be done when nobody waits for it."""
+        """Do the cleanup that a commit leaves for a time when no client waits."""
         self.derived_facts.computed.facts.forget()
 
-    # Changing
+    # Changes
 
     def exchange_tbox(self, tbox: frozenset[Triple], reasoner: Reasoner) -> None:
-        """Let another TBox hold; `reasoner` holds it, and nothing else yet."""
+        """Replace the TBox. `reasoner` holds it and nothing else."""
         self.tbox, self.reasoner = tbox, reasoner
         self.classes = ClassTable(reasoner)
         self.derived_facts = DerivedFacts(reasoner, self.classes.limits, self.progress)
 
     def apply_commit(self, commit: Commit) -> None:
-        """Let the entities show a commit that the reasoner has taken in already."""
+        """Update the entities for a commit that the reasoner has already applied."""
         self.seq, self.digest = commit.seq, commit.digest
         self.places.update(commit.names, commit.retracted, commit.inserted)
         for gone in commit.removed:
@@ -252,9 +256,9 @@ class MapState:
         self.update_entities(commit.changed)
 
     def revert_entities(self, commit: Commit, before: Mapping[str, Entity | None], digest: str) -> None:
-        """Let the entities be as before the last commit: those that it touched, None for what was not there.
+        """Restore the entities from before the last commit. None stands for an entity that did not exist.
 
-        `digest` is that of the commit before.
+        `digest` is the digest of the commit before.
         """
         self.seq, self.digest = commit.seq - 1, digest
         self.places.update(commit.names, commit.inserted, commit.retracted)
@@ -265,13 +269,13 @@ class MapState:
                 self.by_name[name] = entity
 
     def update_entities(self, changed: Iterable[Entity]) -> None:
-        """Let entities be as these."""
+        """Replace entities by name."""
         for entity in changed:
             self.by_name[entity.name] = entity
 
 
 def _only_places(transaction: Transaction) -> bool:
-    """Does it only add things, and say of others where they are, how large and what they are called?"""
+    """Return whether a transaction only adds entities and changes poses, sizes and labels."""
     if transaction.remove or transaction.require or transaction.retract or transaction.insert:
         return False
     return not (

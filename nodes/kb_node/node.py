@@ -1,4 +1,4 @@
-"""The knowledge base on the wire: `semmap/bridge/<verb>` in, commits and entities out."""
+"""The knowledge base on the wire: it serves `semmap/bridge/<command>` and publishes commits and entities."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ from semmap.schemas.commits import Commit
 
 CHECKPOINT_PERIOD_S = 10.0
 STARTS_AGAIN = 70
-"""The exit status after which supervisord starts the node again."""
+"""The exit status after which supervisord restarts the node."""
 _FETCHED_S = 0.05
-"""Until it is looked again whether the map is still being fetched."""
+"""Period of the check whether the map is still being fetched [s]."""
 CHECKPOINT_DELAY_S = 3.0
-"""After a very large commit, which others fetch first."""
+"""Delay after a very large commit, which other nodes fetch first."""
 
 
 class KnowledgeBase:
-    """Binds the map to the wire."""
+    """Connects the map to the wire."""
 
     def __init__(self, node: Node, journal: Journal, config: KbConfig) -> None:
         self._node = node
@@ -99,9 +99,9 @@ class KnowledgeBase:
         node.ready(self._summary())
 
     def _derive_places(self) -> None:
-        """Between other work: the first commit after a start waits for what is left of it.
+        """Derive facts between other work, because the first commit after a start waits for what is left.
 
-        Those who fetch the map go first: nobody is answered by the coordinator before it has all.
+        Nodes that fetch the map have priority: the coordinator serves no commands before it has all entities.
         """
         if self._queries.is_being_fetched:
             self._node.later(_FETCHED_S, self._derive_places)
@@ -109,7 +109,9 @@ class KnowledgeBase:
             self._node.soon(self._derive_places)
 
     def _publish(self, commit: Commit, *, told: bool, at_once: bool) -> None:
-        """Tell everybody, `at_once` or when the reply is on its way: nobody else is answered before that."""
+        """Publish a commit, `at_once` or after the reply is sent, because the client waits for the reply
+        only.
+        """
         derived_changes = self.map.take_derived_changes(commit)
         publish = partial(self._publisher.publish, commit, derived_changes, told=told)
         if at_once:
@@ -124,7 +126,7 @@ class KnowledgeBase:
             self._node.later(CHECKPOINT_DELAY_S, self._checkpointing.begin_if_urgent)
 
     def _follow(self, commit: Commit, derived_changes: DerivedChanges) -> None:
-        """What this node does with a commit when the reply is on its way."""
+        """Update the SPARQL process and the standing queries after the reply is sent."""
         self._sparql.follow(commit, derived_changes)
         self._location_queries.follow(commit.seq, commit.names)
         self.map.clean_up()
@@ -135,7 +137,7 @@ class KnowledgeBase:
 
     @contextmanager
     def _reporting_progress(self, work: str) -> Iterator[Tell]:
-        """Lets the heartbeat tell how far a large change is, and prepares for it."""
+        """Report the progress of a large change in the heartbeat, and prepare the process for it."""
 
         def tell(text: str) -> None:
             self._node.describe(f"{work}: {text}")
@@ -157,7 +159,7 @@ class KnowledgeBase:
         return f"{replay}{entities}, {len(self.map.reasoner)} triples, commit {self.map.seq}"
 
     def close(self) -> None:
-        """Leave a checkpoint for a quick start, if the disk takes it."""
+        """Write a checkpoint for a quick start, if the disk accepts it."""
         self._sparql.close()
         self._queries.close()
         self._maintenance.close()
@@ -168,7 +170,7 @@ class KnowledgeBase:
 
 
 def run(config: KbConfig) -> None:
-    """Serve until stopped."""
+    """Run the node until it is stopped."""
     path = config.data / FILENAME
     if not path.exists():
         raise errors.BadFile(f"there is no map in {config.data}; seed one with --tbox and --abox")

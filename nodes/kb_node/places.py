@@ -1,6 +1,6 @@
-"""What a change of the map means for where things are: what it carries along, and what it has to say of that.
+"""The effects of a change on locations: which objects move along, and which asserted locations become wrong.
 
-Poses are data, and geometry is a function of them: so all of this is known before the reasoner sees a change.
+Geometry is a function of the poses, so all of this is known before the reasoner sees the change.
 """
 
 from __future__ import annotations
@@ -33,26 +33,26 @@ from semmap.schemas.joints import OPENING
 from semmap.schemas.polygons import EXTENT
 
 _FEW = 10
-"""Sentences of one kind."""
+"""Largest number of notes of one kind."""
 _MANY = 1000
-"""Of those that leave, so many are looked at for what they leave behind."""
+"""Removed entities that are checked for objects that they leave behind."""
 _OPENING = frozenset((v.IS_OPEN, v.OPENNESS, v.JOINT_POSITIONS))
 _GEOMETRY = _OPENING.union(
     stars.COORDINATE_PROPERTIES, v.SIZE_XYZ, (v.HAS_POSITION, v.HAS_SIZE, v.HAS_EXTENT, v.MODEL)
 )
 _SHAPING: Final = (EXTENT, *OPENING)
-"""Properties that its shape depends on."""
+"""Properties that the shape depends on."""
 
 
 class RetractedLocations(NamedTuple):
-    """What was said of a place and is denied by a change, with a sentence on each."""
+    """Asserted locations that a change makes wrong, with a note on each."""
 
     triples: tuple[Triple, ...] = ()
     notes: tuple[str, ...] = ()
 
 
 class Places:
-    """Where the things of a map are, and what was said of that. Owned by the map."""
+    """The locations of entities, and the assertions about them. Owned by the map."""
 
     def __init__(
         self,
@@ -63,10 +63,10 @@ class Places:
         facts: Callable[[], Facts | None] = lambda: None,
         describe_crowds: Callable[[Collection[str] | None], Iterable[str]] = lambda _: (),
     ) -> None:
-        """`entities` by name, as they change; `asserted(property)` are the triples of one.
+        """Observe `entities` by name; `asserted(property)` returns the triples of a property.
 
-        `limits()` are the thresholds of the TBox, `facts()` the relations, if somebody keeps them, and
-        `describe_crowds(names)` has a sentence on each crowd, of which these names are.
+        `limits()` returns the thresholds of the TBox and `facts()` the relations, if they are maintained.
+        `describe_crowds(names)` returns a note on each crowd that contains one of the names.
         """
         self._facts = facts
         self._describe_crowds = describe_crowds
@@ -75,17 +75,20 @@ class Places:
         self._sayings = Sayings(asserted)
 
     def space(self) -> Space:
-        """The solids as they are now."""
+        """Return the solids as they are now."""
         facts = self._facts()
         return self._surroundings.space() if facts is None else facts.space
 
     def with_supported(self, names: Iterable[str]) -> Collection[str]:
-        """These, what is on, inside or in them, and what is on or inside that; all, where nothing is kept."""
+        """Return these names and all that is on, inside or in them, and on or inside those.
+
+        Return all names if no relations are maintained.
+        """
         facts = self._facts()
         return self._entities.keys() if facts is None else facts.upward(names)
 
     def about(self, name: str) -> Iterator[About]:
-        """What a thing is inside, on, in and attached to, what counts most first; nothing of a place."""
+        """Yield what an object is inside, on, in and attached to, most important first. Nothing for a place."""
         facts = self._facts()
         if facts is not None:
             yield from facts.of(name)
@@ -94,25 +97,27 @@ class Places:
                 yield from rule.facts(space, solid)
 
     def crowds(self, names: Collection[str] | None = None) -> tuple[str, ...]:
-        """A sentence on each spot where so many things are that not all are looked at; the first of them.
+        """Return notes on crowds, where not all neighbours of an object are considered.
 
-        With `names`, only where one of these is. Nothing where no relations are kept.
+        Only the first notes are returned.
+
+        With `names`, only crowds that contain one of them. Empty if no relations are maintained.
         """
         return tuple(islice(self._describe_crowds(names), _FEW))
 
     def loads(self) -> Loads:
-        """What things bear now."""
+        """Return what objects support now."""
         return Loads(self.space(), self._facts())
 
     def update(self, names: Iterable[str], gone: Collection[Triple], come: Collection[Triple]) -> None:
-        """A commit touched these entities, and triples went and came."""
+        """Update the state for a commit that touched these entities and these triples."""
         self._surroundings.touch(names)
         self._sayings.change(gone, come)
 
     def load_edits(self, edit: Edit, edits: Iterable[Edit]) -> list[Edit]:
-        """The edits of what goes along with an edit that carries; not of what `edits` are about themselves.
+        """Return the edits of the objects that move along with `edit`, except those that `edits` are about.
 
-        Raises BadRequest for one that moves nothing, and what `supported_by` raises.
+        Raises BadRequest for an edit that does not move the entity, and the errors of `supported_by`.
         """
         if not edit.places:
             raise errors.BadRequest("--carry is for moving: add --at, --yaw or --orientation")
@@ -131,9 +136,9 @@ class Places:
         return load
 
     def supported_by(self, name: str, leave: Iterable[str] = (), besides: Iterable[str] = ()) -> list[str]:
-        """What a thing bears, what bears before what is borne; not what is to be left, or `besides`.
+        """Return what an object supports, each support before its load, without `leave` and `besides`.
 
-        Raises UnknownName for names to be left, too; Refused for a place or what has no position.
+        Raises UnknownName, also for names in `leave`; Refused for a place or an entity without a position.
         """
         leave = tuple(leave)
         for one in (name, *leave):
@@ -150,7 +155,7 @@ class Places:
     def find_denied_locations(
         self, reasoner: Reasoner, classes: ClassTable, gone: Collection[Triple], come: Collection[Triple]
     ) -> RetractedLocations:
-        """What was said of the places of those that a change moves or resizes, and geometry then denies."""
+        """Return asserted locations that the geometry denies after a change moves or resizes entities."""
         if not self._sayings:
             return RetractedLocations()
         moved = dict(_moved(self._entities, reasoner, classes, gone, come))
@@ -169,7 +174,7 @@ class Places:
         return RetractedLocations(tuple(triples), truncate_notes(notes))
 
     def describe_left_behind(self, names: Collection[str]) -> tuple[str, ...]:
-        """What stands on those that leave, or is inside them, and stays: a sentence on each; the first."""
+        """Return notes on what is on or inside removed entities and stays."""
         leaving = set(names)
         if leaving.issuperset(self._entities):
             return ()
@@ -193,7 +198,7 @@ class Places:
                 yield f"{where} {name} {'was' if len(stay) == 1 else 'were'} {wording.few(stay)}"
 
     def conflict_notes(self, commit: Commit) -> tuple[str, ...]:
-        """What a commit says of places that geometry denies as things stand after it; the first of it."""
+        """Return notes on locations that a commit asserts and the geometry denies."""
         said = of_places(commit.inserted)
         if not said:
             return ()
@@ -205,7 +210,7 @@ class Places:
 
 
 def truncate_notes(notes: Collection[str]) -> tuple[str, ...]:
-    """The first sentences of a kind, and how many more there are."""
+    """Return the first notes, and how many more there are."""
     first = tuple(islice(notes, _FEW))
     more = len(notes) - len(first)
     return (*first, f"and {more} more of this kind") if more else first
@@ -218,7 +223,7 @@ def _moved(
     gone: Collection[Triple],
     come: Collection[Triple],
 ) -> Iterator[tuple[str, Entity]]:
-    """The entities that a change of triples puts elsewhere or gives another shape, as they will be."""
+    """Yield the entities that a change of triples moves or reshapes, as they will be."""
     own_words = not classes.alignments
     changed = chain(gone, come)
     touched = subjects(t for t in changed if t[1] in _GEOMETRY) if own_words else subjects(gone, come)
@@ -246,7 +251,7 @@ def _moved(
 def _lookup_after(
     reasoner: Reasoner, gone: Iterable[Triple], come: Iterable[Triple]
 ) -> Callable[[Term], dict[Term, list[Term]]]:
-    """What will be asserted of each subject."""
+    """Return a lookup of what will be asserted about each subject."""
     leaving: dict[Term, set[Triple]] = {}
     coming: dict[Term, list[Triple]] = {}
     for triple in gone:

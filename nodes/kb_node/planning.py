@@ -1,4 +1,4 @@
-"""What a transaction changes: which triples go and come, and what is to be known of that."""
+"""Computes which triples a transaction removes and adds, and the notes about it."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ from semmap.schemas.commits import Commit, Transaction
 from semmap.schemas.explanations import Triple
 
 _VERY_MANY: Final = 100_000
-"""Triples."""
+"""Number of triples."""
 
 
 class Plan(NamedTuple):
-    """The triples that a transaction takes away, all of which are there, and adds, none of which is."""
+    """The triples that a transaction removes, which all exist, and adds, none of which exists."""
 
     retracted: tuple[Triple, ...]
     inserted: tuple[Triple, ...]
     notes: tuple[str, ...]
-    """What is to be known of that."""
+    """Messages for the client."""
 
 
 def make_plan(state: MapState, transaction: Transaction) -> Plan | None:
-    """What a transaction changes of the map as it is; None when it changes nothing.
+    """Return what a transaction changes, or None if it changes nothing.
 
-    Raises PreconditionFailed; NameTaken; UnknownName for an intent about what is not there; BadRequest for
-    what makes no sense; Refused when it takes away from the TBox.
+    Raises PreconditionFailed, NameTaken, BadRequest for invalid content, UnknownName for an entity that does
+    not exist, and Refused if it removes triples of the TBox.
     """
     if transaction.unchanged:
         preconditions.require_unchanged(transaction, state.by_name)
@@ -58,9 +58,9 @@ def make_plan(state: MapState, transaction: Transaction) -> Plan | None:
 
 
 def _unique(triples: Collection[Triple]) -> tuple[Triple, ...]:
-    """Each of some triples once, in their order.
+    """Return the triples without duplicates, in their order.
 
-    Of very many it is told by their hashes, which takes a tenth of the memory, that all of them differ.
+    For very many triples their hashes are compared first, which takes a tenth of the memory.
     """
     if isinstance(triples, dict):
         return tuple(triples)
@@ -73,7 +73,7 @@ def _unique(triples: Collection[Triple]) -> tuple[Triple, ...]:
 
 
 def make_commit(transaction: Transaction, plan: Plan, seq: int, *, tbox: bool = False) -> Commit:
-    """The commit `seq` of a plan, by the transaction's author, without its effects and its digest."""
+    """Return commit `seq` of a plan by the transaction's author, without effects and digest."""
     return Commit(
         seq=seq,
         stamp_ns=time.time_ns(),
@@ -95,7 +95,7 @@ def make_commit(transaction: Transaction, plan: Plan, seq: int, *, tbox: bool = 
 def _expand_intents(
     state: MapState, transaction: Transaction
 ) -> tuple[Collection[Triple], Collection[Triple], list[str]]:
-    """The triples that a transaction takes away and adds, its intents said in triples, too; and notes."""
+    """Return the triples that a transaction removes and adds, with its edits as triples, and notes."""
     remove, edit, add = transaction.remove, transaction.edit, transaction.add
     if not (remove or edit or add):
         return transaction.retract, transaction.insert, []

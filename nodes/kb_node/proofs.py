@@ -1,4 +1,4 @@
-"""The reasoner's explanations as messages: the one place where the two forms meet."""
+"""Converts explanations of the reasoner to messages. No other module does."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from semmap.schemas.explanations import Explanation, Step
 
 
 def to_message(found: reasoner.Explanation) -> Explanation:
-    """An explanation as it goes over the wire."""
+    """Return an explanation as a wire message."""
     return Explanation(
         conclusion=found.conclusion,
         support=found.support,
@@ -22,7 +22,7 @@ def to_message(found: reasoner.Explanation) -> Explanation:
 
 
 def to_error(found: Inconsistent, *, of: str = "") -> errors.Inconsistent:
-    """The error that callers over the wire get; its sentence may begin with what is inconsistent (`of`)."""
+    """Return the error for clients. `of` names what is inconsistent and becomes the beginning of the text."""
     text = found.explanation.text
     return errors.Inconsistent(
         f"{of} is inconsistent: {text}" if of else text, explanation=to_message(found.explanation)

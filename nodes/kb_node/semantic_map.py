@@ -30,7 +30,7 @@ from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Triple
 
 LARGE: Final = 1_000_000
-"""Triples."""
+"""Number of triples from which a map counts as large."""
 
 T = TypeVar("T")
 C = TypeVar("C", Commit, Commit | None)
@@ -39,7 +39,7 @@ log = logging.getLogger(__name__)
 
 
 class _DryRunDone(Exception):
-    """A change was tried, up to where it would be durable. `seen` is what there was to see."""
+    """Raised to end a dry run just before the commit becomes durable. `seen` is the result of the inspection."""
 
     def __init__(self, seen: Any) -> None:
         super().__init__()
@@ -47,11 +47,11 @@ class _DryRunDone(Exception):
 
 
 class _Memento(NamedTuple):
-    """A commit that is not durable yet, and the entities that it touched as they were before."""
+    """A commit that is not durable yet, with the previous state of the entities that it touches."""
 
     commit: Commit
     before: Mapping[str, Entity | None]
-    """By name; None for one that was not there."""
+    """By name; None for an entity that did not exist."""
 
 
 class SemanticMap(MapState):
@@ -64,9 +64,10 @@ class SemanticMap(MapState):
         reasoner: Reasoner | None = None,
         progress: Callable[[], None] = lambda: None,
     ) -> None:
-        """Rebuild the map from `journal`; `reasoner` is one that holds its TBox and no more, if there is one.
+        """Rebuild the map from `journal`.
 
-        `progress` is called between the steps of long work. Raises Refused when the journal is damaged.
+        `reasoner`, if given, holds the TBox of the map and nothing else. `progress` is called between the
+        steps of long work. Raises Refused if the journal is damaged.
         """
         self._journal = journal
         verify(journal, progress)
@@ -76,37 +77,45 @@ class SemanticMap(MapState):
         self._applier = Applier(self)
         self._schedule = CheckpointSchedule(journal, start.seq)
         self.prepare: Callable[[Commit], Callable[[], None]] = lambda _: lambda: None
-        """Told of each commit before it is checked; what it returns is called if that is not made."""
+        """Called with each commit before it is checked. The returned function is called if the commit is
+        aborted."""
         self.is_sound = True
-        """False when an unexpected error (no memory) may have left a change half done: then start anew."""
+        """False if an unexpected error, such as lack of memory, may have left a change incomplete. The node
+        must restart."""
         self.on_failure: Callable[[], None] = lambda: None
-        """Called when that happens."""
+        """Called when `is_sound` becomes False."""
         self._inspect: Callable[[Commit], Any] | None = None
-        """While a change is only tried: who looks at it."""
+        """During a dry run: the function that inspects the commit."""
         self._undo_log: list[_Memento] | None = None
-        """While commits are made together: what takes them back, in their order."""
+        """During `commit_together`: the mementos to roll back, in the order of the commits."""
         self._replay(start)
 
     def tbox_at(self, seq: int) -> frozenset[Triple]:
-        """The TBox that held after commit `seq`. Raises Refused when it is damaged."""
+        """Return the TBox that was in force after commit `seq`. Raises Refused if it is damaged."""
         return frozenset(rdf.parse(self._journal.tbox(seq), f"the TBox in {self._journal.path}"))
 
     def take_derived_changes(self, commit: Commit) -> DerivedChanges:
-        """What a commit changed of what is computed and set aside; it is told once."""
+        """Return how a commit changed the computed and suppressed facts. Each result is returned only once."""
         return self._applier.derived_changes.pop(commit.seq, UNCHANGED)
 
-    # Changing
+    # Changes
 
     def commit(self, transaction: Transaction) -> Commit | None:
-        """Apply, check and make durable; None when it changes nothing. On any error the map is as before.
+        """Apply a transaction, check it and make it durable. Return None if it changes nothing.
 
-        A command that comes a second time is answered with its first commit. That is looked up only when
-        there is nothing to do or something is in the way, as the journal is: it takes no command twice.
+        On any error the map is as before. A repeated transaction returns its first commit. It is looked up in
+        the journal only if there is nothing to do or if the transaction fails, because the journal accepts an
+        id only once.
 
-        Raises PreconditionFailed; NameTaken; UnknownName for an intent about what is not there; Inconsistent
-        (with the explanation); BadRequest for a star that does not make sense; Refused when it takes away
-        from the TBox or the disk does not take the commit; NoAnswer, with the map not sound any more, when
-        something unexpected happens: whether the commit is durable the journal knows.
+        Raises:
+            PreconditionFailed: a precondition does not hold.
+            NameTaken: the name of a new entity exists.
+            UnknownName: an edited or removed entity does not exist.
+            Inconsistent: the map would become inconsistent; the error has the explanation.
+            BadRequest: the triples of an entity are invalid.
+            Refused: it would change the TBox, or the commit cannot be written to disk.
+            NoAnswer: an unexpected error occurred. The map is not sound any more, and only the journal knows
+                whether the commit is durable.
         """
         if self._undo_log is None:
             self._applier.derived_changes.clear()
@@ -119,7 +128,7 @@ class SemanticMap(MapState):
         return made or self._journal.commit_of(transaction.id)
 
     def _run_change(self, change: Callable[[], C]) -> C:
-        """What `change` commits. Raises NoAnswer for an error that nobody expects."""
+        """Return the commit of `change`. Raises NoAnswer for an unexpected error."""
         try:
             return change()
         except (errors.SemmapError, _DryRunDone):
@@ -158,16 +167,19 @@ class SemanticMap(MapState):
             raise
 
     def _with_notes(self, commit: Commit, *, begun: commit_encoding.EarlyBody | None = None) -> Commit:
-        """With a word on what it says of places and is not so. The body that was `begun` has its entities."""
+        """Return the commit with notes on asserted locations that contradict the geometry.
+
+        The encoding that was begun early receives the entities of the commit.
+        """
         if begun is not None:
             begun.expect(commit)
         doubts = self.places.conflict_notes(commit)
         return structs.replace(commit, notes=(*commit.notes, *doubts)) if doubts else commit
 
     def try_out(self, change: Callable[[], Commit | None], inspect: Callable[[Commit], T]) -> T | None:
-        """What `inspect(commit)` sees once `change` would be durable; then all is taken back.
+        """Run `change` up to the point of durability, return `inspect(commit)`, and roll back.
 
-        None if it changes nothing, or was done before. Raises what `change` raises.
+        Return None if the change has no effect or was made before. Raises what `change` raises.
         """
         self._inspect = inspect
         try:
@@ -182,16 +194,19 @@ class SemanticMap(MapState):
     def _write(
         self, commit: Commit, tbox: bytes | None = None, *, begun: commit_encoding.EarlyBody | None = None
     ) -> Commit:
-        """The commit, durable and with its digest. Raises NotWritten; _DryRunDone if it is only tried."""
+        """Write the commit to the journal and return it with its digest.
+
+        Raises NotWritten; _DryRunDone in a dry run.
+        """
         if self._inspect is not None:
             raise _DryRunDone(self._inspect(commit))
         return structs.replace(commit, digest=self._journal.append(commit, tbox, begun=begun).hex())
 
     def replace_tbox(self, transaction: Transaction, tbox: Iterable[Triple]) -> Commit:
-        """Let another TBox hold, in one commit with the transaction's changes of the ABox.
+        """Replace the TBox and apply the ABox changes of the transaction, in one commit.
 
-        Raises Inconsistent, BadFile for what is no TBox, Refused when the map does not fit it or the disk
-        does not take it. Then everything is as before.
+        Raises Inconsistent, BadFile if `tbox` is not a TBox, and Refused if the map does not fit it or the
+        disk is full. Then everything is as before.
         """
         if (known := self._journal.commit_of(transaction.id)) is not None:
             return known
@@ -212,10 +227,10 @@ class SemanticMap(MapState):
         return self._run_change(lambda: self._accept(self._applier.switch(commit, new, make_durable)))
 
     def restate(self, commit: Commit, tbox: bytes | None = None) -> Commit:
-        """Commit what another journal has, under its number and in its author's name, as it is.
+        """Commit a commit of another journal with its number and author.
 
-        `tbox` (N-Triples) is the one that it lets hold. Raises Inconsistent, BadRequest, NotWritten; then the
-        map is as before.
+        `tbox` (N-Triples) is the TBox that it sets, if any. Raises Inconsistent, BadRequest, NotWritten; then
+        the map is as before.
         """
         self.derive_all()
         if tbox is None:
@@ -226,9 +241,10 @@ class SemanticMap(MapState):
     def commit_together(
         self, transactions: Sequence[Transaction]
     ) -> list[Commit | errors.SemmapError | None]:
-        """Like `commit` for each by itself, in order, but durable together; errors are among the results.
+        """Commit each transaction by itself, in order, but make all of them durable with one write.
 
-        When the disk does not take them, all are refused and the map is as before.
+        Errors are part of the results. If the disk does not accept the write, all transactions fail and the
+        map is as before.
         """
         log = self._undo_log = []
         self._applier.derived_changes.clear()
@@ -257,7 +273,7 @@ class SemanticMap(MapState):
         return results
 
     def _roll_back(self, memento: _Memento) -> None:
-        """Undo the last commit, of which the journal keeps nothing."""
+        """Roll back the last commit, which the journal does not contain."""
         commit, before = memento
         self._applier.reverse(commit, before)
         self.revert_entities(commit, before, self._journal.digest(commit.seq - 1).hex())
@@ -270,24 +286,30 @@ class SemanticMap(MapState):
         self.apply_commit(commit)
         return commit
 
-    # Restarting
+    # Restart
 
     def checkpoint_is_due(self, *, quiet: bool) -> bool:
-        """Would the next start have much to replay? Unless it is `quiet`, very much? Another TBox is much."""
+        """Return whether the next start would replay much, or very much if the map is not `quiet`.
+
+        A replaced TBox counts as much.
+        """
         return self._schedule.is_due(self.seq, quiet=quiet)
 
     @property
     def checkpoint_is_urgent(self) -> bool:
-        """Would the next start have to replay most of the map?"""
+        """Return whether the next start would have to replay most of the map."""
         return self._schedule.is_urgent(self.reasoner)
 
     @property
     def is_large(self) -> bool:
-        """Does a checkpoint take so long that nobody should wait for it without need?"""
+        """Return whether a checkpoint takes so long that a client should not wait for it."""
         return len(self.reasoner) > LARGE
 
     def snapshot_for_checkpoint(self) -> Checkpoint:
-        """The map as it is now, to be written down while it goes on changing. Takes some 0.2 us a triple."""
+        """Return a snapshot of the map that can be written while the map changes.
+
+        Takes about 0.2 us a triple.
+        """
         self.ensure_derived()
         self._schedule.pictured()
         columns = self.reasoner.columns(self.tbox)
@@ -300,16 +322,16 @@ class SemanticMap(MapState):
         )
 
     def checkpoint(self) -> None:
-        """Write down the whole map, so that the next start need not replay its history.
+        """Write a checkpoint of the map, so that the next start does not replay its history.
 
-        Raises Refused when the disk does not take it; then the history is replayed.
+        Raises Refused if the disk does not accept it; then the next start replays the history.
         """
         if not self._schedule.is_written(self.seq):
             self._journal.checkpoint(self.snapshot_for_checkpoint(), self.progress)
             self.written(self.seq)
 
     def written(self, seq: int) -> None:
-        """There is a checkpoint of the map after commit `seq`, made of the last picture."""
+        """Record that the last snapshot was written as a checkpoint of commit `seq`."""
         self._schedule.written(seq)
 
     def _replay(self, start: Checkpoint) -> None:
@@ -338,9 +360,9 @@ class SemanticMap(MapState):
             self._accept(made)
             self.progress()
         if self.seq > start.seq or start.read_by != conclusions_format.mark():
-            self.derive_all()  # else the entities have the classes that they have by their places
+            self.derive_all()  # otherwise the classes of the entities already include those that follow from their poses
 
 
 def _unchanged(commit: Commit) -> Commit:
-    """One that is durable already."""
+    """Return a commit that is already durable."""
     return commit
