@@ -1,4 +1,4 @@
-"""Applies commits to the reasoner with their checks and effects, before they are durable, and reverts them."""
+"""Applies commits to the reasoner with checks and effects, before they are durable, and reverts them."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ class Applier:
         return commit
 
     def reverse(self, commit: Commit, before: Mapping[str, Entity | None]) -> None:
-        """Revert the reasoner to the state before the last commit; `before` holds the entities of that state."""
+        """Revert the reasoner to before the last commit; `before` holds the entities of that state."""
         state = self._state
         self.change(delete=commit.inserted, insert=commit.retracted, lenient=True)
         if not state.derives_at_commits:

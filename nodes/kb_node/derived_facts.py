@@ -182,10 +182,10 @@ class DerivedFacts:
         return sorted(found)
 
     def _is_restorable(self, triple: Triple, asserted: Set[Triple], gone: list[Triple]) -> bool:
-        """Restore a suppressed triple and remove the computed facts that contradict it, which are added to
-        `gone`.
+        """Restore a suppressed triple, and remove computed facts that contradict it.
 
-        Return False if it contradicted the rest before. Raises Inconsistent if it contradicts `asserted`.
+        The removed facts are added to `gone`. Return False if the triple contradicted the rest before. Raises
+        Inconsistent if it contradicts `asserted`.
         """
         while True:
             try:
@@ -395,9 +395,7 @@ class DerivedFacts:
                 self._resolve_conflict(facts[0], error.explanation)
 
     def _resolve_conflict(self, fact: Triple, found: Explanation) -> None:
-        """Suppress a fact that contradicts the rest, or a less important fact that is part of the
-        contradiction.
-        """
+        """Suppress a fact that contradicts the rest, or a less important fact of the contradiction."""
         doubtful = [t for t in found.support if self._reasoner.is_computed(t)]
         if self._is_asserted(fact):
             doubtful += [t for t in found.support if fact_of(t) is not None and t not in doubtful]

@@ -109,9 +109,7 @@ class KnowledgeBase:
             self._node.soon(self._derive_places)
 
     def _publish(self, commit: Commit, *, told: bool, at_once: bool) -> None:
-        """Publish a commit, `at_once` or after the reply is sent, because the client waits for the reply
-        only.
-        """
+        """Publish a commit, `at_once` or after the reply is sent."""
         derived_changes = self.map.take_derived_changes(commit)
         publish = partial(self._publisher.publish, commit, derived_changes, told=told)
         if at_once:

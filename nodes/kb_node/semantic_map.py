@@ -360,7 +360,7 @@ class SemanticMap(MapState):
             self._accept(made)
             self.progress()
         if self.seq > start.seq or start.read_by != conclusions_format.mark():
-            self.derive_all()  # otherwise the classes of the entities already include those that follow from their poses
+            self.derive_all()  # otherwise the entities have the classes that follow from poses
 
 
 def _unchanged(commit: Commit) -> Commit:

@@ -188,9 +188,7 @@ def _net(commits: Sequence[Commit]) -> tuple[tuple[Triple, ...], tuple[Triple, .
 def _is_disturbed(
     semantic_map: SemanticMap, inserted: tuple[Triple, ...], retracted: tuple[Triple, ...]
 ) -> bool:
-    """Return whether the result of the commits has changed since, or new individuals have been described
-    further.
-    """
+    """Return whether the result of the commits has changed or has been extended since."""
     mine, reasoner, with_progress = set(inserted), semantic_map.reasoner, semantic_map.with_progress
     changed = {s for s, p, _ in retracted if p == v.RDF_TYPE}
     brought = {s for s, p, _ in inserted if p == v.RDF_TYPE} - changed

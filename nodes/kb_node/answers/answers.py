@@ -1,4 +1,4 @@
-"""What the knowledge base answers to the questions of `semmap/bridge`: pure functions of the map."""
+"""Answers of the knowledge base to requests on `semmap/bridge`: pure functions of the map."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ from semmap.schemas.replies import Checked, Document, Inferred
 
 
 def entities_of(semantic_map: SemanticMap, class_name: str | None) -> tuple[Entity, ...]:
-    """The entities of a class, given by its exact name. Raises UnknownClass."""
+    """Return the entities of a class, given by its exact name. Raises UnknownClass."""
     return tuple(
         semantic_map.entities(term_resolution.class_(semantic_map, class_name) if class_name else None)
     )
 
 
 def infer(semantic_map: SemanticMap, name: str) -> Inferred:
-    """What follows about an entity that was not said, with what is measured on demand. Raises UnknownName."""
+    """Return the inferred facts about an entity, including those measured on demand. Raises UnknownName."""
     measured = set(
         pair_measurer(semantic_map.tbox, semantic_map.entities())(semantic_map.places.space(), name)
     )
@@ -48,17 +48,17 @@ def infer(semantic_map: SemanticMap, name: str) -> Inferred:
 
 
 class InferenceInput(NamedTuple):
-    """What it takes to say, beside the map, what follows about all: enough for a reasoner of one's own."""
+    """The input for inference about all entities in another thread, enough to create a separate reasoner."""
 
     held: Held
     entities: list[Term]
     measured: Callable[[], Iterable[Triple]]
     names: Mapping[Term, str]
-    """Of classes and properties that are called alike."""
+    """Names for classes and properties whose local names are ambiguous."""
 
 
 def inference_input(semantic_map: SemanticMap) -> InferenceInput:
-    """The map as it is now, for `infer_all`."""
+    """Return the current map as input for `infer_all`."""
     semantic_map.ensure_derived()
     pairs, placed, limits = (
         pair_measurer(semantic_map.tbox, semantic_map.entities()),
@@ -74,7 +74,7 @@ def inference_input(semantic_map: SemanticMap) -> InferenceInput:
 
 
 def infer_all(given: InferenceInput) -> Inferred:
-    """What follows about all entities that was not said, one after another; for any thread."""
+    """Return the inferred facts about all entities, one entity after another; for any thread."""
     reasoner = Reasoner.of(given.held)
     by_subject: dict[Term, set[Triple]] = {}
     for triple in given.measured():
@@ -91,7 +91,7 @@ def infer_all(given: InferenceInput) -> Inferred:
 
 
 def _to_reply(triples: Iterable[Triple], names: Mapping[Term, str]) -> Inferred:
-    """Without what is true of everything or of nameless classes."""
+    """Return the reply, without trivial facts."""
     triples = tuple(without_trivial(triples))
     return Inferred(triples=triples, text=tuple(v.spoken(t, names) for t in triples))
 
@@ -99,7 +99,7 @@ def _to_reply(triples: Iterable[Triple], names: Mapping[Term, str]) -> Inferred:
 def pair_measurer(
     tbox: Collection[Triple], entities: Iterable[Entity]
 ) -> Callable[[Space, str | None], Iterator[Triple]]:
-    """Measures pairs of these entities, of all or (given a name) of one, as triples."""
+    """Return a function that measures pairs of these entities, for all or for one name, as triples."""
     derived = Derived(tbox)
     iris = {entity.name: v.iri(entity.iri) for entity in entities}
 
@@ -115,7 +115,7 @@ def pair_measurer(
 
 
 def without_trivial(triples: Iterable[Triple]) -> Iterator[Triple]:
-    """Without what is true of everything or of nameless classes."""
+    """Yield the triples without facts that hold for everything, and without unnamed classes."""
     return (
         (s, p, o)
         for s, p, o in triples
@@ -127,7 +127,7 @@ def without_trivial(triples: Iterable[Triple]) -> Iterator[Triple]:
 
 
 def asserted_locations(semantic_map: SemanticMap, entity: Entity | None = None) -> Iterator[Fact]:
-    """What is asserted of where an entity is, or all entities are."""
+    """Yield the asserted locations of an entity, or of all entities."""
     iri = None if entity is None else v.iri(entity.iri)
     for property_, (_, is_inverse) in said.PROPERTIES.items():
         for triple in semantic_map.reasoner.asserted(
@@ -138,7 +138,7 @@ def asserted_locations(semantic_map: SemanticMap, entity: Entity | None = None) 
 
 
 def suppressed_facts(semantic_map: SemanticMap, entity: Entity | None = None) -> Iterator[str]:
-    """The facts about places, or one entity's, that would contradict the map, and how, a sentence each."""
+    """Yield a sentence on each suppressed fact, or on those of one entity, and why it is suppressed."""
     derived_facts = semantic_map.derived_facts
     for fact in sorted(derived_facts.suppressed):
         if entity is None or v.iri(entity.iri) in (fact[0], fact[2]):
@@ -146,18 +146,19 @@ def suppressed_facts(semantic_map: SemanticMap, entity: Entity | None = None) ->
 
 
 class ExportSnapshot(NamedTuple):
-    """The map at one moment, for work beside it: what is asserted, and what of it to write."""
+    """The map at one moment, for export in another thread: the asserted triples and those to write."""
 
     asserted: list[Triple]
     written: list[Triple]
     seq: int
     prefixes: Prefixes = MappingProxyType(v.PREFIXES)
     measured: Callable[[], Iterable[Triple]] = tuple
-    """What is measured of pairs: worked out beside the map, because it takes as long as there are things."""
+    """Measured facts about pairs. They are computed in another thread, because that takes long for large
+    maps."""
 
 
 def export_snapshot(semantic_map: SemanticMap, inferred: bool) -> ExportSnapshot:
-    """The map as it is now, to be written: the ABox or, if `inferred`, what holds about those in it."""
+    """Return the current map for export: the ABox or, if `inferred`, all that holds about its individuals."""
     semantic_map.ensure_derived()
     abox = semantic_map.abox()
     aside = set(semantic_map.reasoner.set_aside())
@@ -181,7 +182,7 @@ def export_snapshot(semantic_map: SemanticMap, inferred: bool) -> ExportSnapshot
 
 
 def inferred_triples(reasoner: Reasoner, tbox: Collection[Triple], abox: Collection[Triple]) -> list[Triple]:
-    """What follows about the individuals of an ABox that are none of the TBox."""
+    """Return the inferred triples about the individuals of an ABox that are not in the TBox."""
     individuals = {s for s, _, _ in abox} | {o for _, p, o in abox if p != v.RDF_TYPE}
     return [
         triple
@@ -191,7 +192,10 @@ def inferred_triples(reasoner: Reasoner, tbox: Collection[Triple], abox: Collect
 
 
 def export(snapshot: ExportSnapshot, syntax: RdfFormat) -> Document:
-    """The map as a document. Raises Inconsistent, or Refused for a text that the syntax cannot hold."""
+    """Return the map as a document.
+
+    Raises Inconsistent, or Refused for a text that the syntax cannot express.
+    """
     checked = check(snapshot.asserted, "semmap")
     if not checked.consistent:
         raise errors.Inconsistent(checked.text, explanation=checked.explanation)
@@ -199,7 +203,7 @@ def export(snapshot: ExportSnapshot, syntax: RdfFormat) -> Document:
 
 
 def document(snapshot: ExportSnapshot, syntax: RdfFormat) -> Document:
-    """The map as a document, unchecked. Raises Refused for a text that the syntax cannot hold."""
+    """Return the map as a document, unchecked. Raises Refused for a text that the syntax cannot express."""
     written = snapshot.written
     if measured := set(snapshot.measured()).difference(written):
         written = [*written, *measured]
@@ -212,9 +216,9 @@ def document(snapshot: ExportSnapshot, syntax: RdfFormat) -> Document:
 
 
 def check(triples: Iterable[Triple], engine: str, is_over: Callable[[], bool] = lambda: False) -> Checked:
-    """Are the triples (TBox and ABox) consistent? Worked out from nothing, so that it is a check.
+    """Check the consistency of triples (TBox and ABox) with a new reasoner, independent of the map's own.
 
-    With the engine "owlrl" it is given up as soon as `is_over()`. Raises Refused then.
+    With the engine "owlrl" the check is cancelled as soon as `is_over()` returns True. Raises Refused then.
     """
     triples = list(triples)
     start = time.perf_counter()

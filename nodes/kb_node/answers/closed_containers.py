@@ -1,4 +1,4 @@
-"""What no camera can see, because it is inside something that is closed."""
+"""Closed containers: no camera can observe what is inside."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ _IS_INSIDE: Final = v.dm("isInside")
 
 
 class Closed(NamedTuple):
-    """What is closed around a thing: all of an entity, or only what these joints of it close."""
+    """A closed container: the whole entity, or only the part that these joints close."""
 
     entity: Entity
     joints: tuple[str, ...] = ()
 
 
 def find_closed_container(semantic_map: SemanticMap, entity: Entity) -> Closed | None:
-    """The closed thing that an entity is inside, as far as the map says; of several the innermost."""
+    """Return the innermost closed container that an entity is inside, as far as the map states it."""
     seen = {entity.name}
     inside = [entity]
     while inside:
@@ -46,7 +46,7 @@ def find_closed_container(semantic_map: SemanticMap, entity: Entity) -> Closed |
 
 
 def _find_closing_joints(semantic_map: SemanticMap, inner: Entity, outer: Entity) -> tuple[str, ...]:
-    """The joints that close the hollow that a thing is in, if all of them are shut and others are open."""
+    """Return the joints that close the cavity around an object, if all are shut and others are open."""
     solids = semantic_map.places.space().solids
     one, around = solids.get(inner.name), solids.get(outer.name)
     if one is None or around is None or not around.form.joints or not around.hollows:
@@ -63,7 +63,7 @@ def _find_closing_joints(semantic_map: SemanticMap, inner: Entity, outer: Entity
 
 
 def describe(closed: Closed) -> str:
-    """`it cannot be seen there: fridge1 has been closed since commit 7, 5 min ago`."""
+    """Return `it cannot be seen there: fridge1 has been closed since commit 7, 5 min ago`."""
     entity, joints = closed
     said = entity.joint_provenance or entity.provenance
     ago = wording.duration((time.time_ns() - said.stamp_ns) / 1e9)

@@ -1,4 +1,4 @@
-"""What a command in words means in the map as it is: answers `understand`."""
+"""Commands in words, resolved against the current map: the command `understand`."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from semmap.schemas.commands import Understand
 from semmap.schemas.entities import Entity
 from semmap.schemas.language import SemanticFrame, Understood
 
-_MOST_WORDS = 200  # of a command: a minute of speech
+_MOST_WORDS = 200  # per command: a minute of speech
 
 
 class Understanding:
-    """Reads commands in the light of the map; owned by the node's thread."""
+    """Parses commands and resolves them against the map. Owned by the node's thread."""
 
     def __init__(self, semantic_map: SemanticMap, finding: Finding) -> None:
-        """finding: knows which entities a description fits, and what to ask back."""
+        """Create a parser; `finding` resolves descriptions and formulates clarification questions."""
         self._map, self._finding = semantic_map, finding
         self._lexicon = lexicon.load()
         self._classes: ClassTable | None = None
@@ -35,7 +35,10 @@ class Understanding:
         self._scene: tuple[int, Scene] | None = None
 
     def understand(self, query: Understand) -> Understood:
-        """The frames of a command, and what to ask back. Raises BadRequest for no words or too many."""
+        """Return the frames of a command and clarification questions.
+
+        Raises BadRequest for no words or too many.
+        """
         words = split(query.text)
         if not words:
             raise errors.BadRequest("there are no words in the text")
@@ -53,7 +56,7 @@ class Understanding:
         return structs.replace(found, question=" ".join(questions), doubts=tuple(doubts))
 
     def _doubts(self, frame: SemanticFrame) -> Iterator[str]:
-        """What of a frame does not fit the map."""
+        """Yield the parts of a frame that do not match the map."""
         for argument in frame.arguments:
             there = len(argument.candidates) or int(argument.entity is not None)
             if argument.number is not None and there < argument.number:
@@ -66,7 +69,7 @@ class Understanding:
                 yield f"{thing} is not on or in {source}" + (f"; it is {where}" if where else "")
 
     def _there(self) -> Scene:
-        """What there is to be spoken of, after the last commit."""
+        """Return the scene after the last commit."""
         if self._classes is not self._map.classes:
             self._classes, self._scene = self._map.classes, None
             self._vocabulary = _named(self._map.classes, self._lexicon)

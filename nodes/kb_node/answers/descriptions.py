@@ -1,4 +1,4 @@
-"""What is there, in a few words: answers `tell`."""
+"""Short descriptions of the map, a place or an object: the command `tell`."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from semmap.schemas.joints import JOINT_POSITIONS, SWITCH_POSITIONS
 
 
 class Descriptions:
-    """Tells what is there; owned by the node's thread."""
+    """Describes the map in words. Owned by the node's thread."""
 
     def __init__(self, semantic_map: SemanticMap, now: CurrentState, sightings: Sightings) -> None:
         self._map = semantic_map
@@ -33,13 +33,16 @@ class Descriptions:
         self._inventories = Inventories(semantic_map)
 
     def describe(self, query: Tell) -> language.Account:
-        """A text of the map, a place or a thing. Raises UnknownName, BadRequest for an ambiguous word."""
+        """Return a description of the map, a place or an object.
+
+        Raises UnknownName; BadRequest for an ambiguous word.
+        """
         name = query.name
         if name is not None and self._map.find(name) is None:
             name = only_meant(tuple(self._map.entities()), name)
         told = self._describe(name, query.words)
-        words = told.text.split()  # what was quoted may have had lines of its own
-        if len(words) > query.words:  # as the label of a class may have
+        words = told.text.split()  # quoted labels may contain line breaks
+        if len(words) > query.words:  # class labels may be that long
             words[query.words - 1 :] = [f"{words[query.words - 1]}…"]
         return language.Account(
             text=" ".join(words), words=len(words), left_out=told.left_out, commit=self._map.seq
@@ -60,7 +63,7 @@ class Descriptions:
         return account.of_thing(inventory, name, first, last, most_words)
 
     def _problems(self, about: Set[str] | None) -> Iterator[str]:
-        """What is not as it should be, of these or of all, a clause each."""
+        """Yield a clause on each problem of these entities, or of all."""
         for entity in self._map.entities():
             if entity.conflict and (about is None or entity.name in about):
                 yield f"{entity.name}, {entity.conflict}"
@@ -70,7 +73,7 @@ class Descriptions:
         if about is None:
             yield from answers.suppressed_facts(self._map)
 
-    # One thing
+    # One object
 
     def _thing_sentences(self, entity: Entity, inventory: Inventory) -> Iterator[str]:
         thing = inventory.things[entity.name]
@@ -111,7 +114,7 @@ class Descriptions:
 
 
 def _stated(row: PropertyInfo, stated: Stated) -> str:
-    """A property as a sentence: `It is open.`, `Its main color is red.`, `Its serial number is 7.`."""
+    """Return a property as a sentence: `It is open.`, `Its main color is red.`, `Its serial number is 7.`."""
     label = row.labels.get("en") or spoken(row.name).lower()
     if isinstance(stated, bool) and label.startswith("is "):
         return f"It {label}." if stated else f"It is not {label.removeprefix('is ')}."

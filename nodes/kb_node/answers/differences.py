@@ -1,4 +1,4 @@
-"""What changed in the map between two commits, and when a spatial relation held: read from the journal."""
+"""Differences between two commits, and the times at which a spatial relation held, from the journal."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from semmap.schemas.relations import RelationName
 
 _KEPT: Final[dict[RelationName, KeptRelation]] = {name: name for name in get_args(KeptRelation)}
 _LONGEST = 10
-"""How many spells are told one by one in words."""
+"""Intervals that are listed one by one in the text."""
 
 
 def compute_difference(journal: Journal, past: Past, query: Diff, limits: Thresholds) -> Difference:
-    """What changed between `query.since` and `query.until`. Raises Refused, BadRequest."""
+    """Return what changed between `query.since` and `query.until`. Raises Refused, BadRequest."""
     first = past.commit_at(query.since)
     last = past.last if query.until is None else past.commit_at(query.until)
     if first > last:
@@ -58,7 +58,7 @@ def compute_difference(journal: Journal, past: Past, query: Diff, limits: Thresh
 
 
 def _stamp_ns(journal: Journal, seq: int) -> int:
-    """When a commit was made; what the history begins with, and what is older, has the stamp of that."""
+    """Return the time of a commit. Compacted commits have the time of the first snapshot."""
     begins = journal.beginning
     return begins.stamp_ns if begins.seq and seq <= begins.seq else journal.stamps.of(max(seq, 1))
 
@@ -76,7 +76,7 @@ def _facts(there: Iterable[Entity], limits: Thresholds) -> set[Fact]:
 
 
 def find_spells(journal: Journal, past: Past, query: WasWhen, limits: Thresholds) -> Spells:
-    """When the relation held. Raises UnknownName, BadRequest for a word that several things have."""
+    """Return when the relation held. Raises UnknownName; BadRequest for an ambiguous word."""
     there = {entity.name: entity for entity in past.entities(past.last)} if past.last else {}
     one, other = (_name(word, there, past) for word in (query.name, query.other))
     text, told = _find_spells(one, query.relation, other, journal, past, limits)
@@ -98,7 +98,7 @@ def find_spells(journal: Journal, past: Past, query: WasWhen, limits: Thresholds
 def _find_spells(
     one: str, relation: KeptRelation, other: str, journal: Journal, past: Past, limits: Thresholds
 ) -> tuple[str, tuple[Spell, ...]]:
-    """When a relation held, in words and as spells."""
+    """Return when a relation held, as text and as intervals."""
     fact = (one, relation, other)
     first = past.at_the_beginning().values()
     found = find_intervals(journal.outlines(PoseChanges), first, [fact], limits, in_any_place=True)[fact]
@@ -121,7 +121,7 @@ def _spoken(relation: KeptRelation) -> str:
 def _find_support(
     one: str, relation: KeptRelation, other: str, there: Mapping[str, Entity], limits: Thresholds
 ) -> tuple[KeptRelation, str] | None:
-    """What a thing is on or inside now, where that is in turn on or inside the other; else None."""
+    """Return what an object is on or inside now, if that is itself on or inside `other`, else None."""
     if relation not in ("isOn", "isInside"):
         return None
     space = Space(map(Placed.of, there.values()), limits)
@@ -139,14 +139,14 @@ def _find_support(
 
 
 def _name(word: str, there: Mapping[str, Entity], past: Past) -> str:
-    """The entity that a word names: by its name, now or ever, else by reference or class."""
+    """Return the entity that a word names: by its present or former name, by label or by class."""
     if word in there or past.knows(word):
         return word
     return only_meant(tuple(there.values()), word)
 
 
 def _describe(name: str, where: str, told: Sequence[Spell], now_ns: int) -> str:
-    """`cup1 has been on table1 since commit 4 (for 2 min); before that from commit 1 until commit 3 ...`."""
+    """Return `cup1 has been on table1 since commit 4 (for 2 min); before that from commit 1 until ...`."""
     if not told:
         return f"{name} was never {where}"
     spans = [_span(spell, now_ns) for spell in told if spell.until is not None]
@@ -160,7 +160,7 @@ def _describe(name: str, where: str, told: Sequence[Spell], now_ns: int) -> str:
 
 
 def _span(spell: Spell, now_ns: int) -> str:
-    """`from commit 1 until commit 3 (for 20 s, until 5 min ago)`."""
+    """Return `from commit 1 until commit 3 (for 20 s, until 5 min ago)`."""
     ago = wording.duration((now_ns - (spell.until_ns or now_ns)) / 1e9)
     return f"from {_beginning(spell)} until commit {spell.until} ({_length(spell, now_ns)}, until {ago} ago)"
 

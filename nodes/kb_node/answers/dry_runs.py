@@ -1,4 +1,4 @@
-"""A change that is tried and taken back: what it would commit, and what would follow."""
+"""Dry runs: what a change would commit and infer, without changing the map."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from semmap.schemas.commits import Commit, Effects, Trial
 from semmap.schemas.explanations import Term, Triple
 
 _FEW = 50
-"""Entities of which it is said what follows."""
+"""Entities whose inferred facts are compared."""
 
 
 def dry_run(
@@ -22,9 +22,9 @@ def dry_run(
     change: Callable[[], Commit | None],
     meanwhile: Callable[[], None] = lambda: None,
 ) -> Effects | None:
-    """The effects of what `change` would commit, with nothing done; None if it changes nothing.
+    """Return the effects that `change` would have, or None if it changes nothing.
 
-    `meanwhile` is called while the map is as it would be. Raises what `change` raises.
+    `meanwhile` is called while the map is in the changed state. Raises what `change` raises.
     """
 
     def inspect(commit: Commit) -> _After:
@@ -50,7 +50,7 @@ def dry_run(
 
 
 class _After:
-    """What holds of the entities that a commit touches, after it."""
+    """What holds after a commit about the entities that it touches."""
 
     def __init__(self, semantic_map: SemanticMap, commit: Commit) -> None:
         self.commit = commit

@@ -1,4 +1,4 @@
-"""Entities and where they are, now and in the past: what `list`, `get`, `relations` and `explain` answer."""
+"""Entities and their locations, now and in the past: `list`, `get`, `relations` and `explain`."""
 
 from __future__ import annotations
 
@@ -31,18 +31,18 @@ _MEASURED: Final[dict[Term, tuple[RelationName, bool]]] = {
     **{v.dm(name): (name, False) for name in SPOKEN},
     **PROPERTIES,
 }
-"""The properties that `explain` has measured; of the inverse ones the object is the thing."""
+"""The properties that `explain` measures. For inverse ones the object is the located entity."""
 
 
 class Explained(NamedTuple):
-    """Why something holds; where measured facts are a reason, their sentences are still to be dated."""
+    """An explanation; the times since which its measured facts hold are still to be added."""
 
     explanation: Explanation
     before: str = ""
     measured: tuple[tuple[Fact, str], ...] = ()
 
     def with_dates(self, look_up: Callable[[Collection[Fact]], FactStarts]) -> Explanation:
-        """With words for since when each measured fact holds and, of several, since when all do."""
+        """Return the explanation with the time since which its measured facts hold."""
         if not self.measured:
             return self.explanation
         facts = [fact for fact, _ in self.measured]
@@ -54,13 +54,13 @@ class Explained(NamedTuple):
 
 
 class CurrentState:
-    """The map as it is; owned by the node's thread."""
+    """Queries about the current map. Owned by the node's thread."""
 
     def __init__(self, semantic_map: SemanticMap) -> None:
         self._map = semantic_map
 
     def entities(self, query: Entities) -> tuple[Entity, ...]:
-        """The entities of a class; with `where` those that are there. Raises UnknownClass, UnknownName."""
+        """Return the entities of a class, or those that match `where`. Raises UnknownClass, UnknownName."""
         found = answers.entities_of(self._map, query.class_)
         if query.where is None:
             return found
@@ -75,7 +75,10 @@ class CurrentState:
         )
 
     def entity(self, query: Get) -> Described:
-        """One entity; with `where` also where it is and what was wrongly said of that. Raises UnknownName."""
+        """Return one entity, with its location and wrong assertions about it if `where`.
+
+        Raises UnknownName.
+        """
         entity = self._map.entity(query.name)
         if not query.where:
             return Described.of(entity)
@@ -83,7 +86,7 @@ class CurrentState:
         return structs.replace(found, on_nothing=_on_nothing(self._map.places.space(), entity))
 
     def describe(self, name: str) -> Described | None:
-        """The entity of that name with where it is, if it is there."""
+        """Return the entity of that name with its location, or None."""
         entity = self._map.find(name)
         return None if entity is None else self._with_where(entity)
 
@@ -96,12 +99,12 @@ class CurrentState:
         return Described.of(entity, tuple(there), tuple(wrong), withheld)
 
     def find_denied(self) -> tuple[Relation, ...]:
-        """What was said of where things are and is not so."""
+        """Return the asserted locations that contradict the geometry."""
         space = self._map.places.space()
         return tuple(denied(space, filter(None, map(fact_of, sorted(self._map.reasoner.set_aside())))))
 
     def relations(self, query: Relations) -> tuple[Relation, ...]:
-        """Where a thing is relative to others. Raises UnknownName; BadRequest for an ambiguous word."""
+        """Return the relations of an entity. Raises UnknownName; BadRequest for an ambiguous word."""
         named = _named(query, self._map.find, lambda: tuple(self._map.entities()))
         left_out = self._map.derived_facts.left_out
         is_fixed = self._map.entity(named.name).fixed
@@ -109,9 +112,9 @@ class CurrentState:
         return tuple(_mark_suppressed(r) if left_out and _fact(r) in left_out else r for r in found)
 
     def explain_measured(self, query: Explain) -> Explanation | None:
-        """What was measured of a relation that the TBox has no property for; None of any other.
+        """Return the measurement of a relation without a property in the TBox, or None.
 
-        Raises Refused when it does not hold, UnknownName.
+        Raises Refused if it does not hold, UnknownName.
         """
         relation = next((name for name in SPOKEN if name == query.predicate), None)
         if relation is None or self._map.classes.property_names.find(relation) is not None:
@@ -131,9 +134,9 @@ class CurrentState:
         return Explanation(conclusion=None, support=(), steps=(), text=seen.text)
 
     def explain(self, query: Explain, asked: questions.StatementQuestion) -> Explained | None:
-        """Why something holds, with what was measured where that is a reason; None if that is not known yet.
+        """Return why something holds, with measurements if they are a reason, or None if it is not known yet.
 
-        Raises Refused when a measurement denies it.
+        Raises Refused if a measurement denies it.
         """
         seen = self._measure(asked.triples[0])
         found = questions.why(self._map.reasoner, asked)
@@ -157,7 +160,7 @@ class CurrentState:
         if found.conclusion is not None and self._map.reasoner.is_computed(found.conclusion):
             return Explained(found, measured=(self._describe_fact(found.conclusion),))
         if seen is not None and not seen.holds:
-            # What is on a thing touches it with a gap, and where places are is asserted, not measured.
+            # An object on another touches it across a small gap, and the locations of places are asserted.
             seen = None if seen.relation == "touches" or self._is_place(seen.subject) else seen
         if seen is not None:
             if not seen.holds:
@@ -170,14 +173,14 @@ class CurrentState:
         return Explained(found, f"{found.text.rstrip('.')}; measured: ", told) if told else Explained(found)
 
     def describe_conflict(self, triple: Triple) -> str | None:
-        """What geometry says against a fact about a place, as a clause; None where it says nothing."""
+        """Return how the geometry contradicts an asserted location, as a clause, or None."""
         if (fact := fact_of(triple)) is None:
             return None
         found = denial(self._map.places.space(), fact)
         return None if found is None else found.text.partition("; ")[2]
 
     def _measure(self, triple: Triple) -> Relation | None:
-        """What is measured of a relation of two entities, or of its inverse; None for any other triple."""
+        """Measure a relation between two entities, or its inverse. Return None for any other triple."""
         s, p, o = triple
         if p not in _MEASURED or o.startswith('"'):
             return None
@@ -200,7 +203,7 @@ class CurrentState:
         )
 
     def _describe_fact(self, fact: Triple) -> tuple[Fact, str]:
-        """A computed fact, and what was measured of it."""
+        """Return a computed fact with its measurement."""
         relation = COMPUTED[fact[1]]
         name, other = v.entity_name(fact[0]), v.entity_name(fact[2])
         seen = explained(self._map.places.space(), name, relation, other)
@@ -208,14 +211,14 @@ class CurrentState:
 
 
 class PastState:
-    """The map as of `query.as_of`, read from the journal; for any thread."""
+    """Queries about the map as of `query.as_of`, read from the journal. For any thread."""
 
     def __init__(self, semantic_map: SemanticMap, past: Past) -> None:
         self._map = semantic_map
         self._past = past
 
     def entities(self, query: Entities) -> tuple[Entity, ...]:
-        """See `CurrentState.entities`."""
+        """Return the entities; see `CurrentState.entities`."""
         if query.as_of is None:
             raise errors.InternalError("the question names no moment")
         found = self._past.entities(query.as_of, query.class_, tuple(self._map.classes.iris))
@@ -225,7 +228,7 @@ class PastState:
         return tuple(selected(self._space(everyone), found, query.where, everyone))
 
     def entity(self, query: Get) -> Described:
-        """See `CurrentState.entity`; what was wrongly said is not looked for."""
+        """Return one entity; see `CurrentState.entity`. Wrong assertions are not reported."""
         if query.as_of is None:
             raise errors.InternalError("the question names no moment")
         entity = self._past.entity(query.name, query.as_of)
@@ -236,7 +239,7 @@ class PastState:
         return Described.of(entity, there, on_nothing=_on_nothing(space, entity))
 
     def relations(self, query: Relations) -> tuple[Relation, ...]:
-        """See `CurrentState.relations`."""
+        """Return the relations; see `CurrentState.relations`."""
         if query.as_of is None:
             raise errors.InternalError("the question names no moment")
         everyone = self._past.entities(query.as_of, None, ())
@@ -254,14 +257,14 @@ def _fact(relation: Relation) -> Fact:
 
 
 def _on_nothing(space: Space, entity: Entity) -> str:
-    """How high it hovers, or "" for what something bears, or need bear nothing."""
+    """Return at which height an unsupported object hovers, or "" if it is supported or needs no support."""
     solid = None if entity.fixed else space.solids.get(entity.name)
     found = None if solid is None else on_nothing(space, solid)
     return "" if found is None else found.text
 
 
 def _mark_suppressed(relation: Relation) -> Relation:
-    """A relation that is measured and withheld."""
+    """Return a measured relation with the note that it is suppressed."""
     note = "but it would contradict the map, so it is no fact (for the reason see: semmap check)"
     return structs.replace(relation, text=f"{relation.text}; {note}")
 
@@ -269,7 +272,7 @@ def _mark_suppressed(relation: Relation) -> Relation:
 def _named(
     query: Relations, find: Callable[[str], Entity | None], everyone: Callable[[], Sequence[Entity]]
 ) -> Relations:
-    """The query with the names of those whom its words mean: a name, else a reference, else a class."""
+    """Return the query with entity names for its words: a name, a label or a class."""
     names = {
         field: only_meant(everyone(), word)
         for field in ("name", "other", "viewer")

@@ -1,4 +1,4 @@
-"""Which entities of the map as it is a description means: answers `find`."""
+"""Entities that match a description: the command `find`."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ from semmap.schemas.language import Found, Language
 
 
 class SearchResult(NamedTuple):
-    """What was found, and what is still to be looked for in the past."""
+    """The result, and what is still to be looked up in the past."""
 
     found: Found
     missing: Missing | None = None
 
     def with_the_past(self, gone: tuple[str, ...]) -> Found:
-        """The same with when it was last there."""
+        """Return the result with the times at which the missing entities were last there."""
         return structs.replace(self.found, gone=gone)
 
 
 class Finding:
-    """Finds entities by what is said of them; owned by the node's thread."""
+    """Finds entities by description. Owned by the node's thread."""
 
     def __init__(self, semantic_map: SemanticMap) -> None:
         self._map = semantic_map
@@ -47,7 +47,7 @@ class Finding:
         self._seq = -1
 
     def find(self, query: Find) -> SearchResult:
-        """What is described. Raises BadRequest, UnknownName for an asker or viewer that is not there."""
+        """Return the described entities. Raises BadRequest; UnknownName for an unknown asker or viewer."""
         space = self._map.places.space()
         asker = None if query.asker is None else self._named(query.asker)
         around = Asked(space, self._view(query, space), self._map.derived_facts.left_out)
@@ -57,7 +57,7 @@ class Finding:
         return SearchResult(structs.replace(found, seq=self._map.seq), missing(answer))
 
     def described(self, text: str) -> tuple[str, ...]:
-        """The entities that a text describes, by name; none where that cannot be said."""
+        """Return the names of the entities that a text describes, or none if it cannot be read."""
         space = self._map.places.space()
         around = Asked(space, None, self._map.derived_facts.left_out)
         try:
@@ -68,7 +68,7 @@ class Finding:
         return tuple(sorted(found.names))
 
     def is_at(self, thing: str, other: str) -> bool:
-        """Whether a thing is on, in or inside another, or that cannot be told."""
+        """Return whether an object is on, in or inside another, or whether that is unknown."""
         space, left_out = self._map.places.space(), self._map.derived_facts.left_out
         solid = space.solids.get(thing)
         if solid is None or other not in space.solids:
@@ -76,20 +76,20 @@ class Finding:
         return is_on(space, solid, {other}, left_out) or is_in(space, solid, {other}, left_out)
 
     def where(self, thing: str) -> str:
-        """What a thing is on, inside or in: `on desk1`; "" for nothing."""
+        """Return what an object is on, inside or in, such as `on desk1`, or "" if nothing."""
         around = Asked(self._map.places.space(), None, self._map.derived_facts.left_out)
         relation, other = next(iter(around.whereabouts(thing)), (None, ""))
         return f"{SPOKEN[relation].removeprefix('is ')} {other}" if relation else ""
 
     def question(self, names: tuple[str, ...], language: Language) -> str:
-        """What to ask back to learn which of several entities is meant."""
+        """Return a question that asks which of several entities is meant."""
         space = self._map.places.space()
         around = Asked(space, None, self._map.derived_facts.left_out)
         with space.remembering():
             return asking_back.question(names, Resolver(self.known(), around, language))
 
     def known(self) -> Known:
-        """What there is to be described, after the last commit; who is as before is not read again."""
+        """Return the search items after the last commit; unchanged entities are not read again."""
         if self._known is None or self._classes is not self._map.classes:
             self._classes, self._seq, self._read = self._map.classes, -1, {}
             self._known = Known(terms(self._map.reasoner, self._map.classes))

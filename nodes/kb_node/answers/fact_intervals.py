@@ -1,7 +1,7 @@
-"""Since when a computed relation holds: read off the history of poses, so that a restart changes nothing.
+"""Time intervals in which computed relations held, from the poses in the journal.
 
-One pass through the journal. Relations are measured again only at commits that change something near the
-thing that they are about.
+The journal is read once. Relations are measured again only at commits that change something near the object.
+The result is the same after a restart.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ from semmap.schemas.grips import IS_GRASPED_BY
 from semmap.schemas.polygons import EXTENT
 
 _MARGIN_M = 1.5
-"""Beyond what can touch the thing: so all of the cells of the spatial index that it is in are complete."""
+"""Margin beyond the reach of the object, so that all cells of the spatial index around it are complete."""
 
 
 class _PlacedEntity(Struct, frozen=True):
-    """An entity as far as relations need it."""
+    """The part of an entity that relations need."""
 
     name: str
     iri: str
@@ -65,7 +65,7 @@ class _RemovedEntity(Struct, frozen=True):
 
 
 class PoseChanges(Struct, frozen=True):
-    """The part of a commit that tells who is where after it."""
+    """The part of a commit that determines the poses after it."""
 
     seq: int
     changed: tuple[_PlacedEntity, ...] = ()
@@ -73,14 +73,14 @@ class PoseChanges(Struct, frozen=True):
 
 
 class FactStarts(NamedTuple):
-    """Since when facts have held without a break, as far as the journal goes back."""
+    """The commits since which facts have held without interruption, as far as the journal goes back."""
 
     since: Mapping[Fact, int]
-    """By commit; 0 is before the first one that the journal has."""
+    """By commit. 0 stands for a time before the first commit of the journal."""
     first: int = 1
 
     def describe(self, facts: Collection[Fact]) -> str | None:
-        """Since when all of these have held at once: "since commit 7". None where one is not known."""
+        """Return since when all of these have held together, such as "since commit 7", or None if unknown."""
         if not facts or not self.since.keys() >= set(facts):
             return None
         latest = max(self.since[fact] for fact in facts)
@@ -88,7 +88,7 @@ class FactStarts(NamedTuple):
 
 
 def look_up_starts(journal: Journal, past: Past, facts: Collection[Fact], limits: Thresholds) -> FactStarts:
-    """Since when each fact has held without a break."""
+    """Return since when each fact has held without interruption."""
     found = find_fact_starts(journal.outlines(PoseChanges), past.at_the_beginning().values(), facts, limits)
     return FactStarts(found, journal.first)
 
@@ -96,9 +96,9 @@ def look_up_starts(journal: Journal, past: Past, facts: Collection[Fact], limits
 def find_fact_starts(
     history: Iterable[PoseChanges], first: Iterable[Entity], facts: Collection[Fact], limits: Thresholds
 ) -> dict[Fact, int]:
-    """The commit since which each fact has held without a break; what does not hold at the end is left out.
+    """Return the commit since which each fact has held. Facts that do not hold at the end are left out.
 
-    Commits and thresholds are as for `find_intervals`.
+    For commits and thresholds see `find_intervals`.
     """
     found = find_intervals(history, first, facts, limits)
     return {fact: spans[-1][0] for fact, spans in found.items() if spans and spans[-1][1] is None}
@@ -112,12 +112,12 @@ def find_intervals(
     *,
     in_any_place: bool = False,
 ) -> dict[Fact, list[tuple[int, int | None]]]:
-    """From which commit until before which each fact held, in order; None for what holds at the end.
+    """Return for each fact the intervals [first commit, end commit) in order; None is an open end.
 
-    `history` are the commits in order, `first` the entities before them; what held before the first of
-    them begins with 0. All is measured with the thresholds given. A thing is located in the smallest place
-    that it is in; with `in_any_place` also in all that this is a part of,
-    and a place in those that it is within.
+    `history` are the commits in order and `first` the entities before them. An interval that began before the
+    first commit begins with 0. All measurements use the given thresholds. An object is located in the
+    smallest place around it. With `in_any_place` it is also located in all places that this one is part of,
+    and a place in those around it.
     """
     there = {entity.name: Placed.of(entity) for entity in first}
     by_name = groupby(sorted(facts), key=lambda fact: fact[0])
@@ -148,7 +148,7 @@ def _names(moves: PoseChanges) -> list[str]:
 
 
 class _Neighbourhood:
-    """A thing and what is near it."""
+    """An object and what is near it."""
 
     def __init__(
         self,
@@ -158,7 +158,7 @@ class _Neighbourhood:
         there: dict[str, Placed],
         in_any_place: bool,
     ) -> None:
-        """`facts` are about the thing; `there` is everybody, as they are at first."""
+        """Create the neighbourhood. `facts` are about the object; `there` are all entities at first."""
         self._in_any_place = in_any_place
         self.facts = facts
         self._name = name
@@ -173,7 +173,7 @@ class _Neighbourhood:
     def follow(
         self, shifted: dict[str, tuple[Placed | None, Placed | None]], there: dict[str, Placed]
     ) -> bool:
-        """Take over who is somewhere else now; whether that matters here."""
+        """Apply changed poses. Return whether they matter here."""
         if self._name in shifted:
             self._begin(there)
             return True
@@ -188,7 +188,7 @@ class _Neighbourhood:
         return matters
 
     def holding(self) -> frozenset[Fact]:
-        """Which of the facts hold."""
+        """Return those of the facts that hold."""
         solid = self._space.solids.get(self._name)
         if solid is None:
             return frozenset()
@@ -200,7 +200,7 @@ class _Neighbourhood:
         return self.facts & found
 
     def _is_within(self, solid: Solid, fact: Fact) -> bool:
-        """Whether the fact says that the thing is in a place, and it is."""
+        """Return whether the fact states that the object is in a place, and it is."""
         _, relation, other = fact
         place = self._space.solids.get(other) if relation == "isLocatedIn" else None
         if place is None or not place.is_place or place is solid:
@@ -217,6 +217,6 @@ class _Neighbourhood:
 
 
 def _reach(placed: Placed) -> float:
-    """How far from its position a thing may extend, however it is turned [m]."""
+    """Return how far an object may extend from its position in any orientation [m]."""
     size = placed.size_m or own_size_m(placed.model)
     return 0.0 if size is None else math.hypot(*size)

@@ -1,4 +1,4 @@
-"""Where tracked entities are just now, for questions about where things are; facts are of committed poses."""
+"""Live poses of tracked entities for spatial queries. Facts depend on committed poses only."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ from semmap.schemas.entities import Entity, Live, distance_m
 from semmap.schemas.live import LivePoses
 
 _TIMEOUT_S = 3.0
-"""Live poses are told at least once a second while there are any: who tells them is gone after that."""
+"""Live poses are published at least once a second. After this time without one they are outdated."""
 _SLIGHT_M = 0.001
 _SLIGHT_TURN = 1e-3
 
 
 class LiveEntities:
-    """The newest live poses; owned by the node's thread."""
+    """The newest live poses. Owned by the node's thread."""
 
     def __init__(self, semantic_map: SemanticMap, clock: Callable[[], float] = time.monotonic) -> None:
-        """None were heard yet."""
+        """Begin without live poses."""
         self._map = semantic_map
         self._clock = clock
         self._live: dict[str, Live] = {}
         self._received_s = -_TIMEOUT_S
 
     def update(self, message: LivePoses) -> None:
-        """The coordinator tells where all tracked entities are."""
+        """Store the live poses of all tracked entities, as published by the coordinator."""
         self._live, self._received_s = message.entities, self._clock()
 
     @contextmanager
     def applied(self) -> Iterator[None]:
-        """Within, what is tracked or held is where it is just now, and everything else where the map says."""
+        """Within this context, tracked and attached entities have their live poses."""
         elsewhere = list(self._moved_entities())
         if not elsewhere:
             yield

@@ -1,4 +1,4 @@
-"""Standing questions of where things are: who is on, in or near something, and who comes and goes."""
+"""Standing location queries: which entities are on, in or near something, and which arrive and leave."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ from semmap.schemas.replies import Done
 from semmap.schemas.sparql import Row, RowsChanged, Watching
 
 STANDING = 64
-"""How many there may be."""
+"""Largest number of standing location queries."""
 VARIABLES = ("entity",)
 
 
 @dataclass
 class _LocationQuery:
-    """One of them. `ends` is when its lease does [s, monotonic]."""
+    """One query. `ends` is the end of its lease [s, monotonic]."""
 
     watch: str
     class_name: str | None
@@ -44,25 +44,28 @@ class _LocationQuery:
     ends: float
     meant: Meant
     found: dict[str, Row]
-    """Those that are there, by name."""
+    """The entities in the result, by name."""
     seq: int
 
 
 class LocationQueries:
-    """Keeps them in step with a map. Owned by the node's thread."""
+    """Keeps the standing location queries up to date with the map. Owned by the node's thread."""
 
     def __init__(self, semantic_map: SemanticMap, publish: Callable[[QueryUpdate], None]) -> None:
         self._map = semantic_map
         self._publish = publish
         self._queries: dict[str, _LocationQuery] = {}
         self._entities: dict[str, Entity] = {}
-        """While there is one: the entities as they were when it was last looked at them."""
+        """The entities at the last evaluation, while there is a query."""
         self._touched: set[str] = set()
         self._left_out: frozenset[Fact] = frozenset()
-        """What was measured and withheld then."""
+        """The measured facts that were suppressed at the last evaluation."""
 
     def watch(self, command: Watch) -> Watching:
-        """Begin one. Raises UnknownName, UnknownClass, NameTaken, BadRequest, Refused for too many."""
+        """Start a query.
+
+        Raises UnknownName, UnknownClass, NameTaken, BadRequest, Refused if there are too many.
+        """
         self.drop_expired()
         name = command.watch or f"q{uuid.uuid4().hex[:12]}"
         if name in self._queries:
@@ -99,7 +102,7 @@ class LocationQueries:
         )
 
     def renew(self, renewal: Renew) -> Done | None:
-        """One goes on, or ends; None if it is not one of these."""
+        """Renew or end a query. Return None if it is not one of these."""
         standing = self._queries.get(renewal.watch)
         if standing is None:
             return None
@@ -110,12 +113,15 @@ class LocationQueries:
         return Done(text=f"{renewal.watch} goes on for {standing.lease_s:g} s")
 
     def drop_expired(self) -> None:
-        """End those whose lease has ended."""
+        """End the queries whose lease has expired."""
         for standing in [s for s in self._queries.values() if s.ends <= time.monotonic()]:
             self._drop(standing)
 
     def follow(self, seq: int, names: Iterable[str]) -> None:
-        """A commit touched these entities; if the map has others already, they are told of with the last."""
+        """Update the queries after a commit that touched these entities.
+
+        If the map has later commits already, the changes are published with the last one.
+        """
         if not self._queries:
             return
         self._touched.update(names)
@@ -141,7 +147,7 @@ class LocationQueries:
                 self._entities[name] = entity
 
     def _affected(self, touched: Iterable[str]) -> set[str]:
-        """Who may be elsewhere relative to others: who moved, who was or is beside it, and all on top."""
+        """Return the entities whose relations may change: those touched, their neighbours and loads."""
         space = self._map.places.space()
         found = set(touched)
         for name in touched:
@@ -175,7 +181,7 @@ class LocationQueries:
             self._publish(QueryUpdate(watch=standing.watch, rows=news))
 
     def _evaluate(self, standing: _LocationQuery, names: Iterable[str]) -> dict[str, Row]:
-        """Those of these names that are there, in the order of names."""
+        """Return the rows of those of these names that are in the result, in the order of names."""
         found = (self._map.find(name) for name in sorted(names))
         class_name = standing.class_name
         candidates = [e for e in found if e is not None and (class_name is None or class_name in e.types)]
@@ -184,7 +190,7 @@ class LocationQueries:
         return {entity.name: (v.iri(entity.iri),) for entity in there}
 
     def _meant(self, where: Where) -> Meant:
-        """Who is meant now; nobody by a word that nobody is called any more."""
+        """Return the entities that the words of a query mean now; none for a word that matches nothing."""
         try:
             return resolved(where, tuple(self._map.entities()))
         except errors.UnknownName:
@@ -198,7 +204,7 @@ class LocationQueries:
 
 
 def _designations(entity: Entity | None) -> tuple[object, ...]:
-    """By what a word may mean an entity."""
+    """Return the class names and labels by which a word may mean an entity."""
     if entity is None:
         return ()
     return (entity.types, entity.preferred_reference, entity.alternative_references)

@@ -1,4 +1,4 @@
-"""When such a thing as was described was last there: what was removed since, and what has been moved away."""
+"""When an entity that matches a description was last there: removed or moved entities."""
 
 from __future__ import annotations
 
@@ -18,34 +18,40 @@ from semmap.schemas import errors
 from semmap.schemas.commands import WasWhen
 
 _MOST: Final = 3
-"""Sentences of each sort."""
+"""Sentences of each kind."""
 _LOOKED_AT: Final = 200
-"""So many of those that went last are looked at."""
+"""Recently removed entities that are checked."""
 
 
 def describe_missing(
     journal: Journal, past: Past, sought: Missing, there: Set[str], limits: Thresholds
 ) -> tuple[str, ...]:
-    """Sentences on when it was last there, the newest first; for any thread. there: who is there now."""
+    """Return sentences on when it was last there, newest first.
+
+    For any thread. `there` are the present names.
+    """
     removed = islice(_removed(journal, past, sought, there), _MOST)
     moved = islice(_moved(journal, past, sought, limits), _MOST)
     return (*removed, *moved)
 
 
 def _removed(journal: Journal, past: Past, sought: Missing, there: Set[str]) -> Iterator[str]:
-    """Those of that kind that somebody took out of the map."""
+    """Yield sentences on removed entities of that kind."""
     touched = [(seq, name) for name, seq in journal.last_touches(past.last) if name not in there]
     for seq, name in sorted(touched, reverse=True)[:_LOOKED_AT]:
         try:
             entity = past.entity(name, seq - 1)
-        except (errors.UnknownName, errors.Refused):  # it came and went at once, or before the history begins
+        except (
+            errors.UnknownName,
+            errors.Refused,
+        ):  # it existed only briefly, or before the history begins
             continue
         if sought.is_such(item(entity)):
             yield f"{name} was there until commit {seq}, {_at(journal, seq)}"
 
 
 def _moved(journal: Journal, past: Past, sought: Missing, limits: Thresholds) -> Iterator[str]:
-    """Those that are there, and were where they were said to be."""
+    """Yield sentences on present entities that were at the described location before."""
     for name, relation, other in sought.pairs:
         asked = WasWhen(name=name, relation=relation, other=other)
         held = find_spells(journal, past, asked, limits).spells

@@ -1,4 +1,4 @@
-"""The map as it was, triple by triple, for queries of the past: from the journal, and for any thread."""
+"""Past states of the map as triples, for queries and exports. For any thread."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from semmap.schemas.sparql import SparqlResult
 
 
 class PastMap(NamedTuple):
-    """What was asserted after commit `seq`, the TBox with it; and what was computed and set aside."""
+    """The asserted triples after commit `seq` with the TBox, and the computed and suppressed facts."""
 
     seq: int
     asserted: tuple[Triple, ...]
@@ -40,7 +40,7 @@ class PastMap(NamedTuple):
 
 
 def load_past_map(journal: Journal, past: Past, seq: int, *, inferred: bool) -> PastMap:
-    """The map after a commit; with `inferred` also what was computed, worked out again."""
+    """Return the map after a commit; with `inferred` its computed facts are derived again."""
     asserted = asserted_after(journal, seq)
     if not inferred:
         return PastMap(seq, tuple(asserted))
@@ -50,7 +50,7 @@ def load_past_map(journal: Journal, past: Past, seq: int, *, inferred: bool) -> 
 
 
 class _RebuiltMap(NamedTuple):
-    """All that held after a commit, worked out again."""
+    """The complete state after a commit, derived again."""
 
     tbox: frozenset[Triple]
     abox: set[Triple]
@@ -72,10 +72,10 @@ def _rebuild(journal: Journal, past: Past, seq: int, asserted: set[Triple]) -> _
 
 
 def export_past(journal: Journal, past: Past, query: Export) -> Document:
-    """The map as of `query.as_of`, as a document; it was checked when it was committed.
+    """Return the map as of `query.as_of` as a document. It was checked when it was committed.
 
-    With `inferred` what followed and was measured then is worked out again, by the rules of today. Raises
-    Refused when there was no map; BadRequest for what is no moment.
+    With `inferred` the inferred and measured facts are derived again with the present rules. Raises Refused
+    if there was no map; BadRequest for an invalid time.
     """
     if query.as_of is None:
         raise errors.InternalError("the question names no moment")
@@ -90,7 +90,7 @@ def export_past(journal: Journal, past: Past, query: Export) -> Document:
 
 
 def _export_snapshot(then: _RebuiltMap, seq: int) -> answers.ExportSnapshot:
-    """What held then, to be written, what was measured of pairs among it."""
+    """Return the triples to write, including measured pairs."""
     abox = sorted(then.abox - set(then.reasoner.set_aside()))
     following = answers.inferred_triples(then.reasoner, then.tbox, abox)
     declared = [(c, v.RDF_TYPE, v.OWL_CLASS) for c in undeclared_classes(abox, then.classes)]
@@ -102,9 +102,9 @@ def _export_snapshot(then: _RebuiltMap, seq: int) -> answers.ExportSnapshot:
 
 
 def query_past(journal: Journal, past: Past, query: Sparql) -> SparqlResult:
-    """The answer of a query about the map as of `query.as_of`, from a process of its own.
+    """Return the answer of a query about the map as of `query.as_of`, from a separate process.
 
-    Raises the query's error; Refused when there was no map, BadRequest for what is no moment.
+    Raises the query's error, Refused if there was no map, BadRequest for an invalid time.
     """
     if query.as_of is None:
         raise errors.InternalError("the question names no moment")

@@ -1,4 +1,4 @@
-"""What a plan is drawn from: entities and walls as outlines."""
+"""Floor plans: entities and walls as outlines."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _NO_WALLS = "no simulator tells where the walls are, so they are where no place 
 
 
 def plan_of(entities: Iterable[Entity], walls: tuple[Outline, ...] | None) -> Plan:
-    """The plan of these entities, by name; `walls` None where nobody knows them."""
+    """Return the plan of these entities, sorted by name. `walls` is None if they are unknown."""
     places: list[PlannedPlace] = []
     things: list[PlannedThing] = []
     for entity in sorted(entities, key=lambda e: e.name):

@@ -1,4 +1,4 @@
-"""Questions about one triple, asked in words: why it holds, why it cannot, and whether it could."""
+"""The commands `explain` and `could`: why a statement holds or cannot hold, and whether it could."""
 
 from __future__ import annotations
 
@@ -25,29 +25,29 @@ from semmap.schemas.explanations import Explanation, Term, Triple
 from semmap.schemas.replies import Possible
 
 _QUICK = 2000
-"""Triples about an individual with which supposing something of it still takes milliseconds."""
+"""Triples about an individual up to which an assumption about it takes milliseconds."""
 _COMPARED = 50
-"""Values that are looked at for what would be the same."""
+"""Values that are compared for what would become the same."""
 
 
 class Undecided(NotCompilable):
-    """Neither the rules nor a refutation decide it at once: a proof is to be searched for, on a copy."""
+    """Raised if neither the rules nor a refutation decide it, so that a proof must be searched on a copy."""
 
 
 class StatementQuestion(NamedTuple):
-    """A question as triples: the one that is meant, or several that a word may stand for."""
+    """A statement as triples: one triple, or several if a word is ambiguous."""
 
     triples: tuple[Triple, ...]
     negated: bool = False
 
     @property
     def terms(self) -> tuple[Term, ...]:
-        """What it is about."""
+        """The subjects and objects."""
         return tuple(dict.fromkeys(term for s, _, o in self.triples for term in (s, o)))
 
 
 def parse_explain(semantic_map: SemanticMap, question: Explain) -> StatementQuestion:
-    """What `explain` asks. Raises UnknownName, UnknownClass, BadRequest for an unknown property."""
+    """Return the statement that `explain` is about. Raises UnknownName, UnknownClass, BadRequest."""
     subject = term_resolution.individual(semantic_map, question.name)
     predicate = term_resolution.property_(semantic_map, question.predicate)
     values = term_resolution.values(semantic_map, subject, predicate, question.value)
@@ -55,7 +55,7 @@ def parse_explain(semantic_map: SemanticMap, question: Explain) -> StatementQues
 
 
 def parse_could(semantic_map: SemanticMap, question: Could) -> StatementQuestion:
-    """What `could` asks. Raises UnknownName, UnknownClass, BadRequest for an unknown property."""
+    """Return the statement that `could` is about. Raises UnknownName, UnknownClass, BadRequest."""
     subject = term_resolution.individual(semantic_map, question.name)
     predicate = term_resolution.property_(semantic_map, question.predicate)
     return StatementQuestion(
@@ -64,7 +64,7 @@ def parse_could(semantic_map: SemanticMap, question: Could) -> StatementQuestion
 
 
 def is_quick(reasoner: Reasoner, asked: StatementQuestion) -> bool:
-    """Whether supposing it is quick: the reasoner works change by change, and touches few triples."""
+    """Return whether an assumption is quick: the reasoner is incremental, and few triples change."""
     return reasoner.is_compiled and not any(
         _has_many(reasoner, term)
         for s, p, o in asked.triples
@@ -73,14 +73,14 @@ def is_quick(reasoner: Reasoner, asked: StatementQuestion) -> bool:
 
 
 def copy_reasoner(held: Held, names: Mapping[Term, str]) -> Reasoner:
-    """A reasoner for work beside the map's own; `names` tell its classes apart."""
+    """Return a reasoner for another thread; `names` distinguish classes with equal local names."""
     reasoner = Reasoner.of(held)
     reasoner.words.tell_apart(names)
     return reasoner
 
 
 def _to_message(reasoner: Reasoner, found: reasons.Explanation) -> Explanation:
-    """An explanation as it goes over the wire; what is computed in it is told as measured."""
+    """Return an explanation as a wire message; computed facts are described as measured."""
     computed = [fact for fact in found.support if reasoner.is_computed(fact)]
     message = proofs.to_message(found)
     if not computed:
@@ -89,20 +89,20 @@ def _to_message(reasoner: Reasoner, found: reasons.Explanation) -> Explanation:
 
 
 def why(reasoner: Reasoner, asked: StatementQuestion) -> Explanation | None:
-    """Why it holds by the rules; None if it does not."""
+    """Return why the statement holds by the rules, or None."""
     found = next(filter(None, map(reasoner.explain, asked.triples)), None)
     return None if found is None else _to_message(reasoner, found)
 
 
 def explain(reasoner: Reasoner, asked: StatementQuestion, *, anew: bool = True) -> Explanation:
-    """Why it holds, or cannot hold.
+    """Return why the statement holds or cannot hold.
 
-    What no rule derives or contradicts is proved or refuted from what is near, if a proof is found there.
+    If no rule derives or contradicts it, a proof or a refutation is searched in the nearby triples.
 
     Raises:
-        Refused: it does not hold; or it holds, or nothing says that it cannot.
-        NotCompilable: everything would have to be worked out `anew`, and that is not wanted; Undecided if
-            only what is near would have to be.
+        Refused: it does not hold, or (negated) it holds or is not excluded.
+        NotCompilable: everything must be computed again, and `anew` is False; Undecided if only the nearby
+            triples must be.
     """
     first = asked.triples[0]
     clause = said(first, reasoner.words)
@@ -141,17 +141,17 @@ def explain(reasoner: Reasoner, asked: StatementQuestion, *, anew: bool = True) 
 
 
 def _near(reasoner: Reasoner, asked: StatementQuestion) -> Reasoner:
-    """A reasoner that holds what is near, in which a proof is searched for."""
+    """Return a reasoner with the nearby triples, in which a proof is searched."""
     return Reasoner(nearby(reasoner, asked.terms), closed=reasoner.closed)
 
 
 def could(
     reasoner: Reasoner, asked: StatementQuestion, *, anew: bool = True, against: str | None = None
 ) -> Possible:
-    """Whether it could hold; the reasoner is as before. `against` is what geometry says of it, a clause.
+    """Return whether the statement could hold. The reasoner is unchanged. `against` is a geometric conflict.
 
     Raises:
-        NotCompilable: everything would have to be worked out `anew`, and that is not wanted.
+        NotCompilable: everything must be computed again, and `anew` is False.
     """
     triple = asked.triples[0]
     clause = said(triple, reasoner.words)
@@ -164,7 +164,7 @@ def could(
             if not computed:
                 text = f"no: {excluded.text}"
                 return Possible(possible=False, text=text, explanation=_to_message(reasoner, excluded))
-            reasoner.believe(gone=computed)  # nothing that is computed refuses a commit
+            reasoner.believe(gone=computed)  # computed facts never cause a commit to be rejected
             measured += computed
     finally:
         if measured:
@@ -181,7 +181,7 @@ def could(
 
 
 def _would_be_same(reasoner: Reasoner, triple: Triple) -> Iterator[Triple]:
-    """What a triple would make the same, as where a property has one value at most."""
+    """Yield the equalities that a triple would imply, for example by a functional property."""
     s, p, o = triple
     if o.startswith('"') or p in RELATIONS.values():
         return

@@ -1,4 +1,4 @@
-"""Plans of the map and ways through it, now and in the past, worked out beside the node's own work."""
+"""Floor plans and routes through the map, now and in the past, computed in other threads."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ R = TypeVar("R")
 
 
 class Aside(Protocol):
-    """Works beside the node's thread."""
+    """Runs a function in another thread."""
 
     def __call__(self, function: Callable[[], R]) -> Future[R]:
-        """The result of `function()`, when there is one."""
+        """Return the future result of `function()`."""
         ...
 
 
 class RoutePlanning:
-    """Owned by the node's thread; `aside` works beside it."""
+    """Computes plans and routes. Owned by the node's thread; `aside` runs functions in other threads."""
 
     def __init__(self, semantic_map: SemanticMap, past: Past, aside: Aside) -> None:
         self._map = semantic_map
@@ -36,7 +36,7 @@ class RoutePlanning:
         self._aside = aside
 
     def plan(self, query: PlanOf) -> Future[Plan]:
-        """The plan of the map."""
+        """Return the plan of the map."""
         entities = self._entities(query.as_of)
 
         def plan() -> Plan:
@@ -45,7 +45,7 @@ class RoutePlanning:
         return self._aside(plan)
 
     def way(self, query: WayOf) -> Future[Way]:
-        """A way through the map. Raises UnknownName; Refused where there is none."""
+        """Return a route through the map. Raises UnknownName; Refused if there is none."""
         entities = self._entities(query.as_of)
 
         def way() -> Way:
@@ -56,7 +56,7 @@ class RoutePlanning:
         return self._aside(way)
 
     def _entities(self, as_of: When | None) -> Callable[[], Sequence[Entity]]:
-        """Those of now, which this thread alone may look up, or of then."""
+        """Return a function for the entities. Only this thread may read the present ones."""
         if as_of is not None:
             return lambda: self._past.entities(as_of, None, ())
         now = tuple(self._map.entities())
@@ -64,5 +64,5 @@ class RoutePlanning:
 
 
 def _named(there: Sequence[Entity], word: str) -> str:
-    """The name that a word means. Raises UnknownName, BadRequest for an ambiguous one."""
+    """Return the name that a word means. Raises UnknownName; BadRequest for an ambiguous word."""
     return word if any(entity.name == word for entity in there) else only_meant(there, word)

@@ -1,4 +1,4 @@
-"""Entities and a TBox as one speaks of them: what finding by words needs to know."""
+"""Entities and TBox terms in the form that the search by description needs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _HAS_AFFORDANCE = v.dm("hasAffordance")
 
 
 def item(entity: Entity) -> Item:
-    """An entity as one speaks of it."""
+    """Return an entity as a search item."""
     references = filter(None, (entity.preferred_reference, *entity.alternative_references))
     values: dict[str, frozenset[object]] = {
         name: frozenset(value if isinstance(value, tuple) else (value,))
@@ -24,7 +24,7 @@ def item(entity: Entity) -> Item:
 
 
 def terms(reasoner: Reasoner, classes: ClassTable) -> Terms:
-    """What a TBox has words for."""
+    """Return the classes, values and affordances of a TBox with their labels."""
     rows = [row for row in classes.rows if row.spatial]
     named = [(language, row.name, text) for row in rows for language, text in row.labels.items()]
     named += [("", row.name, text) for row in rows for text in row.also]
@@ -46,7 +46,7 @@ def _labels(reasoner: Reasoner, names: set[str]) -> Iterator[tuple[str, str, str
 
 
 def _affords(reasoner: Reasoner, classes: ClassTable) -> dict[str, frozenset[str]]:
-    """Class to what the TBox says that its instances afford."""
+    """Return by class which affordances the TBox states for its instances."""
     found: dict[str, set[str]] = {}
     for restriction, _, value in reasoner.asserted(None, v.iri(f"{v.OWL}hasValue"), None):
         if any(reasoner.asserted(restriction, v.iri(f"{v.OWL}onProperty"), _HAS_AFFORDANCE)):

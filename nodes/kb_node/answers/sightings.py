@@ -1,7 +1,7 @@
-"""When things were last seen, and which are seen to be gone: answers `last-seen`.
+"""When entities were last seen, and which are missing: the command `last-seen`.
 
-Commits tell where a thing was last put or seen to move to. As long as it stays there nothing is committed, so
-when a camera last had it in sight is taken from what perception publishes, and kept in memory only.
+Commits record where an entity was last placed or observed. Nothing is committed while it stays there. The
+time of the last observation therefore comes from the messages of perception, and is kept in memory only.
 """
 
 from __future__ import annotations
@@ -21,26 +21,26 @@ _JUST_NOW_S: Final = 10.0
 
 
 class Sightings:
-    """What is known of when things were seen. `see`, `is_gone` and `there` are for the node's thread."""
+    """The times of observations. `record`, `is_missing` and `describe_present` are for the node's thread."""
 
     def __init__(self, past: Past) -> None:
         self._past = past
         self._seen_ns: dict[str, int] = {}
 
     def record(self, seen: Observations) -> None:
-        """Take note of one look."""
+        """Store the observations of one frame."""
         self._seen_ns.update((one.entity, seen.stamp_ns) for one in seen.observations if one.entity)
 
     def is_missing(self, entity: Entity) -> bool:
-        """Whether perception has said that an entity of the map is not where it should be."""
+        """Return whether perception has reported that an entity is not where it should be."""
         return entity.conflict in (MISSING, DISPLACED)
 
     def describe_present(self, entity: Entity) -> Sighting:
-        """Where an entity of the map is, as far as anybody knows."""
+        """Return where an entity of the map is, as far as is known."""
         return self._describe(sighting(entity, None), None)
 
     def describe_removed(self, name: str, entity: Entity | None) -> Sighting:
-        """Where an entity was that was removed, or is seen to be gone. For any thread. Raises UnknownName."""
+        """Return where a removed or missing entity was. For any thread. Raises UnknownName."""
         if entity is not None:
             return self._describe(
                 sighting(entity, None), self._past.in_conflict_since(entity), entity.conflict
@@ -76,7 +76,7 @@ def _describe_observed(placed: Provenance, seen_ns: int | None, now_ns: int) -> 
 
 
 def _at(said: Provenance, now_ns: int) -> str:
-    """`at commit 7, 12 min ago`."""
+    """Return `at commit 7, 12 min ago`."""
     return f"at commit {said.commit}, {wording.duration((now_ns - said.stamp_ns) / 1e9)} ago"
 
 

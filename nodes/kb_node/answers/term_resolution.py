@@ -1,4 +1,4 @@
-"""The terms that words of a question stand for: names, labels, prefixed names, IRIs and literals."""
+"""Resolution of words in queries to terms: names, labels, prefixed names, IRIs and literals."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ RELATIONS: Final = {
     "equivalentclass": v.iri(f"{v.OWL}equivalentClass"),
     "disjointwith": v.iri(f"{v.OWL}disjointWith"),
 }
-"""What every map knows besides the properties of its TBox, in lower case."""
+"""Relations that every map has in addition to the properties of its TBox, in lower case."""
 OF_CLASSES: Final = frozenset(RELATIONS.values()) - {v.OWL_SAME_AS, v.OWL_DIFFERENT_FROM}
-"""Those whose value is a class."""
+"""Relations whose value is a class."""
 _VOCABULARY: Final = tuple(f"<{namespace}" for namespace in (v.OWL, v.RDF, v.RDFS, v.XSD))
 
 
 def class_(semantic_map: SemanticMap, word: str) -> Term:
-    """The class that is meant. Raises UnknownClass."""
+    """Return the class that a word means. Raises UnknownClass."""
     classes = semantic_map.classes
     if word in classes.iris:
         return classes.iris[word]
@@ -45,13 +45,13 @@ def class_(semantic_map: SemanticMap, word: str) -> Term:
 
 
 def _class_or_built_in(semantic_map: SemanticMap, word: str) -> Term:
-    """A class of the TBox, or one of the vocabulary of OWL (`owl:Thing`). Raises UnknownClass."""
+    """Return a class of the TBox or of the OWL vocabulary (`owl:Thing`). Raises UnknownClass."""
     found = term(semantic_map, word)
     return found if found is not None and found.startswith(_VOCABULARY) else class_(semantic_map, word)
 
 
 def term(semantic_map: SemanticMap, word: str) -> Term | None:
-    """A term as it is written, or a name with a prefix that queries know; None for another word."""
+    """Return a term that is written as such or with a known prefix, or None for another word."""
     prefix, colon, name = word.partition(":")
     if word.startswith(("<", '"', "_:")):
         return word
@@ -60,9 +60,9 @@ def term(semantic_map: SemanticMap, word: str) -> Term | None:
 
 
 def individual(semantic_map: SemanticMap, word: str) -> Term:
-    """An entity, or another individual or a class that the map or its TBox names.
+    """Return an entity, another individual or a class that the map or its TBox names.
 
-    Raises UnknownName, BadRequest for one that several have.
+    Raises UnknownName; BadRequest for an ambiguous name.
     """
     if (entity := semantic_map.find(composed(word))) is not None:
         return v.iri(entity.iri)
@@ -85,7 +85,10 @@ def individual(semantic_map: SemanticMap, word: str) -> Term:
 
 
 def property_(semantic_map: SemanticMap, word: str) -> Term:
-    """The property that is meant, by its name, label or IRI, or one of RELATIONS. Raises BadRequest."""
+    """Return the property that a word means: a name, a label, an IRI or one of RELATIONS.
+
+    Raises BadRequest.
+    """
     relation = RELATIONS.get(word.casefold())
     if relation is not None:
         return relation
@@ -99,7 +102,7 @@ def property_(semantic_map: SemanticMap, word: str) -> Term:
 
 
 def values(semantic_map: SemanticMap, subject: Term, predicate: Term, word: str) -> list[Term]:
-    """The terms that `word` may stand for as the object of this subject and predicate."""
+    """Return the terms that `word` may stand for as the object of this subject and predicate."""
     if predicate in OF_CLASSES and not word.startswith("_:"):
         return [_class_or_built_in(semantic_map, word)]
     if (found := term(semantic_map, word)) is not None:
@@ -115,7 +118,7 @@ def values(semantic_map: SemanticMap, subject: Term, predicate: Term, word: str)
 
 
 def value(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
-    """An individual, or a literal of the property's range. Raises UnknownName, BadRequest."""
+    """Return an individual, or a literal of the property's range. Raises UnknownName, BadRequest."""
     if predicate in OF_CLASSES and not word.startswith("_:"):
         return _class_or_built_in(semantic_map, word)
     if (found := term(semantic_map, word)) is not None:
@@ -126,7 +129,7 @@ def value(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
 
 
 def _unheld(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
-    """A value that the subject does not have: an individual if there is one of that name."""
+    """Return a value that the subject does not have: an individual if there is one of that name."""
     if _is_data(semantic_map.reasoner, predicate):
         return _literal(semantic_map, predicate, word)
     try:
@@ -141,7 +144,7 @@ def _is_data(reasoner: Reasoner, predicate: Term) -> bool:
 
 
 def _literal(semantic_map: SemanticMap, predicate: Term, text: str) -> Term:
-    """The value that `text` denotes for a property, as `set` understands it; without a range a text."""
+    """Return the literal for `text`, as `set` reads it; a plain string if the property has no range."""
     known = semantic_map.classes.property_table.by_iri.get(predicate)
     if known is not None:
         return property_values.literal(known.name, known.ranges, text)

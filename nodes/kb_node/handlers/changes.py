@@ -1,4 +1,4 @@
-"""What changes the map: one transaction, several, or the taking back of one."""
+"""Handlers for changes of the map: one transaction, several, or an undo."""
 
 from __future__ import annotations
 
@@ -19,13 +19,14 @@ from semmap.schemas.commits import Commit, Effects, Transaction
 
 Tell = Callable[[str], None]
 ReportingProgress = Callable[[str], AbstractContextManager[Tell]]
-"""Of a large change, which begins with a word of WORKING: lets the heartbeat tell how far it is."""
+"""Context for a large change that reports its progress in the heartbeat. The text begins with a word of
+WORKING."""
 
 
 class PublishCommit(Protocol):
-    """`publish(commit)` has everybody told of it: `at_once`, or else when the reply is on its way.
+    """Publishes a commit, `at_once` or after the reply is sent.
 
-    The coordinator is `told` of it by the reply.
+    `told` is True if the reply tells the coordinator about the commit.
     """
 
     def __call__(self, commit: Commit, /, *, told: bool, at_once: bool) -> None:  # noqa: D102
@@ -33,12 +34,12 @@ class PublishCommit(Protocol):
 
 
 _FEW = 1000
-"""Entities that are added or removed at once without a word on it."""
+"""Entities that may be added or removed without a progress report."""
 C = TypeVar("C", Commit, Commit | None)
 
 
 class ChangeHandlers:
-    """Commits what is asked for, and has everybody told: journal (durable), reply, publish."""
+    """Commits changes: journal (durable), reply, publish."""
 
     def __init__(
         self,
@@ -49,9 +50,9 @@ class ChangeHandlers:
         not_written: Callable[[NotWritten], None],
         reporting_progress: ReportingProgress,
     ) -> None:
-        """`publish` is called with each new commit, in order, before it is replied.
+        """Create the handlers. `publish` is called with each new commit, in order, before the reply.
 
-        `not_written` is called with each one that the disk does not take.
+        `not_written` is called with each error of the disk.
         """
         self._map = semantic_map
         self._journal = journal
@@ -60,7 +61,7 @@ class ChangeHandlers:
         self._reporting_progress = reporting_progress
 
     def handlers(self) -> dict[str, Handler]:
-        """By verb."""
+        """Return the handlers by command."""
         return by_verb(
             Transaction.answered_by(self.on_commit),
             Transactions.answered_by(self.on_commits),
@@ -69,7 +70,7 @@ class ChangeHandlers:
         )
 
     def on_commit(self, transaction: Transaction) -> Effects | None:
-        """One transaction."""
+        """Commit one transaction."""
         term_syntax.require_triples(transaction.insert)
         coming, going = len(transaction.add), len(transaction.remove)
         if coming + going <= _FEW:
@@ -85,9 +86,9 @@ class ChangeHandlers:
         )
 
     def on_commits(self, several: Transactions) -> tuple[Outcome, ...]:
-        """Several transactions, each by itself, made durable once for all.
+        """Commit several transactions, each by itself, with one write.
 
-        Raises BadRequest, with nothing done, when there is one that is not of RDF terms.
+        Raises BadRequest, with nothing done, if a triple is not valid RDF.
         """
         for transaction in several.transactions:
             term_syntax.require_triples(transaction.insert)
@@ -105,7 +106,7 @@ class ChangeHandlers:
         return tuple(map(_outcome, results))
 
     def on_undo(self, command: TakeBack) -> Effects | None:
-        """A commit that takes back another one."""
+        """Undo a commit."""
 
         def change() -> Commit:
             return undo.undo(self._map, self._journal, command, self._undoing)
@@ -114,7 +115,7 @@ class ChangeHandlers:
 
     @contextmanager
     def _undoing(self, target: Commit) -> Iterator[None]:
-        """Around the undoing of a commit."""
+        """Report the progress of an undo, if it is large."""
         count = len(target.changed) + len(target.removed)
         if count <= _FEW:
             yield
@@ -124,21 +125,21 @@ class ChangeHandlers:
             yield
 
     def on_made_by(self, query: MadeBy) -> tuple[Effects | None, ...]:
-        """The commits that some commands have made."""
+        """Return the effects of the commits with these transaction ids."""
         return tuple(effects(self._journal.commit_of(id_)) for id_ in query.ids)
 
     def run_change(
         self, change: Callable[[], Commit | None], dry_run: bool, *, told: bool = False
     ) -> Effects | None:
-        """What `change` commits, and publishes; or would commit, in a dry run."""
+        """Run `change`, publish its commit and return the effects; in a dry run only return them."""
         if dry_run:
             return dry_runs.dry_run(self._map, change)
         return effects(self.commit_and_publish(change, told=told))
 
     def commit_and_publish(self, change: Callable[[], C], *, told: bool = False, at_once: bool = False) -> C:
-        """What `change` commits; published unless it is the answer to an old command.
+        """Run `change` and publish its commit, unless it is the result of a repeated command.
 
-        `at_once`: its reply comes after others have been committed, which may take long.
+        `at_once` publishes before the reply, because further commits follow before it.
         """
         before = self._map.seq
         try:
@@ -152,7 +153,7 @@ class ChangeHandlers:
 
 
 def effects(commit: Commit | None) -> Effects | None:
-    """What a commit made of the entities, if there is one."""
+    """Return the effects of a commit on the entities, or None."""
     return None if commit is None else Effects.of(commit)
 
 

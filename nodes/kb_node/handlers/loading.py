@@ -1,4 +1,4 @@
-"""What brings a whole document into the map: an ABox, or another TBox."""
+"""Handlers that load a whole document into the map: an ABox, or another TBox."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from semmap.schemas.packing import unpacked
 
 
 class LoadHandlers:
-    """Reads documents, and has them committed whole or in parts."""
+    """Reads documents and commits them, whole or in parts."""
 
     def __init__(
         self,
@@ -34,7 +34,7 @@ class LoadHandlers:
         reporting_progress: ReportingProgress,
         notes: Callable[[], tuple[str, ...]],
     ) -> None:
-        """`notes` say what is to be known of the TBox that holds."""
+        """Create the handlers; `notes` returns the notes on the current TBox."""
         self._map = semantic_map
         self._journal = journal
         self._changing = changing
@@ -43,11 +43,11 @@ class LoadHandlers:
         self._notes = notes
 
     def handlers(self) -> dict[str, Handler]:
-        """By verb."""
+        """Return the handlers by command."""
         return by_verb(LoadDocument.answered_by(self.on_load), LoadTBox.answered_by(self.on_load_tbox))
 
     def on_load(self, load: LoadDocument) -> Loaded:
-        """An RDF document in one commit, or in parts."""
+        """Load an RDF document in one commit or in parts."""
         before = self._map.seq
         try:
             return self._load(load)
@@ -59,7 +59,7 @@ class LoadHandlers:
         content = unpacked(load.content, load.filename)
         if rdf.syntax_of(content) == "turtle" and not (load.replace or load.parts or load.dry_run):
             self._sparql.prefetch(load.id, content, v.ABOX, packed=load.content)
-        label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # the same when sent again
+        label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # the same if the command is repeated
         with self._reporting_progress(f"loading {load.filename or 'a file'}") as tell:
             triples = rdf.parse(
                 content,
@@ -81,7 +81,7 @@ class LoadHandlers:
                     notes=tuple(filtered.notes),
                 )
             skipped, notes = tuple(filtered.skipped), filtered.notes
-            del triples, filtered  # of very many triples each list takes its memory
+            del triples, filtered  # for very many triples each list takes much memory
             parts = load_parts.split(transaction) if load.parts else [transaction]
             commit = partial(self._commit, told=load.told)
             commits = load_parts.commit_each(parts, commit, tell if load.parts else lambda _: None)
@@ -94,12 +94,12 @@ class LoadHandlers:
             )
 
     def _dry_run_load(self, transaction: Transaction) -> tuple[tuple[str, ...], Effects | None]:
-        """The names of all entities that a load would change, and what it would commit."""
+        """Return the names of all entities that a load would change, and its effects."""
         tried = dry_runs.dry_run(self._map, lambda: self._map.commit(transaction))
         return (tried.trial.changed if tried is not None and tried.trial is not None else (), tried)
 
     def on_load_tbox(self, load: LoadTBox) -> Loaded:
-        """Another TBox, in one commit (none for the one that holds), and what is to be known of it."""
+        """Load another TBox in one commit, or in none if it is the current one, and return notes on it."""
         read = document_change.read_tbox(self._map, load, label_prefix=f"t{uuid.uuid4().hex[:8]}")
         tbox = blank_nodes.relabel_like(read, self._map.tbox)
         document_change.require_no_map(self._map, load, tbox)
@@ -130,5 +130,5 @@ class LoadHandlers:
 
 
 def _described(commit: Commit) -> Iterator[str]:
-    """The entities that a load says something of; that others are of other classes now may follow from it."""
+    """Yield the entities that a load describes; others may only have changed classes because of it."""
     return (entity.name for entity in commit.changed if entity.provenance.commit == commit.seq)

@@ -1,4 +1,4 @@
-"""What keeps the map's history: parts of a backup, and compacting; beside the node's own work."""
+"""Handlers for backup and compaction of the journal, run in a background thread."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SECONDS: Final = {"h": 3600, "d": 86_400}
 
 
 class MaintenanceHandlers:
-    """Reads the journal and shortens it; the map itself stays as it is."""
+    """Reads and compacts the journal. The map itself does not change."""
 
     def __init__(self, journal: Journal) -> None:
         self._journal = journal
@@ -32,15 +32,15 @@ class MaintenanceHandlers:
             self._executor.submit(leftovers.delete, journal)
 
     def handlers(self) -> dict[str, Handler]:
-        """By verb."""
+        """Return the handlers by command."""
         return by_verb(Backup.answered_by(self.on_backup), Compact.answered_by(self.on_compact))
 
     def on_backup(self, query: Backup) -> Future[BackupPart]:
-        """A part of a backup."""
+        """Return a part of a backup."""
         return self._executor.submit(backing_up.part, self._journal, query.at)
 
     def on_compact(self, command: Compact) -> Future[Compacted]:
-        """One at a time."""
+        """Compact the history; only one compaction runs at a time."""
         return self._executor.submit(self._compact, command)
 
     def _compact(self, command: Compact) -> Compacted:
@@ -59,12 +59,12 @@ class MaintenanceHandlers:
         )
 
     def close(self) -> None:
-        """Begin nothing more; what is under way comes to its end."""
+        """Start nothing more; running work is completed."""
         self._executor.shutdown(cancel_futures=True)
 
 
 def _age_ns(text: str) -> int:
-    """`12h` or `30d`. Raises BadRequest."""
+    """Return the nanoseconds of an age such as `12h` or `30d`. Raises BadRequest."""
     if (age := _AGE.fullmatch(text)) is None:
         raise errors.BadRequest(f"'{text}' is not an age; examples: 12h, 30d")
     return int(age[1]) * _SECONDS[age[2]] * 1_000_000_000

@@ -1,4 +1,4 @@
-"""What is asked of the map: each question is answered by one call, long ones beside the node's own work."""
+"""Handlers for queries on the map. Long ones run in other threads or processes."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ R = TypeVar("R", Explanation, Possible)
 
 
 class QueryHandlers:
-    """Answers questions about the map as it is and as it was; changes nothing."""
+    """Answers queries about the current and past map. Changes nothing."""
 
     def __init__(
         self,
@@ -93,7 +93,10 @@ class QueryHandlers:
         location_queries: LocationQueries,
         asker: Callable[[], str] = str,
     ) -> None:
-        """`sparql` and `location_queries` are told of each commit by the node; `asker()` is who asks."""
+        """Create the handlers. The node passes each commit to `sparql` and `location_queries`.
+
+        `asker()` returns the client of the current request.
+        """
         self._asker = asker
         self._map = semantic_map
         self._sparql = sparql
@@ -103,21 +106,21 @@ class QueryHandlers:
         self._pages = Pages(semantic_map)
         self._now = entity_queries.CurrentState(semantic_map)
         self.live = LiveEntities(semantic_map)
-        """To be told where tracked entities are."""
+        """Receives live poses."""
         self._finding = Finding(semantic_map)
         self._understanding = Understanding(semantic_map, self._finding)
         self._then = entity_queries.PastState(semantic_map, self._past)
         self.sightings = Sightings(self._past)
-        """To be told of what perception sees."""
+        """Receives the observations of perception."""
         self._descriptions = Descriptions(semantic_map, self._now, self.sightings)
         self._aside = FairPool(2, asker)
         self._routes = RoutePlanning(semantic_map, self._past, self._aside.submit)
         self._second_opinions = FairPool(1, asker)
-        """Of owlrl, which take seconds to minutes: nothing else waits behind them."""
+        """For checks with owlrl, which take seconds to minutes, so that no other work waits behind them."""
         self._is_over = threading.Event()
 
     def handlers(self) -> dict[str, Handler]:
-        """By verb."""
+        """Return the handlers by command."""
         return by_verb(
             SnapshotQuery.answered_by(self.on_snapshot),
             CopyQuery.answered_by(self.on_copy),
@@ -150,15 +153,15 @@ class QueryHandlers:
 
     @property
     def is_being_fetched(self) -> bool:
-        """Whether somebody fetches the map page by page, or is about to as after a start."""
+        """Return whether the map is being fetched page by page, or is likely to be after a start."""
         return self._pages.is_request_expected
 
     def on_snapshot(self, query: SnapshotQuery) -> Snapshot:
-        """The entities as of the last commit, or a page of them."""
+        """Return the entities as of the last commit, or a page of them."""
         return self._pages.snapshot(query)
 
     def on_copy(self, query: CopyQuery) -> MapCopy:
-        """The map whole, or which it is."""
+        """Return the whole map, or only its identity."""
         map_id, begun_ns = self._journal.origin()
         seq = self._map.seq
         return MapCopy(
@@ -176,27 +179,27 @@ class QueryHandlers:
         return self._journal.stamps.of(seq) if seq > begins.seq else begins.stamp_ns
 
     def on_recall(self, query: Recall) -> Future[tuple[Commit, ...]]:
-        """Commits of the history, whole."""
+        """Return whole commits of the history."""
         return self._aside.submit(self._past.commits, query.seqs)
 
     def on_star(self, query: StarQuery) -> tuple[Star, ...]:
-        """The triples about some entities."""
+        """Return the triples of some entities."""
         return self._map.stars(query.names)
 
     def on_load_of(self, query: LoadOf) -> tuple[str, ...]:
-        """What a thing bears."""
+        """Return what an object supports."""
         return tuple(self._map.places.supported_by(query.name, query.leave))
 
     def on_classes(self, _: Classes) -> tuple[ClassInfo, ...]:
-        """The class table."""
+        """Return the class table."""
         return tuple(self._map.class_table())
 
     def on_properties(self, _: Properties) -> tuple[PropertyInfo, ...]:
-        """The property table."""
+        """Return the property table."""
         return tuple(self._map.classes.property_table.rows())
 
     def on_list(self, query: Entities) -> tuple[Entity, ...] | Future[tuple[Entity, ...]]:
-        """The entities of a class, now or as of then; with `where` those that are there."""
+        """Return the entities of a class, or those that match `where`, now or in the past."""
         if query.as_of is None:
             if query.where is None:
                 return self._now.entities(query)
@@ -205,14 +208,14 @@ class QueryHandlers:
         return self._aside.submit(self._then.entities, query)
 
     def on_relations(self, query: Relations) -> tuple[Relation, ...] | Future[tuple[Relation, ...]]:
-        """Where a thing is relative to others, now or as of then."""
+        """Return the relations of an entity, now or in the past."""
         if query.as_of is None:
             with self.live.applied():
                 return self._now.relations(query)
         return self._aside.submit(self._then.relations, query)
 
     def on_get(self, query: Get) -> Described | Future[Described]:
-        """One entity, now or as of then."""
+        """Return one entity, now or in the past."""
         if query.as_of is None:
             if not query.where:
                 return self._now.entity(query)
@@ -221,13 +224,16 @@ class QueryHandlers:
         return self._aside.submit(self._then.entity, query)
 
     def on_infer(self, query: Infer) -> Inferred | Future[Inferred]:
-        """What follows about an entity; about all, it is worked out beside the node's own work."""
+        """Return the inferred facts about an entity, or about all in another thread."""
         if query.name is not None:
             return answers.infer(self._map, query.name)
         return self._aside.submit(answers.infer_all, answers.inference_input(self._map))
 
     def on_explain(self, query: Explain) -> Explanation | Future[Explanation]:
-        """Why it follows or cannot, or what was measured of where a thing is; or why it does not hold."""
+        """Return why a statement holds or cannot hold, with measurements.
+
+        Raises Refused if it does not hold.
+        """
         if (measured := self._now.explain_measured(query)) is not None:
             return measured
         asked = questions.parse_explain(self._map, query)
@@ -242,23 +248,23 @@ class QueryHandlers:
         return self._aside.submit(found.with_dates, look_up)
 
     def on_diff(self, query: Diff) -> Future[Difference]:
-        """What changed between two commits or times."""
+        """Return what changed between two commits or times."""
         limits = self._map.classes.limits
         return self._aside.submit(differences.compute_difference, self._journal, self._past, query, limits)
 
     def on_when(self, query: WasWhen) -> Future[Spells]:
-        """When one thing was on, in or at another."""
+        """Return when one object was on, in or at another."""
         limits = self._map.classes.limits
         return self._aside.submit(differences.find_spells, self._journal, self._past, query, limits)
 
     def on_could(self, query: Could) -> Possible | Future[Possible]:
-        """Whether it could be."""
+        """Return whether a statement could hold."""
         asked = questions.parse_could(self._map, query)
         against = self._now.describe_conflict(asked.triples[0])
         return self._test_on_copy(partial(questions.could, against=against), asked)
 
     def _test_on_copy(self, answer: Callable[..., R], asked: questions.StatementQuestion) -> R | Future[R]:
-        """Answer by supposing something of the map itself, or, if that takes long, of a copy beside it."""
+        """Assume a statement in the map's reasoner, or in a copy in another thread if that takes long."""
         reasoner, names = self._map.reasoner, self._map.classes.prefixed
         held: Held | None = None
         self._map.ensure_derived()
@@ -275,7 +281,7 @@ class QueryHandlers:
         return self._aside.submit(lambda: answer(questions.copy_reasoner(copied, names), asked))
 
     def on_export(self, query: Export) -> Future[Document]:
-        """The map as a document, now or as of then; checked first, and written beside the node's own work."""
+        """Return the map as a document, now or in the past; it is checked and written in another thread."""
         if query.as_of is not None:
             return self._aside.submit(past_map.export_past, self._journal, self._past, query)
         return self._aside.submit(
@@ -283,11 +289,11 @@ class QueryHandlers:
         )
 
     def on_history(self, query: History) -> Future[tuple[LoggedCommit, ...]]:
-        """Commits of the history."""
+        """Return commits of the history."""
         return self._aside.submit(self._past.history, query)
 
     def on_last_seen(self, query: LastSeen) -> Sighting | Future[Sighting]:
-        """Where an entity was last; where it is, if it is there."""
+        """Return where an entity was last seen, or where it is."""
         entity = self._map.find(query.name)
         if entity is not None and not self.sightings.is_missing(entity):
             found = self.sightings.describe_present(entity)
@@ -298,7 +304,10 @@ class QueryHandlers:
         return self._aside.submit(self.sightings.describe_removed, query.name, entity)
 
     def on_find(self, query: Find) -> Found | Future[Found]:
-        """What a description means; where nothing fits, also when it was last there."""
+        """Return the entities that a description means.
+
+        If there are none, also say when they were last there.
+        """
         with self.live.applied():
             sought = self._finding.find(query)
         if sought.missing is None:
@@ -309,7 +318,7 @@ class QueryHandlers:
         )
 
     def on_check(self, query: Check) -> Future[Checked]:
-        """Consistency, worked out beside the node's own work."""
+        """Check the consistency in another thread."""
         self._map.derive_all()
         held, denied = self._map.reasoner.held(), self._now.find_denied()
         withheld, crowds = tuple(answers.suppressed_facts(self._map)), self._map.places.crowds()
@@ -321,13 +330,13 @@ class QueryHandlers:
         return (self._second_opinions if query.engine == "owlrl" else self._aside).submit(check)
 
     def on_sparql(self, query: Sparql) -> Future[SparqlResult]:
-        """A query, evaluated beside the node's own work; of the past, in a process of its own."""
+        """Evaluate a query in another process."""
         if query.as_of is not None:
             return self._aside.submit(past_map.query_past, self._journal, self._past, query)
         return self._sparql.ask(query, self._map.seq, self._asker())
 
     def on_watch(self, query: Watch) -> Watching | Future[Watching]:
-        """A standing query, or a standing question of where things are."""
+        """Start a standing query, by SPARQL or by location."""
         asks_where = query.where is not None or query.class_ is not None
         if (query.query is None) != asks_where:
             raise errors.BadRequest(
@@ -342,11 +351,11 @@ class QueryHandlers:
         return self._location_queries.watch(query)
 
     def on_renew(self, renewal: Renew) -> Done | Future[Done]:
-        """A standing query goes on, or ends."""
+        """Renew or end a standing query."""
         return self._location_queries.renew(renewal) or self._sparql.ask(renewal, self._map.seq)
 
     def close(self) -> None:
-        """Answer no more."""
+        """Stop the threads."""
         self._is_over.set()
         self._second_opinions.close()
         self._aside.close()
