@@ -26,7 +26,7 @@ class Checkpointing:
         self._seq_then = 0
 
     def begin_if_due(self) -> None:
-        """Begin a checkpoint if it is due. `quiet` means that nothing changed since the last call."""
+        """Begin a checkpoint if it is due, or sooner if nothing changed since the last call."""
         quiet, self._seq_then = self._map.seq == self._seq_then, self._map.seq
         if self._map.checkpoint_is_due(quiet=quiet):
             self._begin()

@@ -80,9 +80,9 @@ class Places:
         return self._surroundings.space() if facts is None else facts.space
 
     def with_supported(self, names: Iterable[str]) -> Collection[str]:
-        """Return these names and all that is on, inside or in them, and on or inside those.
+        """Return these names and all that is on, inside or in them.
 
-        Return all names if no relations are maintained.
+        What is on or inside those is included. Return all names if no relations are maintained.
         """
         facts = self._facts()
         return self._entities.keys() if facts is None else facts.upward(names)

@@ -39,7 +39,7 @@ log = logging.getLogger(__name__)
 
 
 class _DryRunDone(Exception):
-    """Raised to end a dry run just before the commit becomes durable. `seen` is the result of the inspection."""
+    """Ends a dry run just before the commit becomes durable. `seen` is the result of the inspection."""
 
     def __init__(self, seen: Any) -> None:
         super().__init__()
@@ -91,11 +91,11 @@ class SemanticMap(MapState):
         self._replay(start)
 
     def tbox_at(self, seq: int) -> frozenset[Triple]:
-        """Return the TBox that was in force after commit `seq`. Raises Refused if it is damaged."""
+        """Return the TBox in force after commit `seq`. Raises Refused if it is damaged."""
         return frozenset(rdf.parse(self._journal.tbox(seq), f"the TBox in {self._journal.path}"))
 
     def take_derived_changes(self, commit: Commit) -> DerivedChanges:
-        """Return how a commit changed the computed and suppressed facts. Each result is returned only once."""
+        """Return how a commit changed the computed and suppressed facts, once."""
         return self._applier.derived_changes.pop(commit.seq, UNCHANGED)
 
     # Changes

@@ -59,7 +59,7 @@ class LoadHandlers:
         content = unpacked(load.content, load.filename)
         if rdf.syntax_of(content) == "turtle" and not (load.replace or load.parts or load.dry_run):
             self._sparql.prefetch(load.id, content, v.ABOX, packed=load.content)
-        label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # the same if the command is repeated
+        label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # stable across retries
         with self._reporting_progress(f"loading {load.filename or 'a file'}") as tell:
             triples = rdf.parse(
                 content,

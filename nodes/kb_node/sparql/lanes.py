@@ -1,12 +1,11 @@
-"""Lanes: how the node asks its readers, without anybody between.
+"""Lanes: direct connections between the node and the reader processes.
 
-A lane is a pair of sockets. Its other end the SPARQL process keeps for whichever reader minds it, so that a
-question that no reader has taken waits there for the next. A question has a lane to itself until it is
-answered.
+A lane is a pair of sockets. The SPARQL process keeps the remote end for whichever reader serves the lane, so
+a query that no reader has taken waits there for the next one. A lane has one query at a time.
 
-Whoever asks has a turn, and every query gets a lane soon: where all lanes are taken, only so many queries
-keep theirs that take long. Another is set aside, its reader ended, and begun anew when one of those is done;
-so what it costs not to know beforehand which queries take long is a moment for each.
+Clients are served in turn, and every query gets a lane soon. If all lanes are busy, only a few queries that
+take long keep theirs. The others are preempted: their readers are stopped, and they start again when one of
+the long ones is done. The duration of a query need not be known in advance.
 """
 
 from __future__ import annotations
@@ -38,16 +37,16 @@ from semmap.schemas.commands import Sparql
 from semmap.schemas.sparql import SparqlResult
 
 LANES: Final = 6
-"""How many queries are evaluated at once."""
+"""Queries that are evaluated at the same time."""
 LONG_RUNNING: Final = 3
-"""How many of them may take long while others wait."""
+"""Long-running queries that keep their lanes while others wait."""
 LONG_S: Final = 0.3
-"""What takes longer takes long."""
+"""A query that runs longer is long-running [s]."""
 _EACH: Final = 64
 _ALL: Final = 256
-"""Queries of one asker, and of all, that wait at most."""
+"""Queries of one client, and of all, that may wait."""
 _SHORT: Final = 16_000
-"""Bytes that a lane always takes without waiting: there are never two questions in one."""
+"""Bytes that a lane accepts without blocking. A lane never holds two queries."""
 
 
 @dataclass
@@ -59,7 +58,7 @@ class _Query:
     was_preempted: bool = False
 
     def is_long_running(self, now_s: float) -> bool:
-        """By what is known now."""
+        """Return whether the query is long-running."""
         return self.was_preempted or now_s - self.began_s >= LONG_S
 
 
@@ -70,19 +69,19 @@ class _Lane:
     has_reader: bool = False
     query: _Query | None = None
     is_closing: bool = False
-    """Its reader is being ended."""
+    """Whether its reader is being stopped."""
 
 
 class Lanes:
-    """The node's ends. Any thread may ask."""
+    """The node's ends of the lanes. Any thread may send queries."""
 
     def __init__(self, send: Callable[[Any, Connection | None], None]) -> None:
-        """`send(message, connection)` queues a message, without a connection one to the SPARQL process."""
+        """Create the lanes; `send(message, connection)` queues a message, by default for the SPARQL process."""
         self._send = send
         pairs = [Pipe() for _ in range(LANES)]
         self._lanes = [_Lane(number, here) for number, (here, _) in enumerate(pairs)]
         self.remote_ends: Sequence[Connection] = [there for _, there in pairs]
-        """The other ends; who hands them over closes them here."""
+        """The remote ends. They are closed here once they have been passed on."""
         self._waiting: FairQueue[_Query] = FairQueue(each=_EACH, everyone=_ALL)
         self._set_aside: FairQueue[_Query] = FairQueue()
         self._timer: threading.Timer | None = None
@@ -92,9 +91,9 @@ class Lanes:
             threading.Thread(target=self._listen, args=(lane,), name="sparql", daemon=True).start()
 
     def ask(self, command: Sparql, seq: int, demand: int = 0, asker: str = "") -> Future[SparqlResult]:
-        """The answer as of commit `seq` or later, with what was demanded under that number.
+        """Return the answer as of commit `seq` or later, with the measurements of request `demand`.
 
-        Raises Busy when too many queries wait.
+        Raises Busy if too many queries wait.
         """
         question = QueryRequest(
             number=next(self._numbers),
@@ -117,7 +116,7 @@ class Lanes:
         return query.future
 
     def on_reader_exit(self, left: ReaderExited) -> None:
-        """A reader is no more."""
+        """Handle the exit of a reader."""
         lane = self._lanes[left.lane]
         with self._lock:
             lane.has_reader = lane.is_closing = False
@@ -125,7 +124,7 @@ class Lanes:
             if query is None:
                 self._dispatch()
                 return
-            if not left.signal:  # it did not take the question, or has given it back
+            if not left.signal:  # it did not take the query, or has returned it
                 self._start_reader(lane)
                 return
             lane.query = None
@@ -133,7 +132,7 @@ class Lanes:
         query.future.set_exception(error_for_signal(left.signal, query.question.timeout_s))
 
     def close(self, error: Exception) -> None:
-        """There will be no more readers; nobody waits any longer."""
+        """Fail all queries, because there will be no more readers."""
         with self._lock:
             waiting = [*iter(self._waiting.take, None), *iter(self._set_aside.take, None)]
             left = [*(lane.query for lane in self._lanes), *waiting]
@@ -145,7 +144,7 @@ class Lanes:
             query.future.set_exception(error)
 
     def _dispatch(self) -> None:
-        """Give the questions that wait to lanes that are free, those with readers first."""
+        """Assign waiting queries to free lanes, those with readers first."""
         free = [lane for lane in self._lanes if lane.query is None and not lane.is_closing]
         for lane in sorted(free, key=lambda lane: not lane.has_reader):
             if (query := self._next_query()) is None:
@@ -158,19 +157,21 @@ class Lanes:
             self._schedule_preemption()
 
     def _next_query(self) -> _Query | None:
-        """The query that is to begin; one that was set aside if few enough are taking long."""
+        """Return the next query; a preempted one if few enough are long-running."""
         query = None
         if len(self._set_aside) and len(self._long_running(time.monotonic())) < LONG_RUNNING:
             query = self._set_aside.take()
         return query or self._waiting.take()
 
     def _long_running(self, now_s: float) -> list[_Lane]:
-        """The lanes whose queries do: first those that were set aside before, then by their age."""
+        """Return the lanes with long-running queries: first those that were preempted before, then the
+        oldest.
+        """
         lanes = [lane for lane in self._lanes if lane.query is not None and lane.query.is_long_running(now_s)]
         return sorted(lanes, key=lambda lane: (not lane.query.was_preempted, lane.query.began_s))  # type: ignore[union-attr]
 
     def _schedule_preemption(self) -> None:
-        """When the next query will have taken long."""
+        """Start a timer for the time when the next query becomes long-running."""
         if self._timer is None:
             now_s = time.monotonic()
             quick = [
@@ -182,7 +183,7 @@ class Lanes:
             self._timer.start()
 
     def _preempt(self) -> None:
-        """Set aside what takes long, but for a few, as far as others wait."""
+        """Preempt long-running queries beyond a few, if others wait."""
         with self._lock:
             self._timer = None
             beyond = self._long_running(time.monotonic())[LONG_RUNNING:]
@@ -201,11 +202,11 @@ class Lanes:
         self._send(StartReader(lane=lane.number), None)
 
     def _put(self, lane: _Lane, query: _Query) -> None:
-        """From here, if it cannot take long: to wake another thread does."""
+        """Send from this thread if that cannot block, because a switch of threads takes longer."""
         if len(query.question.query) * 4 > _SHORT:
             self._send(query.question, lane.connection)
         else:
-            with suppress(OSError):  # then all is over, as the SPARQL process's own pipe tells
+            with suppress(OSError):  # the SPARQL process has ended, which its own pipe reports
                 lane.connection.send_bytes(msgpack.encode(query.question))
 
     def _listen(self, lane: _Lane) -> None:
@@ -217,7 +218,7 @@ class Lanes:
         with self._lock:
             query = lane.query
             if query is None or query.question.number != outcome.number:
-                return  # it was given up
+                return  # it was cancelled
             if outcome.old:
                 self._put(lane, query)
                 return

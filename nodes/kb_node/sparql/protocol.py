@@ -1,4 +1,4 @@
-"""What the knowledge base's node, its SPARQL process and the readers say to each other, in MessagePack."""
+"""Messages between the knowledge base's node, its SPARQL process and the readers, in MessagePack."""
 
 from __future__ import annotations
 
@@ -18,32 +18,32 @@ NOTHING = Raw(msgpack.encode(None))
 
 
 class Placements(Struct, frozen=True, kw_only=True, tag=True):
-    """Where everything is: what a question may need to have measured. Commits tell the rest from then on."""
+    """The poses of all entities, for queries that need measurements. Commits update them from then on."""
 
     placed: tuple[Placed, ...]
     limits: Thresholds
 
 
 class Load(Struct, frozen=True, kw_only=True, tag=True):
-    """All that is asserted after commit `seq`; with `infers`, what follows is wanted, too.
+    """All asserted triples after commit `seq`; with `infers`, inferred triples are needed, too.
 
-    The first message, and the one that comes when commits alone do not tell: when what follows is asked for
-    the first time, and when the TBox is another.
+    It is the first message. It is repeated when inference is requested for the first time and when the TBox
+    changes.
     """
 
     seq: int
     asserted: tuple[Triple, ...]
     infers: bool
     derived_changes: DerivedChanges = UNCHANGED
-    """What is computed, and what is set aside, if what follows is wanted."""
+    """The computed and suppressed facts, if inference is needed."""
     placements: Placements | None = None
 
 
 class LoadFromDisk(Struct, frozen=True, kw_only=True, tag=True):
-    """Instead of `Load`: the triples are in the store at `path`.
+    """Used instead of `Load`: the triples are in the store at `path`.
 
-    It has all commits up to `seq` and some of those up to `settled`, which follow: only with all of these it
-    is a map.
+    The store has all commits up to `seq` and some of those up to `settled`. It is consistent only after all
+    of these are applied.
     """
 
     path: str
@@ -52,44 +52,44 @@ class LoadFromDisk(Struct, frozen=True, kw_only=True, tag=True):
 
 
 class Committed(Struct, frozen=True, kw_only=True, tag=True):
-    """Every commit from then on, in order."""
+    """A commit; all later commits are sent in order."""
 
     delta: Delta
     derived_changes: DerivedChanges = UNCHANGED
-    """What it changes of what is computed and set aside, if what follows is wanted."""
+    """The changes of computed and suppressed facts, if inference is needed."""
     placed: tuple[Placed, ...] = ()
-    """The entities that it changes, and the names of those that went, after `Placements`."""
+    """The changed entities, and (`removed`) the names of removed ones, after `Placements`."""
     removed: tuple[str, ...] = ()
 
 
 class MeasurementRequest(Struct, frozen=True, kw_only=True, tag=True):
-    """A query that may look at what has to be measured; what it needs is to be there under this number."""
+    """A query that may need measurements. They must be available under the number `demand`."""
 
     demand: int
     query: str
 
 
 class StandingCommand(Struct, frozen=True, kw_only=True, tag=True):
-    """A command about a standing query, to be answered under its number."""
+    """A command about a standing query; the reply has its number."""
 
     number: int
     command: Watch | Renew
 
 
 class StartReader(Struct, frozen=True, kw_only=True, tag=True):
-    """A lane has no reader and needs one."""
+    """A lane needs a reader."""
 
     lane: int
 
 
 class StopReader(Struct, frozen=True, kw_only=True, tag=True):
-    """The reader of a lane is to be ended: its query has been set aside."""
+    """Stop the reader of a lane, because its query was preempted."""
 
     lane: int
 
 
 class CommandReply(Struct, frozen=True, kw_only=True, tag=True):
-    """The answer: the command's reply, encoded, or the error."""
+    """The encoded reply to a command, or its error."""
 
     number: int
     reply: Raw = NOTHING
@@ -97,14 +97,14 @@ class CommandReply(Struct, frozen=True, kw_only=True, tag=True):
 
 
 class ReaderExited(Struct, frozen=True, kw_only=True, tag=True):
-    """A lane's reader is no more: it died of a signal, or (0) went because its triples were too old."""
+    """The reader of a lane has exited: killed by a signal, or (0) because its triples were too old."""
 
     lane: int
     signal: int
 
 
 class QueryUpdate(Struct, frozen=True, kw_only=True, tag=True):
-    """Rows of a standing query have changed; with `ended` there will be no more."""
+    """Changed rows of a standing query; with `ended` it is the last update."""
 
     rows: RowsChanged | None = None
     watch: str
@@ -112,7 +112,7 @@ class QueryUpdate(Struct, frozen=True, kw_only=True, tag=True):
 
 
 class QueryRequest(Struct, frozen=True, kw_only=True):
-    """A query, to be answered by a reader as of commit `seq` or later, on the lane that it came on."""
+    """A query for a reader, to be answered as of commit `seq` or later on the same lane."""
 
     number: int
     seq: int
@@ -121,11 +121,11 @@ class QueryRequest(Struct, frozen=True, kw_only=True):
     limit: int
     timeout_s: float
     demand: int = 0
-    """What was measured under this number is needed, too; 0 for nothing."""
+    """The number of the measurements that it needs; 0 for none."""
 
 
 class QueryOutcome(Struct, frozen=True, kw_only=True):
-    """What came of it: a `SparqlResult`, encoded, or the error; or the reader is too `old` and goes."""
+    """The encoded `SparqlResult` or the error; or the reader is too `old` and exits."""
 
     number: int
     result: Raw = NOTHING

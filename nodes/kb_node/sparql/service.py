@@ -1,7 +1,7 @@
-"""SPARQL as the knowledge base's node sees it: commits go in, futures and news come out.
+"""The interface of the node to SPARQL: commits in, future results and row changes out.
 
-The process is started by the first question and follows from then on. Threads mind its pipe and the lanes of
-its readers, so that the node's own never waits for it.
+The first query starts the process, which follows the commits from then on. Separate threads serve its pipe
+and the lanes of its readers, so that the node's thread never waits.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ log = logging.getLogger(__name__)
 
 
 class SparqlService:
-    """Owned by the node's thread."""
+    """Evaluates SPARQL queries. Owned by the node's thread."""
 
     def __init__(
         self,
@@ -62,22 +62,22 @@ class SparqlService:
         derived_changes: Callable[[], DerivedChanges] = DerivedChanges,
         placements: Callable[[], Placements] | None = None,
     ) -> None:
-        """`asserted()` is what the map says now, `publish` gets the news.
+        """Create the service; `asserted()` returns the present triples, and `publish` receives row changes.
 
-        `derived_changes()` is what is computed besides, and what of the asserted is set aside; `placements()` is
-        where everything is, for queries about what has to be measured.
+        `derived_changes()` returns the computed and suppressed facts. `placements()` returns the poses, for
+        queries that need measurements.
 
-        With a `large_map` the triples of a large one are in a store on disk, which is made beside the node's
-        other work: after a large commit at once, else when it is asked for the first time. What follows is
+        With a `large_map` the triples of a large map are in a store on disk. The store is created in the
+        background: after a large commit immediately, otherwise at the first query. Inferred triples are
         always kept in memory.
         """
         self._asserted = asserted
         self._derived_changes = derived_changes
         self._placements = placements
         self._measured: frozenset[str] = frozenset()
-        """The local names of the properties that have to be measured."""
+        """The local names of the properties that must be measured."""
         self._measures = False
-        """Whether somebody has asked for any."""
+        """Whether a query has requested measurements."""
         self._demands = count(1)
         self._publish = publish
         self._large = large_map
@@ -85,9 +85,9 @@ class SparqlService:
         self._infers = False
         self._seq = 0
         self._since_filling: list[Delta] | None = None
-        """While a store is made: the commits since it was begun."""
+        """While a store is created: the commits since its start."""
         self._deferred: list[Callable[[], None]] = []
-        """Commands about standing queries that came meanwhile."""
+        """Commands about standing queries that wait for the triples."""
 
     @overload
     def ask(self, command: Sparql, seq: int, asker: str = ...) -> Future[SparqlResult]: ...
@@ -96,7 +96,7 @@ class SparqlService:
     @overload
     def ask(self, command: Renew, seq: int, asker: str = ...) -> Future[Done]: ...
     def ask(self, command: Sparql | Watch | Renew, seq: int, asker: str = "") -> Future[Any]:
-        """The reply to a command of `asker` about the map as it is now, after commit `seq`."""
+        """Return the reply to a command of `asker` about the map after commit `seq`."""
         self._seq = seq
         if self._worker is None or not self._worker.is_alive:
             if isinstance(command, Renew):
@@ -109,14 +109,14 @@ class SparqlService:
             self._infers = True
             self._load()
         demand = 0 if isinstance(command, Renew) else self._demand(self._worker, command)
-        if self._since_filling is None or isinstance(command, Sparql):  # which waits for its commit by itself
+        if self._since_filling is None or isinstance(command, Sparql):  # it waits for its commit itself
             return self._worker.ask(command, seq, demand, asker)
         worker, future = self._worker, Future[Any]()
         self._deferred.append(lambda: settle(future, lambda: worker.ask(command, self._seq)))
         return future
 
     def _demand(self, worker: _Worker, command: Sparql | Watch) -> int:
-        """Have measured what a query may look at; the number under which that is done, 0 for nothing."""
+        """Request the measurements that a query may need. Return their number, or 0 if it needs none."""
         query = command.query
         if self._placements is None or not command.inferred or not self._measured or query is None:
             return 0
@@ -130,26 +130,27 @@ class SparqlService:
         return demand
 
     def prefetch(self, commit_id: str, turtle: bytes, base: str, *, packed: bytes = b"") -> None:
-        """What a Turtle document says will be inserted by a commit of that id, unless `forget` comes.
+        """Start to load a Turtle document that the commit with this id will insert, unless `discard_prepared`
+        is called.
 
-        `packed` is the same as it came, if that was packed.
+        `packed` is the compressed document, if it was compressed.
         """
         if self._large is not None and not self._infers and self._since_filling is None:
             self._large.prefetch(commit_id, turtle, base, packed=packed)
 
     def discard_prepared(self) -> None:
-        """What was foreseen does not come."""
+        """Discard the document that was prefetched."""
         if self._large is not None:
             self._large.discard()
 
     def prepare(self, commit: Commit) -> Callable[[], None]:
-        """A commit that `follow` will get if it stands the check. What is returned says that it will not."""
+        """Prepare for a commit that is being checked. The returned function aborts the preparation."""
         if self._large is None or self._infers or self._since_filling is not None:
             return lambda: None
         return self._large.prepare(commit)
 
     def follow(self, commit: Commit, derived_changes: DerivedChanges = UNCHANGED) -> None:
-        """Every commit, in order, and what it changed of what is computed."""
+        """Apply a commit, with its changes of computed facts. Commits must come in order."""
         self._seq = commit.seq
         is_much = self._large is not None and self._large.is_large_change(commit)
         if self._since_filling is not None and not commit.tbox:
@@ -171,7 +172,7 @@ class SparqlService:
             )
 
     def _load(self) -> None:
-        """Let the process have the map as it is."""
+        """Send the present map to the process."""
         if self._worker is None:
             return
         if self._infers or self._large is None or not self._large.is_large:
@@ -192,7 +193,7 @@ class SparqlService:
 
         def on_done(done: Future[FilledStore]) -> None:
             if self._since_filling is not since:
-                return  # it is not wanted any more
+                return  # it is not needed any more
             self._since_filling = None
             if (error := done.exception()) is None:
                 self._use_store(done.result(), since)
@@ -229,13 +230,13 @@ class SparqlService:
         self._run_deferred()
 
     def _run_deferred(self) -> None:
-        """The triples are on their way: now for what had to wait for them."""
+        """Run the commands that waited for the triples, which have been sent."""
         later, self._deferred = self._deferred, []
         for ask in later:
             ask()
 
     def close(self) -> None:
-        """End the process."""
+        """Stop the process."""
         if self._large is not None:
             self._large.close()
         if self._worker is not None:
@@ -244,7 +245,7 @@ class SparqlService:
 
 
 class _Worker:
-    """The process, while it lives."""
+    """The running process."""
 
     def __init__(self, publish: Callable[[QueryUpdate], None]) -> None:
         self._publish = publish
@@ -274,7 +275,7 @@ class _Worker:
             self._outbox.put((connection or self._connection, message))
 
     def ask(self, command: Sparql | Watch | Renew, seq: int, demand: int = 0, asker: str = "") -> Future[Any]:
-        """The reply, as of commit `seq` or later, with what was demanded under that number."""
+        """Return the reply as of commit `seq` or later, with the measurements of request `demand`."""
         with self._lock:
             if self.is_alive:
                 if isinstance(command, Sparql):
@@ -288,7 +289,7 @@ class _Worker:
         return future
 
     def close(self) -> None:
-        """End it."""
+        """Stop the process."""
         self._process.terminate()
         self._process.wait()
 
@@ -298,7 +299,7 @@ class _Worker:
                 connection, message = item
                 connection.send_bytes(msgpack.encode(message))
         except OSError:
-            pass  # `_read` sees the end, too
+            pass  # `_read` notices it, too
 
     def _read(self) -> None:
         try:
@@ -316,7 +317,7 @@ class _Worker:
             self._reap()
 
     def _reap(self) -> None:
-        """Nobody is waiting for it any longer."""
+        """Fail all waiting requests after the process has ended."""
         with self._lock:
             self.is_alive = False
             left = list(self._waiting.values())

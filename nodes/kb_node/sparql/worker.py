@@ -1,14 +1,15 @@
-"""The process that keeps the triples for SPARQL, beside the node.
+"""The process that keeps the triples for SPARQL.
 
 Started as `python -m semmap.nodes.kb_node.sparql.worker`.
 
-A query cannot be interrupted while Oxigraph evaluates it, nor can its memory be bounded: only a process can
-be ended. Were that the one with the triples, a hanging query would cost loading them again. So this process
-only keeps the triples and follows the commits, and never evaluates; its readers do, which are forked from it:
-that takes some milliseconds at 10 000 entities, shares the memory, and a copy of the triples at one commit is
-what a query wants. The node asks them on lanes of their own and is answered there, so that a look-up wakes
-one process only, which brings itself up to date from the log when it is asked. What follows is kept by a
-reasoner here, so that the node's thread only hands on its commits.
+A query cannot be interrupted while Oxigraph evaluates it, and its memory cannot be limited. Only a process
+can be killed. If that process had the only copy of the triples, a hanging query would require loading them
+again. Therefore this process keeps the triples and follows the commits, but never evaluates queries.
+
+The readers, which are forked from it, evaluate them. A fork takes some milliseconds at 10 000 entities and
+shares the memory. The node sends queries to the readers on separate lanes, so a query wakes only one process,
+which reads new commits from the log first. Inferred triples are kept by a reasoner in this process, so that
+the node only passes on its commits.
 """
 
 from __future__ import annotations
@@ -50,14 +51,14 @@ from semmap.schemas import errors
 from semmap.schemas.explanations import Triple
 
 BACKLOG: Final = 50_000
-"""How many changed triples a reader may be behind."""
+"""Changed triples that a reader may be behind."""
 
 IDLE_S: Final = 300.0
-"""After this time without a question about it, what was measured is forgotten."""
+"""Measurements are dropped after this time without a query that needs them."""
 
 
 class Worker:
-    """Follows the commits, and forks readers. `lanes`: one end of each; the node has the other."""
+    """Follows the commits and forks readers. `lanes` are the remote ends of the node's lanes."""
 
     def __init__(self, send: Callable[[FromWorker], None], lanes: Sequence[Connection]) -> None:
         self._send = send
@@ -67,19 +68,19 @@ class Worker:
         self._derived = Derived()
         self._measured: MeasuredRelations | None = None
         self._needed: dict[Needs, float] = {}
-        """By whom it was asked: until when it is kept [s, monotonic]."""
+        """By need: the time until which it is kept [s, monotonic]."""
         self._log = Log()
         self._readers: dict[int, Reader] = {}
         self.monitor = ContinuousQueryMonitor(send, self._reader)
 
     @property
     def connections(self) -> Iterator[Connection]:
-        """Readable when somebody is done."""
+        """Connections that become readable when a reader has replied or exited."""
         yield from (reader.control for reader in self._readers.values())
         yield from self.monitor.connections
 
     def take(self, message: ToWorker) -> None:
-        """The triples, a commit, a command, or that a lane needs a reader."""
+        """Handle a message from the node."""
         match message:
             case Load():
                 self._load(message)
@@ -98,7 +99,7 @@ class Worker:
             case StartReader():
                 self._readers[message.lane] = self._reader(self._lanes[message.lane])
             case StopReader():
-                if (reader := self._readers.pop(message.lane, None)) is not None:  # else it has gone
+                if (reader := self._readers.pop(message.lane, None)) is not None:  # otherwise it has exited
                     reader.end()
                     self._send(ReaderExited(lane=message.lane, signal=0))
             case StandingCommand():
@@ -109,7 +110,7 @@ class Worker:
                     self._send(CommandReply(number=message.number, error=errors.to_message(error)))
 
     def done(self, connection: Connection) -> None:
-        """A reader has gone, or the one of the standing queries has answered."""
+        """Handle the exit of a reader, or a reply for a standing query."""
         for lane, reader in self._readers.items():
             if reader.control is connection:
                 del self._readers[lane]
@@ -118,13 +119,13 @@ class Worker:
         self.monitor.on_ready(connection)
 
     def end(self) -> None:
-        """Leave nobody behind."""
+        """Stop all readers."""
         for reader in self._readers.values():
             reader.end()
         self.monitor.stop_readers()
 
     def _load(self, load: Load) -> None:
-        """Begin anew; the standing queries go on, with a look at what has changed for them."""
+        """Load all triples again; the standing queries continue and are evaluated again."""
         demand = self._dataset.demand
         self._dataset = Dataset(load.seq, load.asserted)
         self._dataset.demand = demand
@@ -156,14 +157,14 @@ class Worker:
             self._measure(self._dataset.demand)
 
     def _needs(self, query: str) -> Needs:
-        # rdflib's parser takes long to load, and few queries need it
+        # imported late: rdflib's parser loads slowly, and few queries need it
         from semmap.nodes.kb_node.sparql.queries.footprint import patterns_of
 
         known = tuple(sorted(query_prefixes(declared_in(self._dataset)).items()))
         return needs_of(patterns_of(query, known), self._derived)
 
     def _measure(self, demand: int) -> None:
-        """Let the dataset have what is needed now, under that number."""
+        """Update the measured triples in the dataset for request `demand`."""
         gone: tuple[Triple, ...] = ()
         come: tuple[Triple, ...] = ()
         if self._measured is not None:
@@ -181,7 +182,7 @@ class Worker:
             self._begin_log()
 
     def _begin_log(self) -> None:
-        """Those who read the old one cannot catch up any more: they go as soon as they have answered."""
+        """Start a new log. Readers of the old one exit after their current query."""
         for reader in self._readers.values():
             reader.retire()
         self._log.close()

@@ -1,4 +1,4 @@
-"""One query on one store: its answer, or why there is none, in one sentence."""
+"""Evaluation of one query on one store."""
 
 from __future__ import annotations
 
@@ -24,11 +24,10 @@ _SPO: Final = ("subject", "predicate", "object")
 def evaluate(
     query: str, dataset: Dataset, *, inferred: bool, limit: int, measured: bool = False
 ) -> SparqlResult:
-    """The answer over what is asserted or, with `inferred`, over all that is so, asserted or not.
+    """Evaluate a query over the asserted triples or, with `inferred`, over all triples that hold.
 
-    With `measured` that is also what was measured for the query.
-
-    Raises BadRequest for a query that is no SPARQL, Refused for one of more than `limit` rows.
+    `measured` adds the triples that were measured for the query. Raises BadRequest for invalid SPARQL,
+    Refused for more than `limit` rows.
     """
     known = query_prefixes(declared_in(dataset))
     graphs = dataset.asserted_graphs()
@@ -61,12 +60,12 @@ def evaluate(
 
 
 def _is_nothing(rows: tuple[Row, ...]) -> bool:
-    """Whether there is no row, or one that says that there is none: a COUNT of 0."""
+    """Return whether there is no row, or only a COUNT of 0."""
     return not rows or (len(rows) == 1 and set(rows[0]) <= {None, _ZERO})
 
 
 def declared_in(dataset: Dataset) -> dict[str, str]:
-    """The prefixes of the TBox's own namespaces."""
+    """Return the prefixes of the TBox's own namespaces."""
     said = dataset.store.quads_for_pattern(None, _PREFERRED_PREFIX, None, ASSERTED)
     declared = prefixes.declared_in((str(q.subject), str(q.predicate), str(q.object)) for q in said)
     return {prefix: namespace for namespace, prefix in declared.items()}
@@ -77,7 +76,7 @@ def _term(term: object) -> Term | None:
 
 
 def _graph(triples: ox.QueryTriples, limit: int) -> tuple[Row, ...]:
-    """The triples, each once, sorted."""
+    """Return the triples, each once, sorted."""
     found: set[Row] = set()
     for triple in triples:
         found.add(tuple(map(str, triple)))

@@ -1,4 +1,4 @@
-"""Whether a query may look at certain properties: told from its text, so quickly that no other is slowed."""
+"""Whether a query may use certain properties, decided from its text, which takes almost no time."""
 
 from __future__ import annotations
 
@@ -33,12 +33,15 @@ _PREDICATE: Final = re.compile(r"[tv\];\[]v[tv\[(]")
 
 @lru_cache(maxsize=1000)
 def may_use_properties(query: str, names: frozenset[str]) -> bool:
-    """Whether one of these local names may be a predicate in a query, or a variable is one."""
+    """Return whether one of these local names, or a variable, may be a predicate in a query."""
     return any(name in query for name in names) or "\\" in query or has_variable_predicate(query)
 
 
 def has_variable_predicate(query: str) -> bool:
-    """Whether a predicate is a variable, or a resource is described. It may say yes too often, never no."""
+    """Return whether a predicate may be a variable, or a resource is described.
+
+    False positives are possible.
+    """
     shape = "".join(_shape(query))
     if "d" in shape:
         return True
@@ -50,7 +53,7 @@ def has_variable_predicate(query: str) -> bool:
 
 
 def terms_of(query: str) -> Iterator[str]:
-    """The terms and bare words of a query in their order, as they are written; no variables."""
+    """Yield the terms and bare words of a query as written, without variables."""
     return (match[0] for match in _TOKEN.finditer(query) if match.lastgroup in ("term", "word"))
 
 
@@ -59,7 +62,7 @@ def _as_one(match: re.Match[str]) -> str:
 
 
 def _shape(query: str) -> Iterable[str]:
-    """A letter a token: `t`erm, `v`ariable, `w`ord, `s`election or `d`escription; signs as they are."""
+    """Yield a letter per token: `t`erm, `v`ariable, `w`ord, `s`election, `d`escription; signs as they are."""
     for match in _TOKEN.finditer(query):
         kind, text = match.lastgroup, match[0]
         if kind == "term":

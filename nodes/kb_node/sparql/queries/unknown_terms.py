@@ -1,4 +1,4 @@
-"""Terms of a query that the map does not know: why an answer is empty, if the reason is a slip."""
+"""Notes on terms of a query that the map does not contain, which may explain an empty result."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 
 _OTHERS = frozenset({v.RDF, v.RDFS, v.OWL, v.XSD, prefixes.WELL_KNOWN["vann"]})
-"""Namespaces of which the map does not hold all terms."""
+"""Namespaces of which the map does not contain all terms."""
 _ESCAPE = re.compile(r"\\(.)")
 _KINDS = (*v.PROPERTY_KINDS, v.OWL_CLASS, v.RDFS_CLASS)
 _COMPARED = 2000
-"""Individuals that are looked through for those that are called similarly: a query may be asked often."""
+"""Individuals whose names are compared; the number is limited because a query may be frequent."""
 
 
 def unknown_term_notes(query: str, dataset: Dataset, known: Mapping[str, str]) -> Iterator[str]:
-    """A note for each IRI of a query that is in no triple, with those that are called similarly.
+    """Yield a note for each IRI of a query that is in no triple, with similar names.
 
     `known` are the prefixes that the query need not declare.
     """
@@ -36,7 +36,7 @@ def unknown_term_notes(query: str, dataset: Dataset, known: Mapping[str, str]) -
     for text in terms_of(query):
         if before[0].upper() == "PREFIX" and text.startswith("<"):
             declared[before[1].removesuffix(":")] = text[1:-1]
-        elif before[1].upper() != "PREFIX":  # then it is a declaration
+        elif before[1].upper() != "PREFIX":  # otherwise it is a declaration
             if text.startswith("<"):
                 there[text[1:-1]] = text
             else:
@@ -60,7 +60,7 @@ def _is_mentioned(dataset: Dataset, node: ox.NamedNode) -> bool:
 
 
 def _called(dataset: Dataset, namespace: str) -> set[str]:
-    """The local names of a namespace; of many individuals only some."""
+    """Return the local names of a namespace; if there are many individuals, only some of them."""
     type_ = ox.NamedNode(v.bare(v.RDF_TYPE))
     said = (
         dataset.store.quads_for_pattern(None, type_, None if kind is None else ox.NamedNode(v.bare(kind)))

@@ -1,8 +1,8 @@
-"""The standing queries: who watches what, and the evaluations that commits make necessary.
+"""Evaluates the standing queries after the commits that may change their rows.
 
-They have one reader to themselves, which goes through the commits that may touch them one by one. Where it
-cannot follow any more, because all triples are others, the next one stands by and goes on from there. When
-that is too far behind, too, or the reader has died, what is left to do is done in one step.
+The standing queries have a reader of their own, which follows the commits one by one. If it cannot follow any
+more because all triples were replaced, a new reader continues from there. If that one is too far behind as
+well, or the reader has died, the remaining evaluations are done in one step.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from semmap.schemas.replies import Done
 from semmap.schemas.sparql import RowsChanged, SparqlResult, Watching
 
 STANDING: Final = 64
-"""How many standing queries there may be."""
+"""Largest number of standing queries."""
 ROWS: Final = 10_000
 TIMEOUT_S: Final = 2.0
 
@@ -40,33 +40,33 @@ _results: msgpack.Decoder[SparqlResult] = codec.decoder(SparqlResult)
 
 @dataclass
 class Evaluation:
-    """A evaluation at the rows of a standing query after commit `seq`; those after `since` are known."""
+    """An evaluation of a standing query after commit `seq`. Its rows after `since` are known."""
 
     standing: StandingQuery
     since: int
     seq: int
     number: int | None = None
-    """The command that waits for its first rows."""
+    """The command that waits for the first rows."""
 
 
 @dataclass
 class ReaderSwitch:
-    """From here on another reader evaluations, which has the triples as they were then."""
+    """From here on another reader evaluates, which has the triples of that time."""
 
     lane: Connection
     reader: Reader
 
     def end(self) -> None:
-        """It is no longer needed."""
+        """Stop the reader."""
         self.reader.end()
         self.lane.close()
 
 
 class ContinuousQueryMonitor:
-    """Keeps the standing queries, and tells their news in the order of the commits."""
+    """Keeps the standing queries, and publishes their changes in the order of the commits."""
 
     def __init__(self, send: Callable[[FromWorker], None], hire: Callable[[Connection], Reader]) -> None:
-        """`hire(lane)` is a reader that answers there."""
+        """Create a monitor; `hire(lane)` returns a reader that replies on that lane."""
         self._send = send
         self._hire = hire
         self._seq = 0
@@ -79,27 +79,27 @@ class ContinuousQueryMonitor:
 
     @property
     def connections(self) -> Iterator[Connection]:
-        """Readable when a evaluation is done."""
+        """Connections that become readable when an evaluation is done."""
         if self._active is not None and self._running is not None:
             yield self._active.lane
 
     @property
     def timeout_s(self) -> float | None:
-        """How long nothing needs to be done without being told."""
+        """Seconds until something must be done without a message, or None."""
         soonest = min((standing.ends for standing in self._standing.values()), default=math.inf)
         return None if soonest == math.inf else max(0.0, soonest - time.monotonic())
 
     @property
     def inferred_queries(self) -> Iterator[str]:
-        """Those that evaluation at what follows."""
+        """The queries that read inferred triples."""
         return (standing.query for standing in self._standing.values() if standing.inferred)
 
-    # What comes in
+    # Input
 
     def handle(self, number: int, command: Watch | Renew, seq: int, demand: int = 0) -> None:
-        """A command, at commit `seq`, with all that was demanded until then measured.
+        """Handle a command at commit `seq`, with all measurements up to request `demand`.
 
-        Raises UnknownName, NameTaken, Refused, and as `text` does.
+        Raises UnknownName, NameTaken, Refused, and the errors of `text`.
         """
         self._seq = seq
         if isinstance(command, Watch):
@@ -118,31 +118,31 @@ class ContinuousQueryMonitor:
         self._send(CommandReply(number=number, reply=_encoded(Done(text=f"{command.watch} {said}"))))
 
     def follow(self, delta: Delta) -> None:
-        """A commit."""
+        """Schedule the evaluations that a commit requires."""
         self._seq = delta.seq
         for standing in self._standing.values():
             if standing.is_touched(delta):
                 self._evaluations.append(Evaluation(standing, since=delta.seq - 1, seq=delta.seq))
 
     def evaluate_all(self, seq: int) -> None:
-        """All triples are others after commit `seq`."""
+        """Schedule the evaluation of all queries, because all triples were replaced after commit `seq`."""
         self._seq = seq
         self._evaluations.extend(Evaluation(s, since=seq - 1, seq=seq) for s in self._standing.values())
 
     def renew_reader(self) -> None:
-        """The one that there is cannot follow any more: it does what there is to do, and then a new one."""
+        """Schedule a new reader, because the present one cannot follow any more after its remaining work."""
         if any(isinstance(evaluation, ReaderSwitch) for evaluation in self._evaluations):
             self._is_behind = True
         elif self._active is not None:
             self._evaluations.append(self._new_reader())
 
     def on_ready(self, connection: Connection) -> None:
-        """The reader has answered, or died."""
+        """Handle a reply or the exit of the reader."""
         if self._active is not None and connection is self._active.lane:
             self._finish()
 
     def advance(self) -> None:
-        """Begin the next evaluation; let leases end."""
+        """Start the next evaluation and end expired leases."""
         for standing in [s for s in self._standing.values() if s.ends <= time.monotonic()]:
             self._end_query(standing)
         if self._running is None and self._is_behind:
@@ -151,7 +151,7 @@ class ContinuousQueryMonitor:
             self._begin()
 
     def stop_readers(self) -> None:
-        """Part with all readers; what is left to do is left to the next, in one step."""
+        """Stop all readers; the next one does the remaining evaluations in one step."""
         reliefs = [evaluation for evaluation in self._evaluations if isinstance(evaluation, ReaderSwitch)]
         for reader in filter(None, (self._active, *reliefs)):
             reader.end()
@@ -160,7 +160,7 @@ class ContinuousQueryMonitor:
         self._active = None
         self._is_behind = False
 
-    # StandingQuery queries
+    # Standing queries
 
     def _register(self, command: Watch, demand: int) -> StandingQuery:
         name = command.watch or f"q{uuid.uuid4().hex[:12]}"
@@ -172,7 +172,7 @@ class ContinuousQueryMonitor:
         return self._standing[name]
 
     def _end_query(self, standing: StandingQuery, error: errors.SemmapError | None = None) -> None:
-        """It is over; with an error, its followers are told why."""
+        """End a query; with an error, its subscribers receive the reason."""
         self._standing.pop(standing.watch, None)
         left = (
             evaluation
@@ -183,7 +183,7 @@ class ContinuousQueryMonitor:
         last = error and RowsChanged(watch=standing.watch, seq=self._seq, since=self._seq, error=error.text)
         self._send(QueryUpdate(watch=standing.watch, rows=last or None, ended=True))
 
-    # Looks
+    # Evaluations
 
     def _begin(self) -> None:
         if self._active is None:
@@ -206,7 +206,7 @@ class ContinuousQueryMonitor:
             timeout_s=TIMEOUT_S,
             demand=evaluation.standing.demand,
         )
-        with suppress(OSError):  # if the reader is dead, `_result` tells
+        with suppress(OSError):  # if the reader is dead, `_result` raises the error
             self._active.lane.send_bytes(msgpack.encode(question))
 
     def _new_reader(self) -> ReaderSwitch:
@@ -237,7 +237,7 @@ class ContinuousQueryMonitor:
             self._send(QueryUpdate(watch=news.watch, rows=news))
 
     def _result(self) -> SparqlResult:
-        """What the reader found. Raises the query's error, also that the reader died of it."""
+        """Return the result of the reader. Raises the query's error, also if the reader died."""
         if self._active is None:
             raise errors.InternalError("no reader evaluates a standing query")
         try:
@@ -257,7 +257,7 @@ def _encoded(message: Any) -> Raw:
 
 
 def _in_one_step(evaluations: Iterable[Evaluation], seq: int) -> Iterator[Evaluation]:
-    """One evaluation a standing query, at the present, instead of several at the past."""
+    """Yield one evaluation per standing query at the present commit, instead of several at past ones."""
     last: dict[str, Evaluation] = {}
     for evaluation in evaluations:
         earlier = last.setdefault(evaluation.standing.watch, evaluation)

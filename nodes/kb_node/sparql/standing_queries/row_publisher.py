@@ -1,4 +1,4 @@
-"""The news of standing queries on the wire: each has a key, and so a publisher, of its own."""
+"""Publishes the row changes of standing queries, each with its own key and publisher."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ _TOO_MUCH: Final = (
 
 
 class RowPublisher:
-    """Publishes the news, from one thread."""
+    """Publishes row changes. Used by one thread."""
 
     def __init__(self, session: bus.Session) -> None:
         self._session = session
         self._publishers: dict[str, Any] = {}
 
     def publish(self, news: QueryUpdate) -> None:
-        """Tell those who watch a query what has changed; after its end, take its publisher away."""
+        """Publish the row changes of a query; after its end, remove its publisher."""
         if news.rows is not None:
             if news.watch not in self._publishers:
                 key = keys.query_key(news.watch)

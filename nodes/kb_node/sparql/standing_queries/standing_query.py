@@ -1,4 +1,4 @@
-"""A standing query: the rows that it has, and what a commit does to them."""
+"""A standing query and its rows."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class StandingQuery:
-    """One of them. `ends` is when its lease does [s, monotonic], which begins with its first rows."""
+    """One standing query. `ends` is the end of its lease [s, monotonic], which begins with its first rows."""
 
     watch: str
     query: str
@@ -27,14 +27,14 @@ class StandingQuery:
     lease_s: float
     looks_at: Footprint
     demand: int = 0
-    """What was measured under this number it needs; 0 for nothing."""
+    """The number of the measurements that it needs; 0 for none."""
     ends: float = math.inf
     rows: Counter[Row] = field(default_factory=Counter)
 
     @classmethod
     def of(cls, command: Watch, name: str, demand: int) -> StandingQuery:
-        """The one that a command asks for, without its rows."""
-        # rdflib's parser takes longer to load than all else that the first look-up waits for
+        """Return the query of a command, without rows."""
+        # imported late, because rdflib's parser would delay the first query
         from semmap.nodes.kb_node.sparql.queries.footprint import footprint
 
         if command.query is None:
@@ -49,11 +49,11 @@ class StandingQuery:
         )
 
     def is_touched(self, delta: Delta) -> bool:
-        """May a commit change its rows?"""
+        """Return whether a commit may change its rows."""
         return self.looks_at.is_touched(delta.everything if self.inferred else delta.asserted)
 
     def update_rows(self, rows: Iterable[Row], since: int, seq: int) -> RowsChanged | None:
-        """Its rows after commit `seq`; the news, if there is any."""
+        """Set its rows after commit `seq` and return the changes, if any."""
         now = Counter(rows)
         appeared, disappeared = now - self.rows, self.rows - now
         self.rows = now

@@ -1,10 +1,11 @@
-"""Fills a store on disk from stdin.
+"""Loads triples from stdin into a store on disk.
 
 Usage: `python -m semmap.nodes.kb_node.sparql.triples.bulk_load PATH [BASE [packed]]`.
 
-There are triples in frames, each a MessagePack list behind its length. With a base IRI, a Turtle document
-follows behind an empty frame, with gzip if it is packed. Says on stdout how many triples the store has: fewer
-than came where two differ in the spelling of a number.
+The input consists of frames, each a MessagePack list of triples with its length before it. With a base IRI, a
+Turtle document follows after an empty frame, compressed with gzip if `packed`. The program prints the number
+of triples in the store. It is smaller than the number received if two triples differ only in the spelling of
+a number.
 """
 
 from __future__ import annotations
@@ -32,13 +33,13 @@ PACKED: Final = "packed"
 
 
 def frame(triples: Triples) -> bytes:
-    """Some triples as they are sent."""
+    """Return some triples as a frame."""
     body = msgpack.encode(triples)
     return len(body).to_bytes(_LENGTH_BYTES, "big") + body
 
 
 class _Text(io.RawIOBase):
-    """The frames of a stream, up to an empty one, to be read as N-Triples."""
+    """The frames of a stream up to an empty one, as N-Triples text."""
 
     def __init__(self, frames: BinaryIO) -> None:
         super().__init__()
@@ -62,8 +63,8 @@ class _Text(io.RawIOBase):
 
 
 def main(path: str, base: str | None = None, form: str = "") -> None:
-    """Read to the end, then say."""
-    os.nice(15)  # the map itself comes first
+    """Load everything, then print the number of triples."""
+    os.nice(15)  # the map itself has priority
     store = ox.Store(path)
     text = io.BufferedReader(_Text(sys.stdin.buffer), 1 << 20)
     store.bulk_load(input=text, format=ox.RdfFormat.N_TRIPLES, lenient=True)  # it was checked for the map

@@ -1,7 +1,7 @@
-"""The triples of a large map on disk: made once, kept between starts, and clone_store for whoever reads them.
+"""Stores on disk with the triples of a large map: created once, kept across starts, cloned for readers.
 
-A store is a folder of Oxigraph's (RocksDB). Nobody works in a store itself: its large files never change, so
-that a clone shares them by hard links and costs milliseconds, whatever the size of the map.
+A store is a folder of Oxigraph (RocksDB). A store itself is never opened for work: its large files do not
+change, so a clone shares them by hard links and takes milliseconds, whatever the size of the map.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from typing import Final
 import pyoxigraph as ox
 
 FOLDER: Final = "sparql"
-"""Beside the journal."""
+"""Next to the journal."""
 _CLONE: Final = "clone-"
 _UNFINISHED: Final = "filling-"
 _UNCHANGING: Final = ".sst"
 
 
 class DiskStores:
-    """The stores of one journal. One is named by a commit: its number and the digest of all up to it."""
+    """The stores of one journal. Each is named by the number and digest of a commit."""
 
     def __init__(self, data: Path) -> None:
-        """Those beside the journal in `data`; what a process before this one left unfinished goes."""
+        """Manage the stores next to the journal in `data`, and delete unfinished ones of earlier processes."""
         self.folder = data / FOLDER
         self._numbers = count(1)
         for path in self._paths():
@@ -35,18 +35,18 @@ class DiskStores:
                 shutil.rmtree(path, ignore_errors=True)
 
     def begin(self) -> Path:
-        """Where the next store is to be made. Raises OSError."""
+        """Return the path for the next store. Raises OSError."""
         self.folder.mkdir(parents=True, exist_ok=True)
         return self.folder / f"{_UNFINISHED}{next(self._numbers)}"
 
     def finish(self, made: Path, seq: int, digest: bytes) -> Path:
-        """What was made is the store of a commit from now on; the one before goes. Raises OSError."""
+        """Make a finished store the store of a commit, and delete the previous one. Raises OSError."""
         for _, _, old in list(self.found()):
             shutil.rmtree(old, ignore_errors=True)
         return made.rename(self.folder / f"{seq}-{digest.hex()}")
 
     def found(self) -> Iterator[tuple[int, str, Path]]:
-        """Number and digest of the commit, and the path, of each store."""
+        """Yield the commit's number and digest, and the path, of each store."""
         for path in self._paths():
             number, _, digest = path.name.partition("-")
             if number.isdigit():
@@ -57,12 +57,12 @@ class DiskStores:
 
 
 def forget(data: Path) -> None:
-    """Another journal takes the place of the one that the stores belong to."""
+    """Delete the stores, because another journal replaces theirs."""
     shutil.rmtree(data / FOLDER, ignore_errors=True)
 
 
 def clone_store(path: Path) -> ox.Store:
-    """A store of this process's own, which begins as the one at `path` is. Raises OSError."""
+    """Return a private clone of the store at `path`. Raises OSError."""
     clone = clone_path(path, os.getpid())
     shutil.rmtree(clone, ignore_errors=True)
     clone.mkdir()
@@ -75,11 +75,11 @@ def clone_store(path: Path) -> ox.Store:
 
 
 def clone_path(path: Path, pid: int) -> Path:
-    """Where a process has its clone."""
+    """Return the path of a process's clone."""
     return path.parent / f"{_CLONE}{pid}"
 
 
 def remove_clone(path: Path, pid: int) -> None:
-    """That of a process which is gone."""
+    """Delete the clone of a process that has exited."""
     with suppress(OSError):
         shutil.rmtree(clone_path(path, pid))

@@ -1,4 +1,4 @@
-"""What is measured of pairs because a query asks for it, kept in a dataset from then on, commit by commit."""
+"""Relations that are measured because a query needs them, kept up to date commit by commit."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
 
 class Needs(NamedTuple):
-    """The relations that are needed of all things, and the things of which all relations are."""
+    """Relations that are needed for all objects, and objects for which all relations are needed."""
 
     relations: frozenset[RelationName] = frozenset()
     names: frozenset[str] = frozenset()
 
     @classmethod
     def merge(cls, several: Iterable[Needs]) -> Needs:
-        """What satisfies several."""
+        """Return needs that satisfy several."""
         several = tuple(several)
         return cls(
             frozenset[RelationName]().union(*(needs.relations for needs in several)),
@@ -37,9 +37,9 @@ class Needs(NamedTuple):
 
 
 def needs_of(patterns: frozenset[Pattern] | None, derived: Derived) -> Needs:
-    """What a query with these triple patterns needs; all, where they cannot be told.
+    """Return the needs of a query with these triple patterns, or everything if they are unknown.
 
-    Where one end of a pattern is a known individual, that one is enough.
+    If one end of a pattern is a known individual, only that one is needed.
     """
     if patterns is None:
         return Needs(frozenset(MIRRORED) if derived.sources else frozenset())
@@ -55,7 +55,7 @@ def needs_of(patterns: frozenset[Pattern] | None, derived: Derived) -> Needs:
 
 
 class MeasuredRelations:
-    """Follows poses, and what of their relations is needed. It writes nothing into the dataset."""
+    """Tracks poses and measures the needed relations. It does not write into the dataset."""
 
     def __init__(self, derived: Derived, dataset: Dataset, placements: Placements) -> None:
         self._derived = derived
@@ -66,13 +66,13 @@ class MeasuredRelations:
         self._register(placements.placed)
 
     def update_needs(self, needs: Needs) -> tuple[tuple[Triple, ...], tuple[Triple, ...]]:
-        """What is no longer in the dataset, and what comes in, for what is needed from now on."""
+        """Set the needs. Return the triples to remove from the dataset and those to add."""
         return self._differing(self._triples(self._pairs.ask(*needs), self._iris))
 
     def after(
         self, delta: Delta, placed: Iterable[Placed], removed: Iterable[str]
     ) -> tuple[tuple[Triple, ...], tuple[Triple, ...]]:
-        """The same for a commit, which the dataset has already: these are otherwise or went."""
+        """Do the same for a commit that the dataset has already, with changed and removed entities."""
         placed = tuple(placed)
         reborn = [e.name for e in placed if self._iris.get(e.name, v.iri(e.iri)) != v.iri(e.iri)]
         removed = (*removed, *reborn)
@@ -96,7 +96,7 @@ class MeasuredRelations:
         return {triple for fact in facts for triple in self._derived.triples(fact, iris)}
 
     def _differing(self, candidates: Iterable[Triple]) -> tuple[tuple[Triple, ...], tuple[Triple, ...]]:
-        """Of triples that may be otherwise, those that the dataset has wrongly, and those that it lacks."""
+        """Return those of the triples that the dataset has wrongly, and those that it lacks."""
         gone, come = list[Triple](), list[Triple]()
         dataset = self._dataset
         for triple in candidates:
