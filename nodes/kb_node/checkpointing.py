@@ -26,7 +26,7 @@ class Checkpointing:
         self._seq_then = 0
 
     def begin_if_due(self) -> None:
-        """Begin a checkpoint if it is due, or sooner if nothing changed since the last call."""
+        """Begin a checkpoint if it is due. In a quiet time it is due sooner."""
         quiet, self._seq_then = self._map.seq == self._seq_then, self._map.seq
         if self._map.checkpoint_is_due(quiet=quiet):
             self._begin()
@@ -37,7 +37,7 @@ class Checkpointing:
             self._begin()
 
     def close(self) -> None:
-        """Write a checkpoint for a quick start, unless that takes long. Raises Refused if the disk is full."""
+        """Write a checkpoint for a quick start, unless that takes long. Raises Refused if it fails."""
         if self._writing is not None:
             self._map.written(self._writing.result())
         if not self._map.is_large or self._map.checkpoint_is_due(quiet=True):

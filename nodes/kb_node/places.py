@@ -88,7 +88,7 @@ class Places:
         return self._entities.keys() if facts is None else facts.upward(names)
 
     def about(self, name: str) -> Iterator[About]:
-        """Yield what an object is inside, on, in and attached to, most important first. Nothing for a place."""
+        """Yield what an object is inside, on, in and attached to, by importance. Nothing for a place."""
         facts = self._facts()
         if facts is not None:
             yield from facts.of(name)
@@ -99,9 +99,8 @@ class Places:
     def crowds(self, names: Collection[str] | None = None) -> tuple[str, ...]:
         """Return notes on crowds, where not all neighbours of an object are considered.
 
-        Only the first notes are returned.
-
-        With `names`, only crowds that contain one of them. Empty if no relations are maintained.
+        With `names`, only crowds that contain one of them. Only the first notes are returned, and none if no
+        relations are maintained.
         """
         return tuple(islice(self._describe_crowds(names), _FEW))
 

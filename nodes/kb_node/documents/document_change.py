@@ -1,4 +1,4 @@
-"""What a file brings into the map, as a transaction."""
+"""Converts documents to transactions."""
 
 from __future__ import annotations
 
@@ -18,9 +18,10 @@ from semmap.schemas.packing import unpacked
 def make_document_transaction(
     semantic_map: SemanticMap, load: LoadDocument, triples: Iterable[Triple]
 ) -> tuple[Transaction, abox_document.FilteredDocument]:
-    """What of an ABox may come into the map, and what is to be said of the rest.
+    """Return the transaction of an ABox document, and what was filtered from it.
 
-    Raises UnknownClass, BadFile for a TBox, UnknownName for what nobody describes if the load is strict.
+    Raises UnknownClass, BadFile for a TBox, and UnknownName for undescribed individuals if the load is
+    strict.
     """
     filtered = abox_document.filter_document(triples, semantic_map.classes, skip_unknown=load.skip_unknown)
     stays = semantic_map.tbox.__contains__ if load.replace else lambda _: True
@@ -38,22 +39,22 @@ def make_document_transaction(
 
 
 def is_exact_copy(triples: Sequence[Triple], transaction: Transaction) -> bool:
-    """Is a transaction nothing but what a document says, word by word?"""
+    """Return whether a transaction inserts exactly the triples of a document."""
     insert = transaction.insert
     return not transaction.retract and len(insert) == len(triples) and all(map(is_, insert, triples))
 
 
 def _outside(triples: list[Triple], tbox: frozenset[Triple]) -> Iterable[Triple]:
-    """Those that the TBox does not say."""
+    """Return the triples that are not in the TBox."""
     said = tbox.intersection(triples)
     return (t for t in triples if t not in said) if said else triples
 
 
 def read_tbox(semantic_map: SemanticMap, load: LoadTBox, *, label_prefix: str) -> list[Triple]:
-    """The triples of a TBox, with its prefixes and what is in space.
+    """Return the triples of a TBox with its prefixes and spatial roots.
 
-    The present TBox's declared spatial roots stay until others are declared.
-    Raises BadFile, UnknownClass.
+    The spatial roots that the present TBox declares stay until others are declared. Raises BadFile,
+    UnknownClass.
     """
     content = unpacked(load.content, load.filename)
     triples = tbox_declarations.with_declarations(
@@ -69,7 +70,7 @@ def read_tbox(semantic_map: SemanticMap, load: LoadTBox, *, label_prefix: str) -
 
 
 def require_no_map(semantic_map: SemanticMap, load: LoadTBox, tbox: Iterable[Triple]) -> None:
-    """Raises BadFile for a TBox that describes what the map has: as a part of it nothing could be changed."""
+    """Raise BadFile for a TBox that describes entities of the map, which could not be changed any more."""
     there = set(tbox_validation.described_by(semantic_map.tbox, semantic_map.classes))
     described = tbox_validation.described_by(tbox, semantic_map.classes)
     if again := [name for name in described if name not in there and semantic_map.find(name) is not None]:
@@ -82,7 +83,7 @@ def require_no_map(semantic_map: SemanticMap, load: LoadTBox, tbox: Iterable[Tri
 def make_tbox_transaction(
     semantic_map: SemanticMap, load: LoadTBox, tbox: frozenset[Triple]
 ) -> Transaction | None:
-    """What another TBox changes of the ABox: its imports. None if it is the one that holds."""
+    """Return how another TBox changes the imports of the ABox, or None if it is the present TBox."""
     imports, before = tbox_validation.import_triples(tbox), tbox_validation.import_triples(semantic_map.tbox)
     transaction = _transaction(
         load,

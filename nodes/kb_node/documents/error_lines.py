@@ -1,4 +1,4 @@
-"""In which line a document has its fault, where the parser does not tell."""
+"""Line numbers of syntax errors for parsers that do not report them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pyoxigraph
 
 
 def find_error_line(content: bytes, syntax: pyoxigraph.RdfFormat, base_iri: str) -> int:
-    """The line up to which the parser had read when it gave up; it is fed line by line."""
+    """Return the line that the parser had read when it failed. The parser is fed line by line."""
     lines = _Lines(content)
     try:
         for _ in pyoxigraph.parse(
@@ -22,14 +22,14 @@ def find_error_line(content: bytes, syntax: pyoxigraph.RdfFormat, base_iri: str)
 
 
 class _Lines(io.RawIOBase):
-    """A file that gives at most one line at a time."""
+    """A file that returns at most one line per read."""
 
     def __init__(self, content: bytes) -> None:
         super().__init__()
         self._content = content
         self._at = 0
         self.number = 0
-        """Of the line that was given last, from 1."""
+        """Number of the line returned last, from 1."""
 
     def readable(self) -> bool:
         return True

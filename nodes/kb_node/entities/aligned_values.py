@@ -1,4 +1,4 @@
-"""Where a thing is, how big and what it is called, in the words of other people's vocabularies."""
+"""Poses, sizes and names of entities that are expressed in other vocabularies."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from semmap.schemas.entities import IDENTITY, REACH_M, Pose, Quaternion, Size, V
 from semmap.schemas.explanations import Term, Triple
 
 About = Callable[[Term], Mapping[Term, Sequence[Term]]]
-"""What is asserted of a subject: predicate to objects."""
+"""A lookup of the asserted objects of a subject by predicate."""
 
 _BETWEEN = re.compile(r"[\s,;\[\]()]+")
 
 
 class AlignedPose(NamedTuple):
-    """A pose as a vocabulary says it."""
+    """A pose as another vocabulary expresses it."""
 
     words: PoseMapping
     nodes: tuple[Term, ...]
-    """The individuals on the way to the one that says it, that one last; the entity first."""
+    """The individuals on the path from the entity (first) to the one with the pose (last)."""
     position: Vector
-    """Of the pose's origin [m]."""
+    """Position of the pose's origin [m]."""
     orientation: Quaternion
 
 
 class AlignedSize(NamedTuple):
-    """An extent as a vocabulary says it."""
+    """A size as another vocabulary expresses it."""
 
     words: SizeMapping
     nodes: tuple[Term, ...]
@@ -38,7 +38,7 @@ class AlignedSize(NamedTuple):
 
 
 def pose(alignments: Iterable[Alignment], about: About, iri: Term, size_m: Size | None) -> Pose | None:
-    """The pose of a thing of that size in the map frame, by its bottom centre; None if none is said."""
+    """Return the pose of an entity's bottom centre in the map frame, or None if there is none."""
     said = find_pose(alignments, about, iri)
     if said is None:
         return None
@@ -49,20 +49,20 @@ def pose(alignments: Iterable[Alignment], about: About, iri: Term, size_m: Size 
 
 
 def size(alignments: Iterable[Alignment], about: About, iri: Term) -> Size | None:
-    """The extent of a thing; None if none is said."""
+    """Return the size of an entity, or None."""
     said = find_size(alignments, about, iri)
     return None if said is None else said.size_m
 
 
 def names(alignments: Iterable[Alignment], about: About, iri: Term) -> list[str]:
-    """What a thing is called, the best first: the names of the vocabularies, then its labels."""
+    """Return the names of an entity, best first: those of the vocabularies, then its labels."""
     said = about(iri)
     properties = (*(p for known in alignments for p in known.names), v.RDFS_LABEL)
     return [v.lexical(o) for p in properties for o in sorted(said.get(p, ())) if o.startswith('"')]
 
 
 def find_pose(alignments: Iterable[Alignment], about: About, iri: Term) -> AlignedPose | None:
-    """The first pose that makes sense; one that is relative to something else is none."""
+    """Return the first valid pose; poses relative to another frame are ignored."""
     for words in (words for known in alignments for words in known.pose):
         for nodes in _paths(about, iri, words.path):
             there = about(nodes[-1])
@@ -77,7 +77,7 @@ def find_pose(alignments: Iterable[Alignment], about: About, iri: Term) -> Align
 
 
 def find_size(alignments: Iterable[Alignment], about: About, iri: Term) -> AlignedSize | None:
-    """The first extent that is whole and positive."""
+    """Return the first size that is complete and positive."""
     for words in (words for known in alignments for words in known.size):
         for nodes in _paths(about, iri, words.path):
             there = about(nodes[-1])
@@ -91,7 +91,7 @@ def find_size(alignments: Iterable[Alignment], about: About, iri: Term) -> Align
 def pose_triples(
     said: AlignedPose, pose: Pose, size_m: Size | None, about: About
 ) -> tuple[list[Triple], list[Triple]]:
-    """The triples that go and those that come when a pose is said anew, by the same individual."""
+    """Return the removed and the added triples for a new pose at the same individual."""
     node, words = said.nodes[-1], said.words
     position = shifted(pose.position_m, pose.orientation_wxyz, _origin_height(words, size_m))
     new: list[tuple[Term, tuple[float, ...]]] = [(words.position, position)]
@@ -102,14 +102,14 @@ def pose_triples(
 
 
 def size_triples(said: AlignedSize, size_m: Size, about: About) -> tuple[list[Triple], list[Triple]]:
-    """The triples that go and those that come when an extent is said anew, by the same individual."""
+    """Return the removed and the added triples for a new size at the same individual."""
     words = said.words
     new = zip((words.x, words.y, words.z), size_m, strict=True)
     return _said_anew(said.nodes[-1], [(p, (value,)) for p, value in new], about)
 
 
 def shifted(position: Vector, orientation_wxyz: Quaternion, height_m: float) -> Vector:
-    """`position` moved along the thing's own z axis [m], to a millionth of a millimetre."""
+    """Return `position` moved along the entity's z axis [m], rounded to 1e-9 m."""
     w, x, y, z = orientation_wxyz
     up = (2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y))
     moved = [round(p + height_m * axis, 9) for p, axis in zip(position, up, strict=True)]
@@ -117,12 +117,12 @@ def shifted(position: Vector, orientation_wxyz: Quaternion, height_m: float) -> 
 
 
 def _origin_height(words: PoseMapping, size_m: Size | None) -> float:
-    """How far above the bottom the origin of a pose is [m]."""
+    """Return the height of the pose's origin above the bottom [m]."""
     return size_m[2] / 2.0 if words.origin == "middle" and size_m is not None else 0.0
 
 
 def _paths(about: About, iri: Term, path: Sequence[Term]) -> Iterator[tuple[Term, ...]]:
-    """Every way along a path, the least individuals first."""
+    """Yield the individuals along a path, the smallest ones first."""
     if not path:
         yield (iri,)
         return
@@ -132,7 +132,7 @@ def _paths(about: About, iri: Term, path: Sequence[Term]) -> Iterator[tuple[Term
 
 
 def _vector(objects: Sequence[Term], count: int) -> tuple[float, ...] | None:
-    """The numbers of the least literal that is `count` of them within reach."""
+    """Return the numbers of the smallest literal with `count` numbers in the valid range."""
     for term in sorted(objects):
         if term.startswith('"'):
             words = [word for word in _BETWEEN.split(v.lexical(term)) if word]
@@ -146,7 +146,7 @@ def _vector(objects: Sequence[Term], count: int) -> tuple[float, ...] | None:
 
 
 def _quaternion(numbers: tuple[float, ...], words: PoseMapping) -> Quaternion | None:
-    """The unit quaternion `wxyz`, or None for what is far from one."""
+    """Return the unit quaternion `wxyz`, or None if the norm is far from one."""
     w, x, y, z = (numbers[3], *numbers[:3]) if words.order == "xyzw" else numbers
     norm = math.hypot(w, x, y, z)
     if not 0.9 <= norm <= 1.1:
@@ -157,7 +157,7 @@ def _quaternion(numbers: tuple[float, ...], words: PoseMapping) -> Quaternion | 
 def _said_anew(
     node: Term, new: Iterable[tuple[Term, tuple[float, ...]]], about: About
 ) -> tuple[list[Triple], list[Triple]]:
-    """Numbers as literals of the datatype that they had."""
+    """Return the removed and the added literals; the datatypes stay."""
     gone: list[Triple] = []
     come: list[Triple] = []
     said = about(node)

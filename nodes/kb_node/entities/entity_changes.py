@@ -1,4 +1,4 @@
-"""What a change of the triples does to the entities."""
+"""The effects of changed triples on entities."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _COORDINATES = frozenset(stars.COORDINATE_PROPERTIES)
 
 
 class Reading(NamedTuple):
-    """What entities are read with: the triples as they are after the change, classes, known patterns."""
+    """The input for reading entities: the triples after the change, the classes and the known patterns."""
 
     reasoner: Reasoner
     classes: ClassTable
@@ -43,11 +43,11 @@ def add_effects(
     owners: Set[Term],
     new: Set[Term],
 ) -> Commit:
-    """`commit` with the entities that it changed and those that it removed.
+    """Return `commit` with its changed and removed entities.
 
-    `before` are the entities by their names. `owners` are those to whose stars the commit's triples belong,
-    before it or after it. Of `new` individuals it says all there is. Raises BadRequest for a star that makes
-    no sense, NameTaken.
+    `before` are the entities by name. `owners` are the individuals that the commit's triples describe, before
+    or after it. The commit contains all triples about `new` individuals. Raises NameTaken, and BadRequest for
+    an invalid entity.
     """
     changed: dict[str, Entity] = {}
     removed: list[Departed] = []
@@ -77,7 +77,7 @@ def add_effects(
                 and was is not None
                 and not _is_asserted(reasoner, iri)
             ):
-                entity = None  # only what is computed still speaks of it, and will not
+                entity = None  # only computed facts still mention it, and they will be removed
         if entity is None:
             removed += [Departed(name=was.name, types=was.types)] if was is not None else []
             continue
@@ -97,18 +97,18 @@ def add_effects(
 
 
 def known(by_name: Mapping[str, Entity], iri: Term) -> Entity | None:
-    """The entity with this IRI."""
+    """Return the entity with this IRI, or None."""
     entity = by_name.get(v.entity_name(iri))
     return entity if entity is not None and v.iri(entity.iri) == iri else None
 
 
 def _is_asserted(reasoner: Reasoner, iri: Term) -> bool:
-    """Is anything asserted of an individual?"""
+    """Return whether anything is asserted about an individual."""
     return any(reasoner.asserted(iri)) or any(reasoner.asserted(None, None, iri))
 
 
 def _moved_nodes(commit: Commit, change: Change) -> set[Term]:
-    """The individuals with other coordinates, if nothing but these is otherwise; else none."""
+    """Return the individuals with changed coordinates if nothing else has changed, or an empty set."""
     triples = chain(commit.retracted, commit.inserted)
     if change.alike or any(p not in _COORDINATES for _, p, _ in triples):
         return set()
@@ -119,7 +119,7 @@ def _moved_nodes(commit: Commit, change: Change) -> set[Term]:
 def _read_regular(
     change: Change, reading: Reading, provenance: Provenance
 ) -> tuple[dict[Term, Entity], set[Term], set[Term]]:
-    """The new entities whose stars are of known shapes, the individuals of these stars, and of the others."""
+    """Return new entities of known patterns, the individuals read with them, and the other individuals."""
     read: dict[Term, Entity] = {}
     seen: set[Term] = set()
     unseen: set[Term] = set()

@@ -1,10 +1,10 @@
-"""Entities as triples: what is wanted of them becomes the triples that go and those that come.
+"""Writes entities as triples: converts edits to removed and added triples.
 
-The counterpart of `entity_reading`. It runs where the triples are, so an intent needs no look at them
-beforehand, finds free names for the individuals of a star by itself, and cannot be out of date.
+It is the counterpart of `entity_reading`. It runs in the knowledge base, so an edit does not require reading
+the triples first and cannot be outdated, and free names for new individuals are found here.
 
-What is said in the words of an alignment is said anew in these words, where it stands, so that others read an
-export as before. What nobody has said yet is said in semmap's own words.
+Values in the vocabulary of an alignment are updated in that vocabulary, so that other programs can read an
+export as before. New values use semmap's own vocabulary.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from semmap.schemas.explanations import Term, Triple
 
 
 class Draft:
-    """A change of triples in the making. What it takes away counts as gone for what it adds later."""
+    """A change of triples in preparation. Removed triples do not count for later additions."""
 
     def __init__(
         self,
@@ -35,7 +35,7 @@ class Draft:
         tbox: frozenset[Triple],
         entities: Mapping[str, Entity],
     ) -> None:
-        """`entities` are those of the map by name."""
+        """Create an empty draft. `entities` are those of the map by name."""
         self.retract: dict[Triple, None] = {}
         self.insert: list[Triple] = []
         self._reasoner = reasoner
@@ -46,7 +46,7 @@ class Draft:
         self._known_classes: dict[str, Term] = {}
 
     def remove(self, leaving: Iterable[Entity]) -> None:
-        """Entities go, with all that is only theirs and all that others say of them.
+        """Remove entities with all triples that describe only them or refer to them.
 
         Raises Refused for an entity of the TBox.
         """
@@ -60,7 +60,7 @@ class Draft:
             self.retract.update(dict.fromkeys(incoming))
 
     def add(self, new: NewEntity) -> None:
-        """A new entity. Raises NameTaken, UnknownClass."""
+        """Add a new entity. Raises NameTaken, UnknownClass."""
         class_iri, iri = self._class(new.class_iri), v.entity_iri(new.name)
         suffix, number = "", 1
         while True:
@@ -92,11 +92,10 @@ class Draft:
             self.insert.append((iri, v.HAS_AFFORDANCE, v.dm(word)))
 
     def edit(self, entity: Entity, edit: Edit) -> None:
-        """What is given of an entity changes, in the individuals of its star unless others use them, too.
+        """Change an entity. Individuals that describe it are reused unless others use them, too.
 
-        Raises BadRequest for a pose that is none, and for a property or value that is none; UnknownClass;
-        UnknownName for an individual that does not exist; PreconditionFailed; Refused for an entity of the
-        TBox.
+        Raises BadRequest for an invalid pose, property or value, UnknownClass, UnknownName for an individual
+        that does not exist, PreconditionFailed, and Refused for an entity of the TBox.
         """
         iri = v.iri(entity.iri)
         said = self._reasoner.about(iri)
@@ -139,7 +138,7 @@ class Draft:
                 self._insert([(iri, v.TRACKED_FROM, v.literal(edit.tracked))])
 
     def _require(self, name: str, said: Objects, only_if: Sequence[Statement]) -> None:
-        """Raises PreconditionFailed unless each property has one of these values (none, if none is given)."""
+        """Raise PreconditionFailed unless each property has one of the values, or none if none is given."""
         for prop, terms in self._typed(only_if, name):
             known = said.get(prop.iri, ())
             if not any(is_same_value(one, other) for one in known for other in terms) and (known or terms):
@@ -148,9 +147,10 @@ class Draft:
                 raise errors.PreconditionFailed(f"{name}: {prop.name} is {now}, not {wanted}")
 
     def _state(self, entity: Entity, said: Objects, edit: Edit) -> None:
-        """Properties lose values, and then get others, which may be the same where all were taken back.
+        """Remove values of properties, then add others.
 
-        Raises BadRequest for a value that is both given and taken back, and for several of a functional one.
+        Raises BadRequest for a value that is both set and unset, and for several values of a functional
+        property.
         """
         iri = v.iri(entity.iri)
         wanted = list(self._typed(edit.set, entity.name))
@@ -181,7 +181,7 @@ class Draft:
             self._insert((iri, property_, term) for term in now if term not in before)
 
     def _typed(self, statements: Sequence[Statement], name: str) -> Iterator[tuple[Property, list[Term]]]:
-        """The properties and values that are meant. Raises BadRequest, UnknownName."""
+        """Yield the properties and values that are meant. Raises BadRequest, UnknownName."""
         table = self._classes.property_table
         for statement in statements:
             prop = table.find(statement.property, name)
@@ -191,7 +191,7 @@ class Draft:
             )
 
     def _individual(self, name: str) -> Term | None:
-        """The individual of the map with this name, if there is one."""
+        """Return the individual of the map with this name, or None."""
         entity = self._entities.get(name)
         iri = v.iri(entity.iri) if entity is not None else v.entity_iri(name)
         return iri if iri in self._new or self._is_described(iri) else None
@@ -223,11 +223,11 @@ class Draft:
         self._insert(stars.size(iri, node, size_m))
 
     def _is_own_path(self, nodes: Sequence[Term]) -> bool:
-        """Do the individuals between an entity and its pose or size describe nothing else?"""
+        """Return whether the individuals between an entity and its pose or size describe nothing else."""
         return all(s in nodes for node in nodes[1:] for s, _, _ in self._reasoner.asserted(None, None, node))
 
     def _detach(self, nodes: Sequence[Term], path: Sequence[Term], last: Term) -> None:
-        """An entity no longer has what it shares with others; the others keep it."""
+        """Remove the link from an entity to values that it shares with others."""
         for s, p, o in zip(nodes, (*path, last), (*nodes[1:], None), strict=True):
             self._retract(self._reasoner.asserted(s, p, o))
             if o is not None and not self._is_own_path((s, o)):
@@ -236,7 +236,7 @@ class Draft:
     def _numbers(
         self, entity: Entity, edge: Term, nodes: Sequence[Term], word: str, numbers: Sequence[Term]
     ) -> Term:
-        """The individual for new numbers: the one that is there, if nobody else uses it, or a new one."""
+        """Return the individual for new numbers: the present one if it is not shared, or a new one."""
         iri = v.iri(entity.iri)
         if len(nodes) == 1 and self._is_own(nodes[0]):
             said = self._reasoner.about(nodes[0])
@@ -248,7 +248,7 @@ class Draft:
     def _references(
         self, entity: Entity, edge: Term, nodes: Sequence[Term], words: Sequence[str]
     ) -> list[Term]:
-        """The individuals for new texts, in order: those of which nobody else makes use, then new ones."""
+        """Return the individuals for new texts in order: those that only this entity uses, then new ones."""
         own = [node for node in sorted(nodes) if self._is_own(node)]
         kept = own[: len(words)]
         for node in kept:
@@ -259,18 +259,18 @@ class Draft:
         return sorted((*kept, *new))
 
     def _remove_nodes(self, iri: Term, edge: Term, nodes: Iterable[Term]) -> None:
-        """An entity no longer has these individuals; what only it used goes."""
+        """Remove individuals from an entity, with what only it used."""
         for node in nodes:
             self._retract([(iri, edge, node)])
             if self._is_own(node):
                 self._retract(t for t in self._reasoner.asserted(node) if t not in self._tbox)
 
     def _is_own(self, node: Term) -> bool:
-        """Is it in the star of one entity only, and once?"""
+        """Return whether an individual describes exactly one entity, once."""
         return len(list(entity_reading.find_users(self._reasoner, node))) == 1
 
     def _free(self, name: str, word: str) -> Term:
-        """The usual name of an individual of a star, or the next one that is not in use."""
+        """Return the default name for an individual that describes an entity, or the next free one."""
         node, number = v.entity_iri(f"{name}_{word}"), 1
         while self._taken({node}):
             number += 1
@@ -279,7 +279,7 @@ class Draft:
         return node
 
     def _taken(self, terms: set[Term]) -> set[Term]:
-        """Those of which something is said that does not go, or that this change has made up."""
+        """Return the terms that are in use after the removals, or are new in this draft."""
         made_up = terms & self._new
         known = self._reasoner.mentioned(terms)
         return made_up | {term for term in known if any(self._staying(term))} if known else made_up
@@ -292,9 +292,9 @@ class Draft:
         return any(t not in self.retract for t in self._reasoner.asserted(term))
 
     def _class(self, iri: str) -> Term:
-        """The term of a class, one object for all who are of it.
+        """Return the term of a class, one object for all entities of it.
 
-        Raises UnknownClass. The TBox may have been replaced since the class was looked up.
+        Raises UnknownClass, because the TBox may have been replaced since the class was looked up.
         """
         if (term := self._known_classes.get(iri)) is None:
             if (term := v.iri(iri)) not in self._classes.spatial:

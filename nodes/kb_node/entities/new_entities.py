@@ -1,7 +1,7 @@
-"""Where very many new entities will be, seen in what is wanted before it is planned, checked and read.
+"""Predicts where very many new entities will be, before a transaction is planned, checked and read.
 
-That is a guess: what else is said, and what follows, may make them something else. Whoever uses it has to
-compare.
+The result may be wrong, because other triples and inference may change it. The caller must compare it with
+the actual entities.
 """
 
 from __future__ import annotations
@@ -17,21 +17,21 @@ from semmap.schemas.commits import NewEntity, Transaction
 from semmap.schemas.explanations import Term, Triple
 
 MANY: Final = 10_000
-"""Entities: of fewer it is soon worked out where they are."""
+"""Entities below which the prediction is not worth it."""
 MOST: Final = 250_000
-"""Entities: the process that works out where they are takes 5 kB for each."""
+"""Entities above which the process, which needs 5 kB for each, takes too much memory."""
 _LEAST: Final = 5
-"""Triples that put an entity somewhere."""
+"""Least number of triples that place an entity."""
 _SHAPING: Final = (
     v.MODEL, v.HAS_EXTENT, v.IS_OPEN, v.OPENNESS, v.JOINT_POSITIONS, v.IS_GRASPED_BY,
 )  # fmt: skip
-"""What has any of these has a shape of its own, or is held."""
+"""Properties of entities with a shape of their own, or that are attached."""
 _Said = Mapping[Term, Sequence[Triple]]
-"""By property."""
+"""Triples by property."""
 
 
 def predict_new_entities(transaction: Transaction, classes: ClassTable) -> Coming | None:
-    """The entities that a transaction adds; None where they are few or too many, or it is not so plain."""
+    """Return the entities that a transaction adds, or None if they are too few, too many or not regular."""
     if transaction.remove or transaction.edit or transaction.retract or classes.alignments:
         return None
     if MANY <= len(transaction.add) <= MOST and not transaction.insert:
@@ -77,15 +77,15 @@ def _said(insert: Iterable[Triple], classes: ClassTable) -> Coming | None:
 
 
 def _objects(said: _Said, property_: Term, subjects: Sequence[Term]) -> list[Term | None]:
-    """What is said of each subject by a property, the last of it; None where nothing is."""
+    """Return the last object of each subject for a property, or None for those without."""
     triples = said.get(property_, ())
-    if [s for s, _, _ in triples] == subjects:  # as programs write it
+    if [s for s, _, _ in triples] == subjects:  # the usual order
         return [o for _, _, o in triples]
     found = {s: o for s, _, o in triples}
     return [found.get(s) for s in subjects]
 
 
 def _looks(classes_of: Iterable[Term], classes: ClassTable) -> tuple[list[Look], dict[Term, int]]:
-    """How those of some classes look, and which of these looks is that of each."""
+    """Return the appearance of the classes, and the index of the appearance by class."""
     rows = {c: row for row, c in enumerate(dict.fromkeys(classes_of))}
     return [Look(classes.models[c], c in classes.places) for c in rows], rows

@@ -76,7 +76,10 @@ class Lanes:
     """The node's ends of the lanes. Any thread may send queries."""
 
     def __init__(self, send: Callable[[Any, Connection | None], None]) -> None:
-        """Create the lanes; `send(message, connection)` queues a message, by default for the SPARQL process."""
+        """Create the lanes; `send(message, connection)` queues a message.
+
+        Without a connection the message goes to the SPARQL process.
+        """
         self._send = send
         pairs = [Pipe() for _ in range(LANES)]
         self._lanes = [_Lane(number, here) for number, (here, _) in enumerate(pairs)]
@@ -164,9 +167,7 @@ class Lanes:
         return query or self._waiting.take()
 
     def _long_running(self, now_s: float) -> list[_Lane]:
-        """Return the lanes with long-running queries: first those that were preempted before, then the
-        oldest.
-        """
+        """Return the lanes with long-running queries, first those that were preempted before."""
         lanes = [lane for lane in self._lanes if lane.query is not None and lane.query.is_long_running(now_s)]
         return sorted(lanes, key=lambda lane: (not lane.query.was_preempted, lane.query.began_s))  # type: ignore[union-attr]
 

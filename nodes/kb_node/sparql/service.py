@@ -130,10 +130,9 @@ class SparqlService:
         return demand
 
     def prefetch(self, commit_id: str, turtle: bytes, base: str, *, packed: bytes = b"") -> None:
-        """Start to load a Turtle document that the commit with this id will insert, unless `discard_prepared`
-        is called.
+        """Start to load a Turtle document that the commit with this id will insert.
 
-        `packed` is the compressed document, if it was compressed.
+        `discard_prepared` cancels that. `packed` is the compressed document, if it was compressed.
         """
         if self._large is not None and not self._infers and self._since_filling is None:
             self._large.prefetch(commit_id, turtle, base, packed=packed)

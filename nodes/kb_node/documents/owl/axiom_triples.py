@@ -1,7 +1,7 @@
-"""OWL axioms as RDF triples, as the W3C's mapping of OWL 2 to RDF graphs has it.
+"""Converts OWL axioms to RDF triples by the W3C mapping of OWL 2 to RDF graphs.
 
-`py-horned-owl` reads axioms; its own way to RDF forgets which anonymous individuals are the same. SWRL rules
-become what RDF/XML has for them.
+`py-horned-owl` parses axioms, but its RDF output loses the identity of anonymous individuals. SWRL rules are
+converted as in RDF/XML.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ _ATOMS: dict[type, tuple[str, Term]] = {
 
 
 def triples_of(components: Iterable[m.AnnotatedComponent]) -> list[Triple]:
-    """The triples of an ontology, in an order and with blank nodes that depend on nothing but its axioms."""
+    """Return the triples of an ontology; their order and blank nodes depend only on its axioms."""
     components = list(components)
     ontology = _ontology(components)
     parts = sorted({tuple(_Part(ontology).of(c).triples) for c in components})
@@ -91,19 +91,19 @@ def _ontology(components: Iterable[m.AnnotatedComponent]) -> Term:
 
 
 def _numbered(term: Term, part: int) -> Term:
-    """Blank nodes of the mapping's own, which begin with a digit, are others in each part."""
+    """Return a term with the part in the label of the mapping's own blank nodes, which begin with a digit."""
     return f"_:p{part}n{term[2:]}" if term.startswith("_:") and term[2].isdigit() else term
 
 
 class _Part(Expressions):
-    """What one axiom says, in triples."""
+    """The triples of one axiom."""
 
     def __init__(self, ontology: Term) -> None:
         super().__init__()
         self._ontology = ontology
 
     def of(self, annotated: m.AnnotatedComponent) -> _Part:
-        """Take in an axiom with its annotations."""
+        """Add an axiom with its annotations."""
         axiom: Any = annotated.component
         about = self._map_axiom(axiom)
         for said in about:
@@ -111,7 +111,7 @@ class _Part(Expressions):
         return self
 
     def _map_axiom(self, axiom: Any) -> Sequence[Triple | Term]:
-        """Say it; what its annotations are about: triples, or the blank node that stands for the axiom."""
+        """Add an axiom. Return what its annotations are about: triples, or the blank node of the axiom."""
         kind = type(axiom)
         if kind in _DECLARATIONS:
             return self.add(self.term(axiom.first), v.RDF_TYPE, _DECLARATIONS[kind])
@@ -139,7 +139,7 @@ class _Part(Expressions):
     def _annotate(
         self, about: Triple | Term, annotations: Iterable[m.Annotation], kind: Term = _ANNOTATION
     ) -> None:
-        """Say the annotations of a node, or of a triple that is of a `kind`; and theirs."""
+        """Add the annotations of a node, or of a triple of a `kind`, and their own annotations."""
         said = sorted(
             (((self.term(a.ap), self.term(a.av)), a.ann) for a in annotations), key=lambda pair: pair[0]
         )
@@ -155,7 +155,7 @@ class _Part(Expressions):
             self.add(node, owl(f"annotated{name}"), term)
         return node
 
-    # The axioms that are like no other
+    # Axioms with a mapping of their own
 
     def _nothing(self, _: Any) -> list[Triple]:
         return []

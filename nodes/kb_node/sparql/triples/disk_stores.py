@@ -27,7 +27,7 @@ class DiskStores:
     """The stores of one journal. Each is named by the number and digest of a commit."""
 
     def __init__(self, data: Path) -> None:
-        """Manage the stores next to the journal in `data`, and delete unfinished ones of earlier processes."""
+        """Manage the stores next to the journal in `data`, and delete unfinished ones."""
         self.folder = data / FOLDER
         self._numbers = count(1)
         for path in self._paths():
