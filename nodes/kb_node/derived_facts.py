@@ -229,7 +229,7 @@ class DerivedFacts:
         measured = [t for t in found.support if t[1] in COMPUTED and not self._is_asserted(t)]
         clause, reason = sentences.said(fact, words), sentences.as_measured(found.text, measured, words)
         seen = "asserted" if self._is_asserted(fact) else "measured"
-        return f"that {clause} ({seen}) would contradict the map, so it is left out: {reason}"
+        return f"'{clause}' ({seen}) is suppressed, because it would contradict the map: {reason}"
 
     def follow(
         self,

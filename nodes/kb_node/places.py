@@ -119,7 +119,7 @@ class Places:
         Raises BadRequest for an edit that does not move the entity, and the errors of `supported_by`.
         """
         if not edit.places:
-            raise errors.BadRequest("--carry is for moving: add --at, --yaw or --orientation")
+            raise errors.BadRequest("--carry requires --at, --yaw or --orientation")
         names = self.supported_by(edit.name, edit.leave, (other.name for other in edits))
         was = self._entities[edit.name].pose
         now = edit.pose_after(was)
@@ -146,9 +146,9 @@ class Places:
                 raise errors.UnknownName(f"no entity is named '{one}'{meant}")
         entity = self._entities[name]
         if entity.place:
-            raise errors.Refused(f"{name} is a place, which carries nothing; move the things in it")
+            raise errors.Refused(f"{name} is a place and cannot carry objects; move the objects in it")
         if entity.pose is None:
-            raise errors.Refused(f"{name} has no position yet, so nothing stands on it to be carried")
+            raise errors.Refused(f"{name} has no position, so it supports no objects")
         return self.loads().all_of(name, {*leave, *besides})
 
     def find_denied_locations(
@@ -169,7 +169,7 @@ class Places:
             for triple, fact in said.items():
                 if (relation := denial(space, fact)) is not None:
                     triples.append(triple)
-                    notes[f"taken back: {relation.text}"] = None
+                    notes[f"retracted: {relation.text}"] = None
         return RetractedLocations(tuple(triples), truncate_notes(notes))
 
     def describe_left_behind(self, names: Collection[str]) -> tuple[str, ...]:

@@ -53,7 +53,9 @@ def make_plan(state: MapState, transaction: Transaction) -> Plan | None:
         retracted += tuple(t for t in denied.triples if t not in state.tbox and t not in wanted)
     for triple in retracted:
         if triple in state.tbox:
-            raise errors.Refused(f"the TBox says that {v.spoken(triple)}, and no command changes the TBox")
+            raise errors.Refused(
+                f"the TBox states that {v.spoken(triple)}, and commands cannot change the TBox"
+            )
     return Plan(retracted, inserted, (*notes, *denied.notes))
 
 

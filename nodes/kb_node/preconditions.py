@@ -57,15 +57,15 @@ def require(transaction: Transaction, held: Container[Triple]) -> None:
     """Raise PreconditionFailed for a required triple that is not in `held`."""
     for triple in transaction.require:
         if triple not in held:
-            raise errors.PreconditionFailed(f"it no longer holds that {v.spoken(triple)}; ask again")
+            raise errors.PreconditionFailed(f"it no longer holds that {v.spoken(triple)}; repeat the query")
 
 
 def require_unchanged(transaction: Transaction, entities: Mapping[str, Entity]) -> None:
     """Raise PreconditionFailed if an entity that must be unchanged was removed or changed."""
     for name in transaction.unchanged:
         if (entity := entities.get(name)) is None:
-            raise errors.PreconditionFailed(f"{name} is not in the map any more; ask again")
+            raise errors.PreconditionFailed(f"{name} has been removed from the map; repeat the query")
         if (commit := entity.provenance.commit) > transaction.since:
             raise errors.PreconditionFailed(
-                f"{name} was changed by commit {commit}, after commit {transaction.since}; ask again"
+                f"{name} was changed by commit {commit}, after commit {transaction.since}; repeat the query"
             )

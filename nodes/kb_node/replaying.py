@@ -66,7 +66,7 @@ class Player:
         """Begin when all nodes are ready and every entity has its body."""
         self._checks += 1
         if self._checks > _MAX_CHECKS:
-            self._node.report(f"the replay begins before all is ready: {'; '.join(self._waits_for)}")
+            self._node.report(f"the replay starts before all nodes are ready: {'; '.join(self._waits_for)}")
             self._schedule()
             return
 
@@ -120,6 +120,6 @@ def rejecting_handlers() -> Mapping[str, Handler]:
     """Return handlers by command that reject changes of a replayed map."""
 
     def refuse(_: Any) -> Any:
-        raise errors.Refused("this map is a replay of the past, and cannot be changed; change the map itself")
+        raise errors.Refused("this map is a replay and cannot be changed; change the original map")
 
     return by_verb(*(Handler(kind, refuse) for kind in CHANGES))

@@ -136,9 +136,9 @@ class SemanticMap(MapState):
         except Exception as error:
             self.is_sound = False
             self.on_failure()
-            log.exception("a change may be half done")
+            log.exception("a change may be incomplete")
             raise errors.NoAnswer(
-                f"the knowledge base starts again from its journal, because a change failed in the middle:"
+                f"the knowledge base restarts from its journal, because a change failed:"
                 f" {type(error).__name__}: {error}"
             ) from error
 

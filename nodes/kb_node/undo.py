@@ -213,8 +213,8 @@ def _what_rests_on(target: Commit, others: list[Commit]) -> str:
     seqs = {commit.seq for commit in others}
     changes = (c for c in _in_force(others) if not (c.undoes and seqs.issuperset(c.undoes)))
     if (newest := next(changes, None)) is None:
-        return f"it is too late to undo commit {target.seq}: what it stated has changed since"
+        return f"commit {target.seq} cannot be undone: its result has changed since"
     return (
-        f"it is too late to undo commit {target.seq} ({target.reason}): commit {newest.seq} ({newest.reason})"
+        f"commit {target.seq} ({target.reason}) cannot be undone: commit {newest.seq} ({newest.reason})"
         f" depends on it; undo that one first: semmap undo {newest.seq}"
     )

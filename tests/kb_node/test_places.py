@@ -117,7 +117,7 @@ def test_a_move_takes_back_what_geometry_then_denies(room):
     before = home.state(room)[1:]
     made = move(room, "cup1", (0.0, 2.0, 0.0))
     assert (v.entity_iri("cup1"), v.dm("isOn"), v.entity_iri("table1")) in made.retracted
-    assert stands(made.notes) == ["taken back: cup1 was said to be on table1; it stands"]
+    assert stands(made.notes) == ["retracted: cup1 was said to be on table1; it stands"]
     assert (said(room), said(room, "isLocatedIn")) == (set(), {("cup1", "kitchen1")})
     assert room.entity("cup1").properties == {"isLocatedIn": ("kitchen1",)}
     take_back(room)
@@ -128,7 +128,7 @@ def test_a_move_takes_back_what_geometry_then_denies(room):
 def test_so_does_the_move_of_the_other_one_and_what_is_said_the_other_way_round(room):
     say(room, "table1", "supports", "cup1")
     made = move(room, "table1", (-3.0, 0.0, 0.0))
-    assert stands(made.notes) == ["taken back: cup1 was said to be on table1; it stands"]
+    assert stands(made.notes) == ["retracted: cup1 was said to be on table1; it stands"]
     assert said(room, "supports") == set()
 
 
@@ -156,7 +156,7 @@ def test_what_is_said_against_geometry_stays_and_is_noted(room):
     assert not stays.notes
     assert said(room) == {("cup1", "table2")}
     made = move(room, "cup1", (-0.1, 0.0, TOP + 0.02))
-    assert made.notes[0].startswith("taken back: cup1 was said to be on table2")
+    assert made.notes[0].startswith("retracted: cup1 was said to be on table2")
     assert said(room) == set()
 
 
@@ -165,7 +165,7 @@ def test_what_one_commit_says_it_does_not_take_back(room):
     edit = Edit(name="cup1", at=(3.0, 3.0, 0.0), set=(Statement(property="isOn", values=("table2",)),))
     made = commit(room, edit=(edit,))
     assert stands(made.notes) == [
-        "taken back: cup1 was said to be on table1; it stands",
+        "retracted: cup1 was said to be on table1; it stands",
         "cup1 was said to be on table2; it stands",
     ]
     assert said(room) == {("cup1", "table2")}
@@ -202,7 +202,7 @@ def test_a_dry_run_shows_it_and_does_nothing(room):
     before = home.state(room)
     wanted = Transaction(id="dry", source="operator", edit=(Edit(name="cup1", at=(0.0, 2.0, 0.0)),))
     tried = dry_runs.dry_run(room, lambda: room.commit(wanted))
-    assert stands(tried.notes) == ["taken back: cup1 was said to be on table1; it stands"]
+    assert stands(tried.notes) == ["retracted: cup1 was said to be on table1; it stands"]
     assert home.state(room) == before
     assert said(room) == {("cup1", "table1")}
 
@@ -282,7 +282,7 @@ def test_undo_of_what_took_back_after_more_was_said(room):
     say(room, "cup1", "isOn", "table2")
     back = take_back(room, moved.seq)
     assert said(room) == {("cup1", "table1")}
-    assert stands(back.notes) == ["taken back: cup1 was said to be on table2; it stands"]
+    assert stands(back.notes) == ["retracted: cup1 was said to be on table2; it stands"]
 
 
 def test_carry(room):
@@ -317,14 +317,14 @@ def test_carry_with_nothing_on_it_says_so(room):
 @pytest.mark.parametrize(
     ("edit", "error", "text"),
     [
-        (Edit(name="tray1", carry=True), errors.BadRequest, "add --at, --yaw or --orientation"),
+        (Edit(name="tray1", carry=True), errors.BadRequest, "requires --at, --yaw or --orientation"),
         (Edit(name="kitchen1", at=(1.0, 0.0, 0.0), carry=True), errors.Refused, "kitchen1 is a place"),
         (
             Edit(name="tray1", at=(1.0, 0.0, 0.0), carry=True, leave=("cap1",)),
             errors.UnknownName,
             "no entity is named 'cap1'; did you mean",
         ),
-        (Edit(name="lost1", at=(1.0, 0.0, 0.0), carry=True), errors.Refused, "lost1 has no position yet"),
+        (Edit(name="lost1", at=(1.0, 0.0, 0.0), carry=True), errors.Refused, "lost1 has no position"),
     ],
 )
 def test_what_cannot_carry(room, edit, error, text):

@@ -134,7 +134,7 @@ def test_after_a_while_it_begins_without_the_others(replay):
     for _ in range(101):
         loop.go_on()
     assert (publish, loop.asked) == ([], 100)
-    assert loop.reported == ["the replay begins before all is ready: nobody"]
+    assert loop.reported == ["the replay starts before all nodes are ready: nobody"]
     loop.go_on()
     assert len(publish) == 1
 
@@ -143,7 +143,7 @@ def test_such_a_map_is_not_changed_by_anybody():
     handlers = rejecting_handlers()
     assert set(handlers) == {call.VERB for call in CHANGES}
     change = Transaction(id="1", source="operator", add=(NewEntity(name="a", class_iri="urn:A"),))
-    with pytest.raises(errors.Refused, match="a replay of the past, and cannot be changed"):
+    with pytest.raises(errors.Refused, match="a replay and cannot be changed"):
         handlers[Transaction.VERB][1](change)
 
 

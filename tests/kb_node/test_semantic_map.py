@@ -228,10 +228,10 @@ def test_the_tbox_s_own_individuals_are_entities_that_no_command_changes(tmp_pat
         ],
     )
     assert semantic_map.entity("sink").provenance.commit == 0
-    with pytest.raises(errors.Refused, match="sink is part of the TBox, which no command changes"):
+    with pytest.raises(errors.Refused, match="sink is part of the TBox, which commands cannot change"):
         semantic_map.stars(["sink"])
     with pytest.raises(
-        errors.Refused, match="the TBox says that sink type Door, and no command changes the TBox"
+        errors.Refused, match="the TBox states that sink type Door, and commands cannot change the TBox"
     ):
         semantic_map.commit(transaction(1, retract=turtle(":sink a dm:Door .")))
     semantic_map.commit(
@@ -250,7 +250,9 @@ def test_a_checkpoint_of_other_code_is_read_again(semantic_map, monkeypatch):
     assert [e.provenance.commit for e in before.entities] == [2]
     with monkeypatch.context() as other:
         other.setattr(conclusions_format, "mark", lambda: b"other")
-        semantic_map.update_entities([structs.replace(entity, class_="Stool") for entity in semantic_map.entities()])
+        semantic_map.update_entities(
+            [structs.replace(entity, class_="Stool") for entity in semantic_map.entities()]
+        )
         semantic_map.checkpoint()
     again = home.reopened(semantic_map)
     assert again.snapshot() == before
@@ -458,7 +460,7 @@ def test_after_an_error_in_the_middle_of_a_change_the_map_is_to_be_started_again
     where, what = (semantic_map, "apply_commit") if durable else (semantic_map._applier, "_with_effects")
     monkeypatch.setattr(where, what, fail)
     wanted = [transaction("a", chair("chair2")), transaction("b", chair("chair3"))]
-    with pytest.raises(errors.NoAnswer, match="starts again from its journal, because a change failed in"):
+    with pytest.raises(errors.NoAnswer, match="restarts from its journal, because a change failed"):
         semantic_map.commit_together(wanted) if together else semantic_map.commit(wanted[0])
     assert on_failure == [True]
     assert not semantic_map.is_sound

@@ -63,14 +63,14 @@ def _find_closing_joints(semantic_map: SemanticMap, inner: Entity, outer: Entity
 
 
 def describe(closed: Closed) -> str:
-    """Return `it cannot be seen there: fridge1 has been closed since commit 7, 5 min ago`."""
+    """Return `not observable: fridge1 has been closed since commit 7, 5 min ago`."""
     entity, joints = closed
     said = entity.joint_provenance or entity.provenance
     ago = wording.duration((time.time_ns() - said.stamp_ns) / 1e9)
     if not joints:
-        return f"it cannot be seen there: {entity.name} has been closed since commit {said.commit}, {ago} ago"
+        return f"not observable: {entity.name} has been closed since commit {said.commit}, {ago} ago"
     are = "is" if len(joints) == 1 else "are"
     return (
-        f"it cannot be seen there: {' and '.join(joints)} of {entity.name} {are} closed"
+        f"not observable: {' and '.join(joints)} of {entity.name} {are} closed"
         f" (last stated in commit {said.commit}, {ago} ago)"
     )

@@ -110,7 +110,7 @@ class Descriptions:
             yield f"It{measures_} stands at ({x:g}, {y:g}, {z:g}) m."
         if not self._sightings.is_missing(entity):
             text = self._sightings.describe_present(entity).text
-            yield f"It was {text}." if text.startswith(("placed", "last")) else f"It is {text}."
+            yield f"It was {text}." if text.startswith(("placed", "last", "never")) else f"It is {text}."
 
 
 def _stated(row: PropertyInfo, stated: Stated) -> str:

@@ -49,7 +49,7 @@ class Explained(NamedTuple):
         began = look_up(facts)
         told = [f"{text} ({since})" if (since := began.describe([f])) else text for f, text in self.measured]
         if len(facts) > 1 and (since := began.describe(facts)) is not None:
-            told[-1] += f". So it is {since}"
+            told[-1] += f". It holds {since}"
         return structs.replace(self.explanation, text=self.before + "; ".join(told))
 
 
@@ -125,7 +125,7 @@ class CurrentState:
         ends = [self._map.entity(word).name for word in (query.name, query.value)]
         for name in ends:
             if name not in space.solids:
-                raise errors.Refused(f"{name} has no position, so it is in no relation to anything")
+                raise errors.Refused(f"{name} has no position, so it has no spatial relations")
         seen = explained(space, ends[0], relation, ends[1])
         if seen is None:
             raise errors.InternalError(f"the relation '{relation}' is not computed")
@@ -154,7 +154,7 @@ class CurrentState:
                     self._map.is_asserted(asked.triples[0])
                     and self.describe_conflict(asked.triples[0]) is not None
                 )
-                aside = "; it was asserted, but is left out of what holds as long as it is not so"
+                aside = "; it is asserted, but suppressed while the geometry contradicts it"
                 raise errors.Refused(seen.text + (aside if is_said else ""))
             return None if seen is None else Explained(self._explain_relation(seen))
         if found.conclusion is not None and self._map.reasoner.is_computed(found.conclusion):
@@ -164,7 +164,7 @@ class CurrentState:
             seen = None if seen.relation == "touches" or self._is_place(seen.subject) else seen
         if seen is not None:
             if not seen.holds:
-                text = f"{found.text.rstrip('.')}; but as it stands {seen.text}"
+                text = f"{found.text.rstrip('.')}; but according to the poses, {seen.text}"
                 return Explained(structs.replace(found, text=text))
             return Explained(found, f"{found.text.rstrip('.')}; and ", ((_fact(seen), seen.text),))
         told = tuple(
@@ -265,7 +265,7 @@ def _on_nothing(space: Space, entity: Entity) -> str:
 
 def _mark_suppressed(relation: Relation) -> Relation:
     """Return a measured relation with the note that it is suppressed."""
-    note = "but it would contradict the map, so it is no fact (for the reason see: semmap check)"
+    note = "but this is suppressed, because it would contradict the map (for the reason see: semmap check)"
     return structs.replace(relation, text=f"{relation.text}; {note}")
 
 

@@ -107,7 +107,7 @@ class Finding:
             return None
         viewer = space.solids.get(name := self._named(query.viewer))
         if viewer is None:
-            raise errors.Refused(f"{name} has no position, so nobody can look from there")
+            raise errors.Refused(f"{name} has no position, so it cannot be the viewer")
         return View.of(viewer)
 
     def _named(self, word: str) -> str:

@@ -110,7 +110,7 @@ class LocationQueries:
             self._drop(standing)
             return Done(text=f"{renewal.watch} has ended")
         standing.ends = time.monotonic() + standing.lease_s
-        return Done(text=f"{renewal.watch} goes on for {standing.lease_s:g} s")
+        return Done(text=f"{renewal.watch} is renewed for {standing.lease_s:g} s")
 
     def drop_expired(self) -> None:
         """End the queries whose lease has expired."""

@@ -9,7 +9,7 @@ from semmap.schemas.entities import Entity, Stated
 from semmap.schemas.plans import Corners, Outline, Plan, PlannedPlace, PlannedThing
 from semmap.schemas.polygons import Polygon, extent_of
 
-_NO_WALLS = "no simulator tells where the walls are, so they are where no place and no door is"
+_NO_WALLS = "no simulator provides the walls, so they are assumed where there is neither a place nor a door"
 
 
 def plan_of(entities: Iterable[Entity], walls: tuple[Outline, ...] | None) -> Plan:

@@ -118,9 +118,7 @@ def explain(reasoner: Reasoner, asked: StatementQuestion, *, anew: bool = True) 
                 return _to_message(reasoner, further)
             holds = why_entailed(near, first, words=reasoner.words)
         raise errors.Refused(
-            f"it does hold: {holds.text}"
-            if holds
-            else f"it is not known that {clause}, but nothing excludes it"
+            f"it holds: {holds.text}" if holds else f"it is not known that {clause}, but nothing excludes it"
         )
     if (found := why(reasoner, asked)) is not None:
         return found
@@ -174,7 +172,7 @@ def could(
         seen = " and ".join(said(fact, reasoner.words) for fact in measured)
         text += f", although by their poses {seen}"
     elif against is not None:
-        text += f", but as things are, {against}"
+        text += f", but according to the poses, {against}"
     if same := sorted(_would_be_same(reasoner, triple)):
         text += "; but then " + " and ".join(said(pair, reasoner.words) for pair in same)
     return Possible(possible=True, text=text)

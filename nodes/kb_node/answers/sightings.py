@@ -55,7 +55,7 @@ class Sightings:
             seen_ns = None  # of its former place
         now_ns = time.time_ns()
         if gone is not None:
-            text = f"seen to be gone {_at(gone, now_ns)}: {how or gone.reason}"
+            text = f"reported missing {_at(gone, now_ns)}: {how or gone.reason}"
         elif found.removed is not None:
             text = f"removed {_at(found.removed, now_ns)} by {_author(found.removed)}"
         else:
@@ -67,12 +67,12 @@ def _describe_observed(placed: Provenance, seen_ns: int | None, now_ns: int) -> 
     if seen_ns is not None:
         ago_s = (now_ns - seen_ns) / 1e9
         if ago_s < _JUST_NOW_S:
-            return "in sight of a camera just now"
-        return f"last in sight {wording.duration(ago_s)} ago; not seen since, nor seen to be gone"
+            return "in view of a camera now"
+        return f"last in view {wording.duration(ago_s)} ago; not seen since, not reported missing"
     if not placed.commit:
-        return "neither seen so far nor seen to be gone"
+        return "never seen, not reported missing"
     how = "last seen" if placed.source == "perception" else f"placed by {_author(placed)}"
-    return f"{how} {_at(placed, now_ns)}; not seen since, nor seen to be gone"
+    return f"{how} {_at(placed, now_ns)}; not seen since, not reported missing"
 
 
 def _at(said: Provenance, now_ns: int) -> str:

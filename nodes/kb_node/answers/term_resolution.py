@@ -96,7 +96,7 @@ def property_(semantic_map: SemanticMap, word: str) -> Term:
         return found
     names = semantic_map.classes.property_names
     if (known := names.find(word)) is None:
-        hint = names.did_you_mean(word) or "; there are type and the properties of the TBox"
+        hint = names.did_you_mean(word) or "; use type or a property of the TBox"
         raise errors.BadRequest(f"unknown property '{word}'{hint}")
     return known
 

@@ -29,7 +29,7 @@ def make_document_transaction(
         said = abox_document.undescribed_note(found)
         if load.strict:
             raise errors.UnknownName(said)
-        filtered.notes.append(f"{said}; --strict refuses such files")
+        filtered.notes.append(f"{said}; --strict rejects such files")
     transaction = _transaction(
         load,
         retract=semantic_map.abox() if load.replace else (),

@@ -175,9 +175,7 @@ def _require_well_formed(content: bytes) -> None:
 
 def _reject_external_entity(name: str, _: bool, text: str | None, *where: str | None) -> None:
     if text is None:
-        raise ValueError(
-            f"the entity '{name}' is elsewhere ({where[1]}), and nothing but this document is read"
-        )
+        raise ValueError(f"the external entity '{name}' ({where[1]}) is not allowed")
 
 
 def prefixes(content: bytes) -> dict[str, str]:

@@ -312,7 +312,7 @@ def entity_triples(
     """
     own = list(reasoner.asserted(iri))
     if not tbox.isdisjoint(own):
-        raise errors.Refused(f"{v.local_name(iri)} is part of the TBox, which no command changes")
+        raise errors.Refused(f"{v.local_name(iri)} is part of the TBox, which commands cannot change")
     nodes = {o for _, p, o in own if p in stars.STAR_PROPERTIES} - leaving
     for node in sorted(nodes):
         if all(user in leaving for user in find_users(reasoner, node)):

@@ -100,7 +100,7 @@ class Draft:
         iri = v.iri(entity.iri)
         said = self._reasoner.about(iri)
         if not self._tbox.isdisjoint([(iri, p, o) for p, objects in said.items() for o in objects]):
-            raise errors.Refused(f"{entity.name} is part of the TBox, which no command changes")
+            raise errors.Refused(f"{entity.name} is part of the TBox, which commands cannot change")
         if edit.only_if:
             self._require(entity.name, said, edit.only_if)
         if edit.unset or edit.set:
@@ -298,7 +298,7 @@ class Draft:
         """
         if (term := self._known_classes.get(iri)) is None:
             if (term := v.iri(iri)) not in self._classes.spatial:
-                raise errors.UnknownClass(f"the TBox has no class <{iri}> of things in space")
+                raise errors.UnknownClass(f"the TBox has no spatial class <{iri}>")
             self._known_classes[iri] = term
         return term
 

@@ -78,7 +78,7 @@ def _describe(journal: Journal, share: compaction.Share, command: Compact) -> st
     old = wording.counted(share.commits, "commit", "commits")
     if command.dry_run:
         return (
-            f"{old} would become a snapshot, and the history would begin with {begins}; what was before that"
-            " could not be asked about or undone any more"
+            f"{old} would become a snapshot, and the history would begin with {begins}; earlier commits"
+            " could no longer be queried or undone"
         )
     return f"{old} became a snapshot: the history begins with {begins}"

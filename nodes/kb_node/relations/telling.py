@@ -285,4 +285,4 @@ def _solid(space: Space, name: str) -> Solid:
     try:
         return space.solids[name]
     except KeyError:
-        raise errors.Refused(f"{name} has no position, so it is in no relation to anything") from None
+        raise errors.Refused(f"{name} has no position, so it has no spatial relations") from None

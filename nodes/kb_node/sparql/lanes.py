@@ -112,7 +112,7 @@ class Lanes:
             again_s = self._waiting.put(asker, query)
             if again_s is not None:
                 raise errors.Busy(
-                    f"{len(self._waiting)} SPARQL queries wait already; try again in {again_s:.1f} s",
+                    f"{len(self._waiting)} SPARQL queries are waiting; try again in {again_s:.1f} s",
                     again_s=again_s,
                 )
             self._dispatch()

@@ -340,4 +340,4 @@ class _Worker:
 
 
 def _ended() -> errors.Refused:
-    return errors.Refused("the process that answers SPARQL has ended; ask again, which starts a new one")
+    return errors.Refused("the SPARQL process has ended; repeat the query to start a new one")

@@ -39,7 +39,7 @@ def test_milk_in_a_closed_fridge_cannot_be_seen_since_it_was_closed(kitchen):
     say(kitchen, 2, "false")
     closed = find_closed_container(kitchen, kitchen.entity("carton1"))
     assert closed is not None
-    said = r"it cannot be seen there: fridge1 has been closed since commit 2, \d+ s ago"
+    said = r"not observable: fridge1 has been closed since commit 2, \d+ s ago"
     assert re.fullmatch(said, describe(closed))
     assert find_closed_container(kitchen, kitchen.entity("cup1")) is None
     assert find_closed_container(kitchen, kitchen.entity("fridge1")) is None
@@ -91,9 +91,7 @@ def test_of_a_chest_only_what_is_in_a_drawer_that_was_pulled_out_can_be_seen(tmp
         assert find_closed_container(made, made.entity("apple1")) is None
         closed = find_closed_container(made, made.entity("apple2"))
         assert closed == (made.entity("chest1"), ("drawer_2",))
-        assert "it cannot be seen there: drawer_2 of chest1 is closed (last stated in commit 2" in describe(
-            closed
-        )
+        assert "not observable: drawer_2 of chest1 is closed (last stated in commit 2" in describe(closed)
         say(made, 3, "false", name="chest1")
         made.commit(Transaction(id="4", source="scene", edit=(Edit(name="apple1", at=(0.05, 0.0, 0.72)),)))
         assert find_closed_container(made, made.entity("apple1")) == (made.entity("chest1"), ())

@@ -109,7 +109,10 @@ def test_the_text_is_of_the_newest_commit(descriptions, room):
     assert told.commit == 2
     assert "Not as it should be: cup1, not seen where it should stand. The kitchen has" in told.text
     assert "with 3 chairs round it" in told.text
-    assert "Not as it should be: not seen where it should stand." in descriptions.describe(Tell(name="cup1")).text
+    assert (
+        "Not as it should be: not seen where it should stand."
+        in descriptions.describe(Tell(name="cup1")).text
+    )
     assert "Not as" not in descriptions.describe(Tell(name="cup2")).text
 
 
@@ -119,7 +122,9 @@ def test_chairs_are_round_a_table_that_is_in_no_place(descriptions, semantic_map
     assert descriptions.describe(Tell(name="table1")).text.startswith(
         "table1 is a kitchen table. Round it are 2 chairs. On it is a cup."
     )
-    assert descriptions.describe(Tell(name="cup1")).text.startswith("cup1 is a cup on the kitchen table (table1).")
+    assert descriptions.describe(Tell(name="cup1")).text.startswith(
+        "cup1 is a cup on the kitchen table (table1)."
+    )
 
 
 def test_of_a_large_map_only_numbers_are_told(descriptions, room, monkeypatch):

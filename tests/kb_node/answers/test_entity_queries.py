@@ -130,7 +130,7 @@ def test_a_chain_is_as_old_as_the_latest_of_its_steps(tmp_path):
     text = explained(own, "cup9", "restsOver", "counter1").text
     assert "over it (since commit 3)" in text
     assert "over it (since commit 2)" in text
-    assert text.endswith(". So it is since commit 3")
+    assert text.endswith(". It holds since commit 3")
     home.close(own)
 
 
@@ -158,7 +158,7 @@ def test_what_was_asserted_and_denied_is_said_to_be(flat):
     assert "asserted" not in refused(flat, "milk1", "isOn", "table1")
     flat.commit(home.transaction(2, [said]))
     flat.ensure_derived()
-    assert "it was asserted, but is left out" in refused(flat, "milk1", "isOn", "table1")
+    assert "it is asserted, but suppressed" in refused(flat, "milk1", "isOn", "table1")
 
 
 def test_what_could_be_says_what_geometry_says(flat):
@@ -166,7 +166,7 @@ def test_what_could_be_says_what_geometry_says(flat):
     against = entity_queries.CurrentState(flat).describe_conflict(asked.triples[0])
     text = questions.could(flat.reasoner, asked, against=against).text
     assert text.startswith("yes: nothing excludes")
-    assert "but as things are, it stands" in text
+    assert "but according to the poses, it stands" in text
 
 
 def test_why_not_is_told_by_what_was_measured(flat):

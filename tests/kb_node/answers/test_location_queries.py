@@ -119,7 +119,7 @@ def test_of_several_commits_the_last_tells(room):
 
 def test_leases(room, monkeypatch):
     on = Watched(room, on="table1", lease=10.0)
-    assert on.standing.renew(Renew(watch="w1")).text == "w1 goes on for 10 s"
+    assert on.standing.renew(Renew(watch="w1")).text == "w1 is renewed for 10 s"
     assert on.standing.renew(Renew(watch="another")) is None
     later = time.monotonic() + 11.0
     monkeypatch.setattr("semmap.nodes.kb_node.answers.location_queries.time.monotonic", lambda: later)

@@ -11,7 +11,7 @@ from tests.kb_node.relations.made import CORNER, ROOM, TABLE, TOP, thing
 
 SQUARE = "POLYGON ((0 0, 4 0, 4 2, 0 2, 0 0), (1 0.5, 1 1.5, 2 1.5, 2 0.5, 1 0.5))"
 WALL = Outline(corners=((0.0, 0.0), (1.0, 0.0), (1.0, 0.1)), low=0.0, high=2.5)
-NO_WALLS = "no simulator tells where the walls are, so they are where no place and no door is"
+NO_WALLS = "no simulator provides the walls, so they are assumed where there is neither a place nor a door"
 BOX = thing("box1", (1.0, 2.0, 0.5), size=(0.4, 0.2, 0.3))
 
 

@@ -72,7 +72,7 @@ def test_explain_gives_what_a_triple_rests_on(furnished, name, predicate, value,
             "xyz",
             "kitchen1",
             errors.BadRequest,
-            "'xyz'; there are type and the properties of the TBox",
+            "'xyz'; use type or a property of the TBox",
         ),
         (
             "chair1",
@@ -141,9 +141,7 @@ def test_what_no_rule_excludes_is_searched_for_on_a_copy():
     assert refused.value.explanation == found
     with pytest.raises(errors.Refused, match="it is not known that ann is a Child, but nothing excludes it"):
         questions.explain(reasoner, questions.StatementQuestion((other,), negated=True))
-    with pytest.raises(
-        errors.Refused, match="it does hold: ann knows itself, because everything knows itself"
-    ):
+    with pytest.raises(errors.Refused, match="it holds: ann knows itself, because everything knows itself"):
         questions.explain(reasoner, questions.StatementQuestion((triple(":ann :knows :ann"),), negated=True))
 
 
@@ -156,7 +154,7 @@ def test_why_something_cannot_be(furnished):
         errors.Refused, match="it is not known that chair1 is a Door, but nothing excludes it"
     ):
         explained(furnished, "chair1", "type", "Door", negated=True)
-    with pytest.raises(errors.Refused, match="it does hold: chair1 is a Seat, because it is a chair"):
+    with pytest.raises(errors.Refused, match="it holds: chair1 is a Seat, because it is a chair"):
         explained(furnished, "chair1", "type", "Seat", negated=True)
 
 
@@ -201,7 +199,7 @@ def test_what_could_be(furnished, question, possible, text):
         (("sofa1", "type", "Chair"), errors.UnknownName, "'sofa1'"),
         (("chair1", "isLocatedIn", "sofa1"), errors.UnknownName, "no entity is named 'sofa1'"),
         (("chair1", "isLocatedAt", "kitchen1"), errors.BadRequest, "did you mean isLocatedIn"),
-        (("chair1", "same", "kitchen1"), errors.BadRequest, "there are type and the properties of the TBox"),
+        (("chair1", "same", "kitchen1"), errors.BadRequest, "use type or a property of the TBox"),
         (("chair1", "type", "Chiar"), errors.UnknownClass, "did you mean Chair"),
         (
             ("chair1_coordinates", "float_coordinates_x", "left"),

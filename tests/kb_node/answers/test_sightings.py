@@ -54,7 +54,7 @@ def test_what_is_marked_missing_was_seen_to_be_gone_since_that_was_said(sighting
     assert sightings.is_missing(entity)
     told = sightings.describe_removed("chair1", entity)
     assert (told.gone.commit, told.removed, told.provenance.commit) == (2, None, 1)
-    assert re.fullmatch(r"seen to be gone at commit 2, \d+ s ago: not seen where it should stand", told.text)
+    assert re.fullmatch(r"reported missing at commit 2, \d+ s ago: not seen where it should stand", told.text)
 
 
 def test_what_perception_removed_was_seen_to_be_gone_and_what_ann_removed_was_not(sightings):
@@ -71,7 +71,7 @@ def test_what_is_there_is_in_sight_or_has_not_been_seen_since(sightings, semanti
     entity = semantic_map.entity("chair4")
     assert not sightings.is_missing(entity)
     assert re.fullmatch(
-        r"placed by operator/ann at commit 1, \d+ s ago; not seen since, nor seen to be gone",
+        r"placed by operator/ann at commit 1, \d+ s ago; not seen since, not reported missing",
         sightings.describe_present(entity).text,
     )
     sightings.record(look("chair4", entity.pose_provenance.stamp_ns - 1))
@@ -79,7 +79,7 @@ def test_what_is_there_is_in_sight_or_has_not_been_seen_since(sightings, semanti
     now_ns = time.time_ns()
     sightings.record(look("chair4", now_ns))
     told = sightings.describe_present(entity)
-    assert (told.seen_ns, told.text) == (now_ns, "in sight of a camera just now")
+    assert (told.seen_ns, told.text) == (now_ns, "in view of a camera now")
 
 
 def test_a_look_of_long_ago_is_no_look_of_now(sightings, semantic_map, monkeypatch):
@@ -89,5 +89,5 @@ def test_a_look_of_long_ago_is_no_look_of_now(sightings, semantic_map, monkeypat
     monkeypatch.setattr("time.time_ns", lambda: later_ns)
     assert (
         sightings.describe_present(entity).text
-        == "last in sight 3 min ago; not seen since, nor seen to be gone"
+        == "last in view 3 min ago; not seen since, not reported missing"
     )

@@ -69,7 +69,7 @@ def test_what_nobody_describes_is_noted(semantic_map):
     made, filtered = document_change.make_document_transaction(semantic_map, document(), turtle(STRANGE))
     assert set(made.insert) == set(turtle(STRANGE))
     assert filtered.notes == [
-        "referenced but not described: kitchn (a isLocatedIn kitchn); --strict refuses such files"
+        "referenced but not described: kitchn (a isLocatedIn kitchn); --strict rejects such files"
     ]
 
 

@@ -175,5 +175,5 @@ def test_too_many_are_refused(readers):
     begun(readers, LANES)
     for _ in range(64):
         readers.ask("x")
-    with pytest.raises(errors.Busy, match="64 SPARQL queries wait already"):
+    with pytest.raises(errors.Busy, match="64 SPARQL queries are waiting"):
         readers.ask("x")

@@ -128,7 +128,7 @@ def test_every_commit_before_the_question_is_seen(at_home):
 
 
 def test_what_the_map_does_not_know_is_told_by_readers_that_open_no_files(flat):
-    note = "nothing in the map is called dm:isOnn; did you mean dm:isOn"
+    note = "unknown term dm:isOnn; did you mean dm:isOn"
     for with_inferred in (False, True):
         found = flat.ask("SELECT ?x { ?x dm:isOnn :table1 }", inferred=with_inferred)
         assert [text.partition(",")[0].removesuffix("?") for text in found.notes] == [note]
@@ -272,7 +272,7 @@ def test_after_its_process_was_killed_a_new_one_answers(at_home):
     at_home.ask(CHAIRS)
     endless = at_home.service.ask(Sparql(query=FOR_EVER, timeout=60.0), 1)
     os.kill(at_home.service._worker._process.pid, signal.SIGKILL)
-    with pytest.raises(errors.Refused, match="ask again"):
+    with pytest.raises(errors.Refused, match="repeat the query"):
         endless.result(WAIT_S)
     at_home.commit(chair("b"))
     assert len(at_home.ask(CHAIRS).rows) == 2

@@ -61,7 +61,7 @@ def without_places(reasoner: Reasoner, classes: ClassTable) -> str:
     if not classes.spatial or any(any(reasoner.asserted(p, v.RDF_TYPE, None)) for p in COMPUTED):
         return ""
     few = ", ".join(sorted(COMPUTED.values()))
-    return f"the TBox has none of {few}, so where things are is measured when asked for, and not a fact"
+    return f"the TBox has none of {few}, so spatial relations are measured on request and are not facts"
 
 
 def not_in_space(classes: ClassTable) -> str:
@@ -69,8 +69,7 @@ def not_in_space(classes: ClassTable) -> str:
     if classes.spatial:
         return ""
     return (
-        "the TBox does not say which of its classes are of things in space, so nothing can be placed;"
-        " load it again with --spatial-root CLASS"
+        "the TBox has no spatial class, so entities cannot be added; load it again with --spatial-root CLASS"
     )
 
 
@@ -81,7 +80,7 @@ def set_aside(tbox: Iterable[Triple]) -> str:
         what, _, why = text.partition(": ")
         reasons.setdefault(why, []).append(f"{s} {what}")
     said = "; ".join(f"{', '.join(what)} ({why})" for why, what in reasons.items())
-    return said and f"ignored, because no map could be kept with it: {said}"
+    return said and f"ignored, because every map would be inconsistent with it: {said}"
 
 
 def beyond(kinds: Counter[str]) -> str:
@@ -93,7 +92,7 @@ def beyond(kinds: Counter[str]) -> str:
     if others := kinds.total() - sum(count for _, count in most):
         few += f", {others} of other kinds"
     axioms = "1 axiom goes" if kinds.total() == 1 else f"{kinds.total()} axioms go"
-    return f"{axioms} beyond OWL 2 RL; that part is inert, which does no harm ({few})"
+    return f"{axioms} beyond OWL 2 RL; that part has no effect ({few})"
 
 
 def described(names: list[str]) -> str:
@@ -101,7 +100,7 @@ def described(names: list[str]) -> str:
     if not names:
         return ""
     are = f"{wording.entities(len(names))} {'is' if len(names) == 1 else 'are'}"
-    return f"{are} described by the TBox itself, so no command changes them: {wording.few(names, 4)}"
+    return f"{are} described by the TBox itself, so commands cannot change them: {wording.few(names, 4)}"
 
 
 def slow(reasoner: Reasoner) -> str:

@@ -55,7 +55,7 @@ def require_reading(query: str) -> str:
     if form is None:
         raise errors.BadRequest("not a valid SPARQL query: it needs SELECT, ASK, CONSTRUCT or DESCRIBE")
     if beyond := next((word for word in words if word in _ELSEWHERE), None):
-        raise errors.Refused(f"{beyond} is refused: a query can access only this map, not the network")
+        raise errors.Refused(f"{beyond} is not allowed: a query can access only this map, not the network")
     return form
 
 
@@ -82,15 +82,11 @@ def _reason(query: str, line: int, column: int, expected: str, prefixes: Prefixe
     before, after = text[: column - 1], text[column - 1 :].strip()
     if "Prefix not found" in expected and (prefix := re.search(r"([\w.-]*):[^\s:]*$", before)):
         known = ", ".join(f"{name}:" for name in prefixes)
-        return f"unknown prefix '{prefix[1]}:'; there are {known}, and PREFIX declares others"
+        return f"unknown prefix '{prefix[1]}:'; known are {known}; declare others with PREFIX"
     for sign, reason in _REASONS:
         if sign in expected:
             return reason
-    return (
-        f"'{after[:30]}' does not fit there"
-        if after
-        else "it ends too early, or something before does not fit"
-    )
+    return f"'{after[:30]}' is not expected there" if after else "unexpected end, or an error before it"
 
 
 def _words(query: str) -> Iterator[str]:

@@ -51,7 +51,7 @@ def unknown_term_notes(query: str, dataset: Dataset, known: Mapping[str, str]) -
         begin = "" if text.startswith("<") else text.partition(":")[0] + ":"
         near = [f"{begin}{name}" for name in errors.nearest(local, _called(dataset, namespace))]
         meant = f"; did you mean {errors.enumerated(near)}?" if near else ""
-        yield f"nothing in the map is called {text}{meant}"
+        yield f"unknown term {text}{meant}"
 
 
 def _is_mentioned(dataset: Dataset, node: ox.NamedNode) -> bool:

@@ -114,7 +114,7 @@ class ContinuousQueryMonitor:
         if command.end:
             self._end_query(standing)
         standing.ends = time.monotonic() + standing.lease_s
-        said = "has ended" if command.end else f"goes on for {standing.lease_s:g} s"
+        said = "has ended" if command.end else f"is renewed for {standing.lease_s:g} s"
         self._send(CommandReply(number=number, reply=_encoded(Done(text=f"{command.watch} {said}"))))
 
     def follow(self, delta: Delta) -> None:

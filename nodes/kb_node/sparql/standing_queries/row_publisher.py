@@ -10,9 +10,7 @@ from semmap.nodes import bus
 from semmap.nodes.kb_node.sparql.protocol import QueryUpdate
 from semmap.schemas import codec, keys
 
-_TOO_MUCH: Final = (
-    f"its rows changed by more than {bus.PUBLISHED >> 20} MB, which is more than is told at once; ask again"
-)
+_TOO_MUCH: Final = f"result change larger than {bus.PUBLISHED >> 20} MB; run the query again"
 
 
 class RowPublisher:

@@ -104,7 +104,7 @@ def test_what_no_map_could_be_kept_with_is_set_aside_and_told():
     reasoner.apply(insert=triples(COLOR))
     note = tbox_notes.set_aside(tbox)
     assert note.startswith(
-        "ignored, because no map could be kept with it: ColorRegion subClassOf PhysicalAtt"
+        "ignored, because every map would be inconsistent with it: ColorRegion subClassOf PhysicalAtt"
     )
     assert with_declarations(tbox) == tbox
     assert tbox_notes.set_aside(triples()) == ""

@@ -37,13 +37,10 @@ def test_missing_imports_are_named():
 def test_what_is_outside_owl_2_rl_is_counted():
     some = "[ a owl:Restriction ; owl:onProperty dm:hasSize ; owl:someValuesFrom dm:Chair ]"
     assert notes(f"dm:Chair rdfs:subClassOf {some} .") == (
-        "1 axiom goes beyond OWL 2 RL; that part is inert, which does no harm"
-        " (1 x existential restriction as a superclass)",
+        "1 axiom goes beyond OWL 2 RL; that part has no effect (1 x existential restriction as a superclass)",
     )
     (said,) = notes(f"dm:Chair rdfs:subClassOf {some} , {some} . dm:near a owl:ReflexiveProperty .")
-    assert said.startswith(
-        "3 axioms go beyond OWL 2 RL; that part is inert, which does no harm (2 x existential"
-    )
+    assert said.startswith("3 axioms go beyond OWL 2 RL; that part has no effect (2 x existential")
     assert said.endswith("1 x reflexive property)")
 
 
@@ -58,7 +55,8 @@ def test_what_is_inert_in_the_shipped_tbox_is_not_told_but_what_is_added_is():
 def test_entities_that_the_tbox_describes_are_counted():
     (said,) = notes(":chair1 a dm:Chair . :a a dm:Seat . :kitchen1 a dm:Kitchen . :b a dm:Seat .")
     assert said == (
-        "4 entities are described by the TBox itself, so no command changes them: a, b, chair1 and kitchen1"
+        "4 entities are described by the TBox itself, so commands cannot change them:"
+        " a, b, chair1 and kitchen1"
     )
 
 
@@ -75,8 +73,8 @@ def test_that_nothing_is_computed_of_places_is_told():
         t for t in home.TBOX if v.local_name(t[0]) not in {"isOn", "isInside", "isLocatedIn", "isAttachedTo"}
     ]
     assert notes_of(lab) == (
-        "the TBox has none of isAttachedTo, isInside, isLocatedIn, isOn, so where things are is measured when"
-        " asked for, and not a fact",
+        "the TBox has none of isAttachedTo, isInside, isLocatedIn, isOn, so spatial relations are measured"
+        " on request and are not facts",
     )
     on = (v.dm("isOn"), v.RDF_TYPE, "<http://www.w3.org/2002/07/owl#ObjectProperty>")
     assert notes_of([*lab, on]) == ()
