@@ -8,7 +8,7 @@ from tests.kb_node.home import chair, state, transaction, turtle
 
 
 def _worked_on(folder):
-    """What becomes of a map in which much is changed at once, and how often it told that it lives."""
+    """Return the state of a map after a large change, and the number of heartbeats."""
     folder.mkdir()
     beats = []
     created = home.new_map(folder)

@@ -1,4 +1,4 @@
-"""What the knowledge base publishes of where things are, on a real session."""
+"""Publication of commits and entities with locations, on a real session."""
 
 import queue
 
@@ -25,7 +25,7 @@ def on(name, other):
 
 
 class Told:
-    """A map, and what a follower hears of its commits and entities."""
+    """A map, and what a subscriber receives of its commits and entities."""
 
     def __init__(self, session, journal):
         self.map = SemanticMap(journal)
@@ -42,7 +42,7 @@ class Told:
         return self.commits.get(timeout=WAIT_S)
 
     def heard(self, class_name):
-        """The news under a class since it was asked last, by name."""
+        """Return the messages for a class since the last call, by name."""
         self._publisher._session.delete(keys.entity_key("End", "end"))
         found = {}
         while True:

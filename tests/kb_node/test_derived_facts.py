@@ -1,4 +1,4 @@
-"""What is computed of where things are: kept commit by commit, it is always what it is from nothing."""
+"""Computed facts that are maintained commit by commit equal those computed from scratch."""
 
 from unittest import mock
 
@@ -47,7 +47,7 @@ HERE, AWAY = placed("cup1", 0.0, TOP), placed("cup1", 20.0, TOP)
 
 
 class Home:
-    """A reasoner with its derived_facts, and beside it what SPARQL has; commits go to all."""
+    """A reasoner with its derived facts and the SPARQL dataset; commits go to all of them."""
 
     def __init__(self, *entities, said=""):
         self.there = {}
@@ -59,7 +59,7 @@ class Home:
         self.commit(graphs.triples(said), (), entities)
 
     def commit(self, insert=(), delete=(), moved=(), removed=()):
-        """Whether it was taken."""
+        """Commit, and return whether it was accepted."""
         insert = tuple(t for t in dict.fromkeys(insert) if t not in self.said)
         delete = tuple(t for t in dict.fromkeys(delete) if t in self.said and t not in insert)
         self.derived_facts.begin()
@@ -93,13 +93,13 @@ class Home:
         )
 
     def from_nothing(self):
-        """The state of a map that begins with what is asserted here."""
-        anew = Home.__new__(Home)
-        anew.reasoner = Reasoner(TBOX)
-        anew.derived_facts = DerivedFacts(anew.reasoner)
-        anew.derived_facts.change((), sorted(self.said), lenient=True)
-        anew.derived_facts.fill(self.there)
-        return anew.state()
+        """Return the state of a new map with the present assertions."""
+        fresh = Home.__new__(Home)
+        fresh.reasoner = Reasoner(TBOX)
+        fresh.derived_facts = DerivedFacts(fresh.reasoner)
+        fresh.derived_facts.change((), sorted(self.said), lenient=True)
+        fresh.derived_facts.fill(self.there)
+        return fresh.state()
 
     def holds(self, triple):
         return self.reasoner.holds(triple)
@@ -173,7 +173,7 @@ def test_taking_back_is_as_before(first, second):
             is_taken = home.commit(said.keys() - home.said.keys(), home.said.keys() - said.keys(), back, gone)
             if is_taken:
                 assert home.state() == before
-            else:  # what was asserted contradicted itself, and did not count while it was set aside
+            else:  # the assertions contradicted one another, and were suppressed before
                 assert not before[2].isdisjoint(said)
                 return
 

@@ -1,4 +1,4 @@
-"""After a start commits go between the steps in which it is worked out where everything is."""
+"""Commits are possible while facts are derived in steps after a start."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from semmap.schemas.entities import Pose
 
 @pytest.fixture
 def restarted(flat, monkeypatch):
-    """The flat with a heap of things more, just started; it takes many steps to work out where they are."""
+    """The flat with many more objects, just started; deriving its facts takes many steps."""
     for module in (derived_facts, map_state, place_facts):
         monkeypatch.setattr(module, "_STEP", 3)
     monkeypatch.setattr(crowds, "MOST", 12)
@@ -45,7 +45,7 @@ def new(semantic_map, name, position_m):
 
 
 def at(semantic_map, dice):
-    """On top of something, or near it."""
+    """Return a position on top of an entity, or near it."""
     other = semantic_map.entity(dice.choice(sorted(semantic_map.names)))
     x, y, z = other.pose.position_m if other.pose is not None else (1.0, 1.0, 0.0)
     return (x, y, z + (other.size_m or (0.0, 0.0, 0.1))[2])
@@ -59,7 +59,7 @@ def begin(semantic_map, steps=0):
 
 
 def agrees(semantic_map):
-    """Is what is derived_changes what is computed of the poses from nothing?"""
+    """Return whether the facts equal those computed from the poses from scratch."""
     facts = Facts(semantic_map.classes.limits)
     facts.update(semantic_map.by_name.values())
     expected = {(v.entity_iri(s), v.dm(p), v.entity_iri(o)) for s, p, o in facts}

@@ -1,4 +1,4 @@
-"""A large load is the same commit whether a process of its own worked out where everything is, or not."""
+"""A large load gives the same commit with and without a separate process for its relations."""
 
 import random
 import sys
@@ -19,7 +19,7 @@ from semmap.schemas.commits import NewEntity, Statement, Transaction
 from semmap.schemas.entities import Pose, orientation_from_yaw
 from tests.kb_node import home
 
-pytestmark = pytest.mark.process  # a large commit of a map starts one
+pytestmark = pytest.mark.process  # a large commit starts one
 
 MANY = 120
 CLASSES = ("Table", "Cup", "Book", "Tray", "Fridge", "Kitchen")
@@ -27,7 +27,7 @@ DIES = [sys.executable, "-c", "raise SystemExit(9)"]
 
 
 def things(count=2 * MANY, first=0, without=()):
-    """They stand in one another, on one another and in rooms; some have no size, some no position."""
+    """Entities in and on one another and in rooms; some have no size, some no position."""
     dice = random.Random(first)
     for i in range(first, first + count):
         class_name = CLASSES[i % len(CLASSES)]
@@ -67,7 +67,7 @@ def few_are_many(monkeypatch):
 
 @pytest.fixture
 def helped(monkeypatch, few_are_many):
-    """How often the other process worked it out, as it turned out to be."""
+    """Counts how often the result of the other process was used."""
     came = []
     if_came = WorkedOut.if_came
 
@@ -103,7 +103,7 @@ def seen(semantic_map, commit):
 
 
 def alone(monkeypatch, semantic_map, *transactions):
-    """What is seen of the last one where nothing is foreseen."""
+    """Return the outcome of the last transaction without a prediction."""
     with monkeypatch.context() as patched:
         patched.setattr(new_entities, "MANY", 10**9)
         for transaction in transactions:
@@ -144,7 +144,7 @@ def test_few_need_no_process(new_map, monkeypatch):
 
 
 def test_a_guess_that_was_wrong_is_worked_out_here(new_map, helped, monkeypatch):
-    """Two classes are said of one, and the guess took the other one's model."""
+    """The entity has two classes, and the prediction used the model of the other one."""
     load = said(things())
     second = (v.entity_iri("table6"), v.RDF_TYPE, v.dm("Physical_Thing"))
     load = Transaction(id="load", source="file", reason="load", insert=(*load.insert, second))

@@ -1,4 +1,4 @@
-"""The knowledge base as a process of its own, asked over Zenoh on loopback."""
+"""The knowledge base as a separate process, reached over Zenoh on loopback."""
 
 import gzip
 import queue
@@ -49,22 +49,22 @@ class Bench:
         self.settings.write_bytes(codec.encode_json(settings))
 
     def start(self):
-        """The process of a knowledge base."""
+        """Start the process of a knowledge base."""
         command = [sys.executable, "-m", "semmap.nodes.supervisor.launch", "kb_node", str(self.settings)]
         return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
 
     def session(self):
-        """The session that the knowledge base connects to."""
+        """Open the session that the knowledge base connects to."""
         return bus.open_session(bus.Network(mode="peer", listen=(self.endpoint,), connect=()))
 
     def client(self):
-        """Another one's session."""
+        """Open the session of another client."""
         return bus.open_session(bus.Network(connect=(self.endpoint,)))
 
 
 @contextmanager
 def ended(process):
-    """Kill a process at last, if it still runs."""
+    """Kill a process if it is still running."""
     try:
         yield process
     finally:
@@ -91,7 +91,7 @@ def ask(session, verb, message, **limits):
 
 
 def await_answer(session):
-    """Wait for a knowledge base. A question to one that was just killed may be lost, so it is asked again."""
+    """Wait for a knowledge base; requests are repeated, because those to a killed process are lost."""
     for _ in range(int(PATIENCE_S)):
         with suppress(errors.NoAnswer):
             return ask(session, "snapshot", SnapshotQuery(), patience_s=1.0, timeout_s=1.0)
@@ -99,12 +99,12 @@ def await_answer(session):
 
 
 def until(publications, count):
-    """The next `count` publications."""
+    """Return the next `count` publications."""
     return [publications.get(timeout=PATIENCE_S) for _ in range(count)]
 
 
 def since(publications, seq, count):
-    """The next `count` commits from `seq` on; Zenoh may bring a new follower those before it, too."""
+    """Return the next `count` commits from `seq` on; a new subscriber may receive earlier ones, too."""
     found = []
     while len(found) < count:
         ((_, message),) = until(publications, 1)
@@ -113,10 +113,10 @@ def since(publications, seq, count):
 
 
 def followed(session, topic):
-    """What is published from now on: the subscription is known, and what was committed before has come."""
+    """Subscribe to a topic and wait until earlier commits have arrived."""
     publications = queue.Queue()
     subscriber = bus.follow(session, topic, lambda key, message: publications.put((key, message)))
-    ask(session, "snapshot", SnapshotQuery())  # answered after the subscription, which went before it
+    ask(session, "snapshot", SnapshotQuery())  # answered after the earlier subscription
     while not publications.empty():
         publications.get()
     return publications, subscriber
@@ -305,7 +305,7 @@ def test_packed_documents_are_loaded(session):
             errors.BadRequest,
             "not a valid N-Triples statement: a b c",
         ),
-        ("get", codec.encode({"name": "nobody"}), errors.UnknownName, "no entity is named 'nobody'"),
+        ("get", codec.encode({"name": "ghost9"}), errors.UnknownName, "no entity is named 'ghost9'"),
     ],
 )
 def test_a_bad_request_is_answered_with_an_error(session, verb, payload, error, text):

@@ -1,4 +1,4 @@
-"""What a change of the map means for where things are: taken back, carried along, left behind."""
+"""Effects of changes on locations: retracted assertions, carried objects, objects left behind."""
 
 import random
 import re
@@ -37,7 +37,7 @@ dm:isLocatedIn a owl:ObjectProperty .
 )
 TBOX = rdf.parse(TBOX_TURTLE.encode(), "tbox.ttl", label_prefix="t")
 TOP = 0.74
-"""Of a table, which is 1.5 m by 0.9 m [m]."""
+"""Height of a table of 1.5 m by 0.9 m [m]."""
 
 
 def new(name, class_, at, *, size=None, on=None, **said):
@@ -53,7 +53,7 @@ def new(name, class_, at, *, size=None, on=None, **said):
 
 @pytest.fixture
 def room(tmp_path):
-    """A table with a tray on it, on which are a cup and a bowl with an apple; and a second table."""
+    """A table with a tray, on which are a cup and a bowl with an apple, and a second table."""
     semantic_map = home.new_map(tmp_path, TBOX)
     commit(
         semantic_map,
@@ -103,7 +103,7 @@ def said(semantic_map, property_="isOn"):
 
 
 def stands(notes):
-    """The notes, each without how far it is."""
+    """Return the notes without their distances."""
     return [re.sub(r"( it stands) [0-9.]+ m from it$", r"\1", note) for note in notes]
 
 
@@ -177,7 +177,7 @@ def test_what_came_with_an_addition_is_noted(room):
 
 
 def test_nothing_is_denied_that_is_not_known(room):
-    """Flat maps have no sizes, and some things no position."""
+    """Flat maps have no sizes, and some entities no position."""
     commit(
         room,
         add=(
@@ -208,7 +208,7 @@ def test_a_dry_run_shows_it_and_does_nothing(room):
 
 
 def test_what_contradicts_what_is_taken_back_is_no_contradiction(room):
-    """What is inside a thing is not on it: two properties that are disjoint."""
+    """An object inside another is not on it: the two properties are disjoint."""
     say(room, "apple1", "isOn", "table1")
     with pytest.raises(errors.Inconsistent):
         say(room, "apple1", "isInside", "table1")
@@ -237,7 +237,7 @@ def test_what_contradicts_only_a_measured_fact_is_not_refused(room):
 
 
 def test_undo_is_refused_where_geometry_does_not_deny_what_contradicts(room):
-    """Of what has no position geometry denies nothing."""
+    """The geometry denies nothing about entities without a position."""
     commit(room, add=(new("lost1", "Cup", None, on="table1"),))
     on = (v.entity_iri("lost1"), v.dm("isOn"), v.entity_iri("table1"))
     retracted = commit(room, retract=(on,))
@@ -250,7 +250,7 @@ def test_undo_is_refused_where_geometry_does_not_deny_what_contradicts(room):
 
 def test_undo_brings_contradictory_assertions_back_that_geometry_denies(room, monkeypatch):
     say(room, "table1", "isOn", "table2")
-    with monkeypatch.context() as patched:  # as maps were that were made before this was refused
+    with monkeypatch.context() as patched:  # as in maps that were created before this was rejected
         patched.setattr(room.derived_facts, "require_agreement", lambda inserted: None)
         say(room, "table2", "isOn", "table1")
     before = triples(room), {*room.all_derived().aside}
@@ -344,7 +344,7 @@ def test_removing_tells_what_was_on_it_and_in_it(room):
 
 
 def test_what_is_removed_is_gone_though_other_things_were_on_it_and_in_it(room):
-    """Whatever was computed of it."""
+    """Including all that was computed about it."""
     commit(room, remove=("bowl1",))
     made = commit(room, remove=("table1",))
     assert [gone.name for gone in made.removed] == ["table1"]
@@ -365,7 +365,7 @@ def test_removing_tells_what_was_only_said(room):
 
 
 def test_a_map_in_other_words_is_read_too(tmp_path):
-    """A move written as triples, as a document or an undo has it."""
+    """A move written as triples, as in a document or an undo."""
     semantic_map = home.new_map(tmp_path, TBOX)
     commit(semantic_map, add=(new("table1", "Table", (0.0, 0.0, 0.0), size=(1.5, 0.9, TOP)),))
     commit(semantic_map, add=(new("cup1", "Cup", (0.0, 0.0, TOP), on="table1"),))
@@ -380,7 +380,7 @@ def test_a_map_in_other_words_is_read_too(tmp_path):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_laws(room, seed):
-    """Nothing is left that is said of what moved and is denied; undo restores; a restart gives the same."""
+    """No denied assertion remains about moved entities; undo and restart restore the same state."""
     dice = random.Random(seed)
     for _ in range(60):
         before, poses = triples(room), {e.name: (e.pose, e.size_m) for e in room.entities()}

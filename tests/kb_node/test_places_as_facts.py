@@ -1,4 +1,4 @@
-"""What is computed of where things are, in a whole map: commits, undo, dry runs, the past, restarts."""
+"""Computed facts in a whole map: commits, undo, dry runs, the past and restarts."""
 
 import random
 
@@ -169,7 +169,7 @@ dm:Milk rdfs:subClassOf [ a owl:Restriction ; owl:onProperty dm:isOn ; owl:allVa
 
 @pytest.fixture
 def choosy(flat):
-    """The flat with a TBox by which milk is on shelves only, and the commit that let it hold."""
+    """The flat with a TBox that allows milk only on shelves, and the commit that set it."""
     tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes() + ONLY_SHELVES, "household.ttl", label_prefix="t")
     flat.derive_all()
     commit = flat.replace_tbox(Transaction(id="choosy", source="operator"), tbox)
@@ -223,7 +223,7 @@ def test_what_is_said_to_be_in_itself_is_noted(flat):
 
 
 def test_what_contradicts_something_denied_by_way_of_others_is_refused(flat):
-    """The cup is said to be on the counter, which is in the kitchen, which is said to be without cups."""
+    """The cup is asserted to be on the counter, which is in the kitchen, which has no cups by assertion."""
     axioms = b"""
     dm:Gadget a owl:Class ; rdfs:subClassOf dm:Object .
     dm:Tidy_Room a owl:Class ; rdfs:subClassOf dm:Location ;

@@ -1,4 +1,4 @@
-"""What a transaction requires, held against the map as it stands."""
+"""Preconditions of transactions, checked against the map."""
 
 import pytest
 
@@ -16,7 +16,7 @@ ABSENT = (CUP, v.dm("touches"), v.entity_iri("table999"))
 
 @pytest.fixture(params=[0, 62, 63, 200], ids="{} more".format)
 def reasoner(request):
-    """A reasoner with one cup, of which few or many things are said."""
+    """A reasoner with one cup and few or many triples about it."""
     reasoner = Reasoner([(v.dm("Cup"), v.RDF_TYPE, v.OWL_CLASS)])
     reasoner.apply(insert=[TYPE, *MANY[: request.param]])
     return reasoner

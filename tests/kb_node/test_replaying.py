@@ -1,4 +1,4 @@
-"""A replay makes the commits of another journal again, one after the other, and says how far it is."""
+"""A replay repeats the commits of another journal in order and reports its progress."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tests.kb_node import home
 
 
 class Loop:
-    """A node's loop whose time the test lets pass."""
+    """A node's loop with a clock that the test controls."""
 
     def __init__(self, *replies):
         self.due, self.replies, self.asked, self.reported = [], list(replies), 0, []
@@ -29,7 +29,7 @@ class Loop:
     def ask_later(self, prefix, call):
         self.asked += 1
         future = Future()
-        reply = self.replies.pop(0) if self.replies else errors.NoAnswer("nobody")
+        reply = self.replies.pop(0) if self.replies else errors.NoAnswer("no response")
         (future.set_exception if isinstance(reply, Exception) else future.set_result)(reply)
         return future
 
@@ -37,7 +37,7 @@ class Loop:
         self.reported.append(problem)
 
     def go_on(self):
-        """What is due next, and how long it had to wait [s]."""
+        """Run the next task and return its delay [s]."""
         ((delay_s, function),), self.due = self.due, []
         function()
         return delay_s
@@ -62,7 +62,7 @@ def status(*ready: str, in_agreement: bool | None = True, **what: tuple[str, ...
 
 @pytest.fixture
 def replay(tmp_path):
-    """`replay(loop)` plays three commits of another map into one that was begun like that."""
+    """`replay(loop)` replays three commits of another map into one with the same beginning."""
     for folder in ("there", "here"):
         (tmp_path / folder).mkdir()
     there, here = home.new_map(tmp_path / "there"), home.new_map(tmp_path / "here")
@@ -106,7 +106,7 @@ def test_the_commits_are_made_again_in_their_order_and_it_says_how_far_it_is(rep
             ("kb_node", "sim_node"),
             status("kb_node", "sim_node", in_agreement=False, pending=("cup1 has no body yet",)),
         ),
-        (("kb_node",), errors.NoAnswer("nobody")),
+        (("kb_node",), errors.NoAnswer("no response")),
     ],
     ids=["a node is missing", "a body is missing", "no reply"],
 )
@@ -134,7 +134,7 @@ def test_after_a_while_it_begins_without_the_others(replay):
     for _ in range(101):
         loop.go_on()
     assert (publish, loop.asked) == ([], 100)
-    assert loop.reported == ["the replay starts before all nodes are ready: nobody"]
+    assert loop.reported == ["the replay starts before all nodes are ready: no response"]
     loop.go_on()
     assert len(publish) == 1
 

@@ -85,7 +85,7 @@ IN_A_CHAIR = [*chair(), *turtle(":x dm:isLocatedIn :chair1 .")]
 
 
 def new_chair(name):
-    """The intent to add a chair."""
+    """Return the transaction that adds a chair."""
     return NewEntity(name=name, class_iri=v.bare(v.dm("Chair")))
 
 
@@ -96,8 +96,8 @@ REFUSED = {
     "not finite": (turtle(NAN), {}, errors.BadRequest),
     "precondition": (chair(), {"require": [(CHAIR2, v.RDF_TYPE, v.dm("Chair"))]}, errors.PreconditionFailed),
     "name taken": ((), {"add": [new_chair("chair0")]}, errors.NameTaken),
-    "nobody to change": (chair("b"), {"edit": [Edit(name="chair9", ref="x")]}, errors.UnknownName),
-    "nobody to remove": (chair("b"), {"remove": ["chair0", "chair9"]}, errors.UnknownName),
+    "unknown entity to change": (chair("b"), {"edit": [Edit(name="chair9", ref="x")]}, errors.UnknownName),
+    "unknown entity to remove": (chair("b"), {"remove": ["chair0", "chair9"]}, errors.UnknownName),
     "name taken elsewhere": (turtle("<http://example.org/x#chair0> a dm:Chair ."), {}, errors.NameTaken),
     "one name twice": (turtle(TWICE), {}, errors.NameTaken),
     "no name": (turtle("<http://a.org/my%20chair> a dm:Chair ."), {}, errors.BadRequest),
@@ -325,7 +325,7 @@ def test_a_load_gives_what_its_parts_give_one_by_one(tmp_path_factory, parts):
 
 
 def without_author(entity):
-    """An entity without who said so."""
+    """Return an entity without its author."""
     none = Provenance(commit=0, stamp_ns=0, source="file")
     names = ("provenance", "pose_provenance", "shape_provenance", "reference_provenance")
     return structs.replace(entity, **dict.fromkeys(names, none))
@@ -394,14 +394,14 @@ def test_a_commit_and_its_reverse_leave_the_map_as_it_was(tmp_path_factory, befo
 
 
 def plain(entity):
-    """An entity without where the knowledge came from."""
-    nobody = structs.replace(entity.provenance, commit=0, stamp_ns=0)
+    """Return an entity without provenance."""
+    no_author = structs.replace(entity.provenance, commit=0, stamp_ns=0)
     return structs.replace(
         entity,
-        provenance=nobody,
-        pose_provenance=nobody,
-        shape_provenance=nobody,
-        reference_provenance=nobody,
+        provenance=no_author,
+        pose_provenance=no_author,
+        shape_provenance=no_author,
+        reference_provenance=no_author,
     )
 
 
@@ -466,7 +466,7 @@ def test_after_an_error_in_the_middle_of_a_change_the_map_is_to_be_started_again
     assert not semantic_map.is_sound
     monkeypatch.undo()
     again = home.reopened(semantic_map)
-    is_there = durable and not together  # what is done together is durable together, or not at all
+    is_there = durable and not together  # commits made together are durable together, or not at all
     assert {e.name for e in again.snapshot().entities} == {"chair1", *(["chair2"] if is_there else [])}
     assert again.commit(transaction("a", chair("chair2"))).seq == 2
     home.close(again)

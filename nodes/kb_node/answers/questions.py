@@ -94,24 +94,24 @@ def why(reasoner: Reasoner, asked: StatementQuestion) -> Explanation | None:
     return None if found is None else _to_message(reasoner, found)
 
 
-def explain(reasoner: Reasoner, asked: StatementQuestion, *, anew: bool = True) -> Explanation:
+def explain(reasoner: Reasoner, asked: StatementQuestion, *, recompute: bool = True) -> Explanation:
     """Return why the statement holds or cannot hold.
 
     If no rule derives or contradicts it, a proof or a refutation is searched in the nearby triples.
 
     Raises:
         Refused: it does not hold, or (negated) it holds or is not excluded.
-        NotCompilable: everything must be computed again, and `anew` is False; Undecided if only the nearby
-            triples must be.
+        NotCompilable: everything must be computed again, and `recompute` is False; Undecided if only the
+            nearby triples must be.
     """
     first = asked.triples[0]
     clause = said(first, reasoner.words)
     if asked.negated:
-        if (denied := refute(reasoner, first, anew=anew)) is not None:
+        if (denied := refute(reasoner, first, anew=recompute)) is not None:
             return _to_message(reasoner, denied)
         holds = reasoner.explain(first)
         if holds is None:
-            if not anew:
+            if not recompute:
                 raise Undecided("no rule excludes it, and none derives it")
             near = _near(reasoner, asked)
             if (further := why_excluded(near, first, words=reasoner.words)) is not None:
@@ -122,12 +122,12 @@ def explain(reasoner: Reasoner, asked: StatementQuestion, *, anew: bool = True) 
         )
     if (found := why(reasoner, asked)) is not None:
         return found
-    if (different := why_different(reasoner, first, anew=anew)) is not None:
+    if (different := why_different(reasoner, first, anew=recompute)) is not None:
         return _to_message(reasoner, different)
-    if (excluded := refute(reasoner, first, anew=anew)) is not None:
+    if (excluded := refute(reasoner, first, anew=recompute)) is not None:
         told = _to_message(reasoner, excluded)
         raise errors.Refused(f"it does not hold: {told.text}", explanation=told)
-    if not anew:
+    if not recompute:
         raise Undecided("no rule derives it, and none excludes it")
     near = _near(reasoner, asked)
     if (further := why_entailed(near, first, words=reasoner.words)) is not None:
@@ -144,12 +144,12 @@ def _near(reasoner: Reasoner, asked: StatementQuestion) -> Reasoner:
 
 
 def could(
-    reasoner: Reasoner, asked: StatementQuestion, *, anew: bool = True, against: str | None = None
+    reasoner: Reasoner, asked: StatementQuestion, *, recompute: bool = True, against: str | None = None
 ) -> Possible:
     """Return whether the statement could hold. The reasoner is unchanged. `against` is a geometric conflict.
 
     Raises:
-        NotCompilable: everything must be computed again, and `anew` is False.
+        NotCompilable: everything must be computed again, and `recompute` is False.
     """
     triple = asked.triples[0]
     clause = said(triple, reasoner.words)
@@ -157,7 +157,7 @@ def could(
         return Possible(possible=True, text=f"yes: {clause} already")
     measured: list[Triple] = []
     try:
-        while (excluded := refute(reasoner, triple, anew=anew)) is not None:
+        while (excluded := refute(reasoner, triple, anew=recompute)) is not None:
             computed = [fact for fact in excluded.support if reasoner.is_computed(fact)]
             if not computed:
                 text = f"no: {excluded.text}"

@@ -270,7 +270,7 @@ class QueryHandlers:
         self._map.ensure_derived()
         if questions.is_quick(reasoner, asked):
             try:
-                return answer(reasoner, asked, anew=False)
+                return answer(reasoner, asked, recompute=False)
             except questions.Undecided:
                 needed = nearby(reasoner, asked.terms)
                 computed = dict.fromkeys(filter(reasoner.is_computed, needed))

@@ -100,7 +100,7 @@ def test_owlrl_is_of_the_same_opinion(more, consistent):
 
 
 def test_what_follows_is_the_same_on_both_engines(furnished):
-    """The one that works change by change, and the one for graphs that it cannot take."""
+    """The incremental engine, and the general one for graphs that the first cannot compile."""
     compiled = (
         answers.infer_all(answers.inference_input(furnished)),
         answers.export_snapshot(furnished, inferred=True),
@@ -120,7 +120,7 @@ def test_what_follows_is_the_same_on_both_engines(furnished):
 def test_what_is_measured_of_pairs_is_inferred_and_exported(flat):
     near = {t[2] for t in answers.infer(flat, "milk1").triples if t[1] == v.dm("isNear")}
     assert v.entity_iri("stove1") in near
-    assert v.entity_iri("counter1") not in near  # on which it stands
+    assert v.entity_iri("counter1") not in near  # it supports the entity
     of_stove = answers.infer(flat, "stove1").triples
     assert (v.entity_iri("stove1"), v.dm("isNear"), v.entity_iri("milk1")) in of_stove
     assert len(set(of_stove)) == len(of_stove)

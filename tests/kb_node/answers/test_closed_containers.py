@@ -1,4 +1,4 @@
-"""What is in something closed is known and cannot be seen; and since when."""
+"""Objects in closed containers are not observable, and since when."""
 
 import re
 
@@ -13,7 +13,7 @@ from tests.kb_node import home
 
 @pytest.fixture
 def kitchen(tmp_path):
-    """Milk in a fridge; a cup on the floor beside it."""
+    """Milk in a fridge, and a cup on the floor next to it."""
     made = home.new_map(tmp_path, home.household())
     at = {"fridge1": (0.0, 0.0, 0.0), "carton1": (-0.1, 0.0, 0.645), "cup1": (2.0, 0.0, 0.0)}
     classes = {"fridge1": "Fridge", "carton1": "Milk", "cup1": "Cup"}

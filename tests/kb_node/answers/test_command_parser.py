@@ -1,4 +1,4 @@
-"""Commands in the flat that comes with semmap, with two more cups on its table."""
+"""Commands in the shipped flat, with two more cups on its table."""
 
 import pytest
 
@@ -71,6 +71,6 @@ def test_it_is_asked_once_which_is_meant(understanding):
         ("prendi due tazze", "Taking(Theme=2 of bluecup|cup1|redcup)", ()),
     ],
 )
-def test_what_does_not_fit_the_map_is_asserted(understanding, text, understood, doubts):
+def test_what_does_not_fit_the_map_is_reported(understanding, text, understood, doubts):
     told = understanding.understand(Understand(text=text))
     assert ([frame.text for frame in told.frames], told.doubts) == ([understood], doubts)

@@ -1,4 +1,4 @@
-"""What is told of a map, a place and a thing."""
+"""Descriptions of a map, a place and an object."""
 
 import pytest
 from msgspec import structs

@@ -1,4 +1,4 @@
-"""What happened between two commits, and when something was on something."""
+"""Differences between two commits, and the times of a spatial relation."""
 
 import re
 
@@ -14,7 +14,7 @@ def system(empty_map):
 
 @pytest.fixture(scope="module")
 def told(system):
-    """A client of a map with a cup that went from a table to another and back."""
+    """A client of a map in which a cup was moved from one table to another and back."""
     with system.client() as client:
         client.add("Kitchen", "kitchen1", at=(0, 0, 0), size=(6, 6, 3))  # 2, after the ontology
         client.add("Table", "table1", at=(1, 1, 0), size=(1, 1, 0.7))
@@ -88,7 +88,7 @@ def test_what_is_in_a_corner_is_in_the_room_too(told):
     told.undo(9)
 
 
-def test_what_cannot_be_asked_is_asserted(told):
+def test_what_cannot_be_asked_is_reported(told):
     with pytest.raises(errors.BadRequest, match="commit 6 comes after commit 5; give the earlier one first"):
         told.diff("6", "5")
     with pytest.raises(errors.Refused, match="there is no commit 99 yet; the last one is 10"):

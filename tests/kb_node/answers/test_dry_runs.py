@@ -1,4 +1,4 @@
-"""A dry run: what would be committed and what would follow, with nothing done."""
+"""Dry runs report what would be committed and inferred, and change nothing."""
 
 import pytest
 
@@ -14,12 +14,12 @@ from tests.kb_node.stating import TBOX, adding, editing, stated, statement
 
 
 def tried_commit(semantic_map, transaction):
-    """The effects of trying a transaction."""
+    """Return the effects of a dry run of a transaction."""
     return tried(semantic_map, lambda: semantic_map.commit(transaction))
 
 
 def tried(semantic_map, change):
-    """The effects of a trial, after which everything must be as before, on disk, too."""
+    """Return the effects of a dry run, after which the map and the disk must be unchanged."""
     before = home.state(semantic_map), set(semantic_map.reasoner.inferred()), semantic_map._journal.last
     try:
         return dry_runs.dry_run(semantic_map, change)

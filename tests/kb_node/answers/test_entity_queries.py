@@ -1,4 +1,4 @@
-"""What is answered of where things are, with what was asserted and what follows."""
+"""Spatial queries with asserted and inferred facts."""
 
 import pytest
 
@@ -38,7 +38,7 @@ def flat(tmp_path_factory):
 
 @pytest.fixture
 def own(tmp_path):
-    """A flat to change."""
+    """A flat that the test may change."""
     made = new_flat(tmp_path)
     yield made
     home.close(made)
@@ -173,7 +173,9 @@ def test_why_not_is_told_by_what_was_measured(flat):
     why_not = explained(flat, "apple1", "isOn", "counter1", negated=True)
     assert why_not.text.startswith("apple1 is not on counter1: ")
     assert why_not.text == refused(flat, "apple1", "isOn", "counter1")
-    assert explained(flat, "apple1", "isInside", "bowl1", negated=True) is None  # it is, and a rule says so
+    assert (
+        explained(flat, "apple1", "isInside", "bowl1", negated=True) is None
+    )  # it does, and a rule states it
 
 
 def test_where_a_place_is_was_asserted_and_nothing_stands_against_it(flat):

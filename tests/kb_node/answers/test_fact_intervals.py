@@ -1,4 +1,4 @@
-"""Since when relations hold, beside a look at the whole map after each commit."""
+"""Start times of relations, compared with measuring the whole map after each commit."""
 
 import random
 

@@ -1,4 +1,4 @@
-"""Questions about where things are know where tracked ones are just now; facts and the past do not."""
+"""Spatial queries use live poses; facts and the past do not."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_the_nearest_are_those_of_now(semantic_map):
         assert "isNear" in {relation.relation for relation in near if relation.holds}
     assert nearest(semantic_map) == ["chair1"]  # as committed
     assert semantic_map.entity("robot1").pose == Pose(position_m=(2.0, 0.0, 0.0))
-    now_s = 10.0  # whoever told is gone
+    now_s = 10.0  # the publisher has stopped
     with live.applied():
         assert nearest(semantic_map) == ["chair1"]
 

@@ -1,4 +1,4 @@
-"""Who comes to be on, in or near something, and who goes."""
+"""Standing location queries report arriving and leaving entities."""
 
 import random
 import time
@@ -34,7 +34,7 @@ def room(tmp_path):
 
 
 class Watched:
-    """A standing question and the news of it."""
+    """A standing query and its updates."""
 
     def __init__(self, semantic_map, **wanted):
         self.map = semantic_map
@@ -44,12 +44,12 @@ class Watched:
         self.now = names(self.first.rows)
 
     def after(self, made):
-        """What came and went by a commit."""
+        """Return the rows that a commit added and removed."""
         self.standing.follow(made.seq, made.names)
         return self.told()
 
     def told(self):
-        """What came and went since the last time."""
+        """Return the rows added and removed since the last call."""
         news, self.news[:] = list(self.news), []
         came, left = set(), set()
         for one in news:

@@ -64,4 +64,4 @@ def test_whoever_fetches_pages_is_expected_to_ask_for_the_next(semantic_map, mon
     assert not pages.is_request_expected
     pages.snapshot(SnapshotQuery(limit=2))
     clock[0] += 10.0
-    assert not pages.is_request_expected  # it has given up
+    assert not pages.is_request_expected  # the timeout has passed

@@ -1,4 +1,4 @@
-"""Queries of the past: they see what was asserted and computed then."""
+"""Queries about the past use the facts that were asserted and computed then."""
 
 import pytest
 
@@ -57,7 +57,7 @@ def test_a_query_of_the_past_sees_what_was_computed_then(flat):
 def test_without_inferred_it_sees_what_was_asserted_then(flat):
     said = "SELECT ?x { ?x dm:isOn :table1 . FILTER(?x = :cup9) }"
     assert asked(flat, 3, said, inferred=False) == (3, ["cup9"])
-    assert asked(flat, 3, said, inferred=True) == (3, [])  # which geometry denied then, too
+    assert asked(flat, 3, said, inferred=True) == (3, [])  # the geometry denied it then, too
     assert asked(flat, 4, said, inferred=False) == (4, [])
 
 
@@ -107,7 +107,7 @@ def test_what_followed_and_was_measured_then_is_exported_if_it_is_wanted(flat):
     graspable = (v.entity_iri("cup9"), v.RDF_TYPE, v.dm("Graspable_Thing"))
     then = exported(flat, 3, inferred=True)[1]
     assert {on_counter, graspable} <= then
-    assert on_table not in then  # it was said, and denied by geometry
+    assert on_table not in then  # it was asserted, and denied by the geometry
     assert [t for t in then if t[0] == v.entity_iri("cup9") and t[1] == v.dm("isNextTo")]
     assert on_counter not in exported(flat, 4, inferred=True)[1]
 

@@ -1,4 +1,4 @@
-"""Plans are drawn from where things and places are, part by part, and from the walls that are known."""
+"""Plans contain the outlines of objects and places, part by part, and the known walls."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def test_a_place_is_drawn_with_its_height_as_a_box_or_a_polygon_with_holes():
         ([ROOM, thing("wall1", (0.0, 0.0, 0.0), "wall", size=(4.0, 0.1, 2.5))], None, ()),
         ([BOX], None, ()),
     ],
-    ids=["nobody knows", "none", "of the world", "of the map", "no place"],
+    ids=["unknown", "none", "of the world", "of the map", "no place"],
 )
 def test_a_plan_without_walls_says_so(entities, walls, notes):
     plan = plan_of(entities, walls)

@@ -132,7 +132,7 @@ def test_what_no_rule_excludes_is_searched_for_on_a_copy():
     )
     robot, other = triple(":ann a :Robot"), triple(":ann a :Child")
     with pytest.raises(questions.Undecided):
-        questions.explain(reasoner, questions.StatementQuestion((robot,), negated=True), anew=False)
+        questions.explain(reasoner, questions.StatementQuestion((robot,), negated=True), recompute=False)
     found = questions.explain(reasoner, questions.StatementQuestion((robot,), negated=True))
     assert found.text.startswith("ann is not a Robot, because it is a Person (asserted), ")
     assert (found.conclusion, found.supposed) == (None, robot)
@@ -213,7 +213,7 @@ def test_what_cannot_be_asked(furnished, question, error, text):
         answered(furnished, *question)
 
 
-def test_what_would_be_the_same_is_asserted(tmp_path):
+def test_what_would_be_the_same_is_reported(tmp_path):
     semantic_map = home.new_map(
         tmp_path, (*home.TBOX, *turtle("dm:isPartOf a owl:ObjectProperty , owl:FunctionalProperty ."))
     )
@@ -236,7 +236,7 @@ def test_what_would_take_long_is_not_tried_on_the_map_itself(furnished):
     assert questions.could(beside, asked).text == questions.could(furnished.reasoner, asked).text
     classes = questions.parse_could(furnished, Could(name="Chair", predicate="sameAs", value="Door"))
     with pytest.raises(NotCompilable):
-        questions.could(furnished.reasoner, classes, anew=False)
+        questions.could(furnished.reasoner, classes, recompute=False)
 
 
 @pytest.mark.parametrize(
@@ -260,10 +260,10 @@ def test_a_proof_is_not_searched_for_on_the_map_itself(furnished):
         furnished, Explain(name="Chair", predicate="disjointWith", value="Kitchen")
     )
     with pytest.raises(NotCompilable):
-        questions.explain(furnished.reasoner, asked, anew=False)
+        questions.explain(furnished.reasoner, asked, recompute=False)
     asked = questions.parse_explain(furnished, Explain(name="chair1", predicate="type", value="Door"))
     with pytest.raises(questions.Undecided):
-        questions.explain(furnished.reasoner, asked, anew=False)
+        questions.explain(furnished.reasoner, asked, recompute=False)
     beside = questions.copy_reasoner(
         Held(nearby(furnished.reasoner, asked.terms), []), furnished.classes.prefixed
     )

@@ -1,4 +1,4 @@
-"""Entities and a TBox as one speaks of them."""
+"""Search items of entities, and terms of a TBox."""
 
 import pytest
 from msgspec import structs

@@ -1,4 +1,4 @@
-"""What has merely not been seen since is told from what was seen to be gone."""
+"""Entities that were not observed lately are distinguished from missing ones."""
 
 import re
 import time
@@ -17,7 +17,7 @@ from tests.kb_node.home import chair, transaction
 
 @pytest.fixture
 def semantic_map(tmp_path):
-    """Commits: 1 two chairs by ann, 2 chair1 misses, 3 something else about chair1, 4 and 5 removals."""
+    """Commits: 1 two chairs by ann, 2 chair1 is missing, 3 another change of chair1, 4 and 5 removals."""
     made = home.new_map(tmp_path)
     eyes = {"source": "perception", "agent": "camera"}
     for step in (
@@ -75,7 +75,7 @@ def test_what_is_there_is_in_sight_or_has_not_been_seen_since(sightings, semanti
         sightings.describe_present(entity).text,
     )
     sightings.record(look("chair4", entity.pose_provenance.stamp_ns - 1))
-    assert sightings.describe_present(entity).seen_ns is None  # before it came there
+    assert sightings.describe_present(entity).seen_ns is None  # before it was moved there
     now_ns = time.time_ns()
     sightings.record(look("chair4", now_ns))
     told = sightings.describe_present(entity)

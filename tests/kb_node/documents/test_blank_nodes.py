@@ -1,4 +1,4 @@
-"""Blank nodes of two readings that stand for the same."""
+"""Matching of equivalent blank nodes between two readings."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ CYCLE = b"_:a <urn:next> _:b . _:b <urn:next> _:c . _:c <urn:next> _:a . _:b <ur
 
 
 def compared(before: bytes, after: bytes) -> tuple[int, int]:
-    """How many triples go and how many come."""
+    """Return the number of removed and of added triples."""
     known, new = (frozenset(rdf.parse(c, "f", label_prefix=p)) for c, p in ((before, "a"), (after, "b")))
     labelled = relabel_like(new, known)
     assert len(labelled) == len(new)

@@ -89,8 +89,8 @@ def test_what_nobody_describes_is_refused_when_that_is_asked_for(semantic_map):
     "text",
     [
         ":a a dm:Chair ; dm:isLocatedIn :b . :b a dm:Kitchen .",
-        ":a a dm:Chair ; dm:isLocatedIn :hall .",  # it is in the map
-        ":a a dm:Chair ; dm:isLocatedIn dm:Kitchen .",  # it is in the TBox
+        ":a a dm:Chair ; dm:isLocatedIn :hall .",  # the map has it
+        ":a a dm:Chair ; dm:isLocatedIn dm:Kitchen .",  # the TBox has it
         ":a a dm:Chair ; rdfs:seeAlso <urn:a> ; owl:sameAs :c ; dm:near :d .",  # no relations
         ":a a dm:Chair ; dm:lexicalReference 'chair' .",
     ],

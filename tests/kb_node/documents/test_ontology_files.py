@@ -1,4 +1,4 @@
-"""Ontologies in files, and their imports: as said, from a catalogue, from beside them, or missing."""
+"""Ontology files and their imports: given, from a catalogue, from the same folder, or missing."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def test_what_is_said_comes_first(write):
     mine = write("mine/b2.ttl", ontology("http://o.org/mine", "http://o.org/d"))
     further = write("mine/d.ttl", ontology("http://o.org/d"))
     gathered = gather([path], {"http://o.org/b": mine})
-    assert gathered.files == (path, mine, further)  # and what that one imports is beside it
+    assert gathered.files == (path, mine, further)  # its own import is next to it
     assert gathered.missing == ()
 
 
@@ -218,7 +218,7 @@ def test_real_ontologies_come_with_their_imports(files, given, count, missing):
 
 
 def test_nameless_nodes_of_two_files_in_functional_syntax_stay_apart(tmp_path):
-    """Their labels are made by the same counting, and anonymous individuals may be labelled alike."""
+    """Their labels are numbered alike, and anonymous individuals may have equal labels."""
     for name in ("one", "two"):
         (tmp_path / f"{name}.ofn").write_text(
             f"Prefix(:=<http://o.org/{name}#>) Ontology(<http://o.org/{name}>"

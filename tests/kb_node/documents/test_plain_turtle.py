@@ -1,4 +1,4 @@
-"""Whatever is read in columns or line by line is what Oxigraph reads; what it would refuse is not read."""
+"""The fast reader returns what Oxigraph reads, and reads nothing that Oxigraph rejects."""
 
 import gc
 import tracemalloc
@@ -71,7 +71,7 @@ BAD = [
 
 
 def slowly(content):
-    """What Oxigraph reads."""
+    """Read with Oxigraph."""
     quads = pyoxigraph.parse(content, pyoxigraph.RdfFormat.TURTLE, base_iri=v.ABOX)
     return rdf._triples(quads, "f", lambda _: None)
 
@@ -82,7 +82,7 @@ def quickly(content):
 
 @st.composite
 def statements(draw):
-    """Statements in Turtle, broken into lines anywhere."""
+    """Statements in Turtle with line breaks anywhere."""
     text = ""
     for _ in range(draw(st.integers(1, 4))):
         words = [draw(SUBJECTS)]
@@ -106,7 +106,7 @@ def triples_in_full(draw):
 
 @pytest.fixture
 def few_are_many(monkeypatch):
-    """As if each kind of words were of very many."""
+    """Treat each kind of words as frequent."""
     monkeypatch.setattr(plain_words, "_FEWEST", 1)
 
 
@@ -195,7 +195,7 @@ def test_what_oxigraph_refuses_is_not_read(text, bad, at):
     content = (HEAD + " ".join(words)).encode()
     read = quickly(content)
     if read is not None:
-        assert read == slowly(content)  # which raises for what is not valid
+        assert read == slowly(content)  # it raises for invalid words
 
 
 @pytest.mark.parametrize(

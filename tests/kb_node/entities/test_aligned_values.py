@@ -1,4 +1,4 @@
-"""Maps in the words of SOMA and KnowRob: read, changed and given back in them."""
+"""Maps in the vocabularies of SOMA and KnowRob are read, changed and exported."""
 
 import math
 

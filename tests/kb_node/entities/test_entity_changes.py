@@ -1,4 +1,4 @@
-"""What a change of the triples does to the entities."""
+"""Effects of changed triples on entities."""
 
 from semmap.nodes.kb_node.documents import rdf
 from semmap.ontology import vocabulary as v

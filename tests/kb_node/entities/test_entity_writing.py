@@ -1,4 +1,4 @@
-"""What is wanted of entities, as a change of triples."""
+"""Edits of entities as changes of triples."""
 
 import pytest
 
@@ -14,7 +14,7 @@ TURNED = orientation_from_yaw(1.0)
 
 
 def edited(semantic_map, **fields):
-    """The commit that changes `chair1`, or the entity that is named."""
+    """Commit an edit of `chair1`, or of the named entity."""
     edit = (Edit(**{"name": "chair1", **fields}),)
     return semantic_map.commit(
         Transaction(id=f"edited{fields}{semantic_map.seq}", source="operator", edit=edit)
@@ -22,18 +22,18 @@ def edited(semantic_map, **fields):
 
 
 def added(semantic_map, name="chair1", **fields):
-    """The commit that adds a chair."""
+    """Commit a new chair."""
     new = (NewEntity(name=name, class_iri=v.bare(v.dm("Chair")), **fields),)
     return semantic_map.commit(Transaction(id=f"added {name}{semantic_map.seq}", source="operator", add=new))
 
 
 def removed(semantic_map, *names):
-    """The commit that takes entities out."""
+    """Commit the removal of entities."""
     return semantic_map.commit(Transaction(id=f"removed{semantic_map.seq}", source="operator", remove=names))
 
 
 def placed(semantic_map, **fields):
-    """The commit that puts `chair1` somewhere."""
+    """Commit a new position of `chair1`."""
     return edited(semantic_map, **fields)
 
 

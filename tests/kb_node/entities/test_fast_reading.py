@@ -1,4 +1,4 @@
-"""What is read at sight is what is read piece by piece."""
+"""Fast reading gives the same entities as reading them one by one."""
 
 from itertools import count
 
@@ -35,7 +35,7 @@ FAULTY = st.sampled_from(["1.0", "INF", "NaN", "1e30", "-1.0", "0.0"])
 
 @st.composite
 def pieces(draw):
-    """Which triples an entity of a shape has, as a function of its name and its numbers."""
+    """Triples of an entity by shape, as a function of its name and numbers."""
     coordinates = draw(st.sampled_from([0, 2, 3, 3, 3]))
     orientation = draw(st.sampled_from([0, 0, 1, 4]))
     size = draw(st.sampled_from([0, 3, 3]))
@@ -117,7 +117,7 @@ def _each_by_itself(semantic_map):
 
 
 def _said(read):
-    """The entities, or what is wrong with them."""
+    """Return the entities, or the error."""
     try:
         return list(read())
     except errors.BadRequest as error:

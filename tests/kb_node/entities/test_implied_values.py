@@ -1,4 +1,4 @@
-"""Who states one thing of how far open something is takes back what it makes untrue."""
+"""Setting one joint property clears the values that it contradicts."""
 
 from semmap.nodes.kb_node.entities.implied_values import imply_joint_values
 from semmap.ontology import vocabulary as v

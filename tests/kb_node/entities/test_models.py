@@ -1,4 +1,4 @@
-"""The model of an entity: stated, or chosen by its class, its name and its size."""
+"""The model of an entity is stated, or chosen by class, name and size."""
 
 import pytest
 
@@ -15,7 +15,7 @@ HERE = Pose(position_m=(1.0, 2.0, 0.0))
 
 @pytest.fixture
 def household(tmp_path):
-    """An empty map over the TBox that comes with semmap."""
+    """An empty map with the shipped TBox."""
     made = SemanticMap(home.new_household_journal(tmp_path))
     yield made
     home.close(made)

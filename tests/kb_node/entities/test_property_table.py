@@ -1,4 +1,4 @@
-"""Properties that may be stated: what they are called, what they take, and how they are said."""
+"""Properties that can be set: their names, values and syntax."""
 
 import pytest
 
@@ -63,8 +63,8 @@ def test_an_individual_that_does_not_exist_is_refused_with_those_that_do(statefu
         stated(stateful_map, "hasColor", "color_rde")
     with pytest.raises(errors.UnknownName, match="named 'kitchen2'; did you mean kitchen1"):
         stated(stateful_map, "isLocatedIn", "kitchen2")
-    with pytest.raises(errors.UnknownName, match="urn:nobody"):
-        stated(stateful_map, "isLocatedIn", "<urn:nobody>")
+    with pytest.raises(errors.UnknownName, match="urn:unknown"):
+        stated(stateful_map, "isLocatedIn", "<urn:unknown>")
     stated(stateful_map, "isLocatedIn", "kitchen1")
     assert properties(stateful_map) == {"isLocatedIn": ("kitchen1",)}
 
@@ -111,7 +111,7 @@ def test_what_is_unset_and_set_in_one_commit_is_replaced(stateful_map):
     edited(stateful_map, unset=(statement("hasColor"),), set=(statement("hasColor", "red"),))
     assert properties(stateful_map) == {"hasColor": ("color_red",)}
     same = edited(stateful_map, unset=(statement("hasColor"),), set=(statement("hasColor", "red"),))
-    assert same is None  # it was the only value, and is
+    assert same is None  # it was the only value, and still is
     edited(stateful_map, unset=(statement("hasColor", "red"),), set=(statement("ha colore", "blue"),))
     edited(stateful_map, unset=(statement("isOpen"),), set=(statement("isOpen", "true"),))
     assert properties(stateful_map) == {"hasColor": ("color_blue",), "isOpen": True}

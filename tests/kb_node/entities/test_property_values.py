@@ -1,4 +1,4 @@
-"""Values as people write them, and as JSON has them."""
+"""Property values as text and as JSON."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What changes the map, without the wire."""
+"""Changes of the map, without the wire."""
 
 from contextlib import contextmanager
 
@@ -17,7 +17,7 @@ CLASS = chair()[0][2].strip("<>")
 
 
 class Listener:
-    """What a node is told."""
+    """Records what the node publishes and reports."""
 
     def __init__(self):
         self.commits, self.refused, self.work = [], [], []

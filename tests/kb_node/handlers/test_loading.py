@@ -1,4 +1,4 @@
-"""LoadHandlers documents, without the wire."""
+"""Loading of documents, without the wire."""
 
 from contextlib import nullcontext
 
@@ -13,10 +13,10 @@ from semmap.schemas.entities import Pose
 
 class NoSparql:
     def prefetch(self, *document, packed):
-        """Nothing."""
+        """Do nothing."""
 
     def discard_prepared(self):
-        """Nothing."""
+        """Do nothing."""
 
 
 def loading(semantic_map, said):
@@ -55,6 +55,6 @@ def test_a_load_counts_what_it_describes_and_not_what_follows_of_others(flat):
     assert {entity.name for entity in loaded.commit.changed} == {
         "apple9",
         "bin1",
-    }  # which is a Filled_Thing now
+    }  # it is a Filled_Thing now
     assert loaded.names == ("apple9",)
     assert said[-1] == f"loading apple.nt: {len(star)} triples to check and write"

@@ -1,4 +1,4 @@
-"""The node's ends of the lanes, with this test in the place of readers and of the process that forks them."""
+"""The node's ends of the lanes; the test acts as the readers and the process that forks them."""
 
 import signal
 
@@ -23,7 +23,7 @@ WAIT_S = 30.0
 
 
 class Readers:
-    """What is sent to the process, and the readers' ends."""
+    """The messages to the process, and the readers' ends."""
 
     def __init__(self):
         self.sent = []
@@ -39,7 +39,7 @@ class Readers:
         return self.lanes.ask(Sparql(query=query, timeout=1.5), 7)
 
     def asked(self):
-        """The lanes in which a question waits for a reader."""
+        """Return the lanes in which a query waits for a reader."""
         return [number for number, lane in enumerate(self.lanes.remote_ends) if lane.poll(0)]
 
     def take(self, lane):
@@ -90,7 +90,7 @@ def test_a_reader_that_dies_of_its_query_takes_the_answer_with_it(readers):
         future.result(WAIT_S)
     following = readers.ask("next")
     assert readers.sent == [StartReader(lane=0), StartReader(lane=0)]
-    readers.answer(0, late)  # nobody waits for it
+    readers.answer(0, late)  # no client waits for it
     readers.answer(0, readers.take(0))
     assert following.result(WAIT_S).verdict
 
@@ -123,7 +123,7 @@ def test_in_the_end_nobody_waits(readers):
 
 
 def begun(readers, count, name="long"):
-    """So many queries, each with a lane."""
+    """Start so many queries, each with a lane."""
     futures = [readers.ask(f"{name} {number}") for number in range(count)]
     return futures, [readers.take(lane) for lane in range(count)]
 
@@ -139,11 +139,11 @@ def test_where_all_lanes_take_long_one_is_set_aside_for_who_waits_and_begun_anew
     assert question.query == "quick"
     readers.answer(LONG_RUNNING, question)
     assert quick.result(WAIT_S).verdict
-    assert readers.asked() == []  # still enough others take long
+    assert readers.asked() == []  # enough other queries are long-running
     readers.answer(0, taken[0])
     for lane in range(LONG_RUNNING + 1, LANES):
         readers.answer(lane, taken[lane])
-    (again,) = until(readers.asked, "it is begun anew")
+    (again,) = until(readers.asked, "it is started again")
     question = readers.take(again)
     assert question == taken[LONG_RUNNING]
     readers.answer(again, question)

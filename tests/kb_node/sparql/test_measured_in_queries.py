@@ -1,4 +1,4 @@
-"""Relations that are measured on demand, as queries and standing queries see them: those of the moment."""
+"""Relations measured on demand, in queries and standing queries."""
 
 import queue
 import random
@@ -36,7 +36,7 @@ def service(flat, news):
 
 
 def told(flat, wanted):
-    """The pairs of entities' IRIs of which `semmap relations` tells it, and those of which it follows."""
+    """Return the pairs of IRIs with the relation by `semmap relations`, and those inferred from it."""
     space, found = flat.places.space(), set()
     iris = {entity.name: v.iri(entity.iri) for entity in flat.entities()}
     things = [solid for solid in space.solids.values() if not solid.is_place]
@@ -61,7 +61,7 @@ def mirrored(flat, wanted):
 
 def ask(service, flat, query):
     rows = service.ask(Sparql(query=query, inferred=True), flat.seq).result(WAIT_S).rows
-    assert len(set(rows)) == len(rows)  # nothing is told by two graphs
+    assert len(set(rows)) == len(rows)  # no triple is in two graphs
     return set(rows)
 
 
@@ -84,7 +84,7 @@ def test_a_query_sees_what_relations_tells(flat, service, name):
     assert rows == mirrored(flat, name) != set()
     space, by_iri = flat.places.space(), {v.iri(entity.iri): entity.name for entity in flat.entities()}
     for s, o in list(rows)[:20]:
-        if name != "touches":  # what is on another touches it, too, and may be told with a gap
+        if name != "touches":  # an object on another touches it, too, possibly with a gap
             assert explained(space, by_iri[s], name, by_iri[o]).holds
 
 
@@ -160,7 +160,7 @@ def test_standing_queries_have_the_rows_that_there_are(flat, service, news, comm
     for number in range(commits):
         stir(flat, service, dice, number, things, spots)
         truth[flat.seq] = {name: mirrored(flat, name) for name in NAMES}
-    service.ask(Watch(query="SELECT ?x { ?x a dm:Cup }"), flat.seq).result(WAIT_S)  # all looks are done
+    service.ask(Watch(query="SELECT ?x { ?x a dm:Cup }"), flat.seq).result(WAIT_S)  # all evaluations are done
     changes = 0
     while not news.empty():
         change = news.get().rows

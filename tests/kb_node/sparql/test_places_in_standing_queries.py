@@ -1,4 +1,4 @@
-"""Standing queries over computed facts: after each of 300 commits they have the rows that there are."""
+"""Standing queries over computed facts have the right rows after each of 300 commits."""
 
 import queue
 import random
@@ -32,7 +32,7 @@ QUERIES = {
     "SELECT DISTINCT ?x { ?x dm:isLocatedIn :kitchen1 . ?x a dm:Graspable_Thing }": in_kitchen,
     "SELECT DISTINCT ?x { ?x a dm:Laden_Thing }": laden,
 }
-"""Each with what the map's own reasoner says to it."""
+"""Each with the same question to the map's own reasoner."""
 
 
 @pytest.mark.long
@@ -56,7 +56,7 @@ def test_they_have_the_rows_that_there_are(flat):
     for query, evaluate in QUERIES.items():
         asked = service.ask(Sparql(query=query, inferred=True), flat.seq).result(WAIT_S)
         assert set(asked.rows) == truth[flat.seq][evaluate]
-    service.ask(Watch(query="SELECT ?x { ?x a dm:Cup }"), flat.seq).result(WAIT_S)  # all looks are done
+    service.ask(Watch(query="SELECT ?x { ?x a dm:Cup }"), flat.seq).result(WAIT_S)  # all evaluations are done
     told = 0
     while not news.empty():
         change = news.get().rows

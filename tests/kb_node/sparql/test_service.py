@@ -1,4 +1,4 @@
-"""The SPARQL process from the outside: asked, fed with commits, starved, killed."""
+"""The SPARQL process from outside: queries, commits, memory limits and kills."""
 
 import os
 import queue
@@ -32,7 +32,7 @@ GREEDY = "SELECT DISTINCT * { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i } ORDER BY ?c ?f"
 
 
 class Home:
-    """A map without a node: a reasoner as the truth, and the service that follows it."""
+    """A map without a node: a reasoner as reference, and the service that follows it."""
 
     def __init__(self, triples):
         self.reasoner = Reasoner(triples)
@@ -66,7 +66,7 @@ class Home:
         self.service.follow(commit, self.derived_facts.derived_changes)
 
     def replace(self, triples):
-        """Another TBox."""
+        """Replace the TBox."""
         self.reasoner = Reasoner(triples)
         self.derived_facts = DerivedFacts(self.reasoner)
         self.seq += 1
@@ -94,7 +94,7 @@ def at_home():
 
 @pytest.fixture(scope="module")
 def flat():
-    """One for all tests: whatever was cancelled, it goes on."""
+    """One service for all tests; it survives cancelled queries."""
     files = (HOUSEHOLD_TTL, FLAT_TTL)
     made = Home(
         [t for file in files for t in rdf.parse(file.read_bytes(), file.name, label_prefix=file.stem)]
@@ -331,7 +331,7 @@ def _there(entity):
 
 
 def test_what_is_computed_is_told_as_what_a_question_finds(at_home):
-    """Standing queries over where things are, over random moves: their rows are those of a new question."""
+    """Standing location queries over random moves have the rows of a new query."""
     at_home.replace(rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household.ttl", label_prefix="h"))
     dice = random.Random(5)
     room, table = _there(ROOM), _there(structs.replace(TABLE, name="oak1"))

@@ -1,4 +1,4 @@
-"""The SPARQL process's core in this process, with readers of its own, and lanes that this test asks on."""
+"""The SPARQL worker in this process, with its own readers, and lanes that the test uses."""
 
 from multiprocessing.connection import Pipe, wait
 
@@ -26,7 +26,7 @@ CHAIRS = "SELECT ?c { ?c a dm:Chair }"
 
 
 class Process:
-    """A worker, the other ends of its lanes, and what it has sent."""
+    """A worker, the remote ends of its lanes, and the messages that it sent."""
 
     def __init__(self, *, infers):
         self.sent = []
@@ -36,7 +36,7 @@ class Process:
         self.seq = 0
 
     def commit(self):
-        """One more chair."""
+        """Add a chair."""
         self.seq += 1
         chair = (v.entity_iri(f"c{self.seq}"), v.RDF_TYPE, v.dm("Chair"))
         self.worker.take(Committed(delta=Delta(seq=self.seq, inserted=(chair,))))
@@ -53,7 +53,7 @@ class Process:
         self.lanes[lane].send_bytes(msgpack.encode(question))
 
     def await_taken(self, lane):
-        """Wait until a reader has taken the question that was asked."""
+        """Wait until a reader has taken the query."""
         until(lambda: not self._theirs[lane].poll(0), "a reader has taken the question")
 
     def hire(self, lane):
@@ -67,7 +67,7 @@ class Process:
         return len(msgpack.decode(self.hear(lane).result, type=SparqlResult).rows)
 
     def bury_one(self):
-        """Notice the end of a reader."""
+        """Wait for the exit of a reader."""
         self.worker.done(wait(list(self.worker.connections), WAIT_S)[0])
         return self.sent.pop()
 
@@ -126,7 +126,7 @@ def test_a_reader_that_cannot_follow_goes_and_leaves_the_question(process):
 
 def test_one_that_has_taken_the_question_gives_it_back(process):
     process.hire(0)
-    process.ask(0, SEATS, inferred=True)  # which its triples cannot answer
+    process.ask(0, SEATS, inferred=True)  # its triples are too old for it
     process.await_taken(0)
     process.worker.take(Load(seq=0, asserted=tuple(home.TBOX), infers=True))
     assert process.hear(0).old

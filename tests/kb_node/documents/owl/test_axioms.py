@@ -1,4 +1,4 @@
-"""Each construct of OWL in functional syntax, against the triples that the W3C's mapping has for it."""
+"""Each OWL construct in functional syntax, compared with the triples of the W3C mapping."""
 
 from __future__ import annotations
 
@@ -215,7 +215,7 @@ def test_an_ontology_without_a_name_is_one():
 
 @pytest.mark.parametrize("file", ["SOMA.owl", "DUL.owl"])
 def test_another_reader_finds_the_same_axioms_in_the_triples(file):
-    """The RDF reader of the library that read the axioms is the judge of their triples."""
+    """Compare with the library's own RDF reader."""
     path = data_folder() / "ontologies" / "soma" / file
     if not path.exists():
         pytest.skip(f"there is no {path}")

@@ -1,4 +1,4 @@
-"""OWL's own syntaxes say the same, are told apart by content, and have their faults told with a line."""
+"""The OWL syntaxes are equivalent, recognised by content, and report errors with a line."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def test_what_is_in_an_ontology(report, tmp_path):
 
 
 def test_a_class_whose_members_would_need_what_cannot_be_is_unsatisfiable(report):
-    """As the ice cream of the Pizza ontology, which no rule of OWL 2 RL finds."""
+    """Like the ice cream of the Pizza ontology, which no rule of OWL 2 RL finds."""
     found = report("""
 :Topping a owl:Class . :hasTopping a owl:ObjectProperty ; rdfs:domain :Cup ; rdfs:label "has topping" .
 :Ice rdfs:label "ice cream" ; a owl:Class ; rdfs:subClassOf :Plate ,

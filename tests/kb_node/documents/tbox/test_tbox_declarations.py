@@ -1,4 +1,4 @@
-"""Prefixes, spatial roots, and what is set aside: told of a TBox, kept in it."""
+"""Prefixes, spatial roots and ignored statements are declared in the TBox and kept."""
 
 import pytest
 

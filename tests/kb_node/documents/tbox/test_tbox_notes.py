@@ -68,7 +68,7 @@ def test_what_keeps_changes_from_being_quick_is_told_with_how_long_one_takes():
 
 
 def test_that_nothing_is_computed_of_places_is_told():
-    """Of a TBox that has some of the properties, those are facts."""
+    """If a TBox has some of the properties, facts are computed for those."""
     lab = [
         t for t in home.TBOX if v.local_name(t[0]) not in {"isOn", "isInside", "isLocatedIn", "isAttachedTo"}
     ]

@@ -1,4 +1,4 @@
-"""Another TBox at run time."""
+"""Replacing the TBox at run time."""
 
 import pytest
 

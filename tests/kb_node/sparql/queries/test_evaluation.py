@@ -86,7 +86,7 @@ def _by_commits(triples):
             "SELECT (COUNT(*) AS ?n) { ?x a dm:Chiar }",
             ["unknown term dm:Chiar; did you mean dm:Chair?"],
         ),
-        ("ASK { :nobody a dm:Chair }", ["unknown term :nobody"]),
+        ("ASK { :ghost9 a dm:Chair }", ["unknown term :ghost9"]),
         ("PREFIX my: <urn:my#> SELECT * { ?x my:x <urn:y> }", ["... my:x", "... <urn:y>"]),
         ("CONSTRUCT { ?x a dm:Chair } { ?x a <http://x.org/y> }", ["... <http://x.org/y>"]),
         ("SELECT * { ?x a dm:Chair , dm:Table }", []),  # all of these are known, and none is both

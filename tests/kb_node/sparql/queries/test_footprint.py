@@ -1,4 +1,4 @@
-"""A commit that a footprint says nothing of changes no rows."""
+"""A commit outside of a query's footprint does not change its rows."""
 
 import pytest
 from hypothesis import given, settings

@@ -1,4 +1,4 @@
-"""Which queries may look at properties that have to be measured, by their text."""
+"""Queries that may use measured properties are recognised by their text."""
 
 import pytest
 

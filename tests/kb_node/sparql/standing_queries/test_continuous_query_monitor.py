@@ -1,4 +1,4 @@
-"""StandingQuery queries, with a reader that takes its time."""
+"""Standing queries with a slow reader."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from semmap.schemas.sparql import SparqlResult
 
 
 class Slow:
-    """A reader that answers when the test says so."""
+    """A reader that replies when the test tells it to."""
 
     def __init__(self, lane: Connection):
         self._lane = Connection(os.dup(lane.fileno()))

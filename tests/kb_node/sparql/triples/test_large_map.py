@@ -1,4 +1,4 @@
-"""A large map's triples for SPARQL: in a store on disk, made beside other work, kept, cloned and followed."""
+"""The store on disk of a large map: created in the background, kept, cloned and updated."""
 
 import gzip
 import queue
@@ -27,7 +27,7 @@ COUNT = "SELECT (COUNT(?c) AS ?n) { ?c a dm:Chair }"
 
 
 class Node:
-    """A map with its SPARQL service; this test's thread is the node's."""
+    """A map with its SPARQL service; the test's thread acts as the node's."""
 
     def __init__(self, semantic_map, large=40):
         self.map = semantic_map
@@ -53,7 +53,7 @@ class Node:
         return commit
 
     def until(self, future):
-        """The result of a future; meanwhile the node's thread does what it is to do."""
+        """Return the result of a future, and run the node's tasks in the meantime."""
         while not future.done():
             try:
                 self.events.get(timeout=0.05)()
@@ -146,7 +146,7 @@ def test_commits_while_the_store_is_made_are_in_it(node):
 
 
 def test_no_answer_is_of_a_map_that_never_was(node):
-    """The store may hold some of a later commit; who asks before that is answered as of it."""
+    """The store may contain parts of a later commit; earlier queries are answered as of that commit."""
     answer = node.service.ask(
         Sparql(query="SELECT ?c ?p { ?c a dm:Chair ; dm:hasPosition ?p }"), node.map.seq
     )
@@ -209,7 +209,7 @@ def test_nothing_stays_of_a_store_whose_commit_was_not_made(tmp_path, monkeypatc
 def test_a_store_foretold_for_a_commit_that_was_taken_back_is_not_another_ones(tmp_path):
     node = Node(new_map(tmp_path), large=50)
     try:
-        node.map.commit(transaction("a", chairs(30)))  # and nobody hears of it again
+        node.map.commit(transaction("a", chairs(30)))  # and it is not reported again
         node.map.commit(transaction("b", retract=chairs(20)))
         node.commit("c", [t for i in range(30) for t in chair(f"stool{i}")])
         assert node.count() == 40
@@ -226,7 +226,7 @@ def test_the_store_is_filled_from_a_document_while_it_is_read(tmp_path, monkeypa
     node = Node(new_map(tmp_path), large=50)
     node.map.commit(transaction("one", chair("one")))
     try:
-        said = [*chairs(30), *chairs(2), *chair("one")]  # some of it twice, and some that is there already
+        said = [*chairs(30), *chairs(2), *chair("one")]  # some of it twice, and some that exists already
         packed = gzip.compress(turtle(said)) if is_packed else b""
         node.service.prefetch("many", turtle(said), v.ABOX, packed=packed)
         monkeypatch.setattr(node.map.reasoner, "by_subject", None)  # nothing is read again

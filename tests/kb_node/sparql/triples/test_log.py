@@ -1,4 +1,4 @@
-"""The log between processes: whoever was forked reads what came since, once."""
+"""Each forked process reads the commits of the log once."""
 
 import os
 

@@ -107,7 +107,7 @@ def test_a_clock_that_went_wrong_does_not_decide(tmp_path, day):
     home.close(semantic_map)
 
 
-def test_where_the_history_begins_is_asserted(semantic_map, day):
+def test_where_the_history_begins_is_reported(semantic_map, day):
     journal, past = semantic_map._journal, Past(semantic_map._journal)
     stamp_ns = journal.stamps.of(6)
     compaction.compact(journal, past, 6)

@@ -143,6 +143,6 @@ def test_damage_is_told_of_the_map_itself_and_only_if_it_is_in_the_span(data, fo
     assert prepare(data, folder, until=4) == (1, 4)
 
 
-def test_where_there_is_no_map_that_is_asserted(tmp_path, folder):
+def test_where_there_is_no_map_that_is_reported(tmp_path, folder):
     with pytest.raises(errors.BadFile, match=f"there is no map in {tmp_path}"):
         prepare(tmp_path, folder)
