@@ -32,7 +32,7 @@ def _worked_on(folder):
     return refusal.value.text, state(again)[1], count
 
 
-def test_a_large_change_is_made_in_parts_and_is_the_same(tmp_path, monkeypatch):
+def test_a_large_change_in_parts_gives_the_same_result(tmp_path, monkeypatch):
     *whole, beats = _worked_on(tmp_path / "whole")
     monkeypatch.setattr("semmap.nodes.kb_node.applier.PART", 7)
     *in_parts, more_beats = _worked_on(tmp_path / "parts")

@@ -61,7 +61,7 @@ def told(tmp_path):
     journal.close()
 
 
-def test_a_commit_is_published_with_what_it_changed_of_places_and_the_journal_has_none_of_it(told):
+def test_a_commit_is_published_with_location_changes_that_the_journal_omits(told):
     told.commit(insert=FLAT)
     added = told.commit(
         add=(NewEntity(name="cup9", class_iri=v.bare(v.dm("Cup")), pose=Pose(position_m=(8.2, 0.3, 0.9))),)
@@ -77,7 +77,7 @@ def test_a_commit_is_published_with_what_it_changed_of_places_and_the_journal_ha
     assert [commit.places for commit in told.map._journal.commits()] == [None] * 5
 
 
-def test_news_of_an_entity_tell_where_it_is_also_when_something_else_moved(told):
+def test_entity_messages_include_the_location_also_if_another_entity_moved(told):
     told.commit(insert=FLAT)
     told.heard("Glass")
     told.commit(edit=(Edit(name="table1", at=(6.0, 3.5, 0.0)),))

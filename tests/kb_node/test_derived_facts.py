@@ -138,7 +138,7 @@ SETTINGS = settings(deadline=None, derandomize=True, suppress_health_check=list(
 
 @settings(SETTINGS, max_examples=80)
 @given(COMMITS, st.sampled_from([1, paths.MANY]))
-def test_commit_by_commit_it_is_as_from_nothing(commits, many):
+def test_incremental_results_equal_those_from_scratch(commits, many):
     with mock.patch.object(paths, "MANY", many):
         follow_from_nothing(commits)
 
@@ -160,7 +160,7 @@ def follow_from_nothing(commits):
 
 @settings(SETTINGS, max_examples=40)
 @given(COMMITS, COMMITS)
-def test_taking_back_is_as_before(first, second):
+def test_a_reverted_commit_restores_the_state(first, second):
     home = Home()
     for insert, delete, moved, removed in first:
         home.commit(insert, delete, moved, [n for n in removed if n not in {e.name for e in moved}])
@@ -178,7 +178,7 @@ def test_taking_back_is_as_before(first, second):
                 return
 
 
-def test_what_is_computed_has_consequences():
+def test_computed_facts_have_inferences():
     home = Home(ROOM, SHELF, HERE, said=":cup1 a dm:Cup .")
     assert home.reasoner.is_computed(ON)
     assert home.holds(graphs.triple(":shelf1 a dm:Laden"))
@@ -189,7 +189,7 @@ def test_what_is_computed_has_consequences():
     assert not home.holds(graphs.triple(":shelf1 a dm:Laden"))
 
 
-def test_a_move_that_changes_no_relation_is_no_work_for_the_reasoner(monkeypatch):
+def test_a_move_without_changed_relations_does_not_change_the_reasoner(monkeypatch):
     home = Home(ROOM, SHELF, HERE)
     asked = []
     monkeypatch.setattr(home.reasoner, "believe", lambda **kinds: asked.append(kinds))
@@ -197,7 +197,7 @@ def test_a_move_that_changes_no_relation_is_no_work_for_the_reasoner(monkeypatch
     assert not asked
 
 
-def test_what_geometry_denies_does_not_hold_and_stays_asserted():
+def test_assertions_that_the_geometry_denies_stay_asserted():
     home = Home(ROOM, SHELF, AWAY, said=":cup1 dm:isOn :shelf1 .")
     assert not home.holds(ON)
     assert not home.holds(IN)
@@ -211,14 +211,14 @@ def test_what_geometry_denies_does_not_hold_and_stays_asserted():
     assert not set(home.reasoner.set_aside())
 
 
-def test_what_is_no_longer_asserted_may_still_be_computed():
+def test_a_retracted_fact_may_still_be_computed():
     home = Home(ROOM, SHELF, HERE, said=":cup1 dm:isOn :shelf1 .")
     assert not home.reasoner.is_computed(ON)
     home.commit(delete=[ON])
     assert home.reasoner.is_computed(ON)
 
 
-def test_nothing_that_is_computed_refuses_a_commit():
+def test_computed_facts_never_reject_a_commit():
     home = Home(ROOM, SHELF, HERE)
     assert home.commit(graphs.triples(":room1 a dm:Cup ."))
     assert not home.holds(IN)
@@ -230,7 +230,7 @@ def test_nothing_that_is_computed_refuses_a_commit():
     assert not home.derived_facts.suppressed
 
 
-def test_of_two_that_contradict_each_other_the_last_is_withheld_whoever_came_first():
+def test_of_two_contradicting_facts_the_last_is_suppressed_in_any_order():
     cups = [placed("cup1", 0.0, TOP), placed("cup2", 0.3, TOP)]
     for order in (cups, cups[::-1]):
         home = Home(ROOM, SHELF, said=":shelf1 a dm:Barred .")
@@ -241,7 +241,7 @@ def test_of_two_that_contradict_each_other_the_last_is_withheld_whoever_came_fir
         assert home.holds(graphs.triple(":cup2 dm:isOn :shelf1"))
 
 
-def test_what_comes_back_and_contradicts_what_was_said_meanwhile_is_withheld():
+def test_a_restored_assertion_that_contradicts_newer_ones_is_suppressed():
     home = Home(ROOM, SHELF, AWAY, said=":cup1 dm:isOn :shelf1 .")
     inside = graphs.triple(":cup1 dm:isInside :shelf1")
     assert home.commit([inside])
@@ -250,7 +250,7 @@ def test_what_comes_back_and_contradicts_what_was_said_meanwhile_is_withheld():
     assert home.state() == home.from_nothing()
 
 
-def test_what_is_said_to_be_in_itself_is_denied_only_while_it_is_there():
+def test_an_entity_that_is_located_in_itself_is_denied_while_it_exists():
     home = Home(said=":flat1 dm:isInside :flat1 .")
     home.commit(moved=[placed("flat1", None)])
     assert set(home.reasoner.set_aside()) == set(graphs.triples(":flat1 dm:isInside :flat1 ."))

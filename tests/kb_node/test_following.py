@@ -68,7 +68,7 @@ def agrees(semantic_map):
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_commits_between_the_steps_change_nothing_of_the_outcome(restarted, seed):
+def test_commits_between_the_steps_do_not_change_the_result(restarted, seed):
     dice = random.Random(seed)
     begin(restarted)
     for i in range(20):
@@ -85,7 +85,7 @@ def test_commits_between_the_steps_change_nothing_of_the_outcome(restarted, seed
     assert agrees(restarted)
 
 
-def test_what_is_computed_for_a_commit_holds_at_once(restarted):
+def test_computed_facts_of_a_commit_hold_immediately(restarted):
     begin(restarted)
     cup, table = restarted.entity("more1"), restarted.entity("more3")
     x, y, z = table.pose.position_m
@@ -95,7 +95,7 @@ def test_what_is_computed_for_a_commit_holds_at_once(restarted):
     assert not restarted._derived_all
 
 
-def test_a_commit_that_is_refused_leaves_all(restarted):
+def test_a_rejected_commit_changes_nothing(restarted):
     begin(restarted)
     add = (new(restarted, "more1", (0.0, 0.0, 0.0)),)
     with pytest.raises(errors.NameTaken):
@@ -104,7 +104,7 @@ def test_a_commit_that_is_refused_leaves_all(restarted):
     assert agrees(restarted)
 
 
-def test_what_is_asserted_of_places_needs_all_of_it(restarted):
+def test_asserted_locations_need_all_facts(restarted):
     begin(restarted)
     said = (v.entity_iri("more1"), v.dm("isOn"), v.entity_iri("more2"))
     restarted.commit(Transaction(id="said", source="operator", insert=(said,)))

@@ -112,7 +112,7 @@ def alone(monkeypatch, semantic_map, *transactions):
 
 
 @pytest.mark.parametrize("form", [wanted, said])
-def test_with_a_process_and_without_a_load_is_the_same(new_map, helped, monkeypatch, form):
+def test_a_load_gives_the_same_result_with_and_without_the_process(new_map, helped, monkeypatch, form):
     semantic_map, load = new_map(), form(things())
     there = seen(semantic_map, semantic_map.commit(load))
     assert helped == [True]
@@ -120,7 +120,7 @@ def test_with_a_process_and_without_a_load_is_the_same(new_map, helped, monkeypa
     assert any(p == v.dm("isOn") for _, p, _ in there[3])
 
 
-def test_what_is_there_already_counts(new_map, helped, monkeypatch):
+def test_existing_entities_are_included(new_map, helped, monkeypatch):
     first, second = wanted(things(90), "first"), said(things(200, first=90), "second")
     semantic_map = new_map()
     semantic_map.commit(first)
@@ -129,21 +129,21 @@ def test_what_is_there_already_counts(new_map, helped, monkeypatch):
     assert there == alone(monkeypatch, new_map(), first, second)
 
 
-def test_where_more_is_there_than_comes_nothing_is_foreseen(new_map, helped):
+def test_a_map_with_more_entities_than_the_load_has_no_prediction(new_map, helped):
     semantic_map = new_map()
     semantic_map.commit(wanted(things(3 * MANY), "first"))
     semantic_map.commit(wanted(things(2 * MANY, first=3 * MANY), "second"))
     assert helped == [True]
 
 
-def test_few_need_no_process(new_map, monkeypatch):
+def test_small_loads_need_no_process(new_map, monkeypatch):
     monkeypatch.setattr(map_state, "Ahead", None)
     semantic_map = new_map()
     assert semantic_map.commit(wanted(things())).changed
     assert semantic_map.commit(said(things(100, first=1000), "second")).changed
 
 
-def test_a_guess_that_was_wrong_is_worked_out_here(new_map, helped, monkeypatch):
+def test_a_wrong_prediction_is_corrected(new_map, helped, monkeypatch):
     """The entity has two classes, and the prediction used the model of the other one."""
     load = said(things())
     second = (v.entity_iri("table6"), v.RDF_TYPE, v.dm("Physical_Thing"))
@@ -154,7 +154,7 @@ def test_a_guess_that_was_wrong_is_worked_out_here(new_map, helped, monkeypatch)
     assert there == alone(monkeypatch, new_map(), load)
 
 
-def test_a_process_that_dies_costs_nothing_but_time(new_map, few_are_many, monkeypatch, caplog):
+def test_a_process_that_dies_costs_only_time(new_map, few_are_many, monkeypatch, caplog):
     monkeypatch.setattr(map_state, "Ahead", partial(Ahead, command=DIES))
     semantic_map, load = new_map(), wanted(things())
     there = seen(semantic_map, semantic_map.commit(load))
@@ -162,14 +162,14 @@ def test_a_process_that_dies_costs_nothing_but_time(new_map, few_are_many, monke
     assert there == alone(monkeypatch, new_map(), load)
 
 
-def test_one_that_does_not_start_is_done_without(new_map, few_are_many, monkeypatch):
+def test_a_process_that_does_not_start_is_not_needed(new_map, few_are_many, monkeypatch):
     monkeypatch.setattr(map_state, "Ahead", partial(Ahead, command=["/nowhere/python"]))
     semantic_map, load = new_map(), wanted(things())
     there = seen(semantic_map, semantic_map.commit(load))
     assert there == alone(monkeypatch, new_map(), load)
 
 
-def test_a_load_that_is_refused_leaves_no_process_and_nothing_behind(new_map, few_are_many, monkeypatch):
+def test_a_rejected_load_leaves_no_process_behind(new_map, few_are_many, monkeypatch):
     processes = []
 
     def kept(*args):
@@ -192,7 +192,7 @@ def test_a_load_that_is_refused_leaves_no_process_and_nothing_behind(new_map, fe
     assert semantic_map.commit(wanted(things())).changed
 
 
-def test_a_dry_run_foresees_too_and_changes_nothing(new_map, helped):
+def test_a_dry_run_uses_the_prediction_and_changes_nothing(new_map, helped):
     semantic_map, load = new_map(), wanted(things())
     tried = dry_runs.dry_run(semantic_map, lambda: semantic_map.commit(load))
     assert helped == [True]
@@ -200,7 +200,7 @@ def test_a_dry_run_foresees_too_and_changes_nothing(new_map, helped):
     assert semantic_map.commit(load).names == tried.names
 
 
-def test_what_is_not_plain_is_not_foreseen(new_map, few_are_many):
+def test_unusual_transactions_are_not_predicted(new_map, few_are_many):
     classes, new = new_map().classes, list(things())
 
     def has(load):

@@ -134,7 +134,7 @@ def test_a_commit_is_replied_and_published(session):
     subscriber.undeclare()
 
 
-def test_the_coordinator_is_not_told_again_of_what_a_reply_tells_it(session):
+def test_the_coordinator_is_not_notified_twice(session):
     untold, subscriber = followed(session, keys.UNTOLD)
     commits, other = followed(session, keys.COMMIT)
     told = ask(session, "commit", structs.replace(transaction("t1", chair("t1")), told=True))
@@ -174,7 +174,7 @@ def test_entities_are_published_under_each_class_and_deleted_at_their_end(sessio
     subscriber.undeclare()
 
 
-def test_the_tbox_that_holds_is_no_change(session):
+def test_loading_the_current_tbox_changes_nothing(session):
     def load(number, text):
         order = LoadTBox(id=f"tbox{number}", source="file", content=text.encode(), filename="tbox.ttl")
         return ask(session, "load-tbox", order)
@@ -218,7 +218,7 @@ def test_questions_are_answered(session):
     assert (v.entity_iri("q"), v.RDF_TYPE, v.dm("Seat")) in rdf.parse(document.content, "export")
 
 
-def test_what_was_said_of_a_place_is_compared_with_what_is_seen(session):
+def test_asserted_locations_are_compared_with_the_geometry(session):
     kitchen = stars.star(
         "k9", v.dm("Kitchen"), pose=Pose(position_m=(50.0, 0.0, 0.0)), size_m=(4.0, 4.0, 2.5)
     )
@@ -251,7 +251,7 @@ def load(number, content, **fields):
     return LoadDocument(id=number, source="file", content=content.encode(), filename="f.ttl", **fields)
 
 
-def test_look_ups_are_answered_without_anybody_between(session):
+def test_look_ups_need_no_other_process(session):
     commit = ask(session, "commit", transaction("looked_up", chair("looked_up")))
     query = Sparql(query="SELECT ?class { :looked_up a ?class }")
     result = bus.ask(session, keys.CMD, "sparql", query, reply_type(BRIDGE["sparql"]))
@@ -259,7 +259,7 @@ def test_look_ups_are_answered_without_anybody_between(session):
     assert result.seq == commit.seq
 
 
-def test_documents_are_loaded_whole_or_not_at_all(session):
+def test_documents_are_loaded_completely_or_not_at_all(session):
     loaded = ask(session, "load", load("l1", PREFIXES + ":l a dm:Chair . :m a dm:Moon .", skip_unknown=True))
     assert loaded.skipped == ("m (unknown class 'Moon')",)
     before = ask(session, "snapshot", SnapshotQuery())
@@ -277,7 +277,7 @@ def test_documents_are_loaded_whole_or_not_at_all(session):
     assert [e.name for e in ask(session, "snapshot", SnapshotQuery()).entities] == ["only"]
 
 
-def test_packed_documents_are_loaded(session):
+def test_compressed_documents_are_loaded(session):
     packed = structs.replace(load("gz1", ""), content=gzip.compress((PREFIXES + ":gz a dm:Chair .").encode()))
     assert ask(session, "load", packed).names == ("gz",)
     with pytest.raises(errors.BadFile, match="ends too early to be unpacked"):
@@ -308,13 +308,13 @@ def test_packed_documents_are_loaded(session):
         ("get", codec.encode({"name": "ghost9"}), errors.UnknownName, "no entity is named 'ghost9'"),
     ],
 )
-def test_a_bad_request_is_answered_with_an_error(session, verb, payload, error, text):
+def test_an_invalid_request_is_answered_with_an_error(session, verb, payload, error, text):
     (reply,) = session.get(f"{keys.BRIDGE}/{verb}", payload=payload)
     with pytest.raises(error, match=text):
         bus.read_reply(verb, reply, Entity, 1.0)
 
 
-def test_a_second_knowledge_base_on_the_same_data_is_refused(bench, session):
+def test_a_second_knowledge_base_on_the_same_data_is_rejected(bench, session):
     ask(session, "snapshot", SnapshotQuery())
     with ended(bench.start()) as second:
         _, text = second.communicate(timeout=PATIENCE_S)
@@ -348,7 +348,7 @@ def test_no_acknowledged_commit_is_lost_when_the_process_is_killed(tmp_path):
     assert snapshot.seq - 1 - len(acknowledged) in (0, 1)
 
 
-def test_things_are_told_of_by_what_they_are_called(session):
+def test_descriptions_use_the_labels(session):
     seat = chair("seat9", (80.0, 0.0, 0.0), preferred="the old seat")
     ask(session, "commit", transaction("seat", [*seat, *chair("seat10", (80.5, 0.0, 0.0))]))
     by_name = ask(session, "relations", Relations(name="seat9", other="seat10"))

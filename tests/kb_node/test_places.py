@@ -111,7 +111,7 @@ def where(semantic_map, name):
     return semantic_map.entity(name).pose.position_m
 
 
-def test_a_move_takes_back_what_geometry_then_denies(room):
+def test_a_move_retracts_assertions_that_the_geometry_denies(room):
     say(room, "cup1", "isOn", "table1")
     say(room, "cup1", "isLocatedIn", "kitchen1")
     before = home.state(room)[1:]
@@ -125,14 +125,14 @@ def test_a_move_takes_back_what_geometry_then_denies(room):
     assert said(room) == {("cup1", "table1")}
 
 
-def test_so_does_the_move_of_the_other_one_and_what_is_said_the_other_way_round(room):
+def test_moving_the_support_retracts_them_and_inverse_assertions_too(room):
     say(room, "table1", "supports", "cup1")
     made = move(room, "table1", (-3.0, 0.0, 0.0))
     assert stands(made.notes) == ["retracted: cup1 was said to be on table1; it stands"]
     assert said(room, "supports") == set()
 
 
-def test_so_does_another_size(room):
+def test_a_new_size_retracts_them_too(room):
     say(room, "cup1", "isOn", "table1")
     say(room, "cup1", "isOn", "tray1")
     assert not commit(room, edit=(Edit(name="table1", size=(1.4, 0.9, TOP)),)).notes
@@ -141,14 +141,14 @@ def test_so_does_another_size(room):
     assert said(room) == {("cup1", "tray1")}
 
 
-def test_what_still_holds_stays(room):
+def test_assertions_that_still_hold_are_kept(room):
     say(room, "cup1", "isOn", "tray1")
     say(room, "cup1", "isOn", "table1")
     assert not move(room, "cup1", (0.1, 0.1, TOP + 0.02)).notes
     assert said(room) == {("cup1", "tray1"), ("cup1", "table1")}
 
 
-def test_what_is_said_against_geometry_stays_and_is_noted(room):
+def test_an_assertion_against_the_geometry_is_kept_and_noted(room):
     made = say(room, "cup1", "isOn", "table2")
     assert stands(made.notes) == ["cup1 was said to be on table2; it stands"]
     assert said(room) == {("cup1", "table2")}
@@ -160,7 +160,7 @@ def test_what_is_said_against_geometry_stays_and_is_noted(room):
     assert said(room) == set()
 
 
-def test_what_one_commit_says_it_does_not_take_back(room):
+def test_assertions_of_the_same_commit_are_not_retracted(room):
     say(room, "cup1", "isOn", "table1")
     edit = Edit(name="cup1", at=(3.0, 3.0, 0.0), set=(Statement(property="isOn", values=("table2",)),))
     made = commit(room, edit=(edit,))
@@ -171,12 +171,12 @@ def test_what_one_commit_says_it_does_not_take_back(room):
     assert said(room) == {("cup1", "table2")}
 
 
-def test_what_came_with_an_addition_is_noted(room):
+def test_assertions_of_a_new_entity_are_noted(room):
     made = commit(room, add=(new("book1", "Book", (5.0, 0.0, 0.0), on="table2"),))
     assert stands(made.notes) == ["book1 was said to be on table2; it stands"]
 
 
-def test_nothing_is_denied_that_is_not_known(room):
+def test_unknown_geometry_denies_nothing(room):
     """Flat maps have no sizes, and some entities no position."""
     commit(
         room,
@@ -191,13 +191,13 @@ def test_nothing_is_denied_that_is_not_known(room):
     assert said(room) == {("lost1", "table1"), ("thing2", "thing1")}
 
 
-def test_what_gets_its_first_position_is_moved(room):
+def test_a_first_position_counts_as_a_move(room):
     commit(room, add=(new("lost1", "Cup", None, on="table1"),))
     assert len(move(room, "lost1", (5.0, 5.0, 0.0)).notes) == 1
     assert said(room) == set()
 
 
-def test_a_dry_run_shows_it_and_does_nothing(room):
+def test_a_dry_run_reports_it_and_changes_nothing(room):
     say(room, "cup1", "isOn", "table1")
     before = home.state(room)
     wanted = Transaction(id="dry", source="operator", edit=(Edit(name="cup1", at=(0.0, 2.0, 0.0)),))
@@ -207,7 +207,7 @@ def test_a_dry_run_shows_it_and_does_nothing(room):
     assert said(room) == {("cup1", "table1")}
 
 
-def test_what_contradicts_what_is_taken_back_is_no_contradiction(room):
+def test_a_contradiction_with_a_retracted_assertion_is_accepted(room):
     """An object inside another is not on it: the two properties are disjoint."""
     say(room, "apple1", "isOn", "table1")
     with pytest.raises(errors.Inconsistent):
@@ -216,7 +216,7 @@ def test_what_contradicts_what_is_taken_back_is_no_contradiction(room):
     assert len(commit(room, edit=(edit,)).notes) == 2
 
 
-def test_what_contradicts_what_geometry_denies_is_refused_all_the_same(room):
+def test_a_contradiction_with_a_denied_assertion_is_rejected(room):
     say(room, "table1", "isOn", "table2")
     before = triples(room), room.all_derived()
     with pytest.raises(errors.Inconsistent, match=r"table1 and table2|table2 and table1"):
@@ -227,7 +227,7 @@ def test_what_contradicts_what_geometry_denies_is_refused_all_the_same(room):
     assert say(room, "cup1", "isOn", "table2") is not None
 
 
-def test_what_contradicts_only_a_measured_fact_is_not_refused(room):
+def test_a_contradiction_with_a_measured_fact_is_accepted(room):
     say(room, "apple1", "isOn", "table2")
     before = room.all_derived()
     assert say(room, "bowl1", "isOn", "apple1").notes  # apple1 is measured to be inside bowl1
@@ -236,7 +236,7 @@ def test_what_contradicts_only_a_measured_fact_is_not_refused(room):
     assert (set(after.come), set(after.aside)) == (set(before.come), set(before.aside))
 
 
-def test_undo_is_refused_where_geometry_does_not_deny_what_contradicts(room):
+def test_an_undo_that_restores_a_contradiction_is_rejected(room):
     """The geometry denies nothing about entities without a position."""
     commit(room, add=(new("lost1", "Cup", None, on="table1"),))
     on = (v.entity_iri("lost1"), v.dm("isOn"), v.entity_iri("table1"))
@@ -248,7 +248,7 @@ def test_undo_is_refused_where_geometry_does_not_deny_what_contradicts(room):
     assert (triples(room), room.all_derived()) == before
 
 
-def test_undo_brings_contradictory_assertions_back_that_geometry_denies(room, monkeypatch):
+def test_an_undo_may_restore_contradicting_assertions_that_the_geometry_denies(room, monkeypatch):
     say(room, "table1", "isOn", "table2")
     with monkeypatch.context() as patched:  # as in maps that were created before this was rejected
         patched.setattr(room.derived_facts, "require_agreement", lambda inserted: None)
@@ -276,7 +276,7 @@ def test_it_is_the_same_after_a_restart(room):
     assert [change.text for change in logged.changes][1] == "isOn: - table1"
 
 
-def test_undo_of_what_took_back_after_more_was_said(room):
+def test_undo_of_a_retraction_after_further_assertions(room):
     say(room, "cup1", "isOn", "table1")
     moved = move(room, "cup1", (3.0, 0.0, TOP))
     say(room, "cup1", "isOn", "table2")
@@ -296,7 +296,7 @@ def test_carry(room):
     assert where(room, "cup1") == (-0.15, 0.0, TOP + 0.02)
 
 
-def test_carry_keeps_what_is_said_of_those_that_go_together(room):
+def test_carry_keeps_assertions_among_the_moved_objects(room):
     say(room, "cup1", "isOn", "tray1")
     say(room, "cup1", "isOn", "table1")
     made = move(room, "tray1", (3.0, 0.0, TOP), carry=True)
@@ -304,12 +304,12 @@ def test_carry_keeps_what_is_said_of_those_that_go_together(room):
     assert len(made.notes) == 2
 
 
-def test_carry_leaves_what_is_named(room):
+def test_carry_excludes_given_names(room):
     made = move(room, "tray1", (3.0, 0.0, TOP), carry=True, leave=("bowl1",))
     assert {e.name for e in made.changed} == {"tray1", "cup1"}
 
 
-def test_carry_with_nothing_on_it_says_so(room):
+def test_carry_without_objects_has_a_note(room):
     made = move(room, "cup1", (3.0, 0.0, TOP), carry=True)
     assert made.notes == ("nothing stands on cup1 or is inside it",)
 
@@ -327,7 +327,7 @@ def test_carry_with_nothing_on_it_says_so(room):
         (Edit(name="lost1", at=(1.0, 0.0, 0.0), carry=True), errors.Refused, "lost1 has no position"),
     ],
 )
-def test_what_cannot_carry(room, edit, error, text):
+def test_carry_is_rejected_without_a_move_or_a_position(room, edit, error, text):
     commit(room, add=(new("lost1", "Cup", None),))
     before = home.state(room)
     with pytest.raises(error, match=text):
@@ -335,7 +335,7 @@ def test_what_cannot_carry(room, edit, error, text):
     assert home.state(room) == before
 
 
-def test_removing_tells_what_was_on_it_and_in_it(room):
+def test_a_removal_reports_what_was_on_and_in_it(room):
     made = commit(room, remove=("bowl1",))
     assert made.notes == ("inside bowl1 was apple1",)
     made = commit(room, remove=("apple1", "tray1", "table2"))
@@ -343,7 +343,7 @@ def test_removing_tells_what_was_on_it_and_in_it(room):
     assert commit(room, remove=("cup1",)).notes == ()
 
 
-def test_what_is_removed_is_gone_though_other_things_were_on_it_and_in_it(room):
+def test_a_removed_entity_with_contents_is_removed_completely(room):
     """Including all that was computed about it."""
     commit(room, remove=("bowl1",))
     made = commit(room, remove=("table1",))
@@ -355,16 +355,16 @@ def test_what_is_removed_is_gone_though_other_things_were_on_it_and_in_it(room):
     assert room.entity("table1").class_ == "Table"
 
 
-def test_removing_all_that_there_is_tells_nothing(room):
+def test_removing_everything_reports_nothing(room):
     assert commit(room, remove=tuple(room.names)).notes == ()
 
 
-def test_removing_tells_what_was_only_said(room):
+def test_a_removal_reports_asserted_contents(room):
     commit(room, add=(new("lost1", "Cup", None, on="table2"),))
     assert commit(room, remove=("table2",)).notes == ("on table2 was lost1",)
 
 
-def test_a_map_in_other_words_is_read_too(tmp_path):
+def test_maps_in_other_vocabularies_are_supported(tmp_path):
     """A move written as triples, as in a document or an undo."""
     semantic_map = home.new_map(tmp_path, TBOX)
     commit(semantic_map, add=(new("table1", "Table", (0.0, 0.0, 0.0), size=(1.5, 0.9, TOP)),))
@@ -379,7 +379,7 @@ def test_a_map_in_other_words_is_read_too(tmp_path):
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_laws(room, seed):
+def test_invariants_hold_for_random_changes(room, seed):
     """No denied assertion remains about moved entities; undo and restart restore the same state."""
     dice = random.Random(seed)
     for _ in range(60):
@@ -429,7 +429,7 @@ def random_change(room, dice):
             return move(room, name, at, carry=dice.random() < 0.4, yaw=dice.choice([None, 1.0]))
 
 
-def test_a_dry_run_of_a_removal_leaves_set_aside_what_is(room):
+def test_a_dry_run_of_a_removal_keeps_suppressed_facts(room):
     say(room, "cup1", "isOn", "table2")
     before = room.all_derived(), set(room.inferred())
     for names in (("cup1",), ("table2",), ("cup1", "table2")):

@@ -55,7 +55,7 @@ def state(semantic_map):
     )
 
 
-def test_a_thing_that_is_added_is_somewhere(flat):
+def test_a_new_entity_has_a_location(flat):
     new = NewEntity(name="cup9", class_iri=v.bare(v.dm("Cup")), pose=Pose(position_m=(3.95, 0.55, 0.42)))
     commit = flat.commit(Transaction(id="cup", source="operator", add=(new,)))
     assert on("cup9", "coffee_table1") in set(flat.inferred("cup9"))
@@ -63,7 +63,7 @@ def test_a_thing_that_is_added_is_somewhere(flat):
     assert flat.take_derived_changes(commit).come
 
 
-def test_what_comes_into_a_crowd_is_told_so(flat):
+def test_a_crowd_is_reported(flat):
     assert flat.places.crowds() == ()
     pose = Pose(position_m=(3.95, 0.55, 0.42))
     cups = tuple(NewEntity(name=f"cup{k}", class_iri=v.bare(v.dm("Cup")), pose=pose) for k in range(50, 250))
@@ -76,7 +76,7 @@ def test_what_comes_into_a_crowd_is_told_so(flat):
     assert elsewhere.notes == ()
 
 
-def test_who_is_in_another_class_by_where_things_are_is_in_the_commit(flat):
+def test_an_entity_whose_class_changes_with_its_location_is_in_the_commit(flat):
     bare = flat.entity("coffee_table1")
     for name in [v.entity_name(s) for s, _, _ in flat.reasoner.given(None, ON, v.iri(bare.iri))]:
         flat.commit(moved(flat, name, (3.0, 2.0, 0.0)))
@@ -87,14 +87,14 @@ def test_who_is_in_another_class_by_where_things_are_is_in_the_commit(flat):
     assert bare.name in {entity.name for entity in flat.entities(v.dm("Laden_Thing"))}
 
 
-def test_a_dry_run_tells_what_would_be_and_leaves_all(flat):
+def test_a_dry_run_reports_the_effects_and_changes_nothing(flat):
     before = state(flat)
     effects = dry_runs.dry_run(flat, lambda: flat.commit(moved(flat, "cup1", (2.0, 2.0, 0.0))))
     assert any("cup1 isLocatedIn livingroom1" in line for line in effects.trial.gained)
     assert state(flat) == before
 
 
-def test_undo_and_the_past_and_a_restart_give_what_was(flat, tmp_path):
+def test_undo_past_and_restart_restore_the_facts(flat, tmp_path):
     dice = random.Random(7)
     movable = sorted(e.name for e in flat.entities() if e.pose is not None and not e.place and not e.fixed)
     spots = [flat.entity(name).pose.position_m for name in movable]
@@ -121,7 +121,7 @@ def test_undo_and_the_past_and_a_restart_give_what_was(flat, tmp_path):
     kept._journal.close()
 
 
-def test_what_the_disk_does_not_take_is_taken_back(flat, monkeypatch):
+def test_a_failed_write_is_rolled_back(flat, monkeypatch):
     before = state(flat)
     monkeypatch.setattr(flat._journal, "append", _full)
     with pytest.raises(NotWritten, match="full"):
@@ -129,7 +129,7 @@ def test_what_the_disk_does_not_take_is_taken_back(flat, monkeypatch):
     assert state(flat) == before
 
 
-def test_a_removal_that_is_only_tried_or_not_taken_leaves_all(flat, monkeypatch):
+def test_a_failed_or_tried_removal_changes_nothing(flat, monkeypatch):
     before = state(flat)
     for name in ("milk1", "counter1", "kitchen1"):
         removal = Transaction(id=f"without {name}", source="operator", remove=(name,))
@@ -146,7 +146,7 @@ def _full(*_, **__):
     raise NotWritten("full")
 
 
-def test_what_contradicts_the_tbox_is_withheld_and_told(tmp_path):
+def test_a_contradiction_with_the_tbox_is_suppressed_and_reported(tmp_path):
     bare = b'dm:Counter rdfs:subClassOf [ a owl:Restriction ; owl:onProperty dm:supports ; owl:maxCardinality "0"^^xsd:nonNegativeInteger ] .'  # noqa: E501
     tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes() + bare, "household.ttl", label_prefix="t")
     journal = Journal.create(tmp_path / "journal.sqlite", rdf.serialise(frozenset(tbox), "ntriples"))
@@ -176,7 +176,7 @@ def choosy(flat):
     return flat, commit
 
 
-def test_all_questions_agree_with_what_is_withheld(choosy):
+def test_all_queries_agree_with_suppressed_facts(choosy):
     semantic_map, _ = choosy
     now = CurrentState(semantic_map)
     assert not semantic_map.reasoner.holds(on("milk1", "counter1"))
@@ -195,13 +195,13 @@ def test_all_questions_agree_with_what_is_withheld(choosy):
         now.explain(question, questions.parse_explain(semantic_map, question))
 
 
-def test_what_bears_tells_of_what_is_withheld_on_it_too(choosy):
+def test_the_support_reports_suppressed_facts_too(choosy):
     semantic_map, _ = choosy
     counter = CurrentState(semantic_map).entity(Get(name="counter1", where=True))
     assert ["'milk1 is on counter1' (measured) is suppressed" in text for text in counter.withheld] == [True]
 
 
-def test_a_dry_run_of_another_tbox_notes_what_it_would_withhold(flat):
+def test_a_dry_run_of_another_tbox_notes_suppressed_facts(flat):
     tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes() + ONLY_SHELVES, "household.ttl", label_prefix="t")
     seen = []
     tried = dry_runs.dry_run(
@@ -214,7 +214,7 @@ def test_a_dry_run_of_another_tbox_notes_what_it_would_withhold(flat):
     assert flat.tbox == home.household()
 
 
-def test_what_is_said_to_be_in_itself_is_noted(flat):
+def test_an_entity_that_is_located_in_itself_is_noted(flat):
     said = (v.entity_iri("kitchen1"), v.dm("isLocatedIn"), v.entity_iri("kitchen1"))
     commit = flat.commit(Transaction(id="self", source="operator", insert=(said,)))
     note = "kitchen1 was said to be in kitchen1; nothing is on, in or inside itself"
@@ -222,7 +222,7 @@ def test_what_is_said_to_be_in_itself_is_noted(flat):
     assert [relation.text for relation in CurrentState(flat).find_denied()] == [note]
 
 
-def test_what_contradicts_something_denied_by_way_of_others_is_refused(flat):
+def test_an_indirect_contradiction_with_a_denied_assertion_is_rejected(flat):
     """The cup is asserted to be on the counter, which is in the kitchen, which has no cups by assertion."""
     axioms = b"""
     dm:Gadget a owl:Class ; rdfs:subClassOf dm:Object .
@@ -247,7 +247,7 @@ def test_what_contradicts_something_denied_by_way_of_others_is_refused(flat):
     assert state(flat) == before
 
 
-def test_the_commit_that_lets_something_be_withheld_notes_it_once(choosy):
+def test_a_suppressed_fact_is_noted_once(choosy):
     semantic_map, commit = choosy
     (note,) = [note for note in commit.notes if "milk1 is on counter1" in note]
     assert "counter1 (measured)" in note
@@ -261,7 +261,7 @@ def test_the_commit_that_lets_something_be_withheld_notes_it_once(choosy):
     assert not semantic_map.commit(moved(semantic_map, "milk1", (8.21, 0.3, 0.9))).notes
 
 
-def test_a_standing_question_follows_what_is_withheld(choosy):
+def test_a_standing_query_follows_suppressed_facts(choosy):
     semantic_map, _ = choosy
     news = []
     standing = LocationQueries(semantic_map, news.append)

@@ -15,7 +15,7 @@ def test_each_triple_is_inserted_once_and_in_order(semantic_map, count, again):
     assert list(plan.inserted) == triples
 
 
-def test_what_is_taken_back_and_said_again_stays(semantic_map):
+def test_a_triple_that_is_retracted_and_inserted_is_kept(semantic_map):
     triple, other = ("<urn:s>", "<urn:p>", "<urn:o>"), ("<urn:s>", "<urn:p>", "<urn:o2>")
     semantic_map.commit(Transaction(id="1", source="file", insert=(triple,)))
     change = Transaction(id="2", source="file", retract=(triple,), insert=(triple, other))

@@ -22,7 +22,7 @@ def reasoner(request):
     return reasoner
 
 
-def test_what_is_there_is_held_wherever_it_is_named(reasoner):
+def test_asserted_triples_are_found(reasoner):
     said = set(reasoner.asserted()).intersection(MANY)
     for where in ("require", "retract", "insert"):
         asked = transaction(1, **{where: (TYPE, *MANY, ABSENT, (NEW, v.RDF_TYPE, v.dm("Cup")))})
@@ -30,13 +30,13 @@ def test_what_is_there_is_held_wherever_it_is_named(reasoner):
         assert preconditions.find_asserted(reasoner, groups) == {TYPE, *said}
 
 
-def test_what_is_required_must_be_held():
+def test_required_triples_must_be_asserted():
     preconditions.require(transaction(1, require=(TYPE,)), {TYPE})
     with pytest.raises(errors.PreconditionFailed, match="no longer holds that cup1"):
         preconditions.require(transaction(1, require=(TYPE, ABSENT)), {TYPE})
 
 
-def test_what_is_much_is_looked_up_otherwise_and_is_the_same(reasoner, monkeypatch):
+def test_many_triples_are_looked_up_in_another_way_with_the_same_result(reasoner, monkeypatch):
     groups = [(TYPE, *MANY, ABSENT, (NEW, v.RDF_TYPE, v.dm("Cup")))]
     one_by_one = preconditions.find_asserted(reasoner, groups)
     assert not preconditions.is_large_share(groups, reasoner)

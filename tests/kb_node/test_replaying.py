@@ -85,7 +85,7 @@ def replay(tmp_path):
     home.close(here)
 
 
-def test_the_commits_are_made_again_in_their_order_and_it_says_how_far_it_is(replay):
+def test_commits_are_repeated_in_order_with_their_progress(replay):
     loop = Loop(status("kb_node"))
     player, publish, here, began = replay(loop)
     assert player.describe() == f"replaying, at commit {began} of {began + 3}"
@@ -110,7 +110,7 @@ def test_the_commits_are_made_again_in_their_order_and_it_says_how_far_it_is(rep
     ],
     ids=["a node is missing", "a body is missing", "no reply"],
 )
-def test_it_begins_when_all_nodes_are_ready_and_the_bodies_stand(replay, nodes, first):
+def test_it_begins_when_all_nodes_are_ready_and_the_bodies_are_present(replay, nodes, first):
     loop = Loop(first, status("kb_node", "coordinator", "sim_node"))
     _, publish, _, began = replay(loop, nodes=nodes)
     loop.go_on()
@@ -120,7 +120,7 @@ def test_it_begins_when_all_nodes_are_ready_and_the_bodies_stand(replay, nodes, 
     assert [commit.seq for commit in publish] == [began + 1]
 
 
-def test_without_a_simulator_nobody_waits_for_bodies(replay):
+def test_without_a_simulator_bodies_are_not_awaited(replay):
     loop = Loop(status("kb_node", in_agreement=None))
     _, publish, _, _ = replay(loop)
     loop.go_on()
@@ -128,7 +128,7 @@ def test_without_a_simulator_nobody_waits_for_bodies(replay):
     assert len(publish) == 1
 
 
-def test_after_a_while_it_begins_without_the_others(replay):
+def test_it_begins_after_a_timeout(replay):
     loop = Loop()
     _, publish, _, _ = replay(loop)
     for _ in range(101):
@@ -139,7 +139,7 @@ def test_after_a_while_it_begins_without_the_others(replay):
     assert len(publish) == 1
 
 
-def test_such_a_map_is_not_changed_by_anybody():
+def test_a_replayed_map_cannot_be_changed():
     handlers = rejecting_handlers()
     assert set(handlers) == {call.VERB for call in CHANGES}
     change = Transaction(id="1", source="operator", add=(NewEntity(name="a", class_iri="urn:A"),))
@@ -155,10 +155,10 @@ def test_it_waits_for_its_nodes_and_then_for_the_bodies():
     assert find_missing(status(*NODES), NODES) == ()
 
 
-def test_a_body_that_moves_does_not_hold_it_up():
+def test_it_does_not_wait_for_moving_bodies():
     moving = ("robot1 is moving: 1.2 m from its committed pose",)
     assert find_missing(status(*NODES, in_agreement=False, displaced=moving), NODES) == ()
 
 
-def test_without_a_simulator_it_waits_for_no_bodies():
+def test_without_a_simulator_no_bodies_are_reported_as_missing():
     assert find_missing(status("kb_node", in_agreement=None), ("kb_node",)) == ()

@@ -41,7 +41,7 @@ def test_listing_is_by_exact_class_name(furnished):
         answers.entities_of(furnished, "Saet")
 
 
-def test_infer_says_what_was_not_said(furnished):
+def test_infer_returns_only_inferred_facts(furnished):
     inferred = answers.infer(furnished, "kitchen1")
     assert "kitchen1 type Location" in inferred.text
     assert "chair1 type Chair" not in answers.infer_all(answers.inference_input(furnished)).text
@@ -51,7 +51,7 @@ def test_infer_says_what_was_not_said(furnished):
 
 
 @pytest.mark.parametrize("syntax", SYNTAXES)
-def test_an_export_replaces_the_map_by_an_equal_one(furnished, syntax):
+def test_an_export_can_replace_the_map_without_a_difference(furnished, syntax):
     document = answers.export(answers.export_snapshot(furnished, inferred=False), syntax)
     before = furnished.abox()
     assert (document.seq, document.triples) == (1, len(before))
@@ -64,7 +64,7 @@ def test_an_export_replaces_the_map_by_an_equal_one(furnished, syntax):
 
 
 @pytest.mark.parametrize("syntax", SYNTAXES)
-def test_an_export_with_what_follows_can_be_loaded(furnished, syntax):
+def test_an_export_with_inferences_can_be_loaded(furnished, syntax):
     document = answers.export(answers.export_snapshot(furnished, inferred=True), syntax)
     triples = rdf.parse(document.content, "export")
     assert set(turtle(":kitchen1 a dm:Location . :chair1 a dm:Seat .")) <= set(triples)
@@ -82,7 +82,7 @@ def test_an_inconsistent_map_is_not_exported():
     assert caught.value.explanation is not None
 
 
-def test_check_tells_why_not():
+def test_check_explains_an_inconsistency():
     good = answers.check([*home.TBOX, *turtle(":a a dm:Chair .")], "semmap")
     assert (good.consistent, good.text, good.explanation) == (True, "consistent", None)
     assert good.triples == len(home.TBOX) + 1
@@ -93,13 +93,13 @@ def test_check_tells_why_not():
 
 
 @pytest.mark.parametrize(("more", "consistent"), [("", True), (", dm:Kitchen", False)])
-def test_owlrl_is_of_the_same_opinion(more, consistent):
+def test_owlrl_agrees(more, consistent):
     checked = answers.check([*home.TBOX, *turtle(f":a a dm:Chair {more} .")], "owlrl")
     assert (checked.consistent, checked.engine) == (consistent, "owlrl")
     assert checked.text.startswith("consistent" if consistent else "inconsistent: ")
 
 
-def test_what_follows_is_the_same_on_both_engines(furnished):
+def test_inferences_are_the_same_with_both_engines(furnished):
     """The incremental engine, and the general one for graphs that the first cannot compile."""
     compiled = (
         answers.infer_all(answers.inference_input(furnished)),
@@ -117,7 +117,7 @@ def test_what_follows_is_the_same_on_both_engines(furnished):
     assert set(general[1].written) == set(compiled[1].written)
 
 
-def test_what_is_measured_of_pairs_is_inferred_and_exported(flat):
+def test_measured_pairs_are_inferred_and_exported(flat):
     near = {t[2] for t in answers.infer(flat, "milk1").triples if t[1] == v.dm("isNear")}
     assert v.entity_iri("stove1") in near
     assert v.entity_iri("counter1") not in near  # it supports the entity
@@ -136,7 +136,7 @@ def test_what_is_measured_of_pairs_is_inferred_and_exported(flat):
     assert not any(p == v.dm("isNear") for _, p, _ in plain)
 
 
-def test_classes_that_are_called_alike_are_told_apart_in_what_follows(tmp_path):
+def test_ambiguous_class_names_have_prefixes_in_inferences(tmp_path):
     other = turtle(
         "@prefix lab: <http://lab.org/lab#> . lab:Chair a owl:Class . dm:Chair rdfs:subClassOf lab:Chair ."
     )

@@ -31,11 +31,11 @@ def say(kitchen, number, value, property_="isOpen", name="fridge1"):
     kitchen.commit(Transaction(id=str(number), source="operator", edit=(edit,)))
 
 
-def test_of_a_fridge_of_which_nobody_said_that_it_is_closed_nothing_is_claimed(kitchen):
+def test_a_fridge_without_a_stated_door_state_is_not_reported_as_closed(kitchen):
     assert find_closed_container(kitchen, kitchen.entity("carton1")) is None
 
 
-def test_milk_in_a_closed_fridge_cannot_be_seen_since_it_was_closed(kitchen):
+def test_milk_in_a_closed_fridge_is_not_observable_since_it_was_closed(kitchen):
     say(kitchen, 2, "false")
     closed = find_closed_container(kitchen, kitchen.entity("carton1"))
     assert closed is not None
@@ -45,13 +45,13 @@ def test_milk_in_a_closed_fridge_cannot_be_seen_since_it_was_closed(kitchen):
     assert find_closed_container(kitchen, kitchen.entity("fridge1")) is None
 
 
-def test_once_it_is_open_it_can(kitchen):
+def test_it_is_observable_once_the_fridge_is_open(kitchen):
     say(kitchen, 2, "false")
     say(kitchen, 3, "true")
     assert find_closed_container(kitchen, kitchen.entity("carton1")) is None
 
 
-def test_a_door_that_stands_open_shows_what_is_behind_it_and_nothing_else(kitchen):
+def test_an_open_door_shows_only_what_is_behind_it(kitchen):
     milk = kitchen.entity("carton1")
     edit = Edit(
         name="fridge1",
@@ -67,7 +67,7 @@ def test_a_door_that_stands_open_shows_what_is_behind_it_and_nothing_else(kitche
     assert find_closed_container(kitchen, milk) is None
 
 
-def test_of_a_chest_only_what_is_in_a_drawer_that_was_pulled_out_can_be_seen(tmp_path):
+def test_only_the_contents_of_an_open_drawer_of_a_chest_are_observable(tmp_path):
     made = home.new_map(tmp_path, home.household())
     at = {"chest1": (0.0, 0.0, 0.0), "apple1": (0.05, 0.0, 0.72), "apple2": (0.05, 0.0, 0.51)}
     classes = {"chest1": "Drawer", "apple1": "Apple", "apple2": "Apple"}

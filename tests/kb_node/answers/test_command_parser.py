@@ -46,11 +46,11 @@ def understanding(flat):
         ("open the fridge door", ["Closure(Containing_object=fridge1)"]),
     ],
 )
-def test_what_is_said_of_a_thing_tells_which(understanding, text, understood):
+def test_details_of_a_description_select_the_entity(understanding, text, understood):
     assert [frame.text for frame in understanding.understand(Understand(text=text)).frames] == understood
 
 
-def test_it_is_asked_once_which_is_meant(understanding):
+def test_an_ambiguous_word_leads_to_one_clarification_question(understanding):
     understood = understanding.understand(Understand(text="take the cup on the table and put it in the sink"))
     assert understood.frames[1].arguments[0].candidates == ("bluecup", "redcup")
     assert understood.question.startswith("Which one: the cup called blue cup or the one called red cup?")
@@ -71,6 +71,6 @@ def test_it_is_asked_once_which_is_meant(understanding):
         ("prendi due tazze", "Taking(Theme=2 of bluecup|cup1|redcup)", ()),
     ],
 )
-def test_what_does_not_fit_the_map_is_reported(understanding, text, understood, doubts):
+def test_parts_that_do_not_match_the_map_are_reported(understanding, text, understood, doubts):
     told = understanding.understand(Understand(text=text))
     assert ([frame.text for frame in told.frames], told.doubts) == ([understood], doubts)

@@ -28,7 +28,7 @@ def tried(semantic_map, change):
         assert after == before
 
 
-def test_what_would_be_and_what_would_follow(stateful_map):
+def test_effects_and_inferences_are_reported(stateful_map):
     effects = tried(
         stateful_map, lambda: stateful_map.commit(adding("stool1", set=(statement("isOn", "chair1"),)))
     )
@@ -38,7 +38,7 @@ def test_what_would_be_and_what_would_follow(stateful_map):
     assert effects.trial.lost == ()
 
 
-def test_what_would_no_longer_follow(stateful_map):
+def test_lost_inferences_are_reported(stateful_map):
     stated(stateful_map, "hasMainColor", "red")
     effects = tried(
         stateful_map, lambda: stateful_map.commit(editing(stateful_map, unset=(statement("hasMainColor"),)))
@@ -49,7 +49,7 @@ def test_what_would_no_longer_follow(stateful_map):
     assert "chair1 type Seat" in gone.trial.lost
 
 
-def test_what_would_be_refused_is_refused(stateful_map):
+def test_a_rejected_change_is_rejected_in_a_dry_run(stateful_map):
     with pytest.raises(errors.Inconsistent):
         tried(
             stateful_map,
@@ -59,7 +59,7 @@ def test_what_would_be_refused_is_refused(stateful_map):
         tried_commit(stateful_map, adding("chair1"))
 
 
-def test_what_would_change_nothing_is_nothing(stateful_map):
+def test_a_change_without_effect_has_no_result(stateful_map):
     assert (
         tried(
             stateful_map, lambda: stateful_map.commit(editing(stateful_map, class_iri=v.bare(v.dm("Chair"))))
@@ -68,14 +68,14 @@ def test_what_would_change_nothing_is_nothing(stateful_map):
     )
 
 
-def test_a_trial_can_be_done_afterwards_under_the_same_id(stateful_map):
+def test_the_same_id_can_be_committed_after_a_dry_run(stateful_map):
     addition = adding("stool1")
     tried_commit(stateful_map, addition)
     assert stateful_map.commit(addition).seq == 2
     assert tried_commit(stateful_map, addition) is None
 
 
-def test_an_undo_and_a_large_load_are_tried(stateful_map):
+def test_an_undo_and_a_large_load_can_be_dry_runs(stateful_map):
     stated(stateful_map, "isOpen", "true")
     journal = stateful_map._journal
     back = tried(
@@ -86,7 +86,7 @@ def test_an_undo_and_a_large_load_are_tried(stateful_map):
     assert len(tried_commit(stateful_map, transaction("many", many)).trial.changed) == 400
 
 
-def test_another_tbox_is_tried(stateful_map):
+def test_replacing_the_tbox_can_be_a_dry_run(stateful_map):
     thrones = frozenset(TBOX) | set(turtle("dm:Throne a owl:Class ; rdfs:subClassOf dm:Chair ."))
     replacing = transaction("tbox")
     effects = tried(stateful_map, lambda: stateful_map.replace_tbox(replacing, thrones))

@@ -64,7 +64,7 @@ def refused(semantic_map, name, predicate, value):
     return str(caught.value)
 
 
-def test_list_says_of_on_what_a_path_says_in_sparql(flat):
+def test_list_with_on_agrees_with_a_property_path_in_sparql(flat):
     listed = {e.name for e in entity_queries.CurrentState(flat).entities(Entities(where=Where(on="table1")))}
     held = flat.reasoner
     on, inside, table = v.dm("isOn"), v.dm("isInside"), v.iri(flat.entity("table1").iri)
@@ -80,7 +80,7 @@ def test_list_says_of_on_what_a_path_says_in_sparql(flat):
     assert listed == {v.entity_name(s) for s in all_on}
 
 
-def test_the_commit_is_the_one_since_which_the_relation_holds(own):
+def test_the_start_is_the_commit_since_which_the_relation_holds(own):
     def change(**what):
         own.commit(Transaction(id=f"c{own.seq}", source="operator", **what))
 
@@ -103,7 +103,7 @@ def test_the_commit_is_the_one_since_which_the_relation_holds(own):
     assert "(since commit 5)" in explained(own, "counter1", "supports", "cup9").text
 
 
-def test_a_relation_may_begin_with_what_goes_from_between(own):
+def test_a_relation_may_start_when_an_object_in_between_is_removed(own):
     def change(**what):
         own.commit(Transaction(id=f"c{own.seq}", source="operator", **what))
 
@@ -118,7 +118,7 @@ def test_a_relation_may_begin_with_what_goes_from_between(own):
     assert explained(own, "cup9", "isOn", "counter1").text.endswith("(since commit 4)")
 
 
-def test_a_chain_is_as_old_as_the_latest_of_its_steps(tmp_path):
+def test_a_chain_starts_with_the_latest_of_its_steps(tmp_path):
     chain = b"dm:restsOver a owl:ObjectProperty ; owl:propertyChainAxiom ( dm:isOn dm:isOn ) ."
     own = new_flat(tmp_path, chain)
     for seq, (class_, name, size, z) in enumerate(
@@ -134,7 +134,7 @@ def test_a_chain_is_as_old_as_the_latest_of_its_steps(tmp_path):
     home.close(own)
 
 
-def test_why_not_says_by_what_way(flat):
+def test_a_negative_answer_explains_the_path(flat):
     text = refused(flat, "apple1", "isOn", "table1")
     assert text == "apple1 is not on table1: it is inside bowl1, which is on table1"
     assert "table1 has no hollow" in refused(flat, "apple1", "isInside", "table1")
@@ -142,7 +142,7 @@ def test_why_not_says_by_what_way(flat):
 
 
 @pytest.mark.parametrize("relation", SPOKEN)
-def test_each_relation_is_answered_by_measuring(flat, relation):
+def test_each_relation_is_explained_by_a_measurement(flat, relation):
     answers = []
     for other in ("table1", "chair1", "bowl1"):
         try:
@@ -153,7 +153,7 @@ def test_each_relation_is_answered_by_measuring(flat, relation):
     assert not any("nothing excludes" in answer for answer in answers)
 
 
-def test_what_was_asserted_and_denied_is_said_to_be(flat):
+def test_a_denied_assertion_is_reported_as_such(flat):
     said = (v.iri(flat.entity("milk1").iri), v.dm("isOn"), v.iri(flat.entity("table1").iri))
     assert "asserted" not in refused(flat, "milk1", "isOn", "table1")
     flat.commit(home.transaction(2, [said]))
@@ -161,7 +161,7 @@ def test_what_was_asserted_and_denied_is_said_to_be(flat):
     assert "it is asserted, but suppressed" in refused(flat, "milk1", "isOn", "table1")
 
 
-def test_what_could_be_says_what_geometry_says(flat):
+def test_could_reports_a_geometric_conflict(flat):
     asked = questions.parse_could(flat, Could(name="water1", predicate="isOn", value="chair1"))
     against = entity_queries.CurrentState(flat).describe_conflict(asked.triples[0])
     text = questions.could(flat.reasoner, asked, against=against).text
@@ -169,7 +169,7 @@ def test_what_could_be_says_what_geometry_says(flat):
     assert "but according to the poses, it stands" in text
 
 
-def test_why_not_is_told_by_what_was_measured(flat):
+def test_a_negative_answer_explains_the_measurement(flat):
     why_not = explained(flat, "apple1", "isOn", "counter1", negated=True)
     assert why_not.text.startswith("apple1 is not on counter1: ")
     assert why_not.text == refused(flat, "apple1", "isOn", "counter1")
@@ -178,11 +178,11 @@ def test_why_not_is_told_by_what_was_measured(flat):
     )  # it does, and a rule states it
 
 
-def test_where_a_place_is_was_asserted_and_nothing_stands_against_it(flat):
+def test_the_location_of_a_place_is_asserted_and_has_no_conflict(flat):
     assert "as it stands" not in explained(flat, "kitchen1", "isLocatedIn", "flat1").text
 
 
-def test_get_says_how_high_a_thing_is_that_nothing_bears(own):
+def test_get_reports_the_height_of_an_unsupported_object(own):
     def hovering(name):
         return entity_queries.CurrentState(own).entity(Get(name=name, where=True)).on_nothing
 

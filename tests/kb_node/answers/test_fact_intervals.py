@@ -32,7 +32,7 @@ def random_commits(dice, count):
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_one_pass_tells_what_looks_at_the_whole_map_tell(seed):
+def test_one_pass_agrees_with_measuring_the_whole_map_at_each_commit(seed):
     commits = list(random_commits(random.Random(seed), 60))
     facts, there = Facts(), {entity.name: entity for entity in FIRST}
     facts.update(FIRST)
@@ -50,7 +50,7 @@ def test_one_pass_tells_what_looks_at_the_whole_map_tell(seed):
     assert len(set(since.values())) > 3
 
 
-def test_what_does_not_hold_began_at_no_commit():
+def test_a_fact_that_does_not_hold_has_no_start():
     cup = thing("cup1", (2.0, 2.0, 0.0))
     came = PoseChanges(seq=1, changed=codec.decode(codec.encode(commit_of(cup)), PoseChanges).changed)
     assert find_fact_starts([came], FIRST, [("cup1", "isOn", "table1")], Thresholds()) == {}

@@ -52,7 +52,7 @@ def nearest(semantic_map) -> list[str]:
     return [entity.name for entity in found]
 
 
-def test_the_nearest_are_those_of_now(semantic_map):
+def test_nearest_uses_the_live_poses(semantic_map):
     now_s = 0.0
     live = LiveEntities(semantic_map, lambda: now_s)
     with live.applied():
@@ -69,7 +69,7 @@ def test_the_nearest_are_those_of_now(semantic_map):
         assert nearest(semantic_map) == ["chair1"]
 
 
-def test_only_what_is_tracked_is_put_elsewhere(semantic_map):
+def test_only_tracked_entities_have_live_poses(semantic_map):
     live = LiveEntities(semantic_map, lambda: 0.0)
     live.update(heard(9.0))
     with live.applied():
@@ -77,7 +77,7 @@ def test_only_what_is_tracked_is_put_elsewhere(semantic_map):
         assert "nobody1" not in semantic_map.places.space().solids
 
 
-def test_tracking_is_durable_and_is_taken_back(semantic_map):
+def test_tracking_is_durable_and_can_be_undone(semantic_map):
     assert semantic_map.entity("robot1").tracked == "stream"
     commit = semantic_map.commit(
         Transaction(id="sim", source="operator", edit=(Edit(name="robot1", tracked="sim"),))
@@ -89,7 +89,7 @@ def test_tracking_is_durable_and_is_taken_back(semantic_map):
     assert semantic_map.commit(again) is None
 
 
-def test_tracking_outlives_a_restart(tmp_path):
+def test_tracking_survives_a_restart(tmp_path):
     path = tmp_path / "journal.sqlite"
     for restart in (False, True):
         journal = Journal(path) if restart else Journal.create(path, HOUSEHOLD_TTL.read_bytes())

@@ -64,7 +64,7 @@ def names(rows):
     return {v.entity_name(term) for (term,) in rows}
 
 
-def test_what_comes_and_goes(room):
+def test_arrivals_and_departures_are_published(room):
     on = Watched(room, on="table1")
     assert (on.now, on.first.variables) == ({"tray1", "cup1"}, ("entity",))
     assert on.after(move(room, "cup1", (3.0, 0.0, TOP))) == (set(), {"cup1"})
@@ -75,14 +75,14 @@ def test_what_comes_and_goes(room):
     assert on.after(take_back(room)) == ({"cup2"}, set())
 
 
-def test_what_is_moved_under_it_and_away(room):
+def test_moving_the_support_is_published(room):
     on = Watched(room, on="table1")
     assert on.after(move(room, "table1", (0.0, 4.0, 0.0))) == (set(), {"tray1", "cup1"})
     assert on.after(move(room, "table1", (0.0, 0.1, 0.0))) == ({"tray1", "cup1"}, set())
     assert on.after(commit(room, remove=("tray1",))) == (set(), {"tray1"})
 
 
-def test_a_class_and_a_reference(room):
+def test_by_class_and_by_label(room):
     on = Watched(room, on="Table", class_="Cup")
     assert on.now == {"cup1"}
     assert on.after(move(room, "cup1", (3.0, 0.0, TOP))) == (set(), set())
@@ -101,7 +101,7 @@ def test_in_a_place_and_near(room):
     assert near.after(move(room, "table1", (19.0, 0.0, 0.0))) == ({"cup1"}, {"tray1"})
 
 
-def test_the_word_means_another_one_later(room):
+def test_a_word_may_mean_another_entity_later(room):
     on = Watched(room, on="Table")
     assert on.after(commit(room, remove=("table1",))) == (set(), {"tray1", "cup1"})
     assert on.after(commit(room, remove=("table2",))) == (set(), set())
@@ -109,7 +109,7 @@ def test_the_word_means_another_one_later(room):
     assert on.after(there) == ({"tray1", "cup1"}, set())
 
 
-def test_of_several_commits_the_last_tells(room):
+def test_several_commits_are_published_with_the_last_one(room):
     on = Watched(room, on="table1")
     first = move(room, "cup1", (3.0, 0.0, TOP))
     second = move(room, "tray1", (3.0, 0.3, TOP))
@@ -117,7 +117,7 @@ def test_of_several_commits_the_last_tells(room):
     assert on.after(second) == (set(), {"cup1", "tray1"})
 
 
-def test_leases(room, monkeypatch):
+def test_leases_expire(room, monkeypatch):
     on = Watched(room, on="table1", lease=10.0)
     assert on.standing.renew(Renew(watch="w1")).text == "w1 is renewed for 10 s"
     assert on.standing.renew(Renew(watch="another")) is None
@@ -128,7 +128,7 @@ def test_leases(room, monkeypatch):
     assert [(news.rows, news.ended) for news in on.news] == [(None, True)]
 
 
-def test_an_end(room):
+def test_a_query_can_be_ended(room):
     on = Watched(room, on="table1")
     assert on.standing.renew(Renew(watch="w1", end=True)).text == "w1 has ended"
     on.news.clear()
@@ -143,12 +143,12 @@ def test_an_end(room):
         ({"within": 1.0}, errors.BadRequest, "near NAME"),
     ],
 )
-def test_bad_questions(room, wanted, error, text):
+def test_invalid_queries_are_rejected(room, wanted, error, text):
     with pytest.raises(error, match=text):
         Watched(room, **wanted)
 
 
-def test_there_is_an_end_to_how_many(room):
+def test_the_number_of_queries_is_limited(room):
     on = Watched(room, on="table1")
     with pytest.raises(errors.NameTaken):
         on.standing.watch(Watch(watch="w1", on="table1"))
@@ -170,7 +170,7 @@ def test_there_is_an_end_to_how_many(room):
         {"on": "tray1", "near": "table1"},
     ],
 )
-def test_what_is_told_is_what_asking_again_finds(room, wanted):
+def test_published_rows_equal_those_of_a_new_query(room, wanted):
     dice = random.Random(str(wanted))
     commit(room, add=(new("bowl1", "Bowl", (0.1, 0.0, TOP + 0.02)), new("apple1", "Apple", (0.1, 0.0, 0.8))))
     watched = Watched(room, **wanted)

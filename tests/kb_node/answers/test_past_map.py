@@ -46,7 +46,7 @@ def asked(flat, when, query=ON_COUNTER, *, inferred=True):
     return found.seq, [v.entity_name(row[0]) for row in found.rows]
 
 
-def test_a_query_of_the_past_sees_what_was_computed_then(flat):
+def test_a_query_of_the_past_sees_the_computed_facts_of_that_time(flat):
     seq, before = asked(flat, 1)
     assert seq == 1
     assert "milk1" in before
@@ -54,26 +54,26 @@ def test_a_query_of_the_past_sees_what_was_computed_then(flat):
     assert asked(flat, 4)[1] == before
 
 
-def test_without_inferred_it_sees_what_was_asserted_then(flat):
+def test_without_inferred_it_sees_the_asserted_facts_of_that_time(flat):
     said = "SELECT ?x { ?x dm:isOn :table1 . FILTER(?x = :cup9) }"
     assert asked(flat, 3, said, inferred=False) == (3, ["cup9"])
     assert asked(flat, 3, said, inferred=True) == (3, [])  # the geometry denied it then, too
     assert asked(flat, 4, said, inferred=False) == (4, [])
 
 
-def test_what_is_measured_on_demand_is_measured_then(flat):
+def test_measurements_on_demand_use_the_past_poses(flat):
     near = "SELECT ?x { ?x dm:isNextTo :cup9 }"
     assert asked(flat, 2, near)[1]
 
 
-def test_the_last_commit_is_the_map_as_it_is(flat):
+def test_the_last_commit_equals_the_present_map(flat):
     then = load_past_map(flat._journal, Past(flat._journal), 5, inferred=True)
     assert set(then.asserted) == set(flat.reasoner.asserted())
     now = flat.all_derived()
     assert DerivedChanges(*map(set, then.derived_changes)) == DerivedChanges(*map(set, now))
 
 
-def test_before_the_first_commit_there_was_no_map(flat):
+def test_before_the_first_commit_there_is_no_map(flat):
     with pytest.raises(errors.Refused, match="there was no map then"):
         asked(flat, 0)
     with pytest.raises(errors.Refused, match="there is no commit 9 yet"):
@@ -86,7 +86,7 @@ def exported(flat, when, **others):
     return document, set(rdf.parse(document.content, "export.ttl"))
 
 
-def test_an_export_of_the_past_has_what_was_asserted_then(flat):
+def test_an_export_of_the_past_has_the_asserted_facts_of_that_time(flat):
     is_cup = (v.entity_iri("cup9"), v.RDF_TYPE, v.dm("Cup"))
     before, then, after = (exported(flat, when)[1] for when in (1, 2, 5))
     assert is_cup in then
@@ -94,14 +94,14 @@ def test_an_export_of_the_past_has_what_was_asserted_then(flat):
     assert before == after
 
 
-def test_an_export_of_the_past_leaves_the_ontology_out_and_says_of_when_it_is(flat):
+def test_an_export_of_the_past_omits_the_ontology_and_has_its_commit(flat):
     document, triples = exported(flat, 3)
     assert document.seq == 3
     assert document.triples == len(triples)
     assert not [s for s, p, o in triples if p == v.RDF_TYPE and o == v.OWL_CLASS]
 
 
-def test_what_followed_and_was_measured_then_is_exported_if_it_is_wanted(flat):
+def test_an_export_of_the_past_can_include_inferences_and_measurements(flat):
     on_counter = (v.entity_iri("cup9"), v.dm("isOn"), v.entity_iri("counter1"))
     on_table = (v.entity_iri("cup9"), v.dm("isOn"), v.entity_iri("table1"))
     graspable = (v.entity_iri("cup9"), v.RDF_TYPE, v.dm("Graspable_Thing"))
@@ -112,6 +112,6 @@ def test_what_followed_and_was_measured_then_is_exported_if_it_is_wanted(flat):
     assert on_counter not in exported(flat, 4, inferred=True)[1]
 
 
-def test_the_last_commit_is_exported_with_what_follows_as_the_map_is_now(flat):
+def test_an_export_of_the_last_commit_equals_an_export_of_the_present(flat):
     now = answers.document(answers.export_snapshot(flat, inferred=True), "turtle")
     assert exported(flat, 5, inferred=True)[1] == set(rdf.parse(now.content, "now.ttl"))

@@ -56,7 +56,7 @@ def answered(semantic_map, name, predicate, value):
         ("chair1", v.IS_LOCATED_IN, v.entity_iri("kitchen1"), {"chair1 isLocatedIn kitchen1"}),
     ],
 )
-def test_explain_gives_what_a_triple_rests_on(furnished, name, predicate, value, support):
+def test_explain_returns_the_supporting_facts(furnished, name, predicate, value, support):
     explanation = explained(furnished, name, predicate, value)
     assert {v.spoken(triple) for triple in explanation.support} == support
 
@@ -90,12 +90,12 @@ def test_explain_gives_what_a_triple_rests_on(furnished, name, predicate, value,
         ),
     ],
 )
-def test_what_cannot_be_explained(furnished, name, predicate, value, error, text):
+def test_statements_that_cannot_be_explained_are_rejected(furnished, name, predicate, value, error, text):
     with pytest.raises(error, match=text):
         explained(furnished, name, predicate, value)
 
 
-def test_why_two_are_different_although_no_rule_says_so(furnished):
+def test_two_individuals_are_different_although_no_rule_derives_it(furnished):
     explanation = explained(furnished, "chair1", "differentFrom", "kitchen1")
     assert explanation.conclusion == (v.entity_iri("chair1"), v.OWL_DIFFERENT_FROM, v.entity_iri("kitchen1"))
     assert explanation.supposed == (v.entity_iri("chair1"), v.OWL_SAME_AS, v.entity_iri("kitchen1"))
@@ -122,7 +122,7 @@ def test_a_value_may_be_an_individual_of_another_namespace(tmp_path):
     home.close(semantic_map)
 
 
-def test_what_no_rule_excludes_is_searched_for_on_a_copy():
+def test_a_refutation_without_a_rule_is_searched_on_a_copy():
     reasoner = Reasoner(
         triples(
             ":Person owl:equivalentClass [ owl:unionOf ( :Adult :Child ) ] ."
@@ -145,7 +145,7 @@ def test_what_no_rule_excludes_is_searched_for_on_a_copy():
         questions.explain(reasoner, questions.StatementQuestion((triple(":ann :knows :ann"),), negated=True))
 
 
-def test_why_something_cannot_be(furnished):
+def test_a_negative_statement_is_explained(furnished):
     explanation = explained(furnished, "chair1", "type", "Kitchen", negated=True)
     assert (explanation.conclusion, explanation.supposed[1:]) == (None, (v.RDF_TYPE, v.dm("Kitchen")))
     assert explanation.text.startswith("chair1 is not a Kitchen, because it is a chair (asserted), ")
@@ -185,7 +185,7 @@ def test_why_something_cannot_be(furnished):
         ),
     ],
 )
-def test_what_could_be(furnished, question, possible, text):
+def test_possible_and_impossible_statements(furnished, question, possible, text):
     before = set(furnished.reasoner.asserted()), set(furnished.reasoner.inferred())
     answer = answered(furnished, *question)
     assert (answer.possible, answer.text[: len(text)]) == (possible, text)
@@ -208,12 +208,12 @@ def test_what_could_be(furnished, question, possible, text):
         ),
     ],
 )
-def test_what_cannot_be_asked(furnished, question, error, text):
+def test_invalid_statements_are_rejected(furnished, question, error, text):
     with pytest.raises(error, match=text):
         answered(furnished, *question)
 
 
-def test_what_would_be_the_same_is_reported(tmp_path):
+def test_implied_equalities_are_reported(tmp_path):
     semantic_map = home.new_map(
         tmp_path, (*home.TBOX, *turtle("dm:isPartOf a owl:ObjectProperty , owl:FunctionalProperty ."))
     )
@@ -225,7 +225,7 @@ def test_what_would_be_the_same_is_reported(tmp_path):
     home.close(semantic_map)
 
 
-def test_what_would_take_long_is_not_tried_on_the_map_itself(furnished):
+def test_a_slow_test_does_not_use_the_reasoner_of_the_map(furnished):
     crowd = "".join(f":thing{n} a dm:Door ; dm:isLocatedIn :kitchen1 ." for n in range(questions._QUICK + 1))
     ask = Could(name="kitchen1", predicate="sameAs", value="chair2")
     assert questions.is_quick(furnished.reasoner, questions.parse_could(furnished, ask))
@@ -251,11 +251,11 @@ def test_what_would_take_long_is_not_tried_on_the_map_itself(furnished):
         (("chair1", "type", "owl:Thing"), "chair1 is something"),
     ],
 )
-def test_what_no_rule_derives_is_explained_too(furnished, question, text):
+def test_a_statement_without_a_rule_is_explained_by_a_proof(furnished, question, text):
     assert explained(furnished, *question).text.startswith(text)
 
 
-def test_a_proof_is_not_searched_for_on_the_map_itself(furnished):
+def test_a_proof_is_not_searched_in_the_reasoner_of_the_map(furnished):
     asked = questions.parse_explain(
         furnished, Explain(name="Chair", predicate="disjointWith", value="Kitchen")
     )
@@ -273,7 +273,7 @@ def test_a_proof_is_not_searched_for_on_the_map_itself(furnished):
         questions.explain(beside, asked)
 
 
-def test_classes_that_are_called_alike_have_prefixes_in_sentences(tmp_path):
+def test_ambiguous_class_names_have_prefixes_in_sentences(tmp_path):
     twin = turtle('<http://a.org/lab.owl#Seat> a owl:Class ; rdfs:label "chair"@en .')
     semantic_map = home.new_map(tmp_path, (*home.TBOX, *twin))
     semantic_map.commit(transaction(1, turtle(":chair1 a dm:Chair . :a a <http://a.org/lab.owl#Seat> .")))

@@ -10,7 +10,7 @@ from tests.kb_node.reasoner.graphs import household
 from tests.kb_node.relations.made import ROOM, TABLE
 
 
-def test_an_entity_is_spoken_of_by_its_references_and_the_values_of_its_properties():
+def test_an_entity_has_its_labels_and_property_values_as_search_terms():
     told = structs.replace(
         TABLE,
         alternative_references=("desk", ""),
@@ -39,13 +39,13 @@ def spoken():
     return terms(reasoner, ClassTable(reasoner))
 
 
-def test_classes_are_named_in_every_language_and_by_their_own_names(spoken):
+def test_classes_have_their_labels_in_every_language_and_their_names(spoken):
     assert {("en", "Fridge", "Fridge")} <= set(spoken.classes)
     assert {tag for tag, name, _ in spoken.classes if name == "Fridge"} >= {"en"}
     assert "Color" not in {name for _, name, _ in spoken.classes}
 
 
-def test_qualities_are_told_from_affordances(spoken):
+def test_qualities_are_distinguished_from_affordances(spoken):
     qualities = {name for _, name, _ in spoken.qualities}
     affordances = {name for _, name, _ in spoken.affordances}
     assert "color_red" in qualities
@@ -53,7 +53,7 @@ def test_qualities_are_told_from_affordances(spoken):
     assert qualities.isdisjoint(affordances)
 
 
-def test_a_class_affords_what_the_tbox_says_of_all_of_it(spoken):
+def test_a_class_has_the_affordances_that_the_tbox_states_for_it(spoken):
     assert spoken.affords
     names = {name for _, name, _ in spoken.affordances} | {"containing", "supporting", "grasping"}
     assert any(found & names for found in spoken.affords.values())

@@ -49,7 +49,7 @@ def look(name, stamp_ns):
     return Observations(stamp_ns=stamp_ns, views=(), observations=(one,))
 
 
-def test_what_is_marked_missing_was_seen_to_be_gone_since_that_was_said(sightings, semantic_map):
+def test_an_entity_marked_as_missing_is_reported_with_the_time_of_the_mark(sightings, semantic_map):
     entity = semantic_map.entity("chair1")
     assert sightings.is_missing(entity)
     told = sightings.describe_removed("chair1", entity)
@@ -57,7 +57,7 @@ def test_what_is_marked_missing_was_seen_to_be_gone_since_that_was_said(sighting
     assert re.fullmatch(r"reported missing at commit 2, \d+ s ago: not seen where it should stand", told.text)
 
 
-def test_what_perception_removed_was_seen_to_be_gone_and_what_ann_removed_was_not(sightings):
+def test_a_removal_by_perception_is_reported_as_missing_and_one_by_a_client_is_not(sightings):
     seen, tidied = sightings.describe_removed("chair2", None), sightings.describe_removed("chair3", None)
     assert seen.gone == seen.removed
     assert seen.text.endswith("ago: chair2 is gone: its place was empty in 10 looks")
@@ -67,7 +67,7 @@ def test_what_perception_removed_was_seen_to_be_gone_and_what_ann_removed_was_no
         sightings.describe_removed("chair9", None)
 
 
-def test_what_is_there_is_in_sight_or_has_not_been_seen_since(sightings, semantic_map):
+def test_a_present_entity_is_in_view_or_was_not_seen_since(sightings, semantic_map):
     entity = semantic_map.entity("chair4")
     assert not sightings.is_missing(entity)
     assert re.fullmatch(
@@ -82,7 +82,7 @@ def test_what_is_there_is_in_sight_or_has_not_been_seen_since(sightings, semanti
     assert (told.seen_ns, told.text) == (now_ns, "in view of a camera now")
 
 
-def test_a_look_of_long_ago_is_no_look_of_now(sightings, semantic_map, monkeypatch):
+def test_an_old_observation_is_not_reported_as_current(sightings, semantic_map, monkeypatch):
     entity = semantic_map.entity("chair4")
     sightings.record(look("chair4", time.time_ns()))
     later_ns = time.time_ns() + 180 * 10**9

@@ -22,7 +22,7 @@ def compared(before: bytes, after: bytes) -> tuple[int, int]:
 
 
 @pytest.mark.parametrize("text", [RESTRICTED, TWINS, CYCLE, HOUSEHOLD_TTL.read_bytes()])
-def test_what_is_read_again_is_the_same(text):
+def test_a_repeated_reading_gives_the_same_labels(text):
     assert compared(text, text) == (0, 0)
 
 
@@ -37,5 +37,5 @@ def test_what_is_read_again_is_the_same(text):
         (RESTRICTED + CYCLE, CYCLE.replace(b"<urn:is> <urn:b>", b"<urn:is> <urn:e>") + RESTRICTED, 4, 4),
     ],
 )
-def test_what_changed_is_told_whole_and_nothing_besides(before, after, gone, come):
+def test_only_the_changed_nodes_get_new_labels(before, after, gone, come):
     assert compared(before, after) == (gone, come)

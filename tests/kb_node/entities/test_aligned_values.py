@@ -77,7 +77,7 @@ def said(semantic_map, predicate):
     return [o for _, _, o in semantic_map.reasoner.asserted(None, predicate)]
 
 
-def test_a_pose_of_the_middle_is_one_of_the_bottom(kitchen):
+def test_a_pose_at_the_centre_is_converted_to_the_bottom(kitchen):
     drawer = kitchen.entity("drawer1")
     assert drawer.pose == Pose(position_m=(1.4, 0.9, 0.68))
     assert drawer.size_m == (0.5, 0.8, 0.14)
@@ -91,7 +91,7 @@ def test_a_wall_has_a_body_and_a_room_has_none(kitchen):
     assert kitchen.entity("room1").place
 
 
-def test_parts_without_a_name_are_no_entities(kitchen):
+def test_unnamed_parts_are_not_entities(kitchen):
     assert [entity.name for entity in kitchen.entities()] == ["drawer1"]
 
 
@@ -100,7 +100,7 @@ TRANSLATION = "<http://knowrob.org/kb/knowrob.owl#translation>"
 QUATERNION = "<http://knowrob.org/kb/knowrob.owl#quaternion>"
 
 
-def test_a_move_is_said_in_the_same_words(kitchen):
+def test_a_move_is_written_in_the_same_vocabulary(kitchen):
     before = len(kitchen.abox())
     edited(kitchen, at=(2.0, 1.0, 0.5), yaw=math.pi / 2)
     assert kitchen.entity("drawer1").pose.position_m == (2.0, 1.0, 0.5)
@@ -113,7 +113,7 @@ def test_a_move_is_said_in_the_same_words(kitchen):
     assert (len(kitchen.abox()), said(kitchen, v.HAS_POSITION)) == (before, [])
 
 
-def test_what_lies_on_its_side_has_its_middle_beside_its_bottom(kitchen):
+def test_a_tilted_object_has_its_centre_beside_its_bottom(kitchen):
     lying = (math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0)  # its z axis points to -y
     edited(kitchen, at=(0.0, 0.0, 0.0), orientation=lying)
     numbers = [float(word) for word in v.lexical(said(kitchen, TRANSLATION)[0]).split()]
@@ -121,7 +121,7 @@ def test_what_lies_on_its_side_has_its_middle_beside_its_bottom(kitchen):
     assert kitchen.entity("drawer1").pose.position_m == pytest.approx((0.0, 0.0, 0.0))
 
 
-def test_another_size_leaves_the_bottom_where_it_is(kitchen):
+def test_a_new_size_keeps_the_bottom(kitchen):
     edited(kitchen, size=(0.5, 0.8, 0.2))
     drawer = kitchen.entity("drawer1")
     assert (drawer.size_m, drawer.pose) == ((0.5, 0.8, 0.2), Pose(position_m=(1.4, 0.9, 0.68)))
@@ -148,7 +148,7 @@ def test_after_a_restart_and_a_round_trip_the_new_pose_holds(kitchen, tmp_path):
     home.close(other)
 
 
-def test_what_is_new_is_said_in_semmaps_words_and_read_again(kitchen, tmp_path):
+def test_new_values_use_the_vocabulary_of_semmap_and_are_read_back(kitchen, tmp_path):
     cup = NewEntity(
         name="tazzinà", class_iri="http://www.ease-crc.org/ont/SOMA.owl#Cup",
         pose=NOWHERE, size=(0.1, 0.1, 0.1), ref="cup",
@@ -159,7 +159,7 @@ def test_what_is_new_is_said_in_semmaps_words_and_read_again(kitchen, tmp_path):
     assert (filtered.skipped, filtered.notes) == ([], [])
 
 
-def test_semmaps_words_win_over_the_others(kitchen):
+def test_the_vocabulary_of_semmap_takes_precedence(kitchen):
     star = home.turtle(
         "<http://lab.org/kitchen.owl#drawer1> dm:hasPosition :p ."
         " :p dm:float_coordinates_x 3.0 ; dm:float_coordinates_y 3.0 ; dm:float_coordinates_z 3.0 ."
@@ -170,7 +170,7 @@ def test_semmaps_words_win_over_the_others(kitchen):
     assert kitchen.entity("drawer1").pose.position_m == (4.0, 4.0, 4.0)
 
 
-def test_a_pose_that_two_share_stays_the_others(kitchen):
+def test_a_shared_pose_stays_with_the_other_entity(kitchen):
     (localization,) = said(kitchen, LOCALIZATION)
     twin = triples("map:drawer2 a soma:Drawer .")
     edge = (
@@ -184,14 +184,14 @@ def test_a_pose_that_two_share_stays_the_others(kitchen):
     assert kitchen.entity("drawer2").pose.position_m == (1.4, 0.9, 0.75)
 
 
-def test_a_changed_number_moves_the_thing(kitchen):
+def test_a_changed_number_moves_the_entity(kitchen):
     ((s, p, o),) = list(kitchen.reasoner.asserted(None, TRANSLATION))
     commit = kitchen.commit(home.transaction(2, [(s, p, '"0 0 1"')], [(s, p, o)]))
     assert [entity.name for entity in commit.changed] == ["drawer1"]
     assert kitchen.entity("drawer1").pose.position_m == (0.0, 0.0, 0.93)
 
 
-def test_removing_it_takes_all_that_describes_it(kitchen):
+def test_a_removal_includes_all_that_describes_the_entity(kitchen):
     kitchen.commit(Transaction(id="r", source="operator", remove=("drawer1",)))
     assert (kitchen.abox(), len(kitchen)) == ([], 0)
 
@@ -204,13 +204,13 @@ def test_removing_it_takes_all_that_describes_it(kitchen):
         'knowrob:translation "1 2 3" ; knowrob:quaternion "0 0 0 3"',
     ],
 )  # fmt: skip
-def test_what_is_no_pose_in_the_map_is_none(kitchen, pose):
+def test_an_invalid_pose_is_ignored(kitchen, pose):
     cup = f"map:cup1 a soma:Cup ; soma:hasLocalization [ soma:hasSpaceRegion [ {pose} ] ] ."
     kitchen.commit(home.transaction(2, triples(cup, "c")))
     assert kitchen.entity("cup1").pose is None
 
 
-def test_a_quaternion_is_in_the_vocabularys_order(kitchen):
+def test_a_quaternion_uses_the_order_of_the_vocabulary(kitchen):
     pose = 'knowrob:translation "1,2,3" ; knowrob:quaternion "0.0 0.0 0.7071 0.7071"'
     cup = f"map:cup1 a soma:Cup ; soma:hasLocalization [ soma:hasSpaceRegion [ {pose} ] ] ."
     kitchen.commit(home.transaction(2, triples(cup, "c")))
@@ -225,12 +225,12 @@ def test_the_shipped_alignments_can_be_read():
 
 
 @pytest.mark.parametrize("text", ["title = 3", "nonsense", 'title = "x"\nnamespaces = ["y"]', 'title = "x"'])
-def test_what_is_no_alignment_is_told(text):
+def test_an_invalid_alignment_is_reported(text):
     with pytest.raises(errors.BadFile, match=r"x\.toml is not an alignment"):
         alignments.read(text, "x.toml")
 
 
-def test_what_is_said_of_places_in_other_words_is_compared_with_the_poses(kitchen):
+def test_asserted_locations_in_other_vocabularies_are_compared_with_the_poses(kitchen):
     cup = DRAWER.replace("drawer1", "cup1").replace("soma:Drawer", "soma:Cup").replace("1.4 0.9", "5.0 0.9")
     kitchen.commit(home.transaction(2, triples(cup + "map:cup1 soma:isOntopOf map:drawer1 .", "b")))
     (wrong,) = entity_queries.CurrentState(kitchen).entity(Get(name="cup1", where=True)).denied

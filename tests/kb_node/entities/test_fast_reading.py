@@ -84,14 +84,14 @@ ALIKE = {"shape": pieces(), "numbers": st.lists(st.tuples(NUMBER, NUMBER, FAULTY
 
 @settings(max_examples=25, deadline=None, derandomize=True)
 @given(**ALIKE)
-def test_stars_of_one_shape_are_read_as_each_by_itself(tmp_path_factory, shape, numbers):
+def test_runs_of_one_shape_are_read_like_single_entities(tmp_path_factory, shape, numbers):
     check_alike(tmp_path_factory, shape, numbers)
 
 
 @pytest.mark.long
 @settings(max_examples=400, deadline=None)
 @given(**ALIKE)
-def test_many_stars_of_one_shape_are_read_as_each_by_itself(tmp_path_factory, shape, numbers):
+def test_many_runs_of_one_shape_are_read_like_single_entities(tmp_path_factory, shape, numbers):
     check_alike(tmp_path_factory, shape, numbers)
 
 
@@ -124,7 +124,7 @@ def _said(read):
         return error.text
 
 
-def test_the_usual_star_is_read_regular(semantic_map, monkeypatch):
+def test_the_usual_run_is_regular(semantic_map, monkeypatch):
     numbers = count()
 
     def usual(name):
@@ -142,7 +142,7 @@ def test_the_usual_star_is_read_regular(semantic_map, monkeypatch):
     assert entity.class_ == "Chair"
 
 
-def test_a_known_shape_with_a_bad_name_is_refused(semantic_map):
+def test_a_known_shape_with_an_invalid_name_is_rejected(semantic_map):
     for name in ("e0", "e1"):
         semantic_map.commit(transaction(name, star(name)))
     with pytest.raises(errors.BadRequest, match="needs an IRI that ends in a valid name"):

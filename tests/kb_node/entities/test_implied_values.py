@@ -9,26 +9,26 @@ DOOR = v.literal("door=0.8")
 OPEN = {v.IS_OPEN: [TRUE], v.OPENNESS: [HALF], v.JOINT_POSITIONS: [DOOR]}
 
 
-def test_to_say_that_it_is_shut_takes_back_how_far_open_it_was():
+def test_setting_it_closed_clears_openness_and_joint_positions():
     assert imply_joint_values({v.IS_OPEN: [FALSE]}, OPEN) == {v.OPENNESS: [], v.JOINT_POSITIONS: []}
 
 
-def test_how_far_open_says_whether_it_is_open():
+def test_openness_implies_whether_it_is_open():
     assert imply_joint_values({v.OPENNESS: [NONE]}, OPEN) == {v.IS_OPEN: [FALSE], v.JOINT_POSITIONS: []}
     assert imply_joint_values({v.OPENNESS: [HALF]}, {}) == {v.IS_OPEN: [TRUE]}
 
 
-def test_what_is_said_together_stays():
+def test_values_that_are_set_together_are_kept():
     said = {v.IS_OPEN: [FALSE], v.OPENNESS: [NONE], v.JOINT_POSITIONS: [v.literal("door=0")]}
     assert imply_joint_values(said, OPEN) == {}
 
 
-def test_what_says_nothing_new_changes_nothing():
+def test_unchanged_values_have_no_effect():
     assert imply_joint_values({v.IS_OPEN: [TRUE]}, OPEN) == {}
     assert imply_joint_values({v.dm("hasColor"): [v.dm("color_red")]}, OPEN) == {}
 
 
-def test_switches_and_doors_do_not_concern_one_another():
+def test_switches_and_doors_are_independent():
     said = {**OPEN, v.IS_SWITCHED_ON: [TRUE], v.SWITCH_POSITIONS: [v.literal("knob=1")]}
     assert imply_joint_values({v.IS_SWITCHED_ON: [FALSE]}, said) == {v.SWITCH_POSITIONS: []}
     assert imply_joint_values({v.IS_OPEN: [FALSE]}, said) == {v.OPENNESS: [], v.JOINT_POSITIONS: []}

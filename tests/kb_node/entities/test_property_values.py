@@ -60,13 +60,13 @@ def test_text_is_typed_by_the_range(ranges, text, term, shown):
         (BYTE, '"x"', """p takes a literal of xsd:byte, not "x\""""),
     ],
 )
-def test_what_is_outside_the_range_is_refused(datatype, text, said):
+def test_a_value_outside_the_range_is_rejected(datatype, text, said):
     with pytest.raises(errors.BadRequest) as caught:
         literal("p", frozenset((datatype,)), text)
     assert caught.value.text == said
 
 
-def test_values_are_compared_and_not_their_spelling():
+def test_values_are_compared_by_value():
     assert is_same_value(v.literal("01", INTEGER), v.literal("1.0", DECIMAL))
     assert not is_same_value(v.literal("1", INTEGER), v.literal("1"))
     assert not is_same_value(v.literal("x", INTEGER), v.literal("y", INTEGER))

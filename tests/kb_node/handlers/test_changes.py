@@ -52,7 +52,7 @@ def new(*names, **fields):
     return transaction("-".join(names), add=add, verb="add", **fields)
 
 
-def test_each_commit_is_told_once_and_in_order(changes, listener):
+def test_each_commit_is_published_once_and_in_order(changes, listener):
     first = changes.on_commit(transaction(1, chair("a"), told=True))
     assert changes.on_commit(transaction(1, chair("x"))) == first
     assert changes.on_commit(transaction(2, chair("a"))) is None
@@ -63,7 +63,7 @@ def test_each_commit_is_told_once_and_in_order(changes, listener):
     assert [made and made.seq for made in changes.on_made_by(MadeBy(ids=("4", "5")))] == [3, None]
 
 
-def test_a_dry_run_is_told_to_nobody(changes, listener, semantic_map):
+def test_a_dry_run_is_not_published(changes, listener, semantic_map):
     made = changes.on_commit(transaction(1, chair("a"), dry_run=True))
     assert made.trial.changed == ("a",)
     assert (listener.commits, semantic_map.seq) == ([], 0)
@@ -71,7 +71,7 @@ def test_a_dry_run_is_told_to_nobody(changes, listener, semantic_map):
         changes.on_commits(Transactions(transactions=(transaction(2, chair("b"), dry_run=True),)))
 
 
-def test_what_the_disk_does_not_take_is_told_as_such(changes, listener, semantic_map):
+def test_a_disk_error_is_reported(changes, listener, semantic_map):
     with (
         full_by_page_count(semantic_map._journal),
         pytest.raises(errors.Refused, match="could not be written"),
@@ -81,7 +81,7 @@ def test_what_the_disk_does_not_take_is_told_as_such(changes, listener, semantic
     assert listener.commits == []
 
 
-def test_large_changes_say_how_far_they_are(changes, listener, monkeypatch):
+def test_large_changes_report_their_progress(changes, listener, monkeypatch):
     monkeypatch.setattr(changes_module, "_FEW", 2)
     changes.on_commit(new("a", "b"))
     assert listener.work == []

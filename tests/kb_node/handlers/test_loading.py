@@ -40,7 +40,7 @@ def loading(semantic_map, said):
     )
 
 
-def test_a_load_counts_what_it_describes_and_not_what_follows_of_others(flat):
+def test_a_load_counts_described_entities_and_not_those_with_changed_inferences(flat):
     said = []
     star = stars.star("apple9", v.dm("Apple"), pose=Pose(position_m=(9.81, 0.34, 0.1)))
     document = LoadDocument(

@@ -60,7 +60,7 @@ def readers():
         connection.close()
 
 
-def test_each_question_has_a_lane_and_the_warm_one_comes_first(readers):
+def test_each_query_has_a_lane_and_lanes_with_readers_come_first(readers):
     first = readers.ask("a")
     second = readers.ask("b")
     assert readers.sent == [StartReader(lane=0), StartReader(lane=1)]
@@ -73,7 +73,7 @@ def test_each_question_has_a_lane_and_the_warm_one_comes_first(readers):
     assert not third.done()
 
 
-def test_what_finds_no_lane_waits_for_the_next(readers):
+def test_a_query_without_a_lane_waits(readers):
     futures = [readers.ask(str(number)) for number in range(LANES + 1)]
     taken = [readers.take(lane) for lane in range(LANES)]
     assert not readers.lanes.remote_ends[2].poll(0)
@@ -82,7 +82,7 @@ def test_what_finds_no_lane_waits_for_the_next(readers):
     assert readers.take(2).query == str(LANES)
 
 
-def test_a_reader_that_dies_of_its_query_takes_the_answer_with_it(readers):
+def test_a_query_that_kills_its_reader_fails(readers):
     future = readers.ask("endless")
     late = readers.take(0)
     readers.lanes.on_reader_exit(ReaderExited(lane=0, signal=signal.SIGALRM))
@@ -95,7 +95,7 @@ def test_a_reader_that_dies_of_its_query_takes_the_answer_with_it(readers):
     assert following.result(WAIT_S).verdict
 
 
-def test_a_reader_that_goes_leaves_the_question_to_the_next(readers):
+def test_the_query_of_a_reader_that_exits_goes_to_the_next_one(readers):
     future = readers.ask("unread")
     readers.lanes.on_reader_exit(ReaderExited(lane=0, signal=0))
     assert readers.sent == [StartReader(lane=0), StartReader(lane=0)]
@@ -108,13 +108,13 @@ def test_a_reader_that_goes_leaves_the_question_to_the_next(readers):
     assert future.result(WAIT_S).verdict
 
 
-def test_a_long_question_is_sent_by_another_thread_and_in_one_piece(readers):
+def test_a_long_query_is_sent_by_another_thread_in_one_piece(readers):
     future = readers.ask("x" * 100_000)
     readers.answer(0, readers.take(0))
     assert future.result(WAIT_S).verdict
 
 
-def test_in_the_end_nobody_waits(readers):
+def test_closing_fails_all_queries(readers):
     futures = [readers.ask("x") for _ in range(LANES + 2)]
     readers.lanes.close(errors.Refused("over"))
     for future in futures:
@@ -128,7 +128,7 @@ def begun(readers, count, name="long"):
     return futures, [readers.take(lane) for lane in range(count)]
 
 
-def test_where_all_lanes_take_long_one_is_set_aside_for_who_waits_and_begun_anew(readers, monkeypatch):
+def test_a_long_running_query_is_preempted_and_started_again_if_others_wait(readers, monkeypatch):
     monkeypatch.setattr(lanes, "LONG_S", 0.05)
     futures, taken = begun(readers, LANES)
     quick = readers.ask("quick")
@@ -150,7 +150,7 @@ def test_where_all_lanes_take_long_one_is_set_aside_for_who_waits_and_begun_anew
     assert futures[LONG_RUNNING].result(WAIT_S).verdict
 
 
-def test_nothing_is_set_aside_while_nobody_waits(readers, monkeypatch):
+def test_no_query_is_preempted_if_none_waits(readers, monkeypatch):
     monkeypatch.setattr(lanes, "LONG_S", 0.0)
     begun(readers, LANES)
     readers.lanes._preempt()
@@ -158,7 +158,7 @@ def test_nothing_is_set_aside_while_nobody_waits(readers, monkeypatch):
     assert readers.lanes._timer is None
 
 
-def test_askers_take_turns(readers):
+def test_clients_take_turns(readers):
     _, taken = begun(readers, LANES)
     for number in range(5):
         readers.lanes.ask(Sparql(query=f"a{number}"), 7, asker="a")
@@ -171,7 +171,7 @@ def test_askers_take_turns(readers):
     assert order == ["a0", "b0", "a1", "a2", "a3", "a4"]
 
 
-def test_too_many_are_refused(readers):
+def test_too_many_queries_are_rejected(readers):
     begun(readers, LANES)
     for _ in range(64):
         readers.ask("x")

@@ -36,7 +36,7 @@ QUERIES = {
 
 
 @pytest.mark.long
-def test_they_have_the_rows_that_there_are(flat):
+def test_standing_queries_have_the_correct_rows(flat):
     dice, news = random.Random(15), queue.SimpleQueue()
     service = SparqlService(lambda: flat.reasoner.asserted(), news.put, derived_changes=flat.all_derived)
     rows, truth = {}, {}

@@ -88,7 +88,7 @@ def inferring(monkeypatch):
     made.worker.end()
 
 
-def test_a_reader_is_up_to_date_when_it_is_asked(process):
+def test_a_reader_is_up_to_date_when_it_is_queried(process):
     process.commit()
     process.hire(0)
     for number in range(1, 6):
@@ -97,7 +97,7 @@ def test_a_reader_is_up_to_date_when_it_is_asked(process):
         process.commit()
 
 
-def test_a_question_that_came_before_its_commit_waits_for_it(process):
+def test_a_query_waits_for_its_commit(process):
     process.hire(0)
     process.ask(0, CHAIRS, seq=2)
     process.await_taken(0)
@@ -106,7 +106,7 @@ def test_a_question_that_came_before_its_commit_waits_for_it(process):
     assert process.rows(0) == 2
 
 
-def test_what_follows_is_read_on_too(inferring):
+def test_readers_read_inferences_of_later_commits(inferring):
     inferring.hire(0)
     for number in range(1, 4):
         inferring.commit()
@@ -114,7 +114,7 @@ def test_what_follows_is_read_on_too(inferring):
         assert inferring.rows(0) == number
 
 
-def test_a_reader_that_cannot_follow_goes_and_leaves_the_question(process):
+def test_a_reader_that_is_too_old_exits_and_leaves_the_query(process):
     process.hire(0)
     for _ in range(11):
         process.commit()
@@ -124,7 +124,7 @@ def test_a_reader_that_cannot_follow_goes_and_leaves_the_question(process):
     assert process.rows(0) == 11
 
 
-def test_one_that_has_taken_the_question_gives_it_back(process):
+def test_a_reader_that_has_taken_the_query_returns_it(process):
     process.hire(0)
     process.ask(0, SEATS, inferred=True)  # its triples are too old for it
     process.await_taken(0)
@@ -133,7 +133,7 @@ def test_one_that_has_taken_the_question_gives_it_back(process):
     assert process.bury_one() == ReaderExited(lane=0, signal=0)
 
 
-def test_lanes_have_readers_of_their_own(process):
+def test_lanes_have_different_readers(process):
     process.commit()
     process.hire(0)
     process.hire(1)

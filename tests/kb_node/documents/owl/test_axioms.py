@@ -208,13 +208,13 @@ def test_the_triples_do_not_depend_on_the_run():
     assert rdf.parse(content, "o") == rdf.parse(content, "o")
 
 
-def test_an_ontology_without_a_name_is_one():
+def test_an_ontology_may_have_no_name():
     read = rdf.parse(b"Ontology(Declaration(Class(<urn:A>)))", "o", label_prefix="r")
     assert ("_:rontology", "<http://www.w3.org/1999/02/22-rdf-syntax-ns#type>") in {t[:2] for t in read}
 
 
 @pytest.mark.parametrize("file", ["SOMA.owl", "DUL.owl"])
-def test_another_reader_finds_the_same_axioms_in_the_triples(file):
+def test_another_parser_finds_the_same_axioms_in_the_triples(file):
     """Compare with the library's own RDF reader."""
     path = data_folder() / "ontologies" / "soma" / file
     if not path.exists():

@@ -37,7 +37,7 @@ def test_several_roots():
     assert len(table(with_declarations(triples(), spatial_root=["Cat", "Idea"])).spatial) == 2
 
 
-def test_a_root_that_there_is_not_is_refused():
+def test_an_unknown_root_is_rejected():
     with pytest.raises(errors.UnknownClass, match=r"--spatial-root Anmal: .* did you mean Animal"):
         with_declarations(triples(), spatial_root=["Anmal"])
 
@@ -75,7 +75,7 @@ def test_roots_stay_until_others_are_declared():
     assert table(with_spatial_roots_of(without, before)).spatial_roots == ()
 
 
-def test_without_roots_it_is_told_what_that_means():
+def test_without_roots_the_consequence_is_reported():
     assert "load it again with --spatial-root CLASS" in tbox_notes.not_in_space(table(triples()))
 
 
@@ -96,7 +96,7 @@ COLOR = (
 )
 
 
-def test_what_no_map_could_be_kept_with_is_set_aside_and_told():
+def test_statements_that_make_every_map_inconsistent_are_ignored_and_reported():
     region = "<http://www.ease-crc.org/ont/SOMA.owl#ColorRegion>"
     tbox = with_declarations(triples(SOMA))
     assert (region, v.RDFS_SUB_CLASS_OF, REGION) in tbox

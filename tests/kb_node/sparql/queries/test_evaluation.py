@@ -33,7 +33,7 @@ def test_the_four_forms(dataset):
     assert len(ask(dataset, "DESCRIBE :b").rows) == 2
 
 
-def test_what_follows_is_seen_when_it_is_asked_for(dataset):
+def test_inferences_are_included_on_request(dataset):
     for query, asserted, inferred in (
         ("SELECT ?x { ?x a dm:Seat }", 0, 2),
         ("SELECT ?x { ?x a ?c }", 3, 5),
@@ -43,24 +43,24 @@ def test_what_follows_is_seen_when_it_is_asked_for(dataset):
         assert len(ask(dataset, query, inferred=True).rows) == inferred
 
 
-def test_more_rows_than_allowed_are_refused(dataset):
+def test_too_many_rows_are_rejected(dataset):
     assert len(ask(dataset, "SELECT * { ?s a ?o }", limit=3).rows) == 3
     for query in ("SELECT * { ?s a ?o }", "CONSTRUCT { ?s a ?o } WHERE { ?s a ?o }"):
         with pytest.raises(errors.Refused, match="more than 2 rows"):
             ask(dataset, query, limit=2)
 
 
-def test_a_triple_that_is_made_twice_counts_once(dataset):
+def test_a_duplicate_triple_counts_once(dataset):
     graph = ask(dataset, "CONSTRUCT { :a a dm:Thing } WHERE { ?s ?p ?o }", limit=1)
     assert graph.rows == ((v.entity_iri("a"), v.RDF_TYPE, v.dm("Thing")),)
 
 
-def test_an_unknown_function_is_refused(dataset):
+def test_an_unknown_function_is_rejected(dataset):
     with pytest.raises(errors.Refused, match=r"custom function <http://x.org/f> is not supported"):
         ask(dataset, "SELECT (<http://x.org/f>(1) AS ?x) {}")
 
 
-def test_two_spellings_of_a_number_are_there_until_both_are_gone():
+def test_two_spellings_of_a_number_are_kept_until_both_are_removed():
     spellings = turtle(':a dm:mass "1.0"^^xsd:float , "1.00"^^xsd:float . :b dm:mass "2"^^xsd:float .')
     one, other = (t for t in spellings if t[0] == v.entity_iri("a"))
     for dataset in (Dataset(0, spellings), _by_commits(spellings)):
@@ -94,7 +94,7 @@ def _by_commits(triples):
         ("SELECT * { ?x a dm:Chair OPTIONAL { ?x dm:nosuch ?y } }", []),  # there are rows
     ],
 )
-def test_where_there_is_nothing_it_is_told_what_is_unknown(query, notes):
+def test_unknown_terms_are_noted_if_there_is_no_result(query, notes):
     said = ":a a dm:Chair . :b a dm:Chair ; dm:mass 4.50 . :c a dm:Table ."
     declared = " dm:Chair a owl:Class . dm:mass a owl:DatatypeProperty ."
     found = ask(Dataset(7, turtle(said + declared)), query).notes

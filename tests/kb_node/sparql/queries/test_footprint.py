@@ -57,7 +57,7 @@ def _rows(dataset, query):
 FOOTPRINTS = {query: footprint(query) for query in QUERIES}
 
 
-def test_a_class_is_told_from_another():
+def test_classes_are_distinguished():
     looks_at = footprint("SELECT ?x { ?x a dm:Chair ; dm:isOn/rdfs:label ?y }")
     chair = v.entity_iri("a")
     assert looks_at.is_touched([(chair, v.RDF_TYPE, v.dm("Chair"))])
@@ -66,6 +66,6 @@ def test_a_class_is_told_from_another():
 
 
 @pytest.mark.parametrize("query", ["SELECT ?x { ?x ?p ?o }", "SELECT ?x { ?x dm:p* ?o }", "no SPARQL"])
-def test_what_cannot_be_told_is_everything(query):
+def test_unknown_patterns_cover_everything(query):
     assert footprint(query) == Footprint()
     assert footprint(query).is_touched([(v.entity_iri("a"), v.dm("p"), v.entity_iri("b"))])

@@ -51,7 +51,7 @@ def test_a_variable_predicate_is_found(query):
 
 
 @pytest.mark.parametrize("query", WITHOUT)
-def test_other_variables_are_no_predicates(query):
+def test_variables_at_other_positions_are_not_predicates(query):
     assert not has_variable_predicate(query)
     assert not may_use_properties(query, NAMES)
 
@@ -63,7 +63,7 @@ def test_a_name_is_found_in_any_spelling():
     assert not may_use_properties("SELECT ?x { ?x dm:isOn ?y }", NAMES)
 
 
-def test_the_ends_of_patterns_are_told():
+def test_the_terms_of_patterns_are_returned():
     found = patterns_of("PREFIX : <urn:> SELECT ?x { ?x dm:isNear :a ; ?p ?y . :b dm:isNear/dm:isOn [] }")
     assert found == {
         (None, v.dm("isNear"), "<urn:a>"),
@@ -73,7 +73,7 @@ def test_the_ends_of_patterns_are_told():
     }
 
 
-def test_what_is_described_may_be_either_end_of_anything():
+def test_a_described_resource_may_be_at_either_end():
     assert patterns_of("DESCRIBE <urn:a>") == {("<urn:a>", None, None), (None, None, "<urn:a>")}
 
 

@@ -20,7 +20,7 @@ from semmap.schemas import errors
         ("SELECT ?x { ?x rdfs:label 'SERVICE'@from . _:from ?p ?x } # FROM", "SELECT"),
     ],
 )
-def test_what_reads_is_let_in(query, form):
+def test_queries_that_read_are_accepted(query, form):
     assert text.require_reading(query) == form
 
 
@@ -39,18 +39,18 @@ def test_what_reads_is_let_in(query, form):
         ("SELECT*{?s?p?o}#\nFROM", "FROM is not allowed"),
     ],
 )
-def test_what_writes_or_reaches_beyond_is_refused(query, word):
+def test_updates_and_external_access_are_rejected(query, word):
     with pytest.raises(errors.Refused, match=word):
         text.require_reading(query)
 
 
 @pytest.mark.parametrize("query", ["", "hello", "?select", "# SELECT", "<SELECT>"])
-def test_what_is_no_query_is_bad(query):
+def test_invalid_queries_are_rejected(query):
     with pytest.raises(errors.BadRequest, match="it needs SELECT, ASK, CONSTRUCT or DESCRIBE"):
         text.require_reading(query)
 
 
-def test_only_a_select_is_watched():
+def test_only_select_can_be_watched():
     with pytest.raises(errors.BadRequest, match=r"only a SELECT query can be watched, and this is .* ASK"):
         text.require_select("ASK { ?s ?p ?o }")
 
@@ -70,7 +70,7 @@ def test_only_a_select_is_watched():
         ("SELECT ?x { ?x ?p <a b> }", "an IRI is malformed"),
     ],
 )
-def test_a_syntax_error_has_a_place_and_a_reason(query, said):
+def test_a_syntax_error_has_a_position_and_a_reason(query, said):
     with pytest.raises(errors.BadRequest) as error:
         evaluate(query, Dataset(0, ()), inferred=False, limit=10)
     assert error.value.text.startswith("not a valid SPARQL query: ")

@@ -29,7 +29,7 @@ class Slow:
         self._lane.close()
 
 
-def test_a_lease_begins_with_the_first_rows_however_long_they_take():
+def test_a_lease_begins_with_the_first_rows():
     sent, readers = [], []
 
     def hire(lane):

@@ -78,11 +78,11 @@ def test_with_every_construct_of_the_language(commits):
 
 @settings(SETTINGS, max_examples=12)
 @given(_commits(_at_home()))
-def test_at_home(commits):
+def test_in_the_household(commits):
     _follow(HOUSEHOLD, commits)
 
 
-def test_a_class_that_limits_values_makes_them_one():
+def test_a_class_that_limits_values_makes_them_equal():
     before = graphs.triples(":a :m1 :x , :y . :z :free :x .")
     dataset = _follow(TBOX, [((), before), ((), graphs.triples(":a a :Max1 ."))])
     assert graphs.triple(":z :free :y") in _as_triples(dataset, INFERRED)

@@ -87,7 +87,7 @@ def stores(node):
     return [path for path in folder.iterdir() if path.name[0].isdigit()] if folder.exists() else []
 
 
-def test_a_large_map_is_asked_on_disk_and_followed(node):
+def test_a_large_map_is_queried_on_disk_and_kept_up_to_date(node):
     assert node.count() == 3
     assert (node.made, len(stores(node))) == (1, 1)
     node.commit("more", chair("more"))
@@ -106,7 +106,7 @@ def test_a_small_map_is_in_memory(tmp_path):
         node.close()
 
 
-def test_the_store_is_kept_between_starts_and_catches_up(node, tmp_path):
+def test_the_store_survives_a_restart_and_catches_up(node, tmp_path):
     assert node.count() == 3
     node.commit("more", chair("more"))
     node.close()
@@ -134,7 +134,7 @@ def test_another_journal_has_another_store(node, tmp_path):
         again.close()
 
 
-def test_commits_while_the_store_is_made_are_in_it(node):
+def test_commits_during_the_creation_are_in_the_store(node):
     answer = node.service.ask(Sparql(query=COUNT), node.map.seq)
     assert not answer.done()
     node.commit("more", chair("more"))
@@ -145,7 +145,7 @@ def test_commits_while_the_store_is_made_are_in_it(node):
     }
 
 
-def test_no_answer_is_of_a_map_that_never_was(node):
+def test_no_answer_mixes_two_commits(node):
     """The store may contain parts of a later commit; earlier queries are answered as of that commit."""
     answer = node.service.ask(
         Sparql(query="SELECT ?c ?p { ?c a dm:Chair ; dm:hasPosition ?p }"), node.map.seq
@@ -155,7 +155,7 @@ def test_no_answer_is_of_a_map_that_never_was(node):
     assert (result.seq, len(result.rows)) == (node.map.seq, 4)
 
 
-def test_after_a_large_commit_the_store_is_made_before_anybody_asks(tmp_path):
+def test_the_store_is_created_after_a_large_commit(tmp_path):
     node = Node(new_map(tmp_path), large=50)
     try:
         node.commit("many", [t for i in range(30) for t in chair(f"chair{i}")])
@@ -186,7 +186,7 @@ def test_the_store_is_begun_with_the_commit(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     "kind", ["it contradicts itself", "the disk does not take it", "it is one of several"]
 )
-def test_nothing_stays_of_a_store_whose_commit_was_not_made(tmp_path, monkeypatch, kind):
+def test_the_store_of_an_aborted_commit_is_deleted(tmp_path, monkeypatch, kind):
     node = Node(new_map(tmp_path), large=50)
     try:
         wrong = [(v.entity_iri("chair3"), v.RDF_TYPE, v.dm("Kitchen"))] if "contradicts" in kind else []
@@ -206,7 +206,7 @@ def test_nothing_stays_of_a_store_whose_commit_was_not_made(tmp_path, monkeypatc
         node.close()
 
 
-def test_a_store_foretold_for_a_commit_that_was_taken_back_is_not_another_ones(tmp_path):
+def test_a_store_prepared_for_an_undone_commit_is_not_used_for_another(tmp_path):
     node = Node(new_map(tmp_path), large=50)
     try:
         node.map.commit(transaction("a", chairs(30)))  # and it is not reported again
@@ -239,7 +239,7 @@ def test_the_store_is_filled_from_a_document_while_it_is_read(tmp_path, monkeypa
 
 
 @pytest.mark.parametrize("why", ["another commit", "something else in it", "no commit", "it retracts, too"])
-def test_a_document_that_was_not_committed_leaves_no_store(tmp_path, why):
+def test_a_document_without_a_commit_leaves_no_store(tmp_path, why):
     node = Node(new_map(tmp_path), large=50)
     node.map.commit(transaction("one", chair("one")))
     try:
@@ -259,7 +259,7 @@ def test_a_document_that_was_not_committed_leaves_no_store(tmp_path, why):
 @pytest.mark.parametrize(
     "text", ["_:a :p _:b .", ":a :p [] .", ":a :p (1) .", "\ufeff:a :p 1 .", ":a :p 1 ."]
 )
-def test_what_may_say_something_else_to_the_map_is_not_foreseen_nor_a_short_document(tmp_path, text):
+def test_a_document_with_unusual_content_or_a_short_one_is_not_prefetched(tmp_path, text):
     node = Node(new_map(tmp_path), large=50)
     try:
         content = text.encode() + b"#" * (3000 if text != ":a :p 1 ." else 100)
@@ -291,7 +291,7 @@ def test_a_large_commit_over_a_store_in_memory(tmp_path):
         node.close()
 
 
-def test_literals_that_differ_in_spelling_only_are_kept_in_memory(node):
+def test_literals_that_differ_only_in_spelling_are_kept_in_memory(node):
     chair1 = v.entity_iri("chair1")
     spelled = [(chair1, v.dm("weight"), f'"{one}"^^{v.XSD_FLOAT}') for one in ("1.0", "1.00")]
     node.commit("spelled", spelled)
@@ -302,7 +302,7 @@ def test_literals_that_differ_in_spelling_only_are_kept_in_memory(node):
     assert node.ask(weight).verdict
 
 
-def test_what_follows_is_kept_in_memory(node):
+def test_inferences_are_kept_in_memory(node):
     assert node.count() == 3
     ((found,),) = node.ask("SELECT (COUNT(?c) AS ?n) { ?c a dm:Seat }", inferred=True).rows
     assert v.lexical(found) == "3"
@@ -317,14 +317,14 @@ def test_a_standing_query_over_a_store_on_disk(node):
     assert [row[0] for row in news.rows.appeared] == [v.entity_iri("more")]
 
 
-def test_a_query_that_takes_too_long_is_cancelled_and_its_clone_goes(node, tmp_path):
+def test_a_query_that_takes_too_long_is_cancelled_and_its_clone_deleted(node, tmp_path):
     node.commit("many", [t for i in range(300) for t in chair(f"seat{i}")])
     with pytest.raises(errors.Refused, match="time limit"):
         node.ask("SELECT (COUNT(*) AS ?n) { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i FILTER(?a < ?i) }", timeout=0.5)
     assert node.count() == 303
 
 
-def test_a_long_log_is_taken_into_the_store(node, monkeypatch):
+def test_a_long_log_is_merged_into_the_store(node, monkeypatch):
     dataset = worker.DiskDataset
     assert node.count() == 3
     (path,) = stores(node)
@@ -338,7 +338,7 @@ def test_a_long_log_is_taken_into_the_store(node, monkeypatch):
     assert len(list(opened.store.quads_for_pattern(ox.NamedNode(v.bare(triple[0])), None, None))) > 0
 
 
-def test_a_clone_changes_nothing_in_the_store(tmp_path):
+def test_a_clone_does_not_change_the_store(tmp_path):
     path = tmp_path / FOLDER / "1-00"
     path.parent.mkdir()
     store = ox.Store(str(path))

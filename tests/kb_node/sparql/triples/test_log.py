@@ -11,7 +11,7 @@ def delta(seq):
     return Delta(seq=seq, inserted=((v.entity_iri(f"c{seq}"), v.RDF_TYPE, v.dm("Chair")),) * seq)
 
 
-def test_a_child_reads_on_from_where_it_was_forked():
+def test_a_child_reads_from_its_fork_on():
     log = Log()
     log.append(delta(1))
     inbox, outbox = os.pipe()
@@ -36,7 +36,7 @@ def test_a_child_reads_on_from_where_it_was_forked():
         os.close(fd)
 
 
-def test_what_is_half_written_is_left_for_later():
+def test_an_incomplete_entry_is_read_later():
     log, half = Log(), Log()
     log.append(delta(1))
     whole = os.pread(log.fileno(), 10_000, 0)
