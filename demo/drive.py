@@ -38,6 +38,6 @@ def drive(t: Tour) -> None:
     t.tell("Where is the milk? Nobody sees it, and the map knows")
     t.do("find", "the milk in the fridge", holds="milk1")
     t.do("relations", "milk1", "fridge1", holds="milk1 is inside fridge1")
-    t.do("last-seen", "milk1", holds="it cannot be seen there: fridge1 has been closed since")
+    t.do("last-seen", "milk1", holds="not observable: fridge1 has been closed since")
     t.do("when", "milk1", "isOn", "counter1", holds="milk1 is no longer on counter1")
     t.do("route", "robot1", "bed1", holds="through door7")

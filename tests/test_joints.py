@@ -89,9 +89,9 @@ def test_what_is_in_a_drawer_is_inside_it_open_or_shut(client):
     client.close("chest1")
     assert client.get("apple1").pose.position_m[0] < 0.1
     assert inside()
-    assert "it cannot be seen there: chest1 has been closed since" in client.last_seen("apple1").text
+    assert "not observable: chest1 has been closed since" in client.last_seen("apple1").text
     client.open("chest1", joint="drawer_2")
-    assert "it cannot be seen there: drawer_1 of chest1 is closed" in client.last_seen("apple1").text
+    assert "not observable: drawer_1 of chest1 is closed" in client.last_seen("apple1").text
 
 
 @pytest.mark.parametrize(

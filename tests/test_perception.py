@@ -66,13 +66,13 @@ def test_a_thing_put_on_the_table_is_known_moved_gone_and_recorded(tmp_path, mon
         assert moved.name == bottle.name
         assert there(client, 0.1, 0.05) is None
         until(lambda: client.last_seen(bottle.name).seen_ns, "it is seen again after that commit")
-        assert client.last_seen(bottle.name).text == "in sight of a camera just now"
+        assert client.last_seen(bottle.name).text == "in view of a camera now"
 
         bus.ask(client.session, keys.SIM, "delete", Delete(names=("a_bottle",)), Deleted)
         until(lambda: bottle.name not in {e.name for e in client.list()}, "it leaves the map")
         sighting = client.last_seen(bottle.name)
         assert sighting.gone == sighting.removed
-        assert re.match(r"seen to be gone at commit \d+, \d+ s ago: bottle1 is gone: ", sighting.text)
+        assert re.match(r"reported missing at commit \d+, \d+ s ago: bottle1 is gone: ", sighting.text)
 
         status = client.status()
         assert status.truth == "perceived"

@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 from typing import Any, Final, NamedTuple
 
 from benchmarks.table import Row
-from semmap.nodes.kb_node.answers.finding import Finding
+from semmap.nodes.kb_node.answers.entity_search import Finding
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal

@@ -91,7 +91,7 @@ def _memory_kb(folder: Path) -> float:
     with _open(Journal(folder / FILENAME)) as semantic_map:
         gc.collect()
         tracemalloc.start()
-        semantic_map.follow_places()
+        semantic_map.derive_all()
         gc.collect()
         taken, _ = tracemalloc.get_traced_memory()
         tracemalloc.stop()

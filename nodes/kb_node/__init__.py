@@ -1,10 +1,16 @@
-"""The knowledge base: the ABox and its truth.
+"""The knowledge base: it checks, stores and publishes the map.
 
-`semantic_map.py` is the core: one transaction in, one durable commit out. `planning.py` says which triples
-change, `applier.py` has the reasoner take them in, and `map_state.py` is what holds then and can be asked.
-Above it are `handlers/`: what is done for each verb of the wire.
+`semantic_map.py` is the core: one transaction in, one durable commit out. `planning.py` computes the triples
+that change, `applier.py` applies them to the reasoner, and `map_state.py` is the queryable state after the
+last commit. `handlers/` implements the commands of the wire on top of it.
 
-Below it are `reasoner/` (what follows), `entities/` (what triples say of things), `relations/` (where things
-are to one another), `storage/` (what survives a restart) and `documents/` (files in and out). `answers/` and
-`sparql/` answer questions about it.
+Below it are:
+
+- `reasoner/`: inference
+- `entities/`: entities as read from and written to triples
+- `relations/`: spatial relations
+- `storage/`: the journal and what a restart needs
+- `documents/`: import and export of files
+
+`answers/` and `sparql/` answer queries about the map.
 """

@@ -1,4 +1,4 @@
-"""Takes a commit in, checked and with its effects, before it is durable; and gives it back."""
+"""Applies commits to the reasoner with checks and effects, before they are durable, and reverts them."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from typing import Final
 from msgspec import structs
 
 from semmap.nodes.kb_node import preconditions, proofs
-from semmap.nodes.kb_node.beliefs import Believed
+from semmap.nodes.kb_node.derived_facts import DerivedChanges
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
 from semmap.nodes.kb_node.entities import entity_changes, entity_reading
 from semmap.nodes.kb_node.entities.fast_reading import Patterns
 from semmap.nodes.kb_node.map_state import MapState
-from semmap.nodes.kb_node.places import at_most
-from semmap.nodes.kb_node.progress import parts, steadily
+from semmap.nodes.kb_node.places import truncate_notes
+from semmap.nodes.kb_node.progress import split_batches, with_progress
 from semmap.nodes.kb_node.reasoner import Change, Inconsistent
 from semmap.ontology import vocabulary as v
 from semmap.schemas.commits import Commit
@@ -23,18 +23,18 @@ from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Term, Triple
 
 PART: Final = 250_000
-"""Triples that the reasoner takes in at once, in a second or two; in smaller parts it takes longer in all."""
+"""Triples that the reasoner takes in one call, a second or two. Smaller parts take longer in total."""
 
 
 class Applier:
-    """Changes what a map's reasoner holds. The entities show it only when `MapState.take` is called."""
+    """Changes the reasoner of a map. The entities change only with `MapState.apply_commit`."""
 
     def __init__(self, state: MapState) -> None:
-        """`state` is what is changed."""
+        """Change `state`."""
         self._state = state
         self._patterns = Patterns()
-        self.believed: dict[int, Believed] = {}
-        """What the last commits changed of what is computed, until somebody asks."""
+        self.derived_changes: dict[int, DerivedChanges] = {}
+        """The changes of computed facts by recent commits, until they are read."""
 
     def apply(
         self,
@@ -42,30 +42,33 @@ class Applier:
         make_durable: Callable[[Commit], Commit],
         noted: Callable[[Commit], Commit] = lambda commit: commit,
     ) -> Commit:
-        """The commit, durable and with its effects. Raises Inconsistent, and what `make_durable` raises.
+        """Return the commit, durable and with its effects.
 
-        On any error all is as before. `noted` adds a word on the change while the reasoner has it already.
+        Raises Inconsistent, and what `make_durable` raises.
+
+        On any error everything is as before. `noted` adds notes when the reasoner has the change already.
         """
         state = self._state
         subjects = preconditions.subjects(commit.retracted, commit.inserted)
         known = state.reasoner.mentioned(subjects)
         about = (
-            entity_reading.owners(state.reasoner, state.classes, s) for s in steadily(known, state.progress)
+            entity_reading.find_owners(state.reasoner, state.classes, s)
+            for s in with_progress(known, state.progress)
         )
         owners, new = (subjects.union(*about), subjects - known) if known else (subjects, subjects)
-        state.beliefs.begin()
+        state.derived_facts.begin()
         restores = bool(commit.undoes)
-        contradicted = state.beliefs.contradicted.keys() if restores else frozenset()
-        lenient = restores or not state.follows
+        contradicted = state.derived_facts.contradicted.keys() if restores else frozenset()
+        lenient = restores or not state.derives_at_commits
         change = self.change(delete=commit.retracted, insert=commit.inserted, lenient=lenient)
         try:
             if not lenient:
                 self._require_agreement(commit)
             commit = noted(self._with_effects(commit, owners, change, new))
-            del owners, subjects, known, new, change  # of a large commit a third of the memory that it takes
-            if state.follows:
+            del owners, subjects, known, new, change  # for a large commit these take a third of the memory
+            if state.derives_at_commits:
                 commit = self._with_places(commit)
-            if restores and state.follows:
+            if restores and state.derives_at_commits:
                 self._require_no_more_than(contradicted)
             commit = make_durable(commit)
         except BaseException:
@@ -76,33 +79,33 @@ class Applier:
     def switch(
         self, commit: Commit, tbox: frozenset[Triple], make_durable: Callable[[Commit], Commit]
     ) -> Commit:
-        """Like `apply`, for a commit that replaces the TBox: all is worked out anew beside the old."""
+        """Apply a commit that replaces the TBox: everything is computed again in a new reasoner."""
         state = self._state
-        before = state.tbox, state.reasoner, state.classes, state.beliefs
+        before = state.tbox, state.reasoner, state.classes, state.derived_facts
         abox = {*state.abox(), *commit.inserted}.difference(commit.retracted, tbox)
         try:
-            state.exchange_tbox(tbox, tbox_validation.compiled(tbox))
+            state.exchange_tbox(tbox, tbox_validation.compile_tbox(tbox))
             self.change(insert=abox, lenient=True)
             concerned = {v.iri(entity.iri) for entity in state.by_name.values()}
             concerned.update(i for c in state.classes.spatial for i in state.reasoner.instances(c))
             commit = self._with_effects(commit, set(), Change(frozenset(concerned)), set())
-            if state.follows:
-                commit = self._with_places_anew(commit, before[-1].withheld.keys())
+            if state.derives_at_commits:
+                commit = self._with_all_places(commit, before[-1].suppressed.keys())
             commit = make_durable(commit)
         except BaseException:
-            state.tbox, state.reasoner, state.classes, state.beliefs = before
+            state.tbox, state.reasoner, state.classes, state.derived_facts = before
             raise
         return commit
 
     def reverse(self, commit: Commit, before: Mapping[str, Entity | None]) -> None:
-        """Let the reasoner have all as it was before the last commit; `before` are that one's entities."""
+        """Revert the reasoner to before the last commit; `before` holds the entities of that state."""
         state = self._state
         self.change(delete=commit.inserted, insert=commit.retracted, lenient=True)
-        if not state.follows:
+        if not state.derives_at_commits:
             return
         after: dict[str, Entity | None] = {departed.name: None for departed in commit.removed}
         after.update((entity.name, entity) for entity in commit.changed)
-        state.beliefs.follow(
+        state.derived_facts.follow(
             changed=[entity for entity in before.values() if entity is not None],
             removed=[name for name, entity in before.items() if entity is None],
             before=lambda name: after[name] if name in after else state.by_name.get(name),
@@ -113,30 +116,33 @@ class Applier:
     def change(
         self, *, delete: Collection[Triple] = (), insert: Collection[Triple], lenient: bool = False
     ) -> Change:
-        """What the reasoner makes of triples that are there and of some that are not. Raises Inconsistent.
+        """Pass triples to the reasoner and return its changes. Raises Inconsistent.
 
-        When it is `lenient`, what is asserted of places and contradicts the rest is set aside.
+        If `lenient`, asserted locations that contradict the rest are suppressed.
         """
         state = self._state
         try:
             if len(delete) + len(insert) <= PART or not state.reasoner.is_compiled:
-                return state.beliefs.change(delete, insert, lenient=lenient)
+                return state.derived_facts.change(delete, insert, lenient=lenient)
             return self._change_in_parts(delete, insert, lenient)
         except Inconsistent as error:
-            raise proofs.refusal(error) from None
+            raise proofs.to_error(error) from None
 
     def _change_in_parts(
         self, delete: Collection[Triple], insert: Collection[Triple], lenient: bool
     ) -> Change:
-        """Whatever is a part of a consistent map is consistent, so nothing is refused that should not be."""
+        """Pass a large change to the reasoner in parts.
+
+        A part of a consistent map is consistent, so no valid change is rejected.
+        """
         state = self._state
-        reasoner, changes = state.beliefs, list[Change]()
+        reasoner, changes = state.derived_facts, list[Change]()
         deleted = inserted = 0
         try:
-            for part in parts(delete, PART, state.progress):
+            for part in split_batches(delete, PART, state.progress):
                 changes.append(reasoner.change(part, (), lenient=lenient))
                 deleted += len(part)
-            for part in parts(insert, PART, state.progress):
+            for part in split_batches(insert, PART, state.progress):
                 changes.append(reasoner.change((), part, lenient=lenient))
                 inserted += len(part)
         except BaseException:
@@ -147,24 +153,24 @@ class Applier:
     def _with_effects(self, commit: Commit, owners: Set[Term], change: Change, new: Set[Term]) -> Commit:
         state = self._state
         reading = entity_changes.Reading(state.reasoner, state.classes, self._patterns, state.progress)
-        return entity_changes.of(commit, change, state.by_name, reading, owners=owners, new=new)
+        return entity_changes.add_effects(commit, change, state.by_name, reading, owners=owners, new=new)
 
     def _with_places(self, commit: Commit) -> Commit:
-        """`commit` with the entities, too, whose classes change by where things are."""
+        """Return `commit` with the entities whose classes change because of their locations."""
         state = self._state
         entities = state.by_name
-        moved = state.beliefs.follow(
+        moved = state.derived_facts.follow(
             changed=commit.changed,
             removed=[departed.name for departed in commit.removed],
             before=entities.get,
             retracted=commit.retracted,
             inserted=commit.inserted,
         )
-        self.believed[commit.seq] = state.beliefs.believed
+        self.derived_changes[commit.seq] = state.derived_facts.derived_changes
         crowds = state.places.crowds(commit.names)
         if crowds:
             commit = structs.replace(commit, notes=(*commit.notes, *crowds))
-        commit = self._with_withheld(commit, state.beliefs.newly_withheld)
+        commit = self._with_suppressed(commit, state.derived_facts.newly_suppressed)
         if not moved:
             return commit
         changed = {entity.name: entity for entity in commit.changed}
@@ -176,42 +182,44 @@ class Applier:
                 changed[name] = structs.replace(entity, types=state.types_of(entity))
         return structs.replace(commit, changed=tuple(e for n, e in changed.items() if e != entities.get(n)))
 
-    def _with_places_anew(self, commit: Commit, withheld: Set[Triple]) -> Commit:
-        """The same for a commit that replaces the TBox, so that everything is worked out anew.
+    def _with_all_places(self, commit: Commit, suppressed: Set[Triple]) -> Commit:
+        """Do the same for a commit that replaces the TBox, where everything is computed again.
 
-        `withheld` is what was before.
+        `suppressed` are the facts that were suppressed before.
         """
         state = self._state
         gone = {departed.name for departed in commit.removed}
         after = {name: e for name, e in state.by_name.items() if name not in gone}
         after.update((entity.name, entity) for entity in commit.changed)
-        state.beliefs.fill(after)
-        commit = self._with_withheld(commit, sorted(state.beliefs.withheld.keys() - withheld))
+        state.derived_facts.fill(after)
+        commit = self._with_suppressed(commit, sorted(state.derived_facts.suppressed.keys() - suppressed))
         for name, entity in after.items():
             after[name] = structs.replace(entity, types=state.types_of(entity))
         changed = tuple(e for name, e in after.items() if e != state.by_name.get(name))
         return structs.replace(commit, changed=changed)
 
-    def _with_withheld(self, commit: Commit, facts: Collection[Triple]) -> Commit:
-        """`commit` with a note on what it lets contradict the map, so that it is left out."""
+    def _with_suppressed(self, commit: Commit, facts: Collection[Triple]) -> Commit:
+        """Return `commit` with notes on the facts that are suppressed because of it."""
         if not facts:
             return commit
         return structs.replace(
-            commit, notes=(*commit.notes, *at_most(list(map(self._state.beliefs.told, facts))))
+            commit,
+            notes=(*commit.notes, *truncate_notes(list(map(self._state.derived_facts.describe, facts)))),
         )
 
     def _require_agreement(self, commit: Commit) -> None:
-        """Raises Inconsistent for a commit that contradicts what was said before and geometry denies."""
+        """Raise Inconsistent for a commit that contradicts an assertion that the geometry denies now."""
         try:
-            self._state.beliefs.require_agreement(commit.inserted)
+            self._state.derived_facts.require_agreement(commit.inserted)
         except Inconsistent as error:
-            raise proofs.refusal(error) from None
+            raise proofs.to_error(error) from None
 
     def _require_no_more_than(self, contradicted: Set[Triple]) -> None:
-        """Raises Inconsistent when assertions contradict one another that geometry does not deny.
+        """Raise Inconsistent if assertions contradict one another although the geometry denies neither.
 
-        Taking something back may bring such together that did at the time, since geometry denied them.
+        An undo may restore assertions that contradicted one another before, when the geometry denied one of
+        them.
         """
-        newly = {t: why for t, why in self._state.beliefs.contradicted.items() if t not in contradicted}
+        newly = {t: why for t, why in self._state.derived_facts.contradicted.items() if t not in contradicted}
         if newly:
-            raise proofs.refusal(Inconsistent(newly[min(newly)]))
+            raise proofs.to_error(Inconsistent(newly[min(newly)]))

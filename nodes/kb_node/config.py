@@ -10,9 +10,9 @@ from semmap.nodes.bus import Network
 
 @dataclass(frozen=True)
 class Replay:
-    """The map replays the past: up to commit `until` of another journal, `speed` times as fast as it was.
+    """Replay up to commit `until` of another journal, `speed` times as fast as it was recorded.
 
-    No wait between two commits is longer than `longest_s`. It begins when all of `nodes` are ready.
+    No wait between two commits is longer than `longest_s`. The replay begins when all of `nodes` are ready.
     """
 
     until: int
@@ -23,7 +23,7 @@ class Replay:
 
 @dataclass(frozen=True)
 class KbConfig:
-    """`data` is the folder of the journal; it must have been seeded, or prepared for a replay."""
+    """Configuration of the node. `data` is the folder of the journal, seeded or prepared for a replay."""
 
     data: Path
     network: Network = field(default_factory=Network)

@@ -1,4 +1,4 @@
-"""What the map says as of its last commit, and everything that can be asked of it."""
+"""The state of the map after the last commit, and the queries on it."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.beliefs import Beliefs, Believed
-from semmap.nodes.kb_node.entities import entity_changes, entity_reading, foreseeing
+from semmap.nodes.kb_node.derived_facts import DerivedChanges, DerivedFacts
+from semmap.nodes.kb_node.entities import entity_changes, entity_reading, new_entities
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.places import Places
-from semmap.nodes.kb_node.progress import parts, steadily
+from semmap.nodes.kb_node.progress import split_batches, with_progress
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.kb_node.relations.facts.precomputation import Precomputation
@@ -34,24 +34,24 @@ _HAS_CORES = (os.cpu_count() or 1) > 1
 
 
 class MapState:
-    """The TBox, what is asserted and computed, and the entities that these make. Owned by one thread."""
+    """The TBox, the asserted and computed facts, and the entities that they describe. Owned by one thread."""
 
     def __init__(self, tbox: frozenset[Triple], reasoner: Reasoner, progress: Callable[[], None]) -> None:
-        """A map of nothing but its TBox, which `reasoner` holds.
+        """Create a map that contains only its TBox, which `reasoner` holds.
 
         `progress` is called between the steps of long work.
         """
         self.progress = progress
         self.exchange_tbox(tbox, reasoner)
-        self._following: Iterator[None] | None = None
-        self.follows = False
-        """Whether what is computed is worked out at each commit; not yet after a start."""
-        self._follows_all = False
-        """Whether all of it was; if not, a commit works out what it concerns."""
-        self.believes = False
-        """Whether the reasoner has what is computed; after a start it does if its columns were kept."""
+        self._derivation: Iterator[None] | None = None
+        self.derives_at_commits = False
+        """Whether facts are derived from poses at each commit. It is False right after a start."""
+        self._derived_all = False
+        """Whether the facts of all entities are derived. If not, a commit derives those that it concerns."""
+        self.has_derived = False
+        """Whether the reasoner holds the computed facts. After a start it does if its columns were stored."""
         self.by_name: dict[str, Entity] = {}
-        """The entities; changed by `take` and `give_back` only."""
+        """The entities. Only `apply_commit`, `revert_entities` and `update_entities` change them."""
         self.places = Places(
             self.by_name,
             self.entities,
@@ -62,211 +62,220 @@ class MapState:
         )
         self.seq = 0
         self.digest = ""
-        """That of the last commit, and so of the whole history, in hexadecimal; empty before the first."""
+        """The digest of the last commit, and so of the whole history, in hexadecimal. Empty before the first
+        commit."""
 
-    # Asking
+    # Queries
 
     def __len__(self) -> int:
         return len(self.by_name)
 
     def entity(self, name: str) -> Entity:
-        """The entity of that name. Raises UnknownName with the nearest ones."""
+        """Return the entity of that name. Raises UnknownName with the most similar names."""
         if name in self.by_name:
             return self.by_name[name]
         raise errors.UnknownName(f"no entity is named '{name}'{errors.did_you_mean(name, self.by_name)}")
 
     def find(self, name: str) -> Entity | None:
-        """The entity of that name, if there is one."""
+        """Return the entity of that name, or None."""
         return self.by_name.get(name)
 
     @property
     def names(self) -> Collection[str]:
-        """Those of the entities."""
+        """The names of the entities."""
         return self.by_name.keys()
 
     def entities(self, class_iri: Term | None = None) -> Iterator[Entity]:
-        """The entities, or those of a class by inference, in the order of their names."""
+        """Yield the entities in the order of their names, or those of a class, including inferred ones."""
         if class_iri is None:
             return (self.by_name[name] for name in sorted(self.by_name))
-        self.believe_places()
-        found = filter(None, map(self.known, self.reasoner.instances(class_iri)))
+        self.ensure_derived()
+        found = filter(None, map(self.find_by_iri, self.reasoner.instances(class_iri)))
         return iter(sorted(found, key=lambda entity: entity.name))
 
     def snapshot(self) -> Snapshot:
-        """Every entity, as of the last commit."""
+        """Return all entities as of the last commit."""
         return Snapshot(seq=self.seq, entities=tuple(self.entities()), digest=self.digest)
 
     def stars(self, names: Iterable[str]) -> tuple[Star, ...]:
-        """The triples about some entities, taken together. Raises UnknownName, Refused for the TBox's."""
-        self.believe_places()
+        """Return the triples about some entities, taken together.
+
+        Raises UnknownName; Refused for entities of the TBox.
+        """
+        self.ensure_derived()
         iris = [v.iri(self.entity(name).iri) for name in names]
         leaving = frozenset(iris)
         return tuple(
-            entity_reading.read_star(self.reasoner, self.classes, iri, self.seq, leaving, self.tbox)
+            entity_reading.read_entity_triples(self.reasoner, self.classes, iri, self.seq, leaving, self.tbox)
             for iri in iris
         )
 
     def class_table(self) -> Iterator[ClassInfo]:
-        """The classes with the number of entities of each, asserted and inferred."""
-        return self.classes.counted(self.by_name.values())
+        """Yield the classes with the number of their asserted and inferred entities."""
+        return self.classes.with_counts(self.by_name.values())
 
     def abox(self) -> list[Triple]:
-        """The asserted triples that are not the TBox's."""
+        """Return the asserted triples that are not part of the TBox."""
         tbox = self.tbox
         return [t for said in self.reasoner.by_subject() for t in said if t not in tbox]
 
     def inferred(self, name: str | None = None) -> Iterator[Triple]:
-        """What follows and was not said, about one entity or all. Raises UnknownName."""
-        self.believe_places()
+        """Yield the inferred triples about one entity, or about all. Raises UnknownName."""
+        self.ensure_derived()
         for entity in [self.entity(name)] if name is not None else self.entities():
             yield from sorted(self.reasoner.inferred(v.iri(entity.iri), None, None))
 
-    def steadily(self, items: Iterable[T]) -> Iterator[T]:
-        """The items, for long work on them: the node tells meanwhile that it lives."""
-        return steadily(items, self.progress)
+    def with_progress(self, items: Iterable[T]) -> Iterator[T]:
+        """Yield the items and send heartbeats in between."""
+        return with_progress(items, self.progress)
 
-    def all_believed(self) -> Believed:
-        """What is computed and what is set aside."""
-        self.believe_places()
-        return self.beliefs.all()
+    def all_derived(self) -> DerivedChanges:
+        """Return all computed and all suppressed facts."""
+        self.ensure_derived()
+        return self.derived_facts.all()
 
     def placed(self) -> tuple[PlacedEntity, ...]:
-        """Where everything is."""
+        """Return the poses and shapes of all entities."""
         return tuple(map(PlacedEntity.of, self.by_name.values()))
 
-    def has(self, triple: Triple) -> bool:
-        """Is it asserted?"""
+    def is_asserted(self, triple: Triple) -> bool:
+        """Return whether a triple is asserted."""
         return any(self.reasoner.asserted(*triple))
 
     def types_of(self, entity: Entity) -> tuple[str, ...]:
-        """The classes of an entity as it is now, by what is computed, too."""
-        return self.classes.spoken_types(self.reasoner.types(v.iri(entity.iri)))
+        """Return the current classes of an entity, including those that follow from computed facts."""
+        return self.classes.type_names(self.reasoner.types(v.iri(entity.iri)))
 
-    def known(self, iri: Term) -> Entity | None:
-        """The entity with this IRI, as of the last commit."""
+    def find_by_iri(self, iri: Term) -> Entity | None:
+        """Return the entity with this IRI as of the last commit."""
         return entity_changes.known(self.by_name, iri)
 
-    # What is computed of where things are
+    # Facts that are computed from poses
 
-    def follow_places(self) -> None:
-        """Work out where everything is, if that was not done since the start.
+    def derive_all(self) -> None:
+        """Derive the facts of all entities from their poses, unless that is already done.
 
-        Whoever asks what follows needs it, and the first commit.
+        The first commit after a start and queries for inferred facts need it.
         """
-        while self.follow_some():
+        while self.derive_some():
             self.progress()
 
-    def follow_enough(self, transaction: Transaction) -> None:
-        """As much of that as a transaction needs.
+    def derive_for(self, transaction: Transaction) -> None:
+        """Derive as many facts as a transaction needs.
 
-        If it only puts things somewhere and nobody asserts where things are, it suffices to know where all of
-        them are; what holds of them is worked out between other work.
+        A transaction that only places entities needs no more than the poses of all entities, if no locations
+        are asserted. The remaining facts are derived between other work.
         """
-        while not self._follows_all and not (self.follows and _only_places(transaction)):
-            self.follow_some()
+        while not self._derived_all and not (self.derives_at_commits and _only_places(transaction)):
+            self.derive_some()
             self.progress()
 
-    def follow_some(self) -> bool:
-        """Do a part of that, some tens of milliseconds; whether there is more to do."""
-        if self._follows_all:
+    def derive_some(self) -> bool:
+        """Derive facts for some tens of milliseconds. Return whether there is more to do."""
+        if self._derived_all:
             return False
-        following, self._following = self._following or self._follow(), None
+        following, self._derivation = self._derivation or self._derivation_steps(), None
         with gc_pause.uncollected(freeze=True):
             for _ in following:
-                self._following = following
+                self._derivation = following
                 return True
         return False
 
-    def _follow(self) -> Iterator[None]:
-        self.beliefs.begin()
-        yield from self.beliefs.placing(self.by_name)
-        self.follows = self.believes and self.beliefs.is_compared_in_steps()
-        yield from self.beliefs.comparing(self.by_name)
-        self.follows = self.believes = self._follows_all = True
-        for names in parts(tuple(self.by_name), _STEP, self.progress):
+    def _derivation_steps(self) -> Iterator[None]:
+        self.derived_facts.begin()
+        yield from self.derived_facts.placing(self.by_name)
+        self.derives_at_commits = self.has_derived and self.derived_facts.is_compared_in_steps()
+        yield from self.derived_facts.comparing(self.by_name)
+        self.derives_at_commits = self.has_derived = self._derived_all = True
+        for names in split_batches(tuple(self.by_name), _STEP, self.progress):
             for name in names:
                 entity = self.by_name.get(name)
                 if entity is not None and (types := self.types_of(entity)) != entity.types:
                     self.by_name[name] = structs.replace(entity, types=types)
             yield
 
-    def believe_places(self) -> None:
-        """Let the reasoner have what is computed of where things are, if it has not."""
-        if not self.believes:
-            self.follow_places()
+    def ensure_derived(self) -> None:
+        """Make sure that the reasoner holds the computed facts."""
+        if not self.has_derived:
+            self.derive_all()
 
     def _crowds(self, names: Collection[str] | None) -> list[str]:
-        """The sentences on crowds, if relations are computed."""
-        if not self.follows or names is None:
-            self.follow_places()
+        """Return the notes on crowds, if relations are computed."""
+        if not self.derives_at_commits or names is None:
+            self.derive_all()
         return (
-            [] if self.beliefs.computed.is_idle else self.beliefs.computed.facts.space.describe_crowds(names)
+            []
+            if self.derived_facts.computed.is_idle
+            else self.derived_facts.computed.facts.space.describe_crowds(names)
         )
 
     def _facts(self) -> Facts | None:
-        """The relations that are computed, if any are, with their solids."""
-        self.follow_places()
-        return None if self.beliefs.computed.is_idle else self.beliefs.computed.facts
+        """Return the computed relations with their solids, or None if none are computed."""
+        self.derive_all()
+        return None if self.derived_facts.computed.is_idle else self.derived_facts.computed.facts
 
     @contextmanager
-    def places_foreseen(self, transaction: Transaction) -> Iterator[None]:
-        """Within, a process of its own works out where everything is after a large transaction."""
-        computed = self.beliefs.computed
+    def predicted_places(self, transaction: Transaction) -> Iterator[None]:
+        """Within this context, a separate process computes the relations after a large transaction."""
+        computed = self.derived_facts.computed
         if _HAS_CORES and not computed.is_idle:
-            self._foresee(transaction)
+            self._predict_places(transaction)
         try:
             yield
         finally:
             computed.facts.discard_precomputation()
 
-    def _foresee(self, transaction: Transaction) -> None:
-        coming, facts = foreseeing.coming(transaction, self.classes), self.beliefs.computed.facts
+    def _predict_places(self, transaction: Transaction) -> None:
+        coming, facts = (
+            new_entities.predict_new_entities(transaction, self.classes),
+            self.derived_facts.computed.facts,
+        )
         if coming is not None and len(self) <= len(coming):
             foreseen = PrecomputeRequest(facts.space.limits, self.placed(), coming)
-            with suppress(OSError):  # then it is worked out here
+            with suppress(OSError):  # then they are computed in this process
                 facts.set_precomputation(Precomputation(foreseen, self.progress))
 
-    def tidy(self) -> None:
-        """What a commit leaves to be done when nobody waits for it."""
-        self.beliefs.computed.facts.clear_caches()
+    def clean_up(self) -> None:
+        """Do the cleanup that a commit leaves for a time when no client waits."""
+        self.derived_facts.computed.facts.clear_caches()
 
-    # Changing
+    # Changes
 
     def exchange_tbox(self, tbox: frozenset[Triple], reasoner: Reasoner) -> None:
-        """Let another TBox hold; `reasoner` holds it, and nothing else yet."""
+        """Replace the TBox. `reasoner` holds it and nothing else."""
         self.tbox, self.reasoner = tbox, reasoner
         self.classes = ClassTable(reasoner)
-        self.beliefs = Beliefs(reasoner, self.classes.limits, self.progress)
+        self.derived_facts = DerivedFacts(reasoner, self.classes.limits, self.progress)
 
-    def take(self, commit: Commit) -> None:
-        """Let the entities show a commit that the reasoner has taken in already."""
+    def apply_commit(self, commit: Commit) -> None:
+        """Update the entities for a commit that the reasoner has already applied."""
         self.seq, self.digest = commit.seq, commit.digest
-        self.places.take(commit.names, commit.retracted, commit.inserted)
+        self.places.update(commit.names, commit.retracted, commit.inserted)
         for gone in commit.removed:
             del self.by_name[gone.name]
-        self.show(commit.changed)
+        self.update_entities(commit.changed)
 
-    def give_back(self, commit: Commit, before: Mapping[str, Entity | None], digest: str) -> None:
-        """Let the entities be as before the last commit: those that it touched, None for what was not there.
+    def revert_entities(self, commit: Commit, before: Mapping[str, Entity | None], digest: str) -> None:
+        """Restore the entities from before the last commit. None stands for an entity that did not exist.
 
-        `digest` is that of the commit before.
+        `digest` is the digest of the commit before.
         """
         self.seq, self.digest = commit.seq - 1, digest
-        self.places.take(commit.names, commit.inserted, commit.retracted)
+        self.places.update(commit.names, commit.inserted, commit.retracted)
         for name, entity in before.items():
             if entity is None:
                 self.by_name.pop(name, None)
             else:
                 self.by_name[name] = entity
 
-    def show(self, changed: Iterable[Entity]) -> None:
-        """Let entities be as these."""
+    def update_entities(self, changed: Iterable[Entity]) -> None:
+        """Replace entities by name."""
         for entity in changed:
             self.by_name[entity.name] = entity
 
 
 def _only_places(transaction: Transaction) -> bool:
-    """Does it only add things, and say of others where they are, how large and what they are called?"""
+    """Return whether a transaction only adds entities and changes poses, sizes and labels."""
     if transaction.remove or transaction.require or transaction.retract or transaction.insert:
         return False
     return not (

@@ -1,4 +1,4 @@
-"""The knowledge base on the wire: `semmap/bridge/<verb>` in, commits and entities out."""
+"""The knowledge base on the wire: it serves `semmap/bridge/<command>` and publishes commits and entities."""
 
 from __future__ import annotations
 
@@ -6,22 +6,22 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 
-from semmap.nodes.kb_node.announcing import Announcer
-from semmap.nodes.kb_node.answers import whereabouts
-from semmap.nodes.kb_node.answers.standing_places import StandingPlaces
-from semmap.nodes.kb_node.beliefs import Believed
+from semmap.nodes.kb_node.answers import entity_queries
+from semmap.nodes.kb_node.answers.location_queries import LocationQueries
 from semmap.nodes.kb_node.checkpointing import Checkpointing
+from semmap.nodes.kb_node.commit_publisher import CommitPublisher
 from semmap.nodes.kb_node.config import KbConfig
+from semmap.nodes.kb_node.derived_facts import DerivedChanges
 from semmap.nodes.kb_node.documents.tbox import tbox_notes
-from semmap.nodes.kb_node.handlers.asking import Asking
-from semmap.nodes.kb_node.handlers.changing import Changing, Tell
-from semmap.nodes.kb_node.handlers.keeping import Keeping
-from semmap.nodes.kb_node.handlers.loading import Loading
-from semmap.nodes.kb_node.replaying import Player, refusing
+from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, Tell
+from semmap.nodes.kb_node.handlers.loading import LoadHandlers
+from semmap.nodes.kb_node.handlers.maintenance import MaintenanceHandlers
+from semmap.nodes.kb_node.handlers.queries import QueryHandlers
+from semmap.nodes.kb_node.replaying import Player, rejecting_handlers
 from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.nodes.kb_node.sparql.protocol import Surrounded
+from semmap.nodes.kb_node.sparql.protocol import Placements
 from semmap.nodes.kb_node.sparql.service import SparqlService
-from semmap.nodes.kb_node.sparql.standing_queries.news import NewsStand
+from semmap.nodes.kb_node.sparql.standing_queries.row_publisher import RowPublisher
 from semmap.nodes.kb_node.sparql.triples.large_map import LargeMap
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
@@ -32,102 +32,110 @@ from semmap.schemas.commits import Commit
 
 CHECKPOINT_PERIOD_S = 10.0
 STARTS_AGAIN = 70
-"""The exit status after which supervisord starts the node again."""
+"""The exit status after which supervisord restarts the node."""
 _FETCHED_S = 0.05
-"""Until it is looked again whether the map is still being fetched."""
+"""Period of the check whether the map is still being fetched [s]."""
 CHECKPOINT_DELAY_S = 3.0
-"""After a very large commit, which others fetch first."""
+"""Delay after a very large commit, which other nodes fetch first."""
 
 
 class KnowledgeBase:
-    """Binds the map to the wire."""
+    """Connects the map to the wire."""
 
     def __init__(self, node: Node, journal: Journal, config: KbConfig) -> None:
         self._node = node
         self.map = SemanticMap(journal, progress=node.beat)
-        self._announcer = Announcer(node.session, self.map.entities(), whereabouts.Now(self.map).described)
+        self._publisher = CommitPublisher(
+            node.session, self.map.entities(), entity_queries.CurrentState(self.map).describe
+        )
         self._checkpointing = Checkpointing(self.map, journal, node.soon)
         self._sparql = SparqlService(
             lambda: self.map.reasoner.asserted(),
-            NewsStand(node.session).publish,
+            RowPublisher(node.session).publish,
             LargeMap(journal, lambda: self.map.reasoner, node.soon),
-            self.map.all_believed,
-            lambda: Surrounded(placed=self.map.placed(), limits=self.map.classes.limits),
+            self.map.all_derived,
+            lambda: Placements(placed=self.map.placed(), limits=self.map.classes.limits),
         )
-        self.map.broke = node.stop
-        self.map.foretell = self._sparql.foretell
-        self._standing_places = StandingPlaces(self.map, NewsStand(node.session).publish)
-        self._asking = Asking(
-            self.map, journal, self._sparql, self._standing_places, asker=lambda: node.asker
+        self.map.on_failure = node.stop
+        self.map.prepare = self._sparql.prepare
+        self._location_queries = LocationQueries(self.map, RowPublisher(node.session).publish)
+        self._queries = QueryHandlers(
+            self.map, journal, self._sparql, self._location_queries, asker=lambda: node.asker
         )
-        telling_of = self._telling_of
-        changing = Changing(
-            self.map, journal, spread=self._spread, not_written=self._not_written, telling_of=telling_of
+        reporting_progress = self._reporting_progress
+        changes = ChangeHandlers(
+            self.map,
+            journal,
+            publish=self._publish,
+            not_written=self._not_written,
+            reporting_progress=reporting_progress,
         )
-        loading = Loading(self.map, journal, changing, self._sparql, telling_of=telling_of, notes=self._notes)
-        self._keeping = Keeping(journal)
+        loading = LoadHandlers(
+            self.map, journal, changes, self._sparql, reporting_progress=reporting_progress, notes=self._notes
+        )
+        self._maintenance = MaintenanceHandlers(journal)
         handlers = {
-            **changing.handlers(),
+            **changes.handlers(),
             **loading.handlers(),
-            **self._asking.handlers(),
-            **self._keeping.handlers(),
+            **self._queries.handlers(),
+            **self._maintenance.handlers(),
         }
         self._player: Player | None = None
         if config.replay is not None:
-            handlers.update(refusing())
-            tell = partial(self._spread, told=False, at_once=True)
+            handlers.update(rejecting_handlers())
+            tell = partial(self._publish, told=False, at_once=True)
             self._player = Player(node, self.map, config.data, config.replay, tell)
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
             for prefix in (keys.CMD, keys.commands_as()):
                 node.serve_one(prefix, handlers[verb])
-        node.follow_newest(keys.LIVE_POSES, self._asking.live.take)
-        node.follow(keys.OBSERVATIONS, self._asking.sightings.see)
-        node.every(CHECKPOINT_PERIOD_S, self._checkpointing.if_due)
-        node.every(CHECKPOINT_PERIOD_S, self._standing_places.drop_expired)
+        node.follow_newest(keys.LIVE_POSES, self._queries.live.update)
+        node.follow(keys.OBSERVATIONS, self._queries.sightings.record)
+        node.every(CHECKPOINT_PERIOD_S, self._checkpointing.begin_if_due)
+        node.every(CHECKPOINT_PERIOD_S, self._location_queries.drop_expired)
         node.note(self._notes())
         node.head(lambda: (self.map.seq, self.map.digest))
-        node.soon(self._follow_places)
+        node.soon(self._derive_places)
         node.ready(self._summary())
 
-    def _follow_places(self) -> None:
-        """Between other work: the first commit after a start waits for what is left of it.
+    def _derive_places(self) -> None:
+        """Derive facts between other work, because the first commit after a start waits for what is left.
 
-        Those who fetch the map go first: nobody is answered by the coordinator before it has all.
+        Nodes that fetch the map have priority: the coordinator serves no commands before it has all entities.
         """
-        if self._asking.is_being_fetched:
-            self._node.later(_FETCHED_S, self._follow_places)
-        elif self.map.follow_some():
-            self._node.soon(self._follow_places)
+        if self._queries.is_being_fetched:
+            self._node.later(_FETCHED_S, self._derive_places)
+        elif self.map.derive_some():
+            self._node.soon(self._derive_places)
 
-    def _spread(self, commit: Commit, *, told: bool, at_once: bool) -> None:
-        """Tell everybody, `at_once` or when the reply is on its way: nobody else is answered before that."""
-        believed = self.map.believed_of(commit)
-        announce = partial(self._announcer.announce, commit, believed, told=told)
+    def _publish(self, commit: Commit, *, told: bool, at_once: bool) -> None:
+        """Publish a commit, `at_once` or after the reply is sent."""
+        derived_changes = self.map.take_derived_changes(commit)
+        publish = partial(self._publisher.publish, commit, derived_changes, told=told)
         if at_once:
-            announce()
+            publish()
         else:
-            self._node.afterwards(announce)
-        self._node.afterwards(partial(self._follow, commit, believed))
+            self._node.afterwards(publish)
+        self._node.afterwards(partial(self._follow, commit, derived_changes))
         self._node.describe(self._summary)
         if commit.tbox:
             self._node.note(self._notes())
         if self.map.checkpoint_is_urgent:
-            self._node.later(CHECKPOINT_DELAY_S, self._checkpointing.if_urgent)
+            self._node.later(CHECKPOINT_DELAY_S, self._checkpointing.begin_if_urgent)
 
-    def _follow(self, commit: Commit, believed: Believed) -> None:
-        """What this node does with a commit when the reply is on its way."""
-        self._sparql.follow(commit, believed)
-        self._standing_places.follow(commit.seq, commit.names)
-        self.map.tidy()
+    def _follow(self, commit: Commit, derived_changes: DerivedChanges) -> None:
+        """Update the SPARQL process and the standing queries after the reply is sent."""
+        self._sparql.follow(commit, derived_changes)
+        self._location_queries.follow(commit.seq, commit.names)
+        self.map.clean_up()
 
     def _not_written(self, error: NotWritten) -> None:
         self._node.report(error.text)
         self._node.describe(f"{self._summary()}; the disk accepts no commits")
 
     @contextmanager
-    def _telling_of(self, work: str) -> Iterator[Tell]:
-        """Lets the heartbeat tell how far a large change is, and prepares for it."""
+    def _reporting_progress(self, work: str) -> Iterator[Tell]:
+        """Report the progress of a large change in the heartbeat, and prepare the process for it."""
 
         def tell(text: str) -> None:
             self._node.describe(f"{work}: {text}")
@@ -149,10 +157,10 @@ class KnowledgeBase:
         return f"{replay}{entities}, {len(self.map.reasoner)} triples, commit {self.map.seq}"
 
     def close(self) -> None:
-        """Leave a checkpoint for a quick start, if the disk takes it."""
+        """Write a checkpoint for a quick start, if the disk accepts it."""
         self._sparql.close()
-        self._asking.close()
-        self._keeping.close()
+        self._queries.close()
+        self._maintenance.close()
         if self._player is not None:
             self._player.close()
         with suppress(errors.Refused):
@@ -160,7 +168,7 @@ class KnowledgeBase:
 
 
 def run(config: KbConfig) -> None:
-    """Serve until stopped."""
+    """Run the node until it is stopped."""
     path = config.data / FILENAME
     if not path.exists():
         raise errors.BadFile(f"there is no map in {config.data}; seed one with --tbox and --abox")

@@ -1,6 +1,6 @@
-"""What a change of the map means for where things are: what it carries along, and what it has to say of that.
+"""The effects of a change on locations: which objects move along, and which asserted locations become wrong.
 
-Poses are data, and geometry is a function of them: so all of this is known before the reasoner sees a change.
+Geometry is a function of the poses, so all of this is known before the reasoner sees the change.
 """
 
 from __future__ import annotations
@@ -33,26 +33,26 @@ from semmap.schemas.joints import OPENING
 from semmap.schemas.polygons import EXTENT
 
 _FEW = 10
-"""Sentences of one kind."""
+"""Largest number of notes of one kind."""
 _MANY = 1000
-"""Of those that leave, so many are looked at for what they leave behind."""
+"""Removed entities that are checked for objects that they leave behind."""
 _OPENING = frozenset((v.IS_OPEN, v.OPENNESS, v.JOINT_POSITIONS))
 _GEOMETRY = _OPENING.union(
     stars.COORDINATE_PROPERTIES, v.SIZE_XYZ, (v.HAS_POSITION, v.HAS_SIZE, v.HAS_EXTENT, v.MODEL)
 )
 _SHAPING: Final = (EXTENT, *OPENING)
-"""Properties that its shape depends on."""
+"""Properties that the shape depends on."""
 
 
-class TakenBack(NamedTuple):
-    """What was said of a place and is denied by a change, with a sentence on each."""
+class RetractedLocations(NamedTuple):
+    """Asserted locations that a change makes wrong, with a note on each."""
 
     triples: tuple[Triple, ...] = ()
     notes: tuple[str, ...] = ()
 
 
 class Places:
-    """Where the things of a map are, and what was said of that. Owned by the map."""
+    """The locations of entities, and the assertions about them. Owned by the map."""
 
     def __init__(
         self,
@@ -63,29 +63,32 @@ class Places:
         facts: Callable[[], Facts | None] = lambda: None,
         describe_crowds: Callable[[Collection[str] | None], Iterable[str]] = lambda _: (),
     ) -> None:
-        """`entities` by name, as they change; `asserted(property)` are the triples of one.
+        """Observe `entities` by name; `asserted(property)` returns the triples of a property.
 
-        `limits()` are the thresholds of the TBox, `facts()` the relations, if somebody keeps them, and
-        `describe_crowds(names)` has a sentence on each crowd, of which these names are.
+        `limits()` returns the thresholds of the TBox and `facts()` the relations, if they are maintained.
+        `describe_crowds(names)` returns a note on each crowd that contains one of the names.
         """
         self._facts = facts
-        self._told_crowds = describe_crowds
+        self._describe_crowds = describe_crowds
         self._entities = entities
         self._surroundings = LazySpace(in_order, entities.get, limits)
         self._sayings = AssertedLocations(asserted)
 
     def space(self) -> Space:
-        """The solids as they are now."""
+        """Return the solids as they are now."""
         facts = self._facts()
         return self._surroundings.space() if facts is None else facts.space
 
-    def upward(self, names: Iterable[str]) -> Collection[str]:
-        """These, what is on, inside or in them, and what is on or inside that; all, where nothing is kept."""
+    def with_supported(self, names: Iterable[str]) -> Collection[str]:
+        """Return these names and all that is on, inside or in them.
+
+        What is on or inside those is included. Return all names if no relations are maintained.
+        """
         facts = self._facts()
         return self._entities.keys() if facts is None else facts.with_contents(names)
 
     def about(self, name: str) -> Iterator[About]:
-        """What a thing is inside, on, in and attached to, what counts most first; nothing of a place."""
+        """Yield what an object is inside, on, in and attached to, by importance. Nothing for a place."""
         facts = self._facts()
         if facts is not None:
             yield from facts.of(name)
@@ -94,29 +97,30 @@ class Places:
                 yield from rule.facts(space, solid)
 
     def crowds(self, names: Collection[str] | None = None) -> tuple[str, ...]:
-        """A sentence on each spot where so many things are that not all are looked at; the first of them.
+        """Return notes on crowds, where not all neighbours of an object are considered.
 
-        With `names`, only where one of these is. Nothing where no relations are kept.
+        With `names`, only crowds that contain one of them. Only the first notes are returned, and none if no
+        relations are maintained.
         """
-        return tuple(islice(self._told_crowds(names), _FEW))
+        return tuple(islice(self._describe_crowds(names), _FEW))
 
     def loads(self) -> Contents:
-        """What things bear now."""
+        """Return what objects support now."""
         return Contents(self.space(), self._facts())
 
-    def take(self, names: Iterable[str], gone: Collection[Triple], come: Collection[Triple]) -> None:
-        """A commit touched these entities, and triples went and came."""
+    def update(self, names: Iterable[str], gone: Collection[Triple], come: Collection[Triple]) -> None:
+        """Update the state for a commit that touched these entities and these triples."""
         self._surroundings.mark_changed(names)
         self._sayings.change(gone, come)
 
-    def load_of(self, edit: Edit, edits: Iterable[Edit]) -> list[Edit]:
-        """The edits of what goes along with an edit that carries; not of what `edits` are about themselves.
+    def load_edits(self, edit: Edit, edits: Iterable[Edit]) -> list[Edit]:
+        """Return the edits of the objects that move along with `edit`, except those that `edits` are about.
 
-        Raises BadRequest for one that moves nothing, and what `borne_by` raises.
+        Raises BadRequest for an edit that does not move the entity, and the errors of `supported_by`.
         """
         if not edit.places:
-            raise errors.BadRequest("--carry is for moving: add --at, --yaw or --orientation")
-        names = self.borne_by(edit.name, edit.leave, (other.name for other in edits))
+            raise errors.BadRequest("--carry requires --at, --yaw or --orientation")
+        names = self.supported_by(edit.name, edit.leave, (other.name for other in edits))
         was = self._entities[edit.name].pose
         now = edit.pose_after(was)
         load: list[Edit] = []
@@ -130,10 +134,10 @@ class Places:
             load.append(Edit(name=name, at=there.position_m, orientation=there.orientation_wxyz))
         return load
 
-    def borne_by(self, name: str, leave: Iterable[str] = (), besides: Iterable[str] = ()) -> list[str]:
-        """What a thing bears, what bears before what is borne; not what is to be left, or `besides`.
+    def supported_by(self, name: str, leave: Iterable[str] = (), besides: Iterable[str] = ()) -> list[str]:
+        """Return what an object supports, each support before its load, without `leave` and `besides`.
 
-        Raises UnknownName for names to be left, too; Refused for a place or what has no position.
+        Raises UnknownName, also for names in `leave`; Refused for a place or an entity without a position.
         """
         leave = tuple(leave)
         for one in (name, *leave):
@@ -142,22 +146,22 @@ class Places:
                 raise errors.UnknownName(f"no entity is named '{one}'{meant}")
         entity = self._entities[name]
         if entity.place:
-            raise errors.Refused(f"{name} is a place, which carries nothing; move the things in it")
+            raise errors.Refused(f"{name} is a place and cannot carry objects; move the objects in it")
         if entity.pose is None:
-            raise errors.Refused(f"{name} has no position yet, so nothing stands on it to be carried")
+            raise errors.Refused(f"{name} has no position, so it supports no objects")
         return self.loads().find_all(name, {*leave, *besides})
 
-    def taken_back(
+    def find_denied_locations(
         self, reasoner: Reasoner, classes: ClassTable, gone: Collection[Triple], come: Collection[Triple]
-    ) -> TakenBack:
-        """What was said of the places of those that a change moves or resizes, and geometry then denies."""
+    ) -> RetractedLocations:
+        """Return asserted locations that the geometry denies after a change moves or resizes entities."""
         if not self._sayings:
-            return TakenBack()
+            return RetractedLocations()
         moved = dict(_moved(self._entities, reasoner, classes, gone, come))
         leaving = set(gone)
         said = {t: fact for t, fact in self._sayings.about(moved).items() if t not in leaving}
         if not said:
-            return TakenBack()
+            return RetractedLocations()
         space = self.space()
         triples: list[Triple] = []
         notes: dict[str, None] = {}
@@ -165,19 +169,21 @@ class Places:
             for triple, fact in said.items():
                 if (relation := find_contradiction(space, fact)) is not None:
                     triples.append(triple)
-                    notes[f"taken back: {relation.text}"] = None
-        return TakenBack(tuple(triples), at_most(notes))
+                    notes[f"retracted: {relation.text}"] = None
+        return RetractedLocations(tuple(triples), truncate_notes(notes))
 
-    def left_behind(self, names: Collection[str]) -> tuple[str, ...]:
-        """What stands on those that leave, or is inside them, and stays: a sentence on each; the first."""
+    def describe_left_behind(self, names: Collection[str]) -> tuple[str, ...]:
+        """Return notes on what is on or inside removed entities and stays."""
         leaving = set(names)
         if leaving.issuperset(self._entities):
             return ()
         loads = self.loads()
-        notes = (note for name in islice(names, _MANY) for note in self._left_by(name, loads, leaving))
+        notes = (
+            note for name in islice(names, _MANY) for note in self._left_behind_notes(name, loads, leaving)
+        )
         return tuple(islice(notes, _FEW))
 
-    def _left_by(self, name: str, loads: Contents, leaving: Collection[str]) -> Iterator[str]:
+    def _left_behind_notes(self, name: str, loads: Contents, leaving: Collection[str]) -> Iterator[str]:
         inside: dict[str, None] = {}
         on: dict[str, None] = {}
         for other, bearer in loads.find_direct(name):
@@ -190,8 +196,8 @@ class Places:
             if stay:
                 yield f"{where} {name} {'was' if len(stay) == 1 else 'were'} {wording.few(stay)}"
 
-    def doubts(self, commit: Commit) -> tuple[str, ...]:
-        """What a commit says of places that geometry denies as things stand after it; the first of it."""
+    def conflict_notes(self, commit: Commit) -> tuple[str, ...]:
+        """Return notes on locations that a commit asserts and the geometry denies."""
         said = filter_location_triples(commit.inserted)
         if not said:
             return ()
@@ -199,11 +205,11 @@ class Places:
         space = self.space()
         with space.with_changes(commit.changed, (gone.name for gone in commit.removed)):
             relations = (find_contradiction(space, fact) for fact in facts)
-            return at_most(dict.fromkeys(r.text for r in relations if r is not None))
+            return truncate_notes(dict.fromkeys(r.text for r in relations if r is not None))
 
 
-def at_most(notes: Collection[str]) -> tuple[str, ...]:
-    """The first sentences of a kind, and how many more there are."""
+def truncate_notes(notes: Collection[str]) -> tuple[str, ...]:
+    """Return the first notes, and how many more there are."""
     first = tuple(islice(notes, _FEW))
     more = len(notes) - len(first)
     return (*first, f"and {more} more of this kind") if more else first
@@ -216,22 +222,24 @@ def _moved(
     gone: Collection[Triple],
     come: Collection[Triple],
 ) -> Iterator[tuple[str, Entity]]:
-    """The entities that a change of triples puts elsewhere or gives another shape, as they will be."""
+    """Yield the entities that a change of triples moves or reshapes, as they will be."""
     own_words = not classes.alignments
     changed = chain(gone, come)
     touched = subjects(t for t in changed if t[1] in _GEOMETRY) if own_words else subjects(gone, come)
-    about = _about_after(reasoner, gone, come)
+    about = _lookup_after(reasoner, gone, come)
     opened = subjects(t for t in chain(gone, come) if t[1] in _OPENING)
     concerned = {
-        iri for node in reasoner.mentioned(touched) for iri in entity_reading.owners(reasoner, classes, node)
+        iri
+        for node in reasoner.mentioned(touched)
+        for iri in entity_reading.find_owners(reasoner, classes, node)
     }
     for iri in sorted(concerned):
         was = entity_changes.known(entities, iri)
         if was is not None:
             pose, size_m = entity_reading.read_place(about, classes, iri)
             is_reshaped = was.place or iri in opened
-            stated = classes.stated.stated(about(iri)) if is_reshaped else was.properties
-            model = entity_reading.model_of(was, classes, about(iri), size_m)
+            stated = classes.property_table.read_values(about(iri)) if is_reshaped else was.properties
+            model = entity_reading.choose_model(was, classes, about(iri), size_m)
             if (pose, size_m, model) != (was.pose, was.size_m, was.model) or any(
                 stated.get(name) != was.properties.get(name) for name in _SHAPING
             ):
@@ -239,10 +247,10 @@ def _moved(
                 yield was.name, now
 
 
-def _about_after(
+def _lookup_after(
     reasoner: Reasoner, gone: Iterable[Triple], come: Iterable[Triple]
 ) -> Callable[[Term], dict[Term, list[Term]]]:
-    """What will be asserted of each subject."""
+    """Return a lookup of what will be asserted about each subject."""
     leaving: dict[Term, set[Triple]] = {}
     coming: dict[Term, list[Triple]] = {}
     for triple in gone:

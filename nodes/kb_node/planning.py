@@ -1,4 +1,4 @@
-"""What a transaction changes: which triples go and come, and what is to be known of that."""
+"""Computes which triples a transaction removes and adds, and the notes about it."""
 
 from __future__ import annotations
 
@@ -17,50 +17,52 @@ from semmap.schemas.commits import Commit, Transaction
 from semmap.schemas.explanations import Triple
 
 _VERY_MANY: Final = 100_000
-"""Triples."""
+"""Number of triples."""
 
 
 class Plan(NamedTuple):
-    """The triples that a transaction takes away, all of which are there, and adds, none of which is."""
+    """The triples that a transaction removes, which all exist, and adds, none of which exists."""
 
     retracted: tuple[Triple, ...]
     inserted: tuple[Triple, ...]
     notes: tuple[str, ...]
-    """What is to be known of that."""
+    """Messages for the client."""
 
 
-def of(state: MapState, transaction: Transaction) -> Plan | None:
-    """What a transaction changes of the map as it is; None when it changes nothing.
+def make_plan(state: MapState, transaction: Transaction) -> Plan | None:
+    """Return what a transaction changes, or None if it changes nothing.
 
-    Raises PreconditionFailed; NameTaken; UnknownName for an intent about what is not there; BadRequest for
-    what makes no sense; Refused when it takes away from the TBox.
+    Raises PreconditionFailed, NameTaken, BadRequest for invalid content, UnknownName for an entity that does
+    not exist, and Refused if it removes triples of the TBox.
     """
     if transaction.unchanged:
         preconditions.require_unchanged(transaction, state.by_name)
-    retract, insert, notes = _spelled_out(state, transaction)
-    held = preconditions.held(state.reasoner, (transaction.require, retract, insert), state.progress)
+    retract, insert, notes = _expand_intents(state, transaction)
+    held = preconditions.find_asserted(state.reasoner, (transaction.require, retract, insert), state.progress)
     preconditions.require(transaction, held)
     wanted = set(insert) if retract else frozenset[Triple]()
     retracted = tuple([t for t in dict.fromkeys(retract) if t not in wanted and t in held])
-    inserted = _each_once(insert)
+    inserted = _unique(insert)
     if held:
         inserted = tuple([t for t in inserted if t not in held])
     if not retracted and not inserted:
         return None
-    denied = state.places.taken_back(state.reasoner, state.classes, retracted, inserted)
+    denied = state.places.find_denied_locations(state.reasoner, state.classes, retracted, inserted)
     if denied.triples:
         wanted = wanted or set(insert)
         retracted += tuple(t for t in denied.triples if t not in state.tbox and t not in wanted)
     for triple in retracted:
         if triple in state.tbox:
-            raise errors.Refused(f"the TBox says that {v.spoken(triple)}, and no command changes the TBox")
+            raise errors.Refused(
+                f"the TBox states that {v.spoken(triple)}, and commands cannot change the TBox"
+            )
     return Plan(retracted, inserted, (*notes, *denied.notes))
 
 
-def _each_once(triples: Collection[Triple]) -> tuple[Triple, ...]:
-    """Each of some triples once, in their order.
+def _unique(triples: Collection[Triple]) -> tuple[Triple, ...]:
+    """Return the triples without duplicates, in their order.
 
-    Of very many it is told by their hashes, which takes a tenth of the memory, that all of them differ.
+    For very many triples their hashes are compared first, which takes a tenth of the memory.
     """
     if isinstance(triples, dict):
         return tuple(triples)
@@ -72,8 +74,8 @@ def _each_once(triples: Collection[Triple]) -> tuple[Triple, ...]:
     return tuple(triples) if differ else tuple(dict.fromkeys(triples))
 
 
-def signed(transaction: Transaction, plan: Plan, seq: int, *, tbox: bool = False) -> Commit:
-    """The commit `seq` of a plan, by the transaction's author, without its effects and its digest."""
+def make_commit(transaction: Transaction, plan: Plan, seq: int, *, tbox: bool = False) -> Commit:
+    """Return commit `seq` of a plan by the transaction's author, without effects and digest."""
     return Commit(
         seq=seq,
         stamp_ns=time.time_ns(),
@@ -92,27 +94,27 @@ def signed(transaction: Transaction, plan: Plan, seq: int, *, tbox: bool = False
     )
 
 
-def _spelled_out(
+def _expand_intents(
     state: MapState, transaction: Transaction
 ) -> tuple[Collection[Triple], Collection[Triple], list[str]]:
-    """The triples that a transaction takes away and adds, its intents said in triples, too; and notes."""
+    """Return the triples that a transaction removes and adds, with its edits as triples, and notes."""
     remove, edit, add = transaction.remove, transaction.edit, transaction.add
     if not (remove or edit or add):
         return transaction.retract, transaction.insert, []
     draft = entity_writing.Draft(state.reasoner, state.classes, state.tbox, state.by_name)
     notes: list[str] = []
     if remove:
-        draft.remove([state.entity(name) for name in state.steadily(remove)])
-        notes += state.places.left_behind(remove)
-    for one in state.steadily(edit):
+        draft.remove([state.entity(name) for name in state.with_progress(remove)])
+        notes += state.places.describe_left_behind(remove)
+    for one in state.with_progress(edit):
         draft.edit(state.entity(one.name), one)
         if one.carry:
-            load = state.places.load_of(one, edit)
+            load = state.places.load_edits(one, edit)
             for other in load:
                 draft.edit(state.by_name[other.name], other)
             if load or transaction.source == "operator":
                 notes.append(wording.carried(one.name, [other.name for other in load], one.leave))
-    for new in state.steadily(add):
+    for new in state.with_progress(add):
         draft.add(new)
     if not (transaction.retract or transaction.insert):
         return draft.retract, draft.insert, notes

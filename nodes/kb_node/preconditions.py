@@ -1,4 +1,4 @@
-"""Whether a transaction still fits the map as it stands, and which of its triples are there already."""
+"""Checks whether a transaction still fits the map, and which of its triples are asserted already."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Container, Iterable, Mapping
 from itertools import chain, islice
 from operator import itemgetter
 
-from semmap.nodes.kb_node.progress import steadily
+from semmap.nodes.kb_node.progress import with_progress
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -15,37 +15,37 @@ from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Term, Triple
 
 _FEW = 64
-"""Triples of one subject: so many are looked through together, and of more each by itself."""
+"""Up to this number, the triples of a subject are read at once; beyond it, each triple is looked up."""
 
 _FEW_OF_ALL = 8
-"""One triple in so many is not much."""
+"""Triples are many if they are more than one in this number."""
 _FEW_AT_ALL = 1000
 
 
 def subjects(*groups: Iterable[Triple]) -> set[Term]:
-    """Those of all triples."""
+    """Return the subjects of all triples."""
     return set(map(itemgetter(0), chain(*groups)))
 
 
-def is_much(groups: Iterable[Collection[Triple]], reasoner: Reasoner) -> bool:
-    """Whether some triples are so many that it is quicker to go through all that are asserted."""
+def is_large_share(groups: Iterable[Collection[Triple]], reasoner: Reasoner) -> bool:
+    """Return whether it is faster to scan all asserted triples than to look these up."""
     return sum(map(len, groups)) > max(_FEW_AT_ALL, len(reasoner) // _FEW_OF_ALL)
 
 
-def held(
+def find_asserted(
     reasoner: Reasoner, groups: Iterable[Collection[Triple]], progress: Callable[[], None] = lambda: None
 ) -> set[Triple]:
-    """Those of some triples that are asserted already. `progress` is called now and then."""
+    """Return those of the triples that are asserted already. `progress` is called now and then."""
     groups = tuple(groups)
     known = reasoner.mentioned(subjects(*groups))
     if not known:
         return set()
     named = {t for triples in groups for t in triples if t[0] in known}
-    if is_much((named,), reasoner):
-        return named.intersection(chain.from_iterable(steadily(reasoner.by_subject(), progress)))
+    if is_large_share((named,), reasoner):
+        return named.intersection(chain.from_iterable(with_progress(reasoner.by_subject(), progress)))
     found: set[Triple] = set()
     many: set[Term] = set()
-    for subject in steadily(known, progress):
+    for subject in with_progress(known, progress):
         said = list(islice(reasoner.asserted(subject), _FEW))
         found.update(said)
         if len(said) == _FEW:
@@ -54,18 +54,18 @@ def held(
 
 
 def require(transaction: Transaction, held: Container[Triple]) -> None:
-    """Raises PreconditionFailed for a required triple that is no longer `held`."""
+    """Raise PreconditionFailed for a required triple that is not in `held`."""
     for triple in transaction.require:
         if triple not in held:
-            raise errors.PreconditionFailed(f"it no longer holds that {v.spoken(triple)}; ask again")
+            raise errors.PreconditionFailed(f"it no longer holds that {v.spoken(triple)}; repeat the query")
 
 
 def require_unchanged(transaction: Transaction, entities: Mapping[str, Entity]) -> None:
-    """Raises PreconditionFailed where an entity that is to be unchanged is gone, or was changed since."""
+    """Raise PreconditionFailed if an entity that must be unchanged was removed or changed."""
     for name in transaction.unchanged:
         if (entity := entities.get(name)) is None:
-            raise errors.PreconditionFailed(f"{name} is not in the map any more; ask again")
+            raise errors.PreconditionFailed(f"{name} has been removed from the map; repeat the query")
         if (commit := entity.provenance.commit) > transaction.since:
             raise errors.PreconditionFailed(
-                f"{name} was changed by commit {commit}, after commit {transaction.since}; ask again"
+                f"{name} was changed by commit {commit}, after commit {transaction.since}; repeat the query"
             )

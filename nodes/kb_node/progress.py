@@ -1,4 +1,4 @@
-"""Long work in steps: between them the node tells that it lives, or it would be taken for hanging."""
+"""Long work in steps, with heartbeats in between, so that the node is not reported as hanging."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ T = TypeVar("T")
 _STEP: Final = 1000
 
 
-def steadily(items: Iterable[T], progress: Callable[[], None]) -> Iterator[T]:
-    """The items; `progress` is called now and then."""
+def with_progress(items: Iterable[T], progress: Callable[[], None]) -> Iterator[T]:
+    """Yield the items and call `progress` now and then."""
     for i, item in enumerate(items, start=1):
         if i % _STEP == 0:
             progress()
         yield item
 
 
-def parts(items: Iterable[T], size: int, progress: Callable[[], None]) -> Iterator[Sequence[T]]:
-    """The items in parts of that size; `progress` is called before each."""
+def split_batches(items: Iterable[T], size: int, progress: Callable[[], None]) -> Iterator[Sequence[T]]:
+    """Yield the items in batches of `size`, and call `progress` before each."""
     rest = iter(items)
     while part := list(islice(rest, size)):
         progress()

@@ -1,4 +1,4 @@
-"""The reasoner's explanations as messages: the one place where the two forms meet."""
+"""Converts explanations of the reasoner to messages. No other module does."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from semmap.schemas import errors
 from semmap.schemas.explanations import Explanation, Step
 
 
-def message(found: reasoner.Explanation) -> Explanation:
-    """An explanation as it goes over the wire."""
+def to_message(found: reasoner.Explanation) -> Explanation:
+    """Return an explanation as a wire message."""
     return Explanation(
         conclusion=found.conclusion,
         support=found.support,
@@ -21,9 +21,9 @@ def message(found: reasoner.Explanation) -> Explanation:
     )
 
 
-def refusal(found: Inconsistent, *, of: str = "") -> errors.Inconsistent:
-    """The error that callers over the wire get; its sentence may begin with what is inconsistent (`of`)."""
+def to_error(found: Inconsistent, *, of: str = "") -> errors.Inconsistent:
+    """Return the error for clients. `of` names what is inconsistent and becomes the beginning of the text."""
     text = found.explanation.text
     return errors.Inconsistent(
-        f"{of} is inconsistent: {text}" if of else text, explanation=message(found.explanation)
+        f"{of} is inconsistent: {text}" if of else text, explanation=to_message(found.explanation)
     )

@@ -1,6 +1,6 @@
-"""Replays the commits of another journal into the map, in the rhythm in which they were made.
+"""Replays the commits of another journal into the map with their original timing.
 
-Nobody else changes such a map. A knowledge base that is restarted goes on where its own journal ends.
+No client can change such a map. After a restart the replay continues where the node's own journal ends.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ from semmap.schemas.commands import Compact, Status
 from semmap.schemas.commits import Commit, Transaction
 from semmap.schemas.replies import SystemStatus
 
-_LOOK_S: Final = 0.3
-_MOST_LOOKS: Final = 100
-"""So often it is looked whether all others are ready; then the replay begins without them."""
+_CHECK_PERIOD_S: Final = 0.3
+_MAX_CHECKS: Final = 100
+"""Checks whether all other nodes are ready; after that many the replay begins without them."""
 
 CHANGES: Final = (Transaction, Transactions, LoadDocument, LoadTBox, TakeBack, Compact)
 
 
 class Player:
-    """Commits one commit after another, each when its time has come. Owned by the node's thread."""
+    """Commits one commit after another, each at its time. Owned by the node's thread."""
 
     def __init__(
         self,
@@ -41,47 +41,47 @@ class Player:
         semantic_map: SemanticMap,
         data: Path,
         replay: Replay,
-        spread: Callable[[Commit], None],
+        publish: Callable[[Commit], None],
     ) -> None:
-        """`data` is the folder of the replay; `spread(commit)` tells everybody of a new commit."""
+        """Replay from the folder `data`; `publish(commit)` publishes a new commit."""
         self._node = node
         self._map = semantic_map
         self._source = Journal(data / SOURCE)
         self._replay = replay
-        self._spread = spread
-        self._looks = 0
+        self._publish = publish
+        self._checks = 0
         self._waits_for: tuple[str, ...] = ()
-        node.later(_LOOK_S, self._look)
+        node.later(_CHECK_PERIOD_S, self._check_ready)
 
     def close(self) -> None:
-        """Let go of the journal."""
+        """Close the source journal."""
         self._source.close()
 
     def describe(self) -> str:
-        """How far it is, in words."""
+        """Return the progress as text."""
         until, now = self._replay.until, self._map.seq
         return f"replayed up to commit {until}" if now >= until else f"replaying, at commit {now} of {until}"
 
-    def _look(self) -> None:
-        """Begin when all nodes are ready and the bodies stand."""
-        self._looks += 1
-        if self._looks > _MOST_LOOKS:
-            self._node.report(f"the replay begins before all is ready: {'; '.join(self._waits_for)}")
+    def _check_ready(self) -> None:
+        """Begin when all nodes are ready and every entity has its body."""
+        self._checks += 1
+        if self._checks > _MAX_CHECKS:
+            self._node.report(f"the replay starts before all nodes are ready: {'; '.join(self._waits_for)}")
             self._schedule()
             return
 
-        def told(done: Future[SystemStatus]) -> None:
+        def on_status(done: Future[SystemStatus]) -> None:
             failed = done.exception()
-            self._waits_for = (str(failed),) if failed else missing(done.result(), self._replay.nodes)
+            self._waits_for = (str(failed),) if failed else find_missing(done.result(), self._replay.nodes)
             if self._waits_for:
-                self._node.later(_LOOK_S, self._look)
+                self._node.later(_CHECK_PERIOD_S, self._check_ready)
             else:
                 self._schedule()
 
-        self._node.ask_later(keys.CMD, Status()).add_done_callback(told)
+        self._node.ask_later(keys.CMD, Status()).add_done_callback(on_status)
 
     def _schedule(self) -> None:
-        """Have the next commit made when its time has come."""
+        """Schedule the next commit."""
         now = self._map.seq
         if now >= self._replay.until:
             return
@@ -99,14 +99,15 @@ class Player:
         commit = self._source.commit(self._map.seq + 1)
         tbox = self._source.tbox(commit.seq) if commit.tbox else None
         as_made = structs.replace(commit, changed=(), removed=(), digest="")
-        self._spread(self._map.restate(as_made, tbox))
+        self._publish(self._map.restate(as_made, tbox))
         self._schedule()
 
 
-def missing(status: SystemStatus, nodes: Collection[str]) -> tuple[str, ...]:
-    """Return what a replay with these nodes has to wait for, a sentence each.
+def find_missing(status: SystemStatus, nodes: Collection[str]) -> tuple[str, ...]:
+    """Return the conditions that a replay with these nodes still waits for, as sentences.
 
-    It waits until every entity has its body. Bodies that move or stand elsewhere do not hold it up.
+    The replay waits until every entity has its body. It does not wait for bodies that move or stand
+    elsewhere.
     """
     ready = {node.node for node in status.nodes if node.state == "ready"}
     absent = tuple(f"{node} is not ready" for node in nodes if node not in ready)
@@ -115,10 +116,10 @@ def missing(status: SystemStatus, nodes: Collection[str]) -> tuple[str, ...]:
     return ("the scene is not known yet",) if status.in_agreement is None else status.pending
 
 
-def refusing() -> Mapping[str, Handler]:
-    """Handlers for what would change a map that is replayed, by verb: each refuses."""
+def rejecting_handlers() -> Mapping[str, Handler]:
+    """Return handlers by command that reject changes of a replayed map."""
 
     def refuse(_: Any) -> Any:
-        raise errors.Refused("this map is a replay of the past, and cannot be changed; change the map itself")
+        raise errors.Refused("this map is a replay and cannot be changed; change the original map")
 
     return by_verb(*(Handler(kind, refuse) for kind in CHANGES))

@@ -11,7 +11,7 @@ from msgspec import structs
 
 from semmap.nodes.kb_node import planning
 from semmap.nodes.kb_node.applier import Applier
-from semmap.nodes.kb_node.beliefs import UNCHANGED, Believed
+from semmap.nodes.kb_node.derived_facts import UNCHANGED, DerivedChanges
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
 from semmap.nodes.kb_node.entities import entity_reading
@@ -30,7 +30,7 @@ from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Triple
 
 LARGE: Final = 1_000_000
-"""Triples."""
+"""Number of triples from which a map counts as large."""
 
 T = TypeVar("T")
 C = TypeVar("C", Commit, Commit | None)
@@ -38,8 +38,8 @@ C = TypeVar("C", Commit, Commit | None)
 log = logging.getLogger(__name__)
 
 
-class _Tried(Exception):
-    """A change was tried, up to where it would be durable. `seen` is what there was to see."""
+class _DryRunDone(Exception):
+    """Ends a dry run just before the commit becomes durable. `seen` is the result of the inspection."""
 
     def __init__(self, seen: Any) -> None:
         super().__init__()
@@ -47,11 +47,11 @@ class _Tried(Exception):
 
 
 class _Memento(NamedTuple):
-    """A commit that is not durable yet, and the entities that it touched as they were before."""
+    """A commit that is not durable yet, with the previous state of the entities that it touches."""
 
     commit: Commit
     before: Mapping[str, Entity | None]
-    """By name; None for one that was not there."""
+    """By name; None for an entity that did not exist."""
 
 
 class SemanticMap(MapState):
@@ -64,9 +64,10 @@ class SemanticMap(MapState):
         reasoner: Reasoner | None = None,
         progress: Callable[[], None] = lambda: None,
     ) -> None:
-        """Rebuild the map from `journal`; `reasoner` is one that holds its TBox and no more, if there is one.
+        """Rebuild the map from `journal`.
 
-        `progress` is called between the steps of long work. Raises Refused when the journal is damaged.
+        `reasoner`, if given, holds the TBox of the map and nothing else. `progress` is called between the
+        steps of long work. Raises Refused if the journal is damaged.
         """
         self._journal = journal
         verify(journal, progress)
@@ -75,123 +76,137 @@ class SemanticMap(MapState):
         super().__init__(tbox, reasoner or closure_cache.load_reasoner(tbox, journal.path.parent), progress)
         self._applier = Applier(self)
         self._schedule = CheckpointSchedule(journal, start.seq)
-        self.foretell: Callable[[Commit], Callable[[], None]] = lambda _: lambda: None
-        """Told of each commit before it is checked; what it returns is called if that is not made."""
+        self.prepare: Callable[[Commit], Callable[[], None]] = lambda _: lambda: None
+        """Called with each commit before it is checked. The returned function is called if the commit is
+        aborted."""
         self.is_sound = True
-        """False when an unexpected error (no memory) may have left a change half done: then start anew."""
-        self.broke: Callable[[], None] = lambda: None
-        """Called when that happens."""
-        self._look: Callable[[Commit], Any] | None = None
-        """While a change is only tried: who looks at it."""
+        """False if an unexpected error, such as lack of memory, may have left a change incomplete. The node
+        must restart."""
+        self.on_failure: Callable[[], None] = lambda: None
+        """Called when `is_sound` becomes False."""
+        self._inspect: Callable[[Commit], Any] | None = None
+        """During a dry run: the function that inspects the commit."""
         self._undo_log: list[_Memento] | None = None
-        """While commits are made together: what takes them back, in their order."""
+        """During `commit_together`: the mementos to roll back, in the order of the commits."""
         self._replay(start)
 
     def tbox_at(self, seq: int) -> frozenset[Triple]:
-        """The TBox that held after commit `seq`. Raises Refused when it is damaged."""
+        """Return the TBox in force after commit `seq`. Raises Refused if it is damaged."""
         return frozenset(rdf.parse(self._journal.tbox(seq), f"the TBox in {self._journal.path}"))
 
-    def believed_of(self, commit: Commit) -> Believed:
-        """What a commit changed of what is computed and set aside; it is told once."""
-        return self._applier.believed.pop(commit.seq, UNCHANGED)
+    def take_derived_changes(self, commit: Commit) -> DerivedChanges:
+        """Return how a commit changed the computed and suppressed facts, once."""
+        return self._applier.derived_changes.pop(commit.seq, UNCHANGED)
 
-    # Changing
+    # Changes
 
     def commit(self, transaction: Transaction) -> Commit | None:
-        """Apply, check and make durable; None when it changes nothing. On any error the map is as before.
+        """Apply a transaction, check it and make it durable. Return None if it changes nothing.
 
-        A command that comes a second time is answered with its first commit. That is looked up only when
-        there is nothing to do or something is in the way, as the journal is: it takes no command twice.
+        On any error the map is as before. A repeated transaction returns its first commit. It is looked up in
+        the journal only if there is nothing to do or if the transaction fails, because the journal accepts an
+        id only once.
 
-        Raises PreconditionFailed; NameTaken; UnknownName for an intent about what is not there; Inconsistent
-        (with the explanation); BadRequest for a star that does not make sense; Refused when it takes away
-        from the TBox or the disk does not take the commit; NoAnswer, with the map not sound any more, when
-        something unexpected happens: whether the commit is durable the journal knows.
+        Raises:
+            PreconditionFailed: a precondition does not hold.
+            NameTaken: the name of a new entity exists.
+            UnknownName: an edited or removed entity does not exist.
+            Inconsistent: the map would become inconsistent; the error has the explanation.
+            BadRequest: the triples of an entity are invalid.
+            Refused: it would change the TBox, or the commit cannot be written to disk.
+            NoAnswer: an unexpected error occurred. The map is not sound any more, and only the journal knows
+                whether the commit is durable.
         """
         if self._undo_log is None:
-            self._applier.believed.clear()
+            self._applier.derived_changes.clear()
         try:
-            made = self._carried_out(lambda: self._commit(transaction))
+            made = self._run_change(lambda: self._commit(transaction))
         except errors.SemmapError:
             if not self.is_sound or (known := self._journal.commit_of(transaction.id)) is None:
                 raise
             return known
         return made or self._journal.commit_of(transaction.id)
 
-    def _carried_out(self, change: Callable[[], C]) -> C:
-        """What `change` commits. Raises NoAnswer for an error that nobody expects."""
+    def _run_change(self, change: Callable[[], C]) -> C:
+        """Return the commit of `change`. Raises NoAnswer for an unexpected error."""
         try:
             return change()
-        except (errors.SemmapError, _Tried):
+        except (errors.SemmapError, _DryRunDone):
             raise
         except Exception as error:
             self.is_sound = False
-            self.broke()
-            log.exception("a change may be half done")
+            self.on_failure()
+            log.exception("a change may be incomplete")
             raise errors.NoAnswer(
-                f"the knowledge base starts again from its journal, because a change failed in the middle:"
+                f"the knowledge base restarts from its journal, because a change failed:"
                 f" {type(error).__name__}: {error}"
             ) from error
 
     def _commit(self, transaction: Transaction) -> Commit | None:
-        self.follow_enough(transaction)
+        self.derive_for(transaction)
         if transaction.is_quick:
-            return self._made(transaction)
-        with gc_pause.uncollected(), self.places_foreseen(transaction):
-            return self._made(transaction)
+            return self._make_commit(transaction)
+        with gc_pause.uncollected(), self.predicted_places(transaction):
+            return self._make_commit(transaction)
 
-    def _made(self, transaction: Transaction) -> Commit | None:
-        plan, apply = planning.of(self, transaction), self._applier.apply
+    def _make_commit(self, transaction: Transaction) -> Commit | None:
+        plan, apply = planning.make_plan(self, transaction), self._applier.apply
         if plan is None:
             return None
-        commit = planning.signed(transaction, plan, self.seq + 1)
-        if self._look is not None:
-            return self._taken(apply(commit, self._write, self._noted))
-        give_up, begun = self.foretell(commit), commit_encoding.begin_body(commit, self.digest)
-        write, noted = partial(self._write, begun=begun), partial(self._noted, begun=begun)
+        commit = planning.make_commit(transaction, plan, self.seq + 1)
+        if self._inspect is not None:
+            return self._accept(apply(commit, self._write, self._with_notes))
+        rollback, begun = self.prepare(commit), commit_encoding.begin_body(commit, self.digest)
+        write, noted = partial(self._write, begun=begun), partial(self._with_notes, begun=begun)
         try:
-            return self._taken(apply(commit, write, noted))
+            return self._accept(apply(commit, write, noted))
         except BaseException:
-            give_up()
+            rollback()
             if begun is not None:
                 begun.discard()
             raise
 
-    def _noted(self, commit: Commit, *, begun: commit_encoding.EarlyBody | None = None) -> Commit:
-        """With a word on what it says of places and is not so. The body that was `begun` has its entities."""
+    def _with_notes(self, commit: Commit, *, begun: commit_encoding.EarlyBody | None = None) -> Commit:
+        """Return the commit with notes on asserted locations that contradict the geometry.
+
+        The encoding that was begun early receives the entities of the commit.
+        """
         if begun is not None:
             begun.expect(commit)
-        doubts = self.places.doubts(commit)
+        doubts = self.places.conflict_notes(commit)
         return structs.replace(commit, notes=(*commit.notes, *doubts)) if doubts else commit
 
-    def try_out(self, change: Callable[[], Commit | None], look: Callable[[Commit], T]) -> T | None:
-        """What `look(commit)` sees once `change` would be durable; then all is taken back.
+    def try_out(self, change: Callable[[], Commit | None], inspect: Callable[[Commit], T]) -> T | None:
+        """Run `change` up to the point of durability, return `inspect(commit)`, and roll back.
 
-        None if it changes nothing, or was done before. Raises what `change` raises.
+        Return None if the change has no effect or was made before. Raises what `change` raises.
         """
-        self._look = look
+        self._inspect = inspect
         try:
             change()
-        except _Tried as tried:
+        except _DryRunDone as tried:
             seen: T = tried.seen
             return seen
         finally:
-            self._look = None
+            self._inspect = None
         return None
 
     def _write(
         self, commit: Commit, tbox: bytes | None = None, *, begun: commit_encoding.EarlyBody | None = None
     ) -> Commit:
-        """The commit, durable and with its digest. Raises NotWritten; _Tried if it is only tried."""
-        if self._look is not None:
-            raise _Tried(self._look(commit))
+        """Write the commit to the journal and return it with its digest.
+
+        Raises NotWritten; _DryRunDone in a dry run.
+        """
+        if self._inspect is not None:
+            raise _DryRunDone(self._inspect(commit))
         return structs.replace(commit, digest=self._journal.append(commit, tbox, begun=begun).hex())
 
     def replace_tbox(self, transaction: Transaction, tbox: Iterable[Triple]) -> Commit:
-        """Let another TBox hold, in one commit with the transaction's changes of the ABox.
+        """Replace the TBox and apply the ABox changes of the transaction, in one commit.
 
-        Raises Inconsistent, BadFile for what is no TBox, Refused when the map does not fit it or the disk
-        does not take it. Then everything is as before.
+        Raises Inconsistent, BadFile if `tbox` is not a TBox, and Refused if the map does not fit it or the
+        disk is full. Then everything is as before.
         """
         if (known := self._journal.commit_of(transaction.id)) is not None:
             return known
@@ -201,37 +216,38 @@ class SemanticMap(MapState):
             inserted=(*transaction.insert, *sorted(new - self.tbox)),
             notes=(),
         )
-        commit = planning.signed(transaction, plan, self.seq + 1, tbox=True)
-        self.follow_places()
+        commit = planning.make_commit(transaction, plan, self.seq + 1, tbox=True)
+        self.derive_all()
         before = self.classes
 
         def make_durable(commit: Commit) -> Commit:
             tbox_validation.require_fit(self.abox(), before, self.classes)
             return self._write(commit, rdf.serialise(new, "ntriples"))
 
-        return self._carried_out(lambda: self._taken(self._applier.switch(commit, new, make_durable)))
+        return self._run_change(lambda: self._accept(self._applier.switch(commit, new, make_durable)))
 
     def restate(self, commit: Commit, tbox: bytes | None = None) -> Commit:
-        """Commit what another journal has, under its number and in its author's name, as it is.
+        """Commit a commit of another journal with its number and author.
 
-        `tbox` (N-Triples) is the one that it lets hold. Raises Inconsistent, BadRequest, NotWritten; then the
-        map is as before.
+        `tbox` (N-Triples) is the TBox that it sets, if any. Raises Inconsistent, BadRequest, NotWritten; then
+        the map is as before.
         """
-        self.follow_places()
+        self.derive_all()
         if tbox is None:
-            return self._taken(self._applier.apply(commit, self._write))
+            return self._accept(self._applier.apply(commit, self._write))
         new = frozenset(rdf.parse(tbox, "the TBox"))
-        return self._taken(self._applier.switch(commit, new, lambda whole: self._write(whole, tbox)))
+        return self._accept(self._applier.switch(commit, new, lambda whole: self._write(whole, tbox)))
 
     def commit_together(
         self, transactions: Sequence[Transaction]
     ) -> list[Commit | errors.SemmapError | None]:
-        """Like `commit` for each by itself, in order, but durable together; errors are among the results.
+        """Commit each transaction by itself, in order, but make all of them durable with one write.
 
-        When the disk does not take them, all are refused and the map is as before.
+        Errors are part of the results. If the disk does not accept the write, all transactions fail and the
+        map is as before.
         """
         log = self._undo_log = []
-        self._applier.believed.clear()
+        self._applier.derived_changes.clear()
         results: list[Commit | errors.SemmapError | None] = []
         try:
             with self._journal.batch():
@@ -248,7 +264,7 @@ class SemanticMap(MapState):
             if not self.is_sound:
                 raise
             for memento in reversed(log):
-                self._take_back(memento)
+                self._roll_back(memento)
             if not isinstance(error, NotWritten):
                 raise
             return [error] * len(transactions)
@@ -256,39 +272,45 @@ class SemanticMap(MapState):
             self._undo_log = None
         return results
 
-    def _take_back(self, memento: _Memento) -> None:
-        """Undo the last commit, of which the journal keeps nothing."""
+    def _roll_back(self, memento: _Memento) -> None:
+        """Roll back the last commit, which the journal does not contain."""
         commit, before = memento
         self._applier.reverse(commit, before)
-        self.give_back(commit, before, self._journal.digest(commit.seq - 1).hex())
+        self.revert_entities(commit, before, self._journal.digest(commit.seq - 1).hex())
 
-    def _taken(self, commit: Commit) -> Commit:
+    def _accept(self, commit: Commit) -> Commit:
         if self._undo_log is not None:
             before = {name: self.by_name.get(name) for name in commit.names}
             self._undo_log.append(_Memento(commit, before))
         self._schedule.count(commit)
-        self.take(commit)
+        self.apply_commit(commit)
         return commit
 
-    # Restarting
+    # Restart
 
     def checkpoint_is_due(self, *, quiet: bool) -> bool:
-        """Would the next start have much to replay? Unless it is `quiet`, very much? Another TBox is much."""
+        """Return whether the next start would replay much, or very much if the map is not `quiet`.
+
+        A replaced TBox counts as much.
+        """
         return self._schedule.is_due(self.seq, quiet=quiet)
 
     @property
     def checkpoint_is_urgent(self) -> bool:
-        """Would the next start have to replay most of the map?"""
+        """Return whether the next start would have to replay most of the map."""
         return self._schedule.is_urgent(self.reasoner)
 
     @property
     def is_large(self) -> bool:
-        """Does a checkpoint take so long that nobody should wait for it without need?"""
+        """Return whether a checkpoint takes so long that a client should not wait for it."""
         return len(self.reasoner) > LARGE
 
-    def picture(self) -> Checkpoint:
-        """The map as it is now, to be written down while it goes on changing. Takes some 0.2 us a triple."""
-        self.believe_places()
+    def snapshot_for_checkpoint(self) -> Checkpoint:
+        """Return a snapshot of the map that can be written while the map changes.
+
+        Takes about 0.2 us a triple.
+        """
+        self.ensure_derived()
         self._schedule.mark_snapshot()
         columns = self.reasoner.columns(self.tbox)
         return Checkpoint(
@@ -300,47 +322,47 @@ class SemanticMap(MapState):
         )
 
     def checkpoint(self) -> None:
-        """Write down the whole map, so that the next start need not replay its history.
+        """Write a checkpoint of the map, so that the next start does not replay its history.
 
-        Raises Refused when the disk does not take it; then the history is replayed.
+        Raises Refused if the disk does not accept it; then the next start replays the history.
         """
         if not self._schedule.is_written(self.seq):
-            self._journal.checkpoint(self.picture(), self.progress)
+            self._journal.checkpoint(self.snapshot_for_checkpoint(), self.progress)
             self.written(self.seq)
 
     def written(self, seq: int) -> None:
-        """There is a checkpoint of the map after commit `seq`, made of the last picture."""
+        """Record that the last snapshot was written as a checkpoint of commit `seq`."""
         self._schedule.mark_written(seq)
 
     def _replay(self, start: Checkpoint) -> None:
         is_ours = start.read_by == conclusions_format.format_mark()
         if start.columns is not None and is_ours and self.reasoner.fill(start.columns):
             self.reasoner.update_computed(suppress=start.triples)
-            self.believes = True
+            self.has_derived = True
         else:
             self._applier.change(insert=tuple(start.all_triples()), lenient=True)
         self.seq, self.digest = start.seq, self._journal.digest(start.seq).hex()
         if start.seq == 0:
-            self.show(entity_reading.of_the_tbox(self.reasoner, self.classes))
+            self.update_entities(entity_reading.read_tbox_entities(self.reasoner, self.classes))
         elif is_ours:
-            self.show(start.entities)
+            self.update_entities(start.entities)
         else:
             read = (entity_reading.read_again(self.reasoner, self.classes, e) for e in start.entities)
-            self.show(entity for entity in read if entity is not None)
+            self.update_entities(entity for entity in read if entity is not None)
         for commit in self._journal.commits(after=start.seq):
             try:
                 if commit.tbox:
-                    made = self._applier.switch(commit, self.tbox_at(commit.seq), _as_it_is)
+                    made = self._applier.switch(commit, self.tbox_at(commit.seq), _unchanged)
                 else:
-                    made = self._applier.apply(commit, _as_it_is)
+                    made = self._applier.apply(commit, _unchanged)
             except errors.SemmapError as error:
                 raise errors.Refused(f"commit {commit.seq} no longer fits its TBox: {error.text}") from None
-            self._taken(made)
+            self._accept(made)
             self.progress()
         if self.seq > start.seq or start.read_by != conclusions_format.format_mark():
-            self.follow_places()  # else the entities have the classes that they have by their places
+            self.derive_all()  # otherwise the entities have the classes that follow from poses
 
 
-def _as_it_is(commit: Commit) -> Commit:
-    """One that is durable already."""
+def _unchanged(commit: Commit) -> Commit:
+    """Return a commit that is already durable."""
     return commit

@@ -1,4 +1,4 @@
-"""Taking back a commit by another one: which commits go with it, and does anything rest on them?"""
+"""Undoes a commit by another commit: which commits are included, and whether later ones depend on it."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ def undo(
     command: TakeBack,
     working: Callable[[Commit], AbstractContextManager[object]] = nullcontext,
 ) -> Commit:
-    """Take back a commit with the settling that followed it, or the TBox that it let hold.
+    """Undo a commit with the settling that followed it, or restore the TBox that it replaced.
 
-    It is done within `working(commit)`, of the commit that is taken back.
+    The work is done within `working(commit)` of the undone commit.
 
-    Raises Refused when there is nothing to take back, later commits rest on it, its author outranks who wants
-    it undone, or the map does not fit the TBox before; Inconsistent.
+    Raises Inconsistent, and Refused if there is nothing to undo, later commits depend on it, its author has a
+    higher authority, or the map does not fit the previous TBox.
     """
     if (known := journal.commit_of(command.id)) is not None:
         return known
@@ -68,14 +68,14 @@ def _reverse(semantic_map: SemanticMap, journal: Journal, command: TakeBack, tar
 
 
 def _reverse_tbox(semantic_map: SemanticMap, journal: Journal, command: TakeBack, target: Commit) -> Commit:
-    """Let the TBox hold again that held before."""
+    """Restore the previous TBox."""
     later = [journal.commit(seq) for seq in journal.tbox_changes(after=target.seq)]
     _require_in_force(target, later)
     if again := [commit for commit in _in_force(later) if not commit.undoes]:
         raise errors.Refused(_what_rests_on(target, again))
     before, after = (semantic_map.tbox_at(seq) for seq in (target.seq - 1, target.seq))
-    retract = tuple(t for t in target.inserted if t not in after and semantic_map.has(t))
-    insert = tuple(t for t in target.retracted if t not in before and not semantic_map.has(t))
+    retract = tuple(t for t in target.inserted if t not in after and semantic_map.is_asserted(t))
+    insert = tuple(t for t in target.retracted if t not in before and not semantic_map.is_asserted(t))
     return semantic_map.replace_tbox(_transaction(command, [target], retract, insert), before)
 
 
@@ -108,7 +108,7 @@ def _require_in_force(target: Commit, later: Iterable[Commit]) -> None:
 
 
 def _newest_asked(journal: Journal) -> Commit:
-    """The newest commit that a client asked for and that was not taken back."""
+    """Return the newest commit that a client requested and that is not undone."""
     backwards = (journal.commit(seq) for seq in range(journal.last, journal.first - 1, -1))
     for commit in _in_force(backwards):
         if commit.verb and not commit.undoes:
@@ -135,10 +135,10 @@ def _require_authority(command: TakeBack, target: Commit) -> None:
 
 
 def _later(journal: Journal, target: Commit) -> list[Commit]:
-    """The commits after `target` that concern it, newest first.
+    """Return the later commits that concern `target`, newest first.
 
-    They are those that touched one of its entities, and what the system did by itself right after it: what
-    stood on a table fell when the table went.
+    These are the commits that touched one of its entities, and what the system did by itself right after it.
+    For example, objects fall when the table under them is removed.
     """
     if target.seq == journal.last:
         return []
@@ -153,7 +153,7 @@ def _later(journal: Journal, target: Commit) -> list[Commit]:
 
 
 def _in_force(newest_first: Iterable[Commit]) -> Iterator[Commit]:
-    """Those that were not taken back."""
+    """Yield the commits that are not undone."""
     undone: set[int] = set()
     for commit in newest_first:
         if commit.seq not in undone:
@@ -162,13 +162,13 @@ def _in_force(newest_first: Iterable[Commit]) -> Iterator[Commit]:
 
 
 def _is_settling(commit: Commit) -> bool:
-    """Did the system by itself only take over where bodies came to rest?"""
+    """Return whether the system itself only recorded where bodies came to rest."""
     shaped = any(entity.shape_provenance.commit == commit.seq for entity in commit.changed)
     return not commit.verb and commit.source == "scene" and not commit.removed and not shaped
 
 
 def _net(commits: Sequence[Commit]) -> tuple[tuple[Triple, ...], tuple[Triple, ...]]:
-    """What commits, in order, inserted and retracted taken together."""
+    """Return the net inserted and retracted triples of commits in order."""
     if len(commits) == 1:
         return commits[0].inserted, commits[0].retracted
     inserted: dict[Triple, None] = {}
@@ -190,29 +190,33 @@ def _net(commits: Sequence[Commit]) -> tuple[tuple[Triple, ...], tuple[Triple, .
 def _is_disturbed(
     semantic_map: SemanticMap, inserted: tuple[Triple, ...], retracted: tuple[Triple, ...]
 ) -> bool:
-    """Is something no longer as it was left, or was more said of the individuals that were brought in?"""
-    mine, reasoner, steadily = set(inserted), semantic_map.reasoner, semantic_map.steadily
+    """Return whether the result of the commits has changed or has been extended since."""
+    mine, reasoner, with_progress = set(inserted), semantic_map.reasoner, semantic_map.with_progress
     changed = {s for s, p, _ in retracted if p == v.RDF_TYPE}
     brought = {s for s, p, _ in inserted if p == v.RDF_TYPE} - changed
-    if preconditions.is_much((inserted, retracted), reasoner):
-        held = set(chain.from_iterable(steadily(reasoner.by_subject())))
+    if preconditions.is_large_share((inserted, retracted), reasoner):
+        held = set(chain.from_iterable(with_progress(reasoner.by_subject())))
         about = [t for t in held - mine if t[0] in brought or t[2] in brought]
     else:
-        held = preconditions.held(reasoner, (inserted, retracted), semantic_map.progress)
+        held = preconditions.find_asserted(reasoner, (inserted, retracted), semantic_map.progress)
         asserted = chain.from_iterable(
-            chain(reasoner.asserted(term), reasoner.asserted(None, None, term)) for term in steadily(brought)
+            chain(reasoner.asserted(term), reasoner.asserted(None, None, term))
+            for term in with_progress(brought)
         )
         about = [t for t in asserted if t not in mine]
     return bool(about) or not held >= mine or not held.isdisjoint(retracted)
 
 
 def _what_rests_on(target: Commit, others: list[Commit]) -> str:
-    """`others` are later, newest first; those that only took back one another do not count."""
+    """Return the error text.
+
+    `others` are later commits, newest first; pairs that undo each other do not count.
+    """
     seqs = {commit.seq for commit in others}
     changes = (c for c in _in_force(others) if not (c.undoes and seqs.issuperset(c.undoes)))
     if (newest := next(changes, None)) is None:
-        return f"it is too late to undo commit {target.seq}: what it stated has changed since"
+        return f"commit {target.seq} cannot be undone: its result has changed since"
     return (
-        f"it is too late to undo commit {target.seq} ({target.reason}): commit {newest.seq} ({newest.reason})"
+        f"commit {target.seq} ({target.reason}) cannot be undone: commit {newest.seq} ({newest.reason})"
         f" depends on it; undo that one first: semmap undo {newest.seq}"
     )

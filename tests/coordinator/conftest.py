@@ -9,7 +9,7 @@ import pytest
 
 from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
 from semmap.nodes.kb_node.answers import answers as kb_answers
-from semmap.nodes.kb_node.answers import trials
+from semmap.nodes.kb_node.answers import dry_runs
 from semmap.nodes.kb_node.answers.pages import Pages
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import Journal
@@ -68,7 +68,7 @@ def dispatcher(semantic_map):
             for result in semantic_map.commit_together(several.transactions)
         ),
         "infer": lambda query: kb_answers.infer(semantic_map, query.name),
-        "properties": lambda _: tuple(semantic_map.classes.stated.rows()),
+        "properties": lambda _: tuple(semantic_map.classes.property_table.rows()),
         "made-by": lambda query: tuple(_effects(semantic_map._journal.commit_of(i)) for i in query.ids),
         "undo": lambda command: _changed(
             semantic_map, lambda: undo(semantic_map, semantic_map._journal, command), command.dry_run
@@ -96,4 +96,4 @@ def _effects(commit):
 
 
 def _changed(semantic_map, change, dry_run):
-    return trials.of(semantic_map, change) if dry_run else _effects(change())
+    return dry_runs.dry_run(semantic_map, change) if dry_run else _effects(change())

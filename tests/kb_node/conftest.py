@@ -9,7 +9,7 @@ from tests.kb_node import home, stating
 
 @pytest.fixture
 def semantic_map(tmp_path):
-    """An empty map over the small TBox."""
+    """An empty map with the small TBox."""
     made = home.new_map(tmp_path)
     yield made
     home.close(made)
@@ -17,7 +17,7 @@ def semantic_map(tmp_path):
 
 @pytest.fixture
 def stateful_map(tmp_path):
-    """A map over a TBox with properties of every kind; `chair1` and `kitchen1` are in it."""
+    """A map with a TBox with properties of every kind, `chair1` and `kitchen1`."""
     made = stating.new_map(tmp_path)
     yield made
     home.close(made)
@@ -25,7 +25,7 @@ def stateful_map(tmp_path):
 
 @pytest.fixture(scope="session")
 def unchanged():
-    """The flat's map, if there is one that no test has changed."""
+    """The map of the flat, unless a test has changed it."""
     kept: list[SemanticMap] = []
     yield kept
     for made in kept:
@@ -34,7 +34,7 @@ def unchanged():
 
 @pytest.fixture
 def flat(unchanged, tmp_path_factory):
-    """The flat that comes with semmap, as a map; the same one for all tests that only read it."""
+    """The shipped flat as a map, shared by all tests that only read it."""
     if not unchanged:
         made = SemanticMap(home.new_household_journal(tmp_path_factory.mktemp("flat")))
         abox = rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f")

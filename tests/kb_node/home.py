@@ -1,4 +1,4 @@
-"""A small TBox of a home, and maps over it."""
+"""A small household TBox, and maps that use it."""
 
 import functools
 from pathlib import Path
@@ -52,19 +52,19 @@ TBOX = rdf.parse(TBOX_TURTLE.encode(), "tbox.ttl", label_prefix="t")
 
 
 def new_map(folder: Path, tbox=TBOX) -> SemanticMap:
-    """An empty map with a new journal in `folder`."""
+    """Return an empty map with a new journal in `folder`."""
     return SemanticMap(Journal.create(folder / FILENAME, rdf.serialise(tbox, "ntriples")))
 
 
 @functools.cache
 def household() -> frozenset[Triple]:
-    """The TBox that comes with semmap."""
+    """Return the shipped TBox."""
     return frozenset(rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household.ttl", label_prefix="t"))
 
 
 @functools.cache
 def _household_closure() -> tuple[str, bytes]:
-    """Name and content of the file that keeps its closure."""
+    """Return name and content of the file with its cached closure."""
     with TemporaryDirectory() as name:
         close(new_map(folder := Path(name), household()))
         (closure,) = folder.glob("*.closure")
@@ -72,40 +72,40 @@ def _household_closure() -> tuple[str, bytes]:
 
 
 def new_household_journal(folder: Path) -> Journal:
-    """A new journal in `folder` with the TBox that comes with semmap, as one whose closure was kept."""
+    """Return a new journal in `folder` with the shipped TBox and its cached closure."""
     name, closure = _household_closure()
     (folder / name).write_bytes(closure)
     return Journal.create(folder / FILENAME, rdf.serialise(household(), "ntriples"))
 
 
 def reopened(semantic_map: SemanticMap) -> SemanticMap:
-    """The same map after a restart."""
+    """Return the same map after a restart."""
     path = semantic_map._journal.path
     semantic_map._journal.close()
     return SemanticMap(Journal(path))
 
 
 def close(semantic_map: SemanticMap) -> None:
-    """Release the journal."""
+    """Close the journal."""
     semantic_map._journal.close()
 
 
 def turtle(text: str):
-    """Triples from Turtle with the usual prefixes."""
+    """Return triples from Turtle with the usual prefixes."""
     return tuple(rdf.parse((PREFIXES + text).encode(), "test"))
 
 
 def transaction(number, insert=(), retract=(), **fields):
-    """A transaction with the command id `number`."""
+    """Return a transaction with the command id `number`."""
     fields = {"source": "operator", **fields}
     return Transaction(id=str(number), insert=tuple(insert), retract=tuple(retract), **fields)
 
 
 def chair(name="chair1", at=(1.0, 2.0, 0.0), **described):
-    """The star of a chair."""
+    """Return the triples of a chair."""
     return stars.star(name, v.dm("Chair"), pose=Pose(position_m=at), **described)
 
 
 def state(semantic_map: SemanticMap):
-    """All that a map says of itself."""
+    """Return the whole state of a map."""
     return semantic_map.seq, set(semantic_map.abox()), semantic_map.snapshot()

@@ -1,4 +1,4 @@
-"""A small TBox with properties of every kind, and maps over it."""
+"""A small TBox with properties of every kind, and maps that use it."""
 
 from semmap.nodes.kb_node.documents import rdf
 from semmap.ontology import vocabulary as v
@@ -29,7 +29,7 @@ TBOX = rdf.parse((home.TBOX_TURTLE + PROPERTIES).encode(), "tbox.ttl", label_pre
 
 
 def new_map(folder):
-    """A map with `chair1` and the place `kitchen1`."""
+    """Return a map with `chair1` and the place `kitchen1`."""
     made = home.new_map(folder, TBOX)
     kitchen = (v.entity_iri("kitchen1"), v.RDF_TYPE, v.dm("Kitchen"))
     made.commit(home.transaction("begin", [*home.chair(), kitchen]))
@@ -37,37 +37,37 @@ def new_map(folder):
 
 
 def statement(property_, *values):
-    """That an entity has these values."""
+    """Return the statement that a property has these values."""
     return Statement(property=property_, values=values)
 
 
 def edited(semantic_map, **fields):
-    """The commit of an edit of `chair1`."""
+    """Commit an edit of `chair1`."""
     return semantic_map.commit(editing(semantic_map, **fields))
 
 
 def editing(semantic_map, **fields):
-    """The transaction of an edit of `chair1`."""
+    """Return the transaction of an edit of `chair1`."""
     edit = Edit(**{"name": "chair1", **fields})
     return Transaction(id=f"{semantic_map.seq} {fields}", source="operator", edit=(edit,))
 
 
 def stated(semantic_map, property_, *values, **others):
-    """The commit that sets a property of `chair1`."""
+    """Commit a property of `chair1`."""
     return edited(semantic_map, set=(statement(property_, *values),), **others)
 
 
 def unstated(semantic_map, property_, *values):
-    """The commit that unsets a property of `chair1`."""
+    """Commit the removal of property values of `chair1`."""
     return edited(semantic_map, unset=(statement(property_, *values),))
 
 
 def properties(semantic_map, name="chair1"):
-    """What the entity shows of them."""
+    """Return the properties of the entity."""
     return semantic_map.entity(name).properties
 
 
 def adding(name, **fields):
-    """The transaction that adds a chair."""
+    """Return the transaction that adds a chair."""
     new = NewEntity(name=name, class_iri=v.bare(v.dm("Chair")), **fields)
     return Transaction(id=f"add {name}", source="operator", add=(new,))

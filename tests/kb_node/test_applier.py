@@ -8,7 +8,7 @@ from tests.kb_node.home import chair, state, transaction, turtle
 
 
 def _worked_on(folder):
-    """What becomes of a map in which much is changed at once, and how often it told that it lives."""
+    """Return the state of a map after a large change, and the number of heartbeats."""
     folder.mkdir()
     beats = []
     created = home.new_map(folder)
@@ -32,7 +32,7 @@ def _worked_on(folder):
     return refusal.value.text, state(again)[1], count
 
 
-def test_a_large_change_is_made_in_parts_and_is_the_same(tmp_path, monkeypatch):
+def test_a_large_change_in_parts_gives_the_same_result(tmp_path, monkeypatch):
     *whole, beats = _worked_on(tmp_path / "whole")
     monkeypatch.setattr("semmap.nodes.kb_node.applier.PART", 7)
     *in_parts, more_beats = _worked_on(tmp_path / "parts")

@@ -1,4 +1,4 @@
-"""A large load is the same commit whether a process of its own worked out where everything is, or not."""
+"""A large load gives the same commit with and without a separate process for its relations."""
 
 import random
 import sys
@@ -7,8 +7,8 @@ from functools import partial
 import pytest
 
 from semmap.nodes.kb_node import map_state
-from semmap.nodes.kb_node.answers import trials
-from semmap.nodes.kb_node.entities import foreseeing
+from semmap.nodes.kb_node.answers import dry_runs
+from semmap.nodes.kb_node.entities import new_entities
 from semmap.nodes.kb_node.relations.facts.precomputation import Precomputation
 from semmap.nodes.kb_node.relations.facts.precompute_messages import PrecomputeResult
 from semmap.nodes.kb_node.semantic_map import SemanticMap
@@ -19,7 +19,7 @@ from semmap.schemas.commits import NewEntity, Statement, Transaction
 from semmap.schemas.entities import Pose, orientation_from_yaw
 from tests.kb_node import home
 
-pytestmark = pytest.mark.process  # a large commit of a map starts one
+pytestmark = pytest.mark.process  # a large commit starts one
 
 MANY = 120
 CLASSES = ("Table", "Cup", "Book", "Tray", "Fridge", "Kitchen")
@@ -27,7 +27,7 @@ DIES = [sys.executable, "-c", "raise SystemExit(9)"]
 
 
 def things(count=2 * MANY, first=0, without=()):
-    """They stand in one another, on one another and in rooms; some have no size, some no position."""
+    """Entities in and on one another and in rooms; some have no size, some no position."""
     dice = random.Random(first)
     for i in range(first, first + count):
         class_name = CLASSES[i % len(CLASSES)]
@@ -61,13 +61,13 @@ def said(new, name="load"):
 
 @pytest.fixture
 def few_are_many(monkeypatch):
-    monkeypatch.setattr(foreseeing, "MANY", MANY)
+    monkeypatch.setattr(new_entities, "MANY", MANY)
     monkeypatch.setattr("semmap.schemas.commits._FEW", MANY)
 
 
 @pytest.fixture
 def helped(monkeypatch, few_are_many):
-    """How often the other process worked it out, as it turned out to be."""
+    """Counts how often the result of the other process was used."""
     came = []
     match = PrecomputeResult.match
 
@@ -98,21 +98,21 @@ def new_map(tmp_path):
 def seen(semantic_map, commit):
     reasoner = semantic_map.reasoner
     entities = [(e.name, e.types, e.pose, e.size_m, e.model) for e in commit.changed]
-    computed, facts = set(reasoner.computed()), set(semantic_map.beliefs.computed.facts)
+    computed, facts = set(reasoner.computed()), set(semantic_map.derived_facts.computed.facts)
     return entities, commit.notes, commit.inserted, computed, set(reasoner.given()), facts
 
 
 def alone(monkeypatch, semantic_map, *transactions):
-    """What is seen of the last one where nothing is foreseen."""
+    """Return the outcome of the last transaction without a prediction."""
     with monkeypatch.context() as patched:
-        patched.setattr(foreseeing, "MANY", 10**9)
+        patched.setattr(new_entities, "MANY", 10**9)
         for transaction in transactions:
             commit = semantic_map.commit(transaction)
     return seen(semantic_map, commit)
 
 
 @pytest.mark.parametrize("form", [wanted, said])
-def test_with_a_process_and_without_a_load_is_the_same(new_map, helped, monkeypatch, form):
+def test_a_load_gives_the_same_result_with_and_without_the_process(new_map, helped, monkeypatch, form):
     semantic_map, load = new_map(), form(things())
     there = seen(semantic_map, semantic_map.commit(load))
     assert helped == [True]
@@ -120,7 +120,7 @@ def test_with_a_process_and_without_a_load_is_the_same(new_map, helped, monkeypa
     assert any(p == v.dm("isOn") for _, p, _ in there[3])
 
 
-def test_what_is_there_already_counts(new_map, helped, monkeypatch):
+def test_existing_entities_are_included(new_map, helped, monkeypatch):
     first, second = wanted(things(90), "first"), said(things(200, first=90), "second")
     semantic_map = new_map()
     semantic_map.commit(first)
@@ -129,22 +129,22 @@ def test_what_is_there_already_counts(new_map, helped, monkeypatch):
     assert there == alone(monkeypatch, new_map(), first, second)
 
 
-def test_where_more_is_there_than_comes_nothing_is_foreseen(new_map, helped):
+def test_a_map_with_more_entities_than_the_load_has_no_prediction(new_map, helped):
     semantic_map = new_map()
     semantic_map.commit(wanted(things(3 * MANY), "first"))
     semantic_map.commit(wanted(things(2 * MANY, first=3 * MANY), "second"))
     assert helped == [True]
 
 
-def test_few_need_no_process(new_map, monkeypatch):
+def test_small_loads_need_no_process(new_map, monkeypatch):
     monkeypatch.setattr(map_state, "Precomputation", None)
     semantic_map = new_map()
     assert semantic_map.commit(wanted(things())).changed
     assert semantic_map.commit(said(things(100, first=1000), "second")).changed
 
 
-def test_a_guess_that_was_wrong_is_worked_out_here(new_map, helped, monkeypatch):
-    """Two classes are said of one, and the guess took the other one's model."""
+def test_a_wrong_prediction_is_corrected(new_map, helped, monkeypatch):
+    """The entity has two classes, and the prediction used the model of the other one."""
     load = said(things())
     second = (v.entity_iri("table6"), v.RDF_TYPE, v.dm("Physical_Thing"))
     load = Transaction(id="load", source="file", reason="load", insert=(*load.insert, second))
@@ -154,7 +154,7 @@ def test_a_guess_that_was_wrong_is_worked_out_here(new_map, helped, monkeypatch)
     assert there == alone(monkeypatch, new_map(), load)
 
 
-def test_a_process_that_dies_costs_nothing_but_time(new_map, few_are_many, monkeypatch, caplog):
+def test_a_process_that_dies_costs_only_time(new_map, few_are_many, monkeypatch, caplog):
     monkeypatch.setattr(map_state, "Precomputation", partial(Precomputation, command=DIES))
     semantic_map, load = new_map(), wanted(things())
     there = seen(semantic_map, semantic_map.commit(load))
@@ -162,14 +162,14 @@ def test_a_process_that_dies_costs_nothing_but_time(new_map, few_are_many, monke
     assert there == alone(monkeypatch, new_map(), load)
 
 
-def test_one_that_does_not_start_is_done_without(new_map, few_are_many, monkeypatch):
+def test_a_process_that_does_not_start_is_not_needed(new_map, few_are_many, monkeypatch):
     monkeypatch.setattr(map_state, "Precomputation", partial(Precomputation, command=["/nowhere/python"]))
     semantic_map, load = new_map(), wanted(things())
     there = seen(semantic_map, semantic_map.commit(load))
     assert there == alone(monkeypatch, new_map(), load)
 
 
-def test_a_load_that_is_refused_leaves_no_process_and_nothing_behind(new_map, few_are_many, monkeypatch):
+def test_a_rejected_load_leaves_no_process_behind(new_map, few_are_many, monkeypatch):
     processes = []
 
     def kept(*args):
@@ -187,24 +187,24 @@ def test_a_load_that_is_refused_leaves_no_process_and_nothing_behind(new_map, fe
     with pytest.raises(errors.Inconsistent):
         semantic_map.commit(Transaction(id="no", source="file", insert=(*load.insert, wrong)))
     assert [ahead._process.poll() is None for ahead in processes] == [False, False]
-    assert not set(semantic_map.beliefs.computed.facts)
+    assert not set(semantic_map.derived_facts.computed.facts)
     assert set(semantic_map.reasoner.given()) == before
     assert semantic_map.commit(wanted(things())).changed
 
 
-def test_a_dry_run_foresees_too_and_changes_nothing(new_map, helped):
+def test_a_dry_run_uses_the_prediction_and_changes_nothing(new_map, helped):
     semantic_map, load = new_map(), wanted(things())
-    tried = trials.of(semantic_map, lambda: semantic_map.commit(load))
+    tried = dry_runs.dry_run(semantic_map, lambda: semantic_map.commit(load))
     assert helped == [True]
     assert not semantic_map.by_name
     assert semantic_map.commit(load).names == tried.names
 
 
-def test_what_is_not_plain_is_not_foreseen(new_map, few_are_many):
+def test_unusual_transactions_are_not_predicted(new_map, few_are_many):
     classes, new = new_map().classes, list(things())
 
     def has(load):
-        return foreseeing.coming(load, classes) is not None
+        return new_entities.predict_new_entities(load, classes) is not None
 
     assert has(wanted(new))
     assert has(said(new))

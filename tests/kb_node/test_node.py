@@ -1,4 +1,4 @@
-"""The knowledge base as a process of its own, asked over Zenoh on loopback."""
+"""The knowledge base as a separate process, reached over Zenoh on loopback."""
 
 import gzip
 import queue
@@ -49,22 +49,22 @@ class Bench:
         self.settings.write_bytes(codec.encode_json(settings))
 
     def start(self):
-        """The process of a knowledge base."""
+        """Start the process of a knowledge base."""
         command = [sys.executable, "-m", "semmap.nodes.supervisor.launch", "kb_node", str(self.settings)]
         return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
 
     def session(self):
-        """The session that the knowledge base connects to."""
+        """Open the session that the knowledge base connects to."""
         return bus.open_session(bus.Network(mode="peer", listen=(self.endpoint,), connect=()))
 
     def client(self):
-        """Another one's session."""
+        """Open the session of another client."""
         return bus.open_session(bus.Network(connect=(self.endpoint,)))
 
 
 @contextmanager
 def ended(process):
-    """Kill a process at last, if it still runs."""
+    """Kill a process if it is still running."""
     try:
         yield process
     finally:
@@ -91,7 +91,7 @@ def ask(session, verb, message, **limits):
 
 
 def await_answer(session):
-    """Wait for a knowledge base. A question to one that was just killed may be lost, so it is asked again."""
+    """Wait for a knowledge base; requests are repeated, because those to a killed process are lost."""
     for _ in range(int(PATIENCE_S)):
         with suppress(errors.NoAnswer):
             return ask(session, "snapshot", SnapshotQuery(), patience_s=1.0, timeout_s=1.0)
@@ -99,12 +99,12 @@ def await_answer(session):
 
 
 def until(publications, count):
-    """The next `count` publications."""
+    """Return the next `count` publications."""
     return [publications.get(timeout=PATIENCE_S) for _ in range(count)]
 
 
 def since(publications, seq, count):
-    """The next `count` commits from `seq` on; Zenoh may bring a new follower those before it, too."""
+    """Return the next `count` commits from `seq` on; a new subscriber may receive earlier ones, too."""
     found = []
     while len(found) < count:
         ((_, message),) = until(publications, 1)
@@ -113,10 +113,10 @@ def since(publications, seq, count):
 
 
 def followed(session, topic):
-    """What is published from now on: the subscription is known, and what was committed before has come."""
+    """Subscribe to a topic and wait until earlier commits have arrived."""
     publications = queue.Queue()
     subscriber = bus.follow(session, topic, lambda key, message: publications.put((key, message)))
-    ask(session, "snapshot", SnapshotQuery())  # answered after the subscription, which went before it
+    ask(session, "snapshot", SnapshotQuery())  # answered after the earlier subscription
     while not publications.empty():
         publications.get()
     return publications, subscriber
@@ -134,7 +134,7 @@ def test_a_commit_is_replied_and_published(session):
     subscriber.undeclare()
 
 
-def test_the_coordinator_is_not_told_again_of_what_a_reply_tells_it(session):
+def test_the_coordinator_is_not_notified_twice(session):
     untold, subscriber = followed(session, keys.UNTOLD)
     commits, other = followed(session, keys.COMMIT)
     told = ask(session, "commit", structs.replace(transaction("t1", chair("t1")), told=True))
@@ -174,7 +174,7 @@ def test_entities_are_published_under_each_class_and_deleted_at_their_end(sessio
     subscriber.undeclare()
 
 
-def test_the_tbox_that_holds_is_no_change(session):
+def test_loading_the_current_tbox_changes_nothing(session):
     def load(number, text):
         order = LoadTBox(id=f"tbox{number}", source="file", content=text.encode(), filename="tbox.ttl")
         return ask(session, "load-tbox", order)
@@ -218,7 +218,7 @@ def test_questions_are_answered(session):
     assert (v.entity_iri("q"), v.RDF_TYPE, v.dm("Seat")) in rdf.parse(document.content, "export")
 
 
-def test_what_was_said_of_a_place_is_compared_with_what_is_seen(session):
+def test_asserted_locations_are_compared_with_the_geometry(session):
     kitchen = stars.star(
         "k9", v.dm("Kitchen"), pose=Pose(position_m=(50.0, 0.0, 0.0)), size_m=(4.0, 4.0, 2.5)
     )
@@ -232,7 +232,7 @@ def test_what_was_said_of_a_place_is_compared_with_what_is_seen(session):
     moved = transaction("seen2", chair("sat", (60.0, 0.0, 0.0)), chair("sat", (51.0, 0.0, 0.0)))
     commit = ask(session, "commit", moved)
     (note,) = commit.notes
-    assert note.startswith("taken back: sat was asserted to be in k9; it stands 7.")
+    assert note.startswith("retracted: sat was said to be in k9; it stands 7.")
     away = ask(session, "get", Get(name="sat", where=True))
     assert (away.whereabouts, away.denied, away.properties) == ((), (), {})
     again = ask(session, "commit", transaction("seen3", [said]))
@@ -251,7 +251,7 @@ def load(number, content, **fields):
     return LoadDocument(id=number, source="file", content=content.encode(), filename="f.ttl", **fields)
 
 
-def test_look_ups_are_answered_without_anybody_between(session):
+def test_look_ups_need_no_other_process(session):
     commit = ask(session, "commit", transaction("looked_up", chair("looked_up")))
     query = Sparql(query="SELECT ?class { :looked_up a ?class }")
     result = bus.ask(session, keys.CMD, "sparql", query, reply_type(BRIDGE["sparql"]))
@@ -259,7 +259,7 @@ def test_look_ups_are_answered_without_anybody_between(session):
     assert result.seq == commit.seq
 
 
-def test_documents_are_loaded_whole_or_not_at_all(session):
+def test_documents_are_loaded_completely_or_not_at_all(session):
     loaded = ask(session, "load", load("l1", PREFIXES + ":l a dm:Chair . :m a dm:Moon .", skip_unknown=True))
     assert loaded.skipped == ("m (unknown class 'Moon')",)
     before = ask(session, "snapshot", SnapshotQuery())
@@ -277,7 +277,7 @@ def test_documents_are_loaded_whole_or_not_at_all(session):
     assert [e.name for e in ask(session, "snapshot", SnapshotQuery()).entities] == ["only"]
 
 
-def test_packed_documents_are_loaded(session):
+def test_compressed_documents_are_loaded(session):
     packed = structs.replace(load("gz1", ""), content=gzip.compress((PREFIXES + ":gz a dm:Chair .").encode()))
     assert ask(session, "load", packed).names == ("gz",)
     with pytest.raises(errors.BadFile, match="ends too early to be unpacked"):
@@ -305,16 +305,16 @@ def test_packed_documents_are_loaded(session):
             errors.BadRequest,
             "not a valid N-Triples statement: a b c",
         ),
-        ("get", codec.encode({"name": "nobody"}), errors.UnknownName, "no entity is named 'nobody'"),
+        ("get", codec.encode({"name": "ghost9"}), errors.UnknownName, "no entity is named 'ghost9'"),
     ],
 )
-def test_a_bad_request_is_answered_with_an_error(session, verb, payload, error, text):
+def test_an_invalid_request_is_answered_with_an_error(session, verb, payload, error, text):
     (reply,) = session.get(f"{keys.BRIDGE}/{verb}", payload=payload)
     with pytest.raises(error, match=text):
         bus.read_reply(verb, reply, Entity, 1.0)
 
 
-def test_a_second_knowledge_base_on_the_same_data_is_refused(bench, session):
+def test_a_second_knowledge_base_on_the_same_data_is_rejected(bench, session):
     ask(session, "snapshot", SnapshotQuery())
     with ended(bench.start()) as second:
         _, text = second.communicate(timeout=PATIENCE_S)
@@ -348,7 +348,7 @@ def test_no_acknowledged_commit_is_lost_when_the_process_is_killed(tmp_path):
     assert snapshot.seq - 1 - len(acknowledged) in (0, 1)
 
 
-def test_things_are_told_of_by_what_they_are_called(session):
+def test_descriptions_use_the_labels(session):
     seat = chair("seat9", (80.0, 0.0, 0.0), preferred="the old seat")
     ask(session, "commit", transaction("seat", [*seat, *chair("seat10", (80.5, 0.0, 0.0))]))
     by_name = ask(session, "relations", Relations(name="seat9", other="seat10"))

@@ -1,11 +1,11 @@
-"""What a change of the map means for where things are: taken back, carried along, left behind."""
+"""Effects of changes on locations: retracted assertions, carried objects, objects left behind."""
 
 import random
 import re
 
 import pytest
 
-from semmap.nodes.kb_node.answers import trials
+from semmap.nodes.kb_node.answers import dry_runs
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.relations.facts.asserted_locations import AssertedLocations
 from semmap.nodes.kb_node.relations.facts.contradictions import find_contradiction
@@ -37,7 +37,7 @@ dm:isLocatedIn a owl:ObjectProperty .
 )
 TBOX = rdf.parse(TBOX_TURTLE.encode(), "tbox.ttl", label_prefix="t")
 TOP = 0.74
-"""Of a table, which is 1.5 m by 0.9 m [m]."""
+"""Height of a table of 1.5 m by 0.9 m [m]."""
 
 
 def new(name, class_, at, *, size=None, on=None, **said):
@@ -53,7 +53,7 @@ def new(name, class_, at, *, size=None, on=None, **said):
 
 @pytest.fixture
 def room(tmp_path):
-    """A table with a tray on it, on which are a cup and a bowl with an apple; and a second table."""
+    """A table with a tray, on which are a cup and a bowl with an apple, and a second table."""
     semantic_map = home.new_map(tmp_path, TBOX)
     commit(
         semantic_map,
@@ -103,7 +103,7 @@ def said(semantic_map, property_="isOn"):
 
 
 def stands(notes):
-    """The notes, each without how far it is."""
+    """Return the notes without their distances."""
     return [re.sub(r"( it stands) [0-9.]+ m from it$", r"\1", note) for note in notes]
 
 
@@ -111,13 +111,13 @@ def where(semantic_map, name):
     return semantic_map.entity(name).pose.position_m
 
 
-def test_a_move_takes_back_what_geometry_then_denies(room):
+def test_a_move_retracts_assertions_that_the_geometry_denies(room):
     say(room, "cup1", "isOn", "table1")
     say(room, "cup1", "isLocatedIn", "kitchen1")
     before = home.state(room)[1:]
     made = move(room, "cup1", (0.0, 2.0, 0.0))
     assert (v.entity_iri("cup1"), v.dm("isOn"), v.entity_iri("table1")) in made.retracted
-    assert stands(made.notes) == ["taken back: cup1 was asserted to be on table1; it stands"]
+    assert stands(made.notes) == ["retracted: cup1 was said to be on table1; it stands"]
     assert (said(room), said(room, "isLocatedIn")) == (set(), {("cup1", "kitchen1")})
     assert room.entity("cup1").properties == {"isLocatedIn": ("kitchen1",)}
     take_back(room)
@@ -125,14 +125,14 @@ def test_a_move_takes_back_what_geometry_then_denies(room):
     assert said(room) == {("cup1", "table1")}
 
 
-def test_so_does_the_move_of_the_other_one_and_what_is_said_the_other_way_round(room):
+def test_moving_the_support_retracts_them_and_inverse_assertions_too(room):
     say(room, "table1", "supports", "cup1")
     made = move(room, "table1", (-3.0, 0.0, 0.0))
-    assert stands(made.notes) == ["taken back: cup1 was asserted to be on table1; it stands"]
+    assert stands(made.notes) == ["retracted: cup1 was said to be on table1; it stands"]
     assert said(room, "supports") == set()
 
 
-def test_so_does_another_size(room):
+def test_a_new_size_retracts_them_too(room):
     say(room, "cup1", "isOn", "table1")
     say(room, "cup1", "isOn", "tray1")
     assert not commit(room, edit=(Edit(name="table1", size=(1.4, 0.9, TOP)),)).notes
@@ -141,14 +141,14 @@ def test_so_does_another_size(room):
     assert said(room) == {("cup1", "tray1")}
 
 
-def test_what_still_holds_stays(room):
+def test_assertions_that_still_hold_are_kept(room):
     say(room, "cup1", "isOn", "tray1")
     say(room, "cup1", "isOn", "table1")
     assert not move(room, "cup1", (0.1, 0.1, TOP + 0.02)).notes
     assert said(room) == {("cup1", "tray1"), ("cup1", "table1")}
 
 
-def test_what_is_said_against_geometry_stays_and_is_noted(room):
+def test_an_assertion_against_the_geometry_is_kept_and_noted(room):
     made = say(room, "cup1", "isOn", "table2")
     assert stands(made.notes) == ["cup1 was asserted to be on table2; it stands"]
     assert said(room) == {("cup1", "table2")}
@@ -156,28 +156,28 @@ def test_what_is_said_against_geometry_stays_and_is_noted(room):
     assert not stays.notes
     assert said(room) == {("cup1", "table2")}
     made = move(room, "cup1", (-0.1, 0.0, TOP + 0.02))
-    assert made.notes[0].startswith("taken back: cup1 was asserted to be on table2")
+    assert made.notes[0].startswith("retracted: cup1 was said to be on table2")
     assert said(room) == set()
 
 
-def test_what_one_commit_says_it_does_not_take_back(room):
+def test_assertions_of_the_same_commit_are_not_retracted(room):
     say(room, "cup1", "isOn", "table1")
     edit = Edit(name="cup1", at=(3.0, 3.0, 0.0), set=(Statement(property="isOn", values=("table2",)),))
     made = commit(room, edit=(edit,))
     assert stands(made.notes) == [
-        "taken back: cup1 was asserted to be on table1; it stands",
-        "cup1 was asserted to be on table2; it stands",
+        "retracted: cup1 was said to be on table1; it stands",
+        "cup1 was said to be on table2; it stands",
     ]
     assert said(room) == {("cup1", "table2")}
 
 
-def test_what_came_with_an_addition_is_noted(room):
+def test_assertions_of_a_new_entity_are_noted(room):
     made = commit(room, add=(new("book1", "Book", (5.0, 0.0, 0.0), on="table2"),))
     assert stands(made.notes) == ["book1 was asserted to be on table2; it stands"]
 
 
-def test_nothing_is_denied_that_is_not_known(room):
-    """Flat maps have no sizes, and some things no position."""
+def test_unknown_geometry_denies_nothing(room):
+    """Flat maps have no sizes, and some entities no position."""
     commit(
         room,
         add=(
@@ -191,24 +191,24 @@ def test_nothing_is_denied_that_is_not_known(room):
     assert said(room) == {("lost1", "table1"), ("thing2", "thing1")}
 
 
-def test_what_gets_its_first_position_is_moved(room):
+def test_a_first_position_counts_as_a_move(room):
     commit(room, add=(new("lost1", "Cup", None, on="table1"),))
     assert len(move(room, "lost1", (5.0, 5.0, 0.0)).notes) == 1
     assert said(room) == set()
 
 
-def test_a_dry_run_shows_it_and_does_nothing(room):
+def test_a_dry_run_reports_it_and_changes_nothing(room):
     say(room, "cup1", "isOn", "table1")
     before = home.state(room)
     wanted = Transaction(id="dry", source="operator", edit=(Edit(name="cup1", at=(0.0, 2.0, 0.0)),))
-    tried = trials.of(room, lambda: room.commit(wanted))
-    assert stands(tried.notes) == ["taken back: cup1 was asserted to be on table1; it stands"]
+    tried = dry_runs.dry_run(room, lambda: room.commit(wanted))
+    assert stands(tried.notes) == ["retracted: cup1 was said to be on table1; it stands"]
     assert home.state(room) == before
     assert said(room) == {("cup1", "table1")}
 
 
-def test_what_contradicts_what_is_taken_back_is_no_contradiction(room):
-    """What is inside a thing is not on it: two properties that are disjoint."""
+def test_a_contradiction_with_a_retracted_assertion_is_accepted(room):
+    """An object inside another is not on it: the two properties are disjoint."""
     say(room, "apple1", "isOn", "table1")
     with pytest.raises(errors.Inconsistent):
         say(room, "apple1", "isInside", "table1")
@@ -216,51 +216,51 @@ def test_what_contradicts_what_is_taken_back_is_no_contradiction(room):
     assert len(commit(room, edit=(edit,)).notes) == 2
 
 
-def test_what_contradicts_what_geometry_denies_is_refused_all_the_same(room):
+def test_a_contradiction_with_a_denied_assertion_is_rejected(room):
     say(room, "table1", "isOn", "table2")
-    before = triples(room), room.all_believed()
+    before = triples(room), room.all_derived()
     with pytest.raises(errors.Inconsistent, match=r"table1 and table2|table2 and table1"):
         say(room, "table2", "isOn", "table1")
     with pytest.raises(errors.Inconsistent):
         say(room, "table1", "supports", "table2")
-    assert (triples(room), room.all_believed()) == before
+    assert (triples(room), room.all_derived()) == before
     assert say(room, "cup1", "isOn", "table2") is not None
 
 
-def test_what_contradicts_only_a_measured_fact_is_not_refused(room):
+def test_a_contradiction_with_a_measured_fact_is_accepted(room):
     say(room, "apple1", "isOn", "table2")
-    before = room.all_believed()
+    before = room.all_derived()
     assert say(room, "bowl1", "isOn", "apple1").notes  # apple1 is measured to be inside bowl1
     take_back(room)
-    after = room.all_believed()
+    after = room.all_derived()
     assert (set(after.come), set(after.aside)) == (set(before.come), set(before.aside))
 
 
-def test_undo_is_refused_where_geometry_does_not_deny_what_contradicts(room):
-    """Of what has no position geometry denies nothing."""
+def test_an_undo_that_restores_a_contradiction_is_rejected(room):
+    """The geometry denies nothing about entities without a position."""
     commit(room, add=(new("lost1", "Cup", None, on="table1"),))
     on = (v.entity_iri("lost1"), v.dm("isOn"), v.entity_iri("table1"))
     retracted = commit(room, retract=(on,))
     say(room, "table1", "isOn", "lost1")
-    before = triples(room), room.all_believed()
+    before = triples(room), room.all_derived()
     with pytest.raises(errors.Inconsistent, match=r"cannot be undone: .*table1"):
         take_back(room, retracted.seq)
-    assert (triples(room), room.all_believed()) == before
+    assert (triples(room), room.all_derived()) == before
 
 
-def test_undo_brings_contradictory_assertions_back_that_geometry_denies(room, monkeypatch):
+def test_an_undo_may_restore_contradicting_assertions_that_the_geometry_denies(room, monkeypatch):
     say(room, "table1", "isOn", "table2")
-    with monkeypatch.context() as patched:  # as maps were that were made before this was refused
-        patched.setattr(room.beliefs, "require_agreement", lambda inserted: None)
+    with monkeypatch.context() as patched:  # as in maps that were created before this was rejected
+        patched.setattr(room.derived_facts, "require_agreement", lambda inserted: None)
         say(room, "table2", "isOn", "table1")
-    before = triples(room), {*room.all_believed().aside}
+    before = triples(room), {*room.all_derived().aside}
     assert len(before[1]) == 2
     moved = move(room, "table1", (0.0, 3.0, 0.0))
     assert len(moved.retracted) > len(moved.inserted)
     take_back(room)
-    assert (triples(room), {*room.all_believed().aside}) == before
-    assert trials.of(room, lambda: move(room, "table1", (0.0, 3.0, 0.0))).notes
-    assert (triples(room), {*room.all_believed().aside}) == before
+    assert (triples(room), {*room.all_derived().aside}) == before
+    assert dry_runs.dry_run(room, lambda: move(room, "table1", (0.0, 3.0, 0.0))).notes
+    assert (triples(room), {*room.all_derived().aside}) == before
 
 
 def test_it_is_the_same_after_a_restart(room):
@@ -276,13 +276,13 @@ def test_it_is_the_same_after_a_restart(room):
     assert [change.text for change in logged.changes][1] == "isOn: - table1"
 
 
-def test_undo_of_what_took_back_after_more_was_said(room):
+def test_undo_of_a_retraction_after_further_assertions(room):
     say(room, "cup1", "isOn", "table1")
     moved = move(room, "cup1", (3.0, 0.0, TOP))
     say(room, "cup1", "isOn", "table2")
     back = take_back(room, moved.seq)
     assert said(room) == {("cup1", "table1")}
-    assert stands(back.notes) == ["taken back: cup1 was asserted to be on table2; it stands"]
+    assert stands(back.notes) == ["retracted: cup1 was said to be on table2; it stands"]
 
 
 def test_carry(room):
@@ -296,7 +296,7 @@ def test_carry(room):
     assert where(room, "cup1") == (-0.15, 0.0, TOP + 0.02)
 
 
-def test_carry_keeps_what_is_said_of_those_that_go_together(room):
+def test_carry_keeps_assertions_among_the_moved_objects(room):
     say(room, "cup1", "isOn", "tray1")
     say(room, "cup1", "isOn", "table1")
     made = move(room, "tray1", (3.0, 0.0, TOP), carry=True)
@@ -304,12 +304,12 @@ def test_carry_keeps_what_is_said_of_those_that_go_together(room):
     assert len(made.notes) == 2
 
 
-def test_carry_leaves_what_is_named(room):
+def test_carry_excludes_given_names(room):
     made = move(room, "tray1", (3.0, 0.0, TOP), carry=True, leave=("bowl1",))
     assert {e.name for e in made.changed} == {"tray1", "cup1"}
 
 
-def test_carry_with_nothing_on_it_says_so(room):
+def test_carry_without_objects_has_a_note(room):
     made = move(room, "cup1", (3.0, 0.0, TOP), carry=True)
     assert made.notes == ("nothing stands on cup1 or is inside it",)
 
@@ -317,17 +317,17 @@ def test_carry_with_nothing_on_it_says_so(room):
 @pytest.mark.parametrize(
     ("edit", "error", "text"),
     [
-        (Edit(name="tray1", carry=True), errors.BadRequest, "add --at, --yaw or --orientation"),
+        (Edit(name="tray1", carry=True), errors.BadRequest, "requires --at, --yaw or --orientation"),
         (Edit(name="kitchen1", at=(1.0, 0.0, 0.0), carry=True), errors.Refused, "kitchen1 is a place"),
         (
             Edit(name="tray1", at=(1.0, 0.0, 0.0), carry=True, leave=("cap1",)),
             errors.UnknownName,
             "no entity is named 'cap1'; did you mean",
         ),
-        (Edit(name="lost1", at=(1.0, 0.0, 0.0), carry=True), errors.Refused, "lost1 has no position yet"),
+        (Edit(name="lost1", at=(1.0, 0.0, 0.0), carry=True), errors.Refused, "lost1 has no position"),
     ],
 )
-def test_what_cannot_carry(room, edit, error, text):
+def test_carry_is_rejected_without_a_move_or_a_position(room, edit, error, text):
     commit(room, add=(new("lost1", "Cup", None),))
     before = home.state(room)
     with pytest.raises(error, match=text):
@@ -335,7 +335,7 @@ def test_what_cannot_carry(room, edit, error, text):
     assert home.state(room) == before
 
 
-def test_removing_tells_what_was_on_it_and_in_it(room):
+def test_a_removal_reports_what_was_on_and_in_it(room):
     made = commit(room, remove=("bowl1",))
     assert made.notes == ("inside bowl1 was apple1",)
     made = commit(room, remove=("apple1", "tray1", "table2"))
@@ -343,8 +343,8 @@ def test_removing_tells_what_was_on_it_and_in_it(room):
     assert commit(room, remove=("cup1",)).notes == ()
 
 
-def test_what_is_removed_is_gone_though_other_things_were_on_it_and_in_it(room):
-    """Whatever was computed of it."""
+def test_a_removed_entity_with_contents_is_removed_completely(room):
+    """Including all that was computed about it."""
     commit(room, remove=("bowl1",))
     made = commit(room, remove=("table1",))
     assert [gone.name for gone in made.removed] == ["table1"]
@@ -355,17 +355,17 @@ def test_what_is_removed_is_gone_though_other_things_were_on_it_and_in_it(room):
     assert room.entity("table1").class_ == "Table"
 
 
-def test_removing_all_that_there_is_tells_nothing(room):
+def test_removing_everything_reports_nothing(room):
     assert commit(room, remove=tuple(room.names)).notes == ()
 
 
-def test_removing_tells_what_was_only_said(room):
+def test_a_removal_reports_asserted_contents(room):
     commit(room, add=(new("lost1", "Cup", None, on="table2"),))
     assert commit(room, remove=("table2",)).notes == ("on table2 was lost1",)
 
 
-def test_a_map_in_other_words_is_read_too(tmp_path):
-    """A move written as triples, as a document or an undo has it."""
+def test_maps_in_other_vocabularies_are_supported(tmp_path):
+    """A move written as triples, as in a document or an undo."""
     semantic_map = home.new_map(tmp_path, TBOX)
     commit(semantic_map, add=(new("table1", "Table", (0.0, 0.0, 0.0), size=(1.5, 0.9, TOP)),))
     commit(semantic_map, add=(new("cup1", "Cup", (0.0, 0.0, TOP), on="table1"),))
@@ -379,8 +379,8 @@ def test_a_map_in_other_words_is_read_too(tmp_path):
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_laws(room, seed):
-    """Nothing is left that is said of what moved and is denied; undo restores; a restart gives the same."""
+def test_invariants_hold_for_random_changes(room, seed):
+    """No denied assertion remains about moved entities; undo and restart restore the same state."""
     dice = random.Random(seed)
     for _ in range(60):
         before, poses = triples(room), {e.name: (e.pose, e.size_m) for e in room.entities()}
@@ -429,14 +429,14 @@ def random_change(room, dice):
             return move(room, name, at, carry=dice.random() < 0.4, yaw=dice.choice([None, 1.0]))
 
 
-def test_a_dry_run_of_a_removal_leaves_set_aside_what_is(room):
+def test_a_dry_run_of_a_removal_keeps_suppressed_facts(room):
     say(room, "cup1", "isOn", "table2")
-    before = room.all_believed(), set(room.inferred())
+    before = room.all_derived(), set(room.inferred())
     for names in (("cup1",), ("table2",), ("cup1", "table2")):
         tried = Transaction(id=f"dry {names}", source="operator", remove=names)
-        effects = trials.of(room, lambda wanted=tried: room.commit(wanted))
+        effects = dry_runs.dry_run(room, lambda wanted=tried: room.commit(wanted))
         assert "table2 supports cup1" not in effects.trial.lost
-        after = room.all_believed(), set(room.inferred())
+        after = room.all_derived(), set(room.inferred())
         assert set(after[0].aside) == set(before[0].aside)
         assert set(after[0].come) == set(before[0].come)
         assert after[1] == before[1]

@@ -1,13 +1,13 @@
-"""What is computed of where things are, in a whole map: commits, undo, dry runs, the past, restarts."""
+"""Computed facts in a whole map: commits, undo, dry runs, the past and restarts."""
 
 import random
 
 import pytest
 
 from semmap.nodes.kb_node import undo
-from semmap.nodes.kb_node.answers import answers, questions, trials
-from semmap.nodes.kb_node.answers.standing_places import StandingPlaces
-from semmap.nodes.kb_node.answers.whereabouts import Now
+from semmap.nodes.kb_node.answers import answers, dry_runs, questions
+from semmap.nodes.kb_node.answers.entity_queries import CurrentState
+from semmap.nodes.kb_node.answers.location_queries import LocationQueries
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.history import HistoryReader
@@ -55,15 +55,15 @@ def state(semantic_map):
     )
 
 
-def test_a_thing_that_is_added_is_somewhere(flat):
+def test_a_new_entity_has_a_location(flat):
     new = NewEntity(name="cup9", class_iri=v.bare(v.dm("Cup")), pose=Pose(position_m=(3.95, 0.55, 0.42)))
     commit = flat.commit(Transaction(id="cup", source="operator", add=(new,)))
     assert on("cup9", "coffee_table1") in set(flat.inferred("cup9"))
     assert on("cup9", "coffee_table1") not in commit.inserted
-    assert flat.believed_of(commit).come
+    assert flat.take_derived_changes(commit).come
 
 
-def test_what_comes_into_a_crowd_is_told_so(flat):
+def test_a_crowd_is_reported(flat):
     assert flat.places.crowds() == ()
     pose = Pose(position_m=(3.95, 0.55, 0.42))
     cups = tuple(NewEntity(name=f"cup{k}", class_iri=v.bare(v.dm("Cup")), pose=pose) for k in range(50, 250))
@@ -76,7 +76,7 @@ def test_what_comes_into_a_crowd_is_told_so(flat):
     assert elsewhere.notes == ()
 
 
-def test_who_is_in_another_class_by_where_things_are_is_in_the_commit(flat):
+def test_an_entity_whose_class_changes_with_its_location_is_in_the_commit(flat):
     bare = flat.entity("coffee_table1")
     for name in [v.entity_name(s) for s, _, _ in flat.reasoner.given(None, ON, v.iri(bare.iri))]:
         flat.commit(moved(flat, name, (3.0, 2.0, 0.0)))
@@ -87,14 +87,14 @@ def test_who_is_in_another_class_by_where_things_are_is_in_the_commit(flat):
     assert bare.name in {entity.name for entity in flat.entities(v.dm("Laden_Thing"))}
 
 
-def test_a_dry_run_tells_what_would_be_and_leaves_all(flat):
+def test_a_dry_run_reports_the_effects_and_changes_nothing(flat):
     before = state(flat)
-    effects = trials.of(flat, lambda: flat.commit(moved(flat, "cup1", (2.0, 2.0, 0.0))))
+    effects = dry_runs.dry_run(flat, lambda: flat.commit(moved(flat, "cup1", (2.0, 2.0, 0.0))))
     assert any("cup1 isLocatedIn livingroom1" in line for line in effects.trial.gained)
     assert state(flat) == before
 
 
-def test_undo_and_the_past_and_a_restart_give_what_was(flat, tmp_path):
+def test_undo_past_and_restart_restore_the_facts(flat, tmp_path):
     dice = random.Random(7)
     movable = sorted(e.name for e in flat.entities() if e.pose is not None and not e.place and not e.fixed)
     spots = [flat.entity(name).pose.position_m for name in movable]
@@ -116,12 +116,12 @@ def test_undo_and_the_past_and_a_restart_give_what_was(flat, tmp_path):
     replayed._journal.close()
     kept = SemanticMap(Journal(tmp_path / "journal.sqlite"))
     assert state(kept) == now  # from the columns of the checkpoint
-    kept.follow_places()
+    kept.derive_all()
     assert state(kept) == now
     kept._journal.close()
 
 
-def test_what_the_disk_does_not_take_is_taken_back(flat, monkeypatch):
+def test_a_failed_write_is_rolled_back(flat, monkeypatch):
     before = state(flat)
     monkeypatch.setattr(flat._journal, "append", _full)
     with pytest.raises(NotWritten, match="full"):
@@ -129,11 +129,11 @@ def test_what_the_disk_does_not_take_is_taken_back(flat, monkeypatch):
     assert state(flat) == before
 
 
-def test_a_removal_that_is_only_tried_or_not_taken_leaves_all(flat, monkeypatch):
+def test_a_failed_or_tried_removal_changes_nothing(flat, monkeypatch):
     before = state(flat)
     for name in ("milk1", "counter1", "kitchen1"):
         removal = Transaction(id=f"without {name}", source="operator", remove=(name,))
-        trials.of(flat, lambda wanted=removal: flat.commit(wanted))
+        dry_runs.dry_run(flat, lambda wanted=removal: flat.commit(wanted))
         assert state(flat) == before
         with monkeypatch.context() as patched:
             patched.setattr(flat._journal, "append", _full)
@@ -146,18 +146,18 @@ def _full(*_, **__):
     raise NotWritten("full")
 
 
-def test_what_contradicts_the_tbox_is_withheld_and_told(tmp_path):
+def test_a_contradiction_with_the_tbox_is_suppressed_and_reported(tmp_path):
     bare = b'dm:Counter rdfs:subClassOf [ a owl:Restriction ; owl:onProperty dm:supports ; owl:maxCardinality "0"^^xsd:nonNegativeInteger ] .'  # noqa: E501
     tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes() + bare, "household.ttl", label_prefix="t")
     journal = Journal.create(tmp_path / "journal.sqlite", rdf.serialise(frozenset(tbox), "ntriples"))
     barred = SemanticMap(journal)
     barred.commit(Transaction(id="flat", source="file", insert=tuple(t for t in FLAT if t[1] != ON)))
-    told = list(answers.withheld(barred))
-    assert any(text.startswith("that milk1 is on counter1 (measured) would contradict") for text in told)
+    told = list(answers.suppressed_facts(barred))
+    assert any(text.startswith("'milk1 is on counter1' (measured) is suppressed, because") for text in told)
     assert not any("on counter1 (asserted)" in text for text in told)
     assert not barred.reasoner.holds(on("milk1", "counter1"))
     barred.commit(moved(barred, "milk1", (2.0, 2.0, 0.0)))
-    assert len(list(answers.withheld(barred))) == len(told) - 1
+    assert len(list(answers.suppressed_facts(barred))) == len(told) - 1
     journal.close()
 
 
@@ -169,42 +169,42 @@ dm:Milk rdfs:subClassOf [ a owl:Restriction ; owl:onProperty dm:isOn ; owl:allVa
 
 @pytest.fixture
 def choosy(flat):
-    """The flat with a TBox by which milk is on shelves only, and the commit that let it hold."""
+    """The flat with a TBox that allows milk only on shelves, and the commit that set it."""
     tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes() + ONLY_SHELVES, "household.ttl", label_prefix="t")
-    flat.follow_places()
+    flat.derive_all()
     commit = flat.replace_tbox(Transaction(id="choosy", source="operator"), tbox)
     return flat, commit
 
 
-def test_all_questions_agree_with_what_is_withheld(choosy):
+def test_all_queries_agree_with_suppressed_facts(choosy):
     semantic_map, _ = choosy
-    now = Now(semantic_map)
+    now = CurrentState(semantic_map)
     assert not semantic_map.reasoner.holds(on("milk1", "counter1"))
     there = now.entities(Entities(where=Where(on="counter1")))
     assert "milk1" not in {entity.name for entity in there}
     assert there
-    watching = StandingPlaces(semantic_map, lambda _: None).watch(Watch(id="w", on="counter1"))
+    watching = LocationQueries(semantic_map, lambda _: None).watch(Watch(id="w", on="counter1"))
     assert watching.rows == tuple((v.iri(entity.iri),) for entity in there)
     milk = now.entity(Get(name="milk1", where=True))
     assert "isOn" not in {relation.relation for relation in milk.whereabouts}
-    assert ["milk1 is on counter1 (measured) would contradict" in text for text in milk.withheld] == [True]
+    assert ["'milk1 is on counter1' (measured) is suppressed" in text for text in milk.withheld] == [True]
     (told,) = [r for r in now.relations(Relations(name="milk1")) if r.relation == "isOn"]
-    assert told.text.endswith("so it is no fact (for the reason see: semmap check)")
+    assert told.text.endswith("because it would contradict the map (for the reason see: semmap check)")
     question = Explain(name="milk1", predicate="isOn", value="counter1")
     with pytest.raises(errors.Refused, match=r"measured.* would contradict the map"):
-        now.explained(question, questions.of_explain(semantic_map, question))
+        now.explain(question, questions.parse_explain(semantic_map, question))
 
 
-def test_what_bears_tells_of_what_is_withheld_on_it_too(choosy):
+def test_the_support_reports_suppressed_facts_too(choosy):
     semantic_map, _ = choosy
-    counter = Now(semantic_map).entity(Get(name="counter1", where=True))
-    assert ["milk1 is on counter1 (measured) would contradict" in text for text in counter.withheld] == [True]
+    counter = CurrentState(semantic_map).entity(Get(name="counter1", where=True))
+    assert ["'milk1 is on counter1' (measured) is suppressed" in text for text in counter.withheld] == [True]
 
 
-def test_a_dry_run_of_another_tbox_notes_what_it_would_withhold(flat):
+def test_a_dry_run_of_another_tbox_notes_suppressed_facts(flat):
     tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes() + ONLY_SHELVES, "household.ttl", label_prefix="t")
     seen = []
-    tried = trials.of(
+    tried = dry_runs.dry_run(
         flat,
         lambda: flat.replace_tbox(Transaction(id="choosy", source="operator"), tbox),
         lambda: seen.append(flat.tbox),
@@ -214,16 +214,16 @@ def test_a_dry_run_of_another_tbox_notes_what_it_would_withhold(flat):
     assert flat.tbox == home.household()
 
 
-def test_what_is_said_to_be_in_itself_is_noted(flat):
+def test_an_entity_that_is_located_in_itself_is_noted(flat):
     said = (v.entity_iri("kitchen1"), v.dm("isLocatedIn"), v.entity_iri("kitchen1"))
     commit = flat.commit(Transaction(id="self", source="operator", insert=(said,)))
     note = "kitchen1 was asserted to be in kitchen1; an object cannot be on, in or inside itself"
     assert commit.notes == (note,)
-    assert [relation.text for relation in Now(flat).denied()] == [note]
+    assert [relation.text for relation in CurrentState(flat).find_denied()] == [note]
 
 
-def test_what_contradicts_something_denied_by_way_of_others_is_refused(flat):
-    """The cup is said to be on the counter, which is in the kitchen, which is said to be without cups."""
+def test_an_indirect_contradiction_with_a_denied_assertion_is_rejected(flat):
+    """The cup is asserted to be on the counter, which is in the kitchen, which has no cups by assertion."""
     axioms = b"""
     dm:Gadget a owl:Class ; rdfs:subClassOf dm:Object .
     dm:Tidy_Room a owl:Class ; rdfs:subClassOf dm:Location ;
@@ -247,24 +247,24 @@ def test_what_contradicts_something_denied_by_way_of_others_is_refused(flat):
     assert state(flat) == before
 
 
-def test_the_commit_that_lets_something_be_withheld_notes_it_once(choosy):
+def test_a_suppressed_fact_is_noted_once(choosy):
     semantic_map, commit = choosy
     (note,) = [note for note in commit.notes if "milk1 is on counter1" in note]
     assert "counter1 (measured)" in note
     away = semantic_map.commit(moved(semantic_map, "milk1", (2.0, 2.0, 0.0)))
     assert not away.notes
-    assert not semantic_map.beliefs.withheld
+    assert not semantic_map.derived_facts.suppressed
     there = (8.2, 0.3, 0.9)
-    tried = trials.of(semantic_map, lambda: semantic_map.commit(moved(semantic_map, "milk1", there)))
+    tried = dry_runs.dry_run(semantic_map, lambda: semantic_map.commit(moved(semantic_map, "milk1", there)))
     back = semantic_map.commit(moved(semantic_map, "milk1", there))
     assert back.notes == tried.notes == (note,)
     assert not semantic_map.commit(moved(semantic_map, "milk1", (8.21, 0.3, 0.9))).notes
 
 
-def test_a_standing_question_follows_what_is_withheld(choosy):
+def test_a_standing_query_follows_suppressed_facts(choosy):
     semantic_map, _ = choosy
     news = []
-    standing = StandingPlaces(semantic_map, news.append)
+    standing = LocationQueries(semantic_map, news.append)
     standing.watch(Watch(id="w", on="counter1"))
     milk = v.iri(semantic_map.entity("milk1").iri)
     semantic_map.replace_tbox(Transaction(id="plain", source="operator"), home.household())

@@ -1,4 +1,4 @@
-"""What a transaction requires, held against the map as it stands."""
+"""Preconditions of transactions, checked against the map."""
 
 import pytest
 
@@ -16,30 +16,30 @@ ABSENT = (CUP, v.dm("touches"), v.entity_iri("table999"))
 
 @pytest.fixture(params=[0, 62, 63, 200], ids="{} more".format)
 def reasoner(request):
-    """A reasoner with one cup, of which few or many things are said."""
+    """A reasoner with one cup and few or many triples about it."""
     reasoner = Reasoner([(v.dm("Cup"), v.RDF_TYPE, v.OWL_CLASS)])
     reasoner.apply(insert=[TYPE, *MANY[: request.param]])
     return reasoner
 
 
-def test_what_is_there_is_held_wherever_it_is_named(reasoner):
+def test_asserted_triples_are_found(reasoner):
     said = set(reasoner.asserted()).intersection(MANY)
     for where in ("require", "retract", "insert"):
         asked = transaction(1, **{where: (TYPE, *MANY, ABSENT, (NEW, v.RDF_TYPE, v.dm("Cup")))})
         groups = asked.require, asked.retract, asked.insert
-        assert preconditions.held(reasoner, groups) == {TYPE, *said}
+        assert preconditions.find_asserted(reasoner, groups) == {TYPE, *said}
 
 
-def test_what_is_required_must_be_held():
+def test_required_triples_must_be_asserted():
     preconditions.require(transaction(1, require=(TYPE,)), {TYPE})
     with pytest.raises(errors.PreconditionFailed, match="no longer holds that cup1"):
         preconditions.require(transaction(1, require=(TYPE, ABSENT)), {TYPE})
 
 
-def test_what_is_much_is_looked_up_otherwise_and_is_the_same(reasoner, monkeypatch):
+def test_many_triples_are_looked_up_in_another_way_with_the_same_result(reasoner, monkeypatch):
     groups = [(TYPE, *MANY, ABSENT, (NEW, v.RDF_TYPE, v.dm("Cup")))]
-    one_by_one = preconditions.held(reasoner, groups)
-    assert not preconditions.is_much(groups, reasoner)
+    one_by_one = preconditions.find_asserted(reasoner, groups)
+    assert not preconditions.is_large_share(groups, reasoner)
     monkeypatch.setattr(preconditions, "_FEW_AT_ALL", 1)
-    assert preconditions.is_much(groups, reasoner)
-    assert preconditions.held(reasoner, groups) == one_by_one
+    assert preconditions.is_large_share(groups, reasoner)
+    assert preconditions.find_asserted(reasoner, groups) == one_by_one

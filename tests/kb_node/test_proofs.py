@@ -25,14 +25,14 @@ def crossed(message):
 @pytest.mark.parametrize(
     ("ours", "theirs"), [(explanations.Step, wire.Step), (explanations.Explanation, wire.Explanation)]
 )
-def test_both_forms_have_the_same_fields(ours, theirs):
+def test_both_classes_have_the_same_fields(ours, theirs):
     assert ours.__struct_fields__ == theirs.__struct_fields__
     assert ours.__struct_defaults__ == theirs.__struct_defaults__
 
 
-def test_a_proof_crosses_the_wire_with_all_it_says(reasoner):
+def test_a_proof_is_complete_after_encoding(reasoner):
     proof = reasoner.explain(("<urn:cup1>", v.RDF_TYPE, DISH))
-    arrived = crossed(proofs.message(proof))
+    arrived = crossed(proofs.to_message(proof))
     assert proof.steps
     assert isinstance(arrived, wire.Explanation)
     assert [structs.asdict(step) for step in arrived.steps] == [structs.asdict(step) for step in proof.steps]
@@ -40,15 +40,15 @@ def test_a_proof_crosses_the_wire_with_all_it_says(reasoner):
     assert [getattr(arrived, field) for field in rest] == [getattr(proof, field) for field in rest]
 
 
-def test_a_refutation_keeps_what_was_supposed(reasoner):
-    assert crossed(proofs.message(refute(reasoner, FOOD1))).supposed == FOOD1
+def test_a_refutation_keeps_its_assumption(reasoner):
+    assert crossed(proofs.to_message(refute(reasoner, FOOD1))).supposed == FOOD1
 
 
 @pytest.mark.parametrize(("of", "beginning"), [("", ""), ("the TBox", "the TBox is inconsistent: ")])
-def test_a_refusal_says_why(reasoner, of, beginning):
+def test_an_error_has_the_reason(reasoner, of, beginning):
     with pytest.raises(Inconsistent) as found:
         reasoner.apply(insert=[FOOD1])
-    refusal = proofs.refusal(found.value, of=of)
+    refusal = proofs.to_error(found.value, of=of)
     assert isinstance(refusal, errors.Inconsistent)
     assert refusal.text == beginning + found.value.explanation.text
-    assert refusal.explanation == proofs.message(found.value.explanation)
+    assert refusal.explanation == proofs.to_message(found.value.explanation)

@@ -1,4 +1,4 @@
-"""A replay makes the commits of another journal again, one after the other, and says how far it is."""
+"""A replay repeats the commits of another journal in order and reports its progress."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from concurrent.futures import Future
 import pytest
 
 from semmap.nodes.kb_node.config import Replay
-from semmap.nodes.kb_node.replaying import CHANGES, Player, missing, refusing
+from semmap.nodes.kb_node.replaying import CHANGES, Player, find_missing, rejecting_handlers
 from semmap.nodes.kb_node.storage.journal import FILENAME
 from semmap.nodes.kb_node.storage.replay.preparation import SOURCE
 from semmap.schemas import errors
@@ -18,7 +18,7 @@ from tests.kb_node import home
 
 
 class Loop:
-    """A node's loop whose time the test lets pass."""
+    """A node's loop with a clock that the test controls."""
 
     def __init__(self, *replies):
         self.due, self.replies, self.asked, self.reported = [], list(replies), 0, []
@@ -29,7 +29,7 @@ class Loop:
     def ask_later(self, prefix, call):
         self.asked += 1
         future = Future()
-        reply = self.replies.pop(0) if self.replies else errors.NoAnswer("nobody")
+        reply = self.replies.pop(0) if self.replies else errors.NoAnswer("no response")
         (future.set_exception if isinstance(reply, Exception) else future.set_result)(reply)
         return future
 
@@ -37,7 +37,7 @@ class Loop:
         self.reported.append(problem)
 
     def go_on(self):
-        """What is due next, and how long it had to wait [s]."""
+        """Run the next task and return its delay [s]."""
         ((delay_s, function),), self.due = self.due, []
         function()
         return delay_s
@@ -62,7 +62,7 @@ def status(*ready: str, in_agreement: bool | None = True, **what: tuple[str, ...
 
 @pytest.fixture
 def replay(tmp_path):
-    """`replay(loop)` plays three commits of another map into one that was begun like that."""
+    """`replay(loop)` replays three commits of another map into one with the same beginning."""
     for folder in ("there", "here"):
         (tmp_path / folder).mkdir()
     there, here = home.new_map(tmp_path / "there"), home.new_map(tmp_path / "here")
@@ -74,10 +74,10 @@ def replay(tmp_path):
     made = []
 
     def play(loop, nodes=("kb_node",)):
-        spread = []
-        player = Player(loop, here, tmp_path / "here", Replay(began + 3, 1.0, 5.0, nodes), spread.append)
+        publish = []
+        player = Player(loop, here, tmp_path / "here", Replay(began + 3, 1.0, 5.0, nodes), publish.append)
         made.append(player)
-        return player, spread, here, began
+        return player, publish, here, began
 
     yield play
     for player in made:
@@ -85,14 +85,14 @@ def replay(tmp_path):
     home.close(here)
 
 
-def test_the_commits_are_made_again_in_their_order_and_it_says_how_far_it_is(replay):
+def test_commits_are_repeated_in_order_with_their_progress(replay):
     loop = Loop(status("kb_node"))
-    player, spread, here, began = replay(loop)
+    player, publish, here, began = replay(loop)
     assert player.describe() == f"replaying, at commit {began} of {began + 3}"
     loop.go_on()
     for number in range(1, 4):
         loop.go_on()
-        assert [commit.seq for commit in spread] == [*range(began + 1, began + number + 1)]
+        assert [commit.seq for commit in publish] == [*range(began + 1, began + number + 1)]
     assert {entity.name for entity in here.entities()} == {"chair1", "chair2", "chair3"}
     assert player.describe() == f"replayed up to commit {began + 3}"
     assert loop.due == []
@@ -106,59 +106,59 @@ def test_the_commits_are_made_again_in_their_order_and_it_says_how_far_it_is(rep
             ("kb_node", "sim_node"),
             status("kb_node", "sim_node", in_agreement=False, pending=("cup1 has no body yet",)),
         ),
-        (("kb_node",), errors.NoAnswer("nobody")),
+        (("kb_node",), errors.NoAnswer("no response")),
     ],
     ids=["a node is missing", "a body is missing", "no reply"],
 )
-def test_it_begins_when_all_nodes_are_ready_and_the_bodies_stand(replay, nodes, first):
+def test_it_begins_when_all_nodes_are_ready_and_the_bodies_are_present(replay, nodes, first):
     loop = Loop(first, status("kb_node", "coordinator", "sim_node"))
-    _, spread, _, began = replay(loop, nodes=nodes)
+    _, publish, _, began = replay(loop, nodes=nodes)
     loop.go_on()
     loop.go_on()
-    assert (spread, loop.asked) == ([], 2)
+    assert (publish, loop.asked) == ([], 2)
     loop.go_on()
-    assert [commit.seq for commit in spread] == [began + 1]
+    assert [commit.seq for commit in publish] == [began + 1]
 
 
-def test_without_a_simulator_nobody_waits_for_bodies(replay):
+def test_without_a_simulator_bodies_are_not_awaited(replay):
     loop = Loop(status("kb_node", in_agreement=None))
-    _, spread, _, _ = replay(loop)
+    _, publish, _, _ = replay(loop)
     loop.go_on()
     loop.go_on()
-    assert len(spread) == 1
+    assert len(publish) == 1
 
 
-def test_after_a_while_it_begins_without_the_others(replay):
+def test_it_begins_after_a_timeout(replay):
     loop = Loop()
-    _, spread, _, _ = replay(loop)
+    _, publish, _, _ = replay(loop)
     for _ in range(101):
         loop.go_on()
-    assert (spread, loop.asked) == ([], 100)
-    assert loop.reported == ["the replay begins before all is ready: nobody"]
+    assert (publish, loop.asked) == ([], 100)
+    assert loop.reported == ["the replay starts before all nodes are ready: no response"]
     loop.go_on()
-    assert len(spread) == 1
+    assert len(publish) == 1
 
 
-def test_such_a_map_is_not_changed_by_anybody():
-    handlers = refusing()
+def test_a_replayed_map_cannot_be_changed():
+    handlers = rejecting_handlers()
     assert set(handlers) == {call.VERB for call in CHANGES}
     change = Transaction(id="1", source="operator", add=(NewEntity(name="a", class_iri="urn:A"),))
-    with pytest.raises(errors.Refused, match="a replay of the past, and cannot be changed"):
+    with pytest.raises(errors.Refused, match="a replay and cannot be changed"):
         handlers[Transaction.VERB][1](change)
 
 
 def test_it_waits_for_its_nodes_and_then_for_the_bodies():
-    assert missing(status("kb_node"), NODES) == ("sim_node is not ready",)
-    assert missing(status(*NODES, in_agreement=None), NODES) == ("the scene is not known yet",)
+    assert find_missing(status("kb_node"), NODES) == ("sim_node is not ready",)
+    assert find_missing(status(*NODES, in_agreement=None), NODES) == ("the scene is not known yet",)
     pending = ("cup1 has no body yet",)
-    assert missing(status(*NODES, in_agreement=False, pending=pending), NODES) == pending
-    assert missing(status(*NODES), NODES) == ()
+    assert find_missing(status(*NODES, in_agreement=False, pending=pending), NODES) == pending
+    assert find_missing(status(*NODES), NODES) == ()
 
 
-def test_a_body_that_moves_does_not_hold_it_up():
+def test_it_does_not_wait_for_moving_bodies():
     moving = ("robot1 is moving: 1.2 m from its committed pose",)
-    assert missing(status(*NODES, in_agreement=False, displaced=moving), NODES) == ()
+    assert find_missing(status(*NODES, in_agreement=False, displaced=moving), NODES) == ()
 
 
-def test_without_a_simulator_it_waits_for_no_bodies():
-    assert missing(status("kb_node", in_agreement=None), ("kb_node",)) == ()
+def test_without_a_simulator_no_bodies_are_reported_as_missing():
+    assert find_missing(status("kb_node", in_agreement=None), ("kb_node",)) == ()

@@ -18,7 +18,7 @@ from tests.kb_node.storage.journal.test_journal import BULKY, full_by_page_count
 CHAIR1, CHAIR2 = v.entity_iri("chair1"), v.entity_iri("chair2")
 
 
-def test_a_commit_says_what_it_changed(semantic_map):
+def test_a_commit_has_its_changes(semantic_map):
     commit = semantic_map.commit(
         transaction(1, chair(preferred="stool"), agent="ann", reason="tidy", confidence=0.5)
     )
@@ -35,7 +35,7 @@ def test_a_commit_says_what_it_changed(semantic_map):
     assert semantic_map.snapshot() == Snapshot(seq=1, entities=(entity,), digest=commit.digest)
 
 
-def test_what_is_taken_back_is_as_if_it_never_was(semantic_map):
+def test_a_removed_entity_leaves_no_trace(semantic_map):
     semantic_map.commit(transaction(1, chair("chair2")))
     before = state(semantic_map)
     semantic_map.commit(transaction(2, chair()))
@@ -47,7 +47,7 @@ def test_what_is_taken_back_is_as_if_it_never_was(semantic_map):
     assert state(semantic_map)[1:] == (before[1], structs.replace(before[2], seq=3, digest=commit.digest))
 
 
-def test_what_changes_nothing_is_no_commit(semantic_map):
+def test_a_change_without_effect_is_not_a_commit(semantic_map):
     semantic_map.commit(transaction(1, chair()))
     assert semantic_map.commit(transaction(2, chair())) is None
     assert semantic_map.commit(transaction(3, retract=chair("chair2"))) is None
@@ -56,7 +56,7 @@ def test_what_changes_nothing_is_no_commit(semantic_map):
     assert semantic_map.seq == 1
 
 
-def test_the_same_command_twice_is_answered_with_the_first_commit(semantic_map):
+def test_a_repeated_command_returns_its_first_commit(semantic_map):
     first = semantic_map.commit(transaction("same", chair()))
     assert semantic_map.commit(transaction("same", chair("chair2"))) == first
     semantic_map.commit(transaction("other", retract=chair()))
@@ -66,7 +66,7 @@ def test_the_same_command_twice_is_answered_with_the_first_commit(semantic_map):
     home.close(again)
 
 
-def test_the_same_command_twice_at_once_is_answered_with_one_commit(semantic_map):
+def test_a_repeated_command_in_one_batch_returns_one_commit(semantic_map):
     several = [
         transaction("same", chair()),
         transaction("same", chair("chair2")),
@@ -85,7 +85,7 @@ IN_A_CHAIR = [*chair(), *turtle(":x dm:isLocatedIn :chair1 .")]
 
 
 def new_chair(name):
-    """The intent to add a chair."""
+    """Return the transaction that adds a chair."""
     return NewEntity(name=name, class_iri=v.bare(v.dm("Chair")))
 
 
@@ -96,8 +96,8 @@ REFUSED = {
     "not finite": (turtle(NAN), {}, errors.BadRequest),
     "precondition": (chair(), {"require": [(CHAIR2, v.RDF_TYPE, v.dm("Chair"))]}, errors.PreconditionFailed),
     "name taken": ((), {"add": [new_chair("chair0")]}, errors.NameTaken),
-    "nobody to change": (chair("b"), {"edit": [Edit(name="chair9", ref="x")]}, errors.UnknownName),
-    "nobody to remove": (chair("b"), {"remove": ["chair0", "chair9"]}, errors.UnknownName),
+    "unknown entity to change": (chair("b"), {"edit": [Edit(name="chair9", ref="x")]}, errors.UnknownName),
+    "unknown entity to remove": (chair("b"), {"remove": ["chair0", "chair9"]}, errors.UnknownName),
     "name taken elsewhere": (turtle("<http://example.org/x#chair0> a dm:Chair ."), {}, errors.NameTaken),
     "one name twice": (turtle(TWICE), {}, errors.NameTaken),
     "no name": (turtle("<http://a.org/my%20chair> a dm:Chair ."), {}, errors.BadRequest),
@@ -108,7 +108,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize(("insert", "fields", "error"), REFUSED.values(), ids=REFUSED.keys())
-def test_what_is_refused_leaves_everything_as_it_was(semantic_map, insert, fields, error):
+def test_a_rejected_transaction_changes_nothing(semantic_map, insert, fields, error):
     semantic_map.commit(transaction(0, chair("chair0")))
     before = state(semantic_map), set(semantic_map.reasoner.inferred())
     with pytest.raises(error) as caught:
@@ -122,7 +122,7 @@ def test_what_is_refused_leaves_everything_as_it_was(semantic_map, insert, field
 
 
 @pytest.mark.parametrize(("insert", "retract"), [(chair("chair1"), ()), ((), chair("chair0"))])
-def test_a_full_disk_leaves_everything_as_it_was(semantic_map, insert, retract):
+def test_a_full_disk_changes_nothing(semantic_map, insert, retract):
     semantic_map.commit(transaction(0, chair("chair0")))
     before = state(semantic_map), set(semantic_map.reasoner.inferred())
     wanted = transaction(1, insert, retract, reason=BULKY)
@@ -133,7 +133,7 @@ def test_a_full_disk_leaves_everything_as_it_was(semantic_map, insert, retract):
     assert semantic_map.commit(wanted).seq == 2
 
 
-def test_a_name_may_pass_from_one_namespace_to_another(semantic_map):
+def test_a_name_may_move_to_another_namespace(semantic_map):
     other = turtle("<http://zzz.org/x#chair1> a dm:Chair .")
     semantic_map.commit(transaction(1, other))
     commit = semantic_map.commit(transaction(2, chair(), retract=other))
@@ -147,7 +147,7 @@ def test_a_name_may_pass_from_one_namespace_to_another(semantic_map):
     home.close(again)
 
 
-def test_an_entity_may_be_one_by_inference_only(semantic_map):
+def test_an_entity_may_exist_by_inference_only(semantic_map):
     semantic_map.commit(transaction(1, chair()))
     commit = semantic_map.commit(transaction(2, turtle(":chair1 dm:isLocatedIn :kitchen1 .")))
     kitchen = semantic_map.entity("kitchen1")
@@ -162,7 +162,7 @@ def test_an_entity_may_be_one_by_inference_only(semantic_map):
     assert [gone.name for gone in commit.removed] == ["kitchen1"]
 
 
-def test_provenance_says_what_last_changed(semantic_map):
+def test_provenance_has_the_last_change(semantic_map):
     def marks():
         entity = semantic_map.entity("chair1")
         since = (
@@ -211,7 +211,7 @@ def test_entities_are_listed_by_inferred_class(semantic_map):
     assert (counts["Chair"], counts["Seat"], counts["Physical_Thing"]) == ((2, 2), (0, 2), (0, 4))
 
 
-def test_unknown_names_come_with_the_nearest(semantic_map):
+def test_unknown_names_have_suggestions(semantic_map):
     semantic_map.commit(transaction(1, chair()))
     with pytest.raises(errors.UnknownName, match=r"no entity is named 'chiar1'; did you mean chair1\?"):
         semantic_map.entity("chiar1")
@@ -219,7 +219,7 @@ def test_unknown_names_come_with_the_nearest(semantic_map):
         semantic_map.stars(["chair1", "chair9"])
 
 
-def test_the_tbox_s_own_individuals_are_entities_that_no_command_changes(tmp_path):
+def test_individuals_of_the_tbox_are_entities_that_commands_cannot_change(tmp_path):
     semantic_map = home.new_map(
         tmp_path,
         [
@@ -228,10 +228,10 @@ def test_the_tbox_s_own_individuals_are_entities_that_no_command_changes(tmp_pat
         ],
     )
     assert semantic_map.entity("sink").provenance.commit == 0
-    with pytest.raises(errors.Refused, match="sink is part of the TBox, which no command changes"):
+    with pytest.raises(errors.Refused, match="sink is part of the TBox, which commands cannot change"):
         semantic_map.stars(["sink"])
     with pytest.raises(
-        errors.Refused, match="the TBox says that sink type Door, and no command changes the TBox"
+        errors.Refused, match="the TBox states that sink type Door, and commands cannot change the TBox"
     ):
         semantic_map.commit(transaction(1, retract=turtle(":sink a dm:Door .")))
     semantic_map.commit(
@@ -243,14 +243,16 @@ def test_the_tbox_s_own_individuals_are_entities_that_no_command_changes(tmp_pat
     home.close(again)
 
 
-def test_a_checkpoint_of_other_code_is_read_again(semantic_map, monkeypatch):
+def test_entities_of_a_checkpoint_by_other_code_are_read_again(semantic_map, monkeypatch):
     semantic_map.commit(transaction(1, chair(preferred="stool")))
     semantic_map.commit(transaction(2, turtle(":chair1 dm:hasSize :s .")))
     before = semantic_map.snapshot()
     assert [e.provenance.commit for e in before.entities] == [2]
     with monkeypatch.context() as other:
-        other.setattr(conclusions_format, "format_mark", lambda: b"other")
-        semantic_map.show([structs.replace(entity, class_="Stool") for entity in semantic_map.entities()])
+        other.setattr(conclusions_format, "mark", lambda: b"other")
+        semantic_map.update_entities(
+            [structs.replace(entity, class_="Stool") for entity in semantic_map.entities()]
+        )
         semantic_map.checkpoint()
     again = home.reopened(semantic_map)
     assert again.snapshot() == before
@@ -258,7 +260,7 @@ def test_a_checkpoint_of_other_code_is_read_again(semantic_map, monkeypatch):
     home.close(again)
 
 
-def test_a_start_from_a_checkpoint_concludes_nothing_anew(semantic_map, monkeypatch):
+def test_a_start_from_a_checkpoint_infers_nothing_again(semantic_map, monkeypatch):
     semantic_map.commit(transaction(1, chair(preferred="stool")))
     before, inferred = semantic_map.snapshot(), list(semantic_map.inferred())
     semantic_map.checkpoint()
@@ -271,13 +273,13 @@ def test_a_start_from_a_checkpoint_concludes_nothing_anew(semantic_map, monkeypa
     home.close(again)
 
 
-def test_a_picture_can_be_written_down_later(semantic_map):
+def test_a_snapshot_can_be_written_later(semantic_map):
     semantic_map.commit(transaction(1, chair(preferred="stool")))
-    picture = semantic_map.picture()
+    snapshot = semantic_map.snapshot_for_checkpoint()
     semantic_map.commit(transaction(2, turtle(":lamp1 a dm:Lamp .")))
     expected = state(semantic_map)
-    semantic_map._journal.checkpoint(picture)
-    semantic_map.written(picture.seq)
+    semantic_map._journal.checkpoint(snapshot)
+    semantic_map.written(snapshot.seq)
     again = home.reopened(semantic_map)
     assert state(again) == expected
     assert again._schedule.is_written(1)
@@ -304,7 +306,7 @@ STARS = st.lists(st.one_of(CHAIRS, st.sampled_from(SAYINGS)), min_size=1, max_si
 
 @settings(max_examples=20, deadline=None)
 @given(STARS)
-def test_a_load_gives_what_its_parts_give_one_by_one(tmp_path_factory, parts):
+def test_a_load_equals_its_parts_one_by_one(tmp_path_factory, parts):
     at_once, one_by_one = (home.new_map(tmp_path_factory.mktemp("map")) for _ in range(2))
     try:
         for number, part in enumerate(parts):
@@ -323,7 +325,7 @@ def test_a_load_gives_what_its_parts_give_one_by_one(tmp_path_factory, parts):
 
 
 def without_author(entity):
-    """An entity without who said so."""
+    """Return an entity without its author."""
     none = Provenance(commit=0, stamp_ns=0, source="file")
     names = ("provenance", "pose_provenance", "shape_provenance", "reference_provenance")
     return structs.replace(entity, **dict.fromkeys(names, none))
@@ -360,7 +362,7 @@ def perform(semantic_map, number, operation):
 
 @settings(max_examples=12, deadline=None)
 @given(OPERATIONS)
-def test_a_restart_gives_the_same_map_with_and_without_checkpoints(tmp_path_factory, operations):
+def test_a_restart_restores_the_map_with_and_without_checkpoints(tmp_path_factory, operations):
     semantic_map = home.new_map(tmp_path_factory.mktemp("map"))
     for number, operation in enumerate(operations):
         perform(semantic_map, number, operation)
@@ -376,7 +378,7 @@ def test_a_restart_gives_the_same_map_with_and_without_checkpoints(tmp_path_fact
 
 @settings(max_examples=12, deadline=None)
 @given(OPERATIONS, OPERATIONS)
-def test_a_commit_and_its_reverse_leave_the_map_as_it_was(tmp_path_factory, before, after):
+def test_a_commit_and_its_reverse_restore_the_map(tmp_path_factory, before, after):
     semantic_map = home.new_map(tmp_path_factory.mktemp("map"))
     for number, operation in enumerate(before):
         perform(semantic_map, number, operation)
@@ -392,18 +394,18 @@ def test_a_commit_and_its_reverse_leave_the_map_as_it_was(tmp_path_factory, befo
 
 
 def plain(entity):
-    """An entity without where the knowledge came from."""
-    nobody = structs.replace(entity.provenance, commit=0, stamp_ns=0)
+    """Return an entity without provenance."""
+    no_author = structs.replace(entity.provenance, commit=0, stamp_ns=0)
     return structs.replace(
         entity,
-        provenance=nobody,
-        pose_provenance=nobody,
-        shape_provenance=nobody,
-        reference_provenance=nobody,
+        provenance=no_author,
+        pose_provenance=no_author,
+        shape_provenance=no_author,
+        reference_provenance=no_author,
     )
 
 
-def test_a_commit_that_no_longer_fits_is_named_at_the_start(semantic_map):
+def test_a_commit_that_no_longer_fits_is_reported_at_the_start(semantic_map):
     bad = Commit(
         seq=1, stamp_ns=1, id="1", source="file", inserted=tuple(turtle(":a a dm:Chair , dm:Kitchen ."))
     )
@@ -412,12 +414,12 @@ def test_a_commit_that_no_longer_fits_is_named_at_the_start(semantic_map):
         home.reopened(semantic_map)
 
 
-def test_a_commit_crosses_the_wire(semantic_map):
+def test_a_commit_survives_encoding(semantic_map):
     commit = semantic_map.commit(transaction(1, chair()))
     assert codec.decode(codec.encode(commit), Commit) == commit
 
 
-def test_together_each_is_committed_or_refused_by_itself(semantic_map):
+def test_transactions_in_a_batch_are_committed_or_rejected_separately(semantic_map):
     kitchen = [(CHAIR1, v.RDF_TYPE, v.dm("Kitchen"))]
     results = semantic_map.commit_together(
         [transaction(1, chair()), transaction(2, kitchen), transaction(3, chair("chair2")), transaction(1)]
@@ -426,7 +428,7 @@ def test_together_each_is_committed_or_refused_by_itself(semantic_map):
     assert state(home.reopened(semantic_map)) == state(semantic_map)
 
 
-def test_together_nothing_is_done_when_the_disk_is_full(semantic_map):
+def test_a_batch_changes_nothing_if_the_disk_is_full(semantic_map):
     semantic_map.commit(transaction(0, chair("chair0")))
     before = state(semantic_map)
     long = "x" * 20_000
@@ -445,32 +447,30 @@ def test_together_nothing_is_done_when_the_disk_is_full(semantic_map):
 
 @pytest.mark.parametrize("together", [False, True])
 @pytest.mark.parametrize("durable", [False, True])
-def test_after_an_error_in_the_middle_of_a_change_the_map_is_to_be_started_again(
-    semantic_map, monkeypatch, together, durable
-):
+def test_after_an_unexpected_error_the_node_must_restart(semantic_map, monkeypatch, together, durable):
     semantic_map.commit(transaction("before", chair("chair1")))
-    broke = []
-    semantic_map.broke = lambda: broke.append(True)
+    on_failure = []
+    semantic_map.on_failure = lambda: on_failure.append(True)
 
     def fail(*_):
         raise MemoryError
 
-    where, what = (semantic_map, "take") if durable else (semantic_map._applier, "_with_effects")
+    where, what = (semantic_map, "apply_commit") if durable else (semantic_map._applier, "_with_effects")
     monkeypatch.setattr(where, what, fail)
     wanted = [transaction("a", chair("chair2")), transaction("b", chair("chair3"))]
-    with pytest.raises(errors.NoAnswer, match="starts again from its journal, because a change failed in"):
+    with pytest.raises(errors.NoAnswer, match="restarts from its journal, because a change failed"):
         semantic_map.commit_together(wanted) if together else semantic_map.commit(wanted[0])
-    assert broke == [True]
+    assert on_failure == [True]
     assert not semantic_map.is_sound
     monkeypatch.undo()
     again = home.reopened(semantic_map)
-    is_there = durable and not together  # what is done together is durable together, or not at all
+    is_there = durable and not together  # commits made together are durable together, or not at all
     assert {e.name for e in again.snapshot().entities} == {"chair1", *(["chair2"] if is_there else [])}
     assert again.commit(transaction("a", chair("chair2"))).seq == 2
     home.close(again)
 
 
-def test_what_a_map_declares_survives_a_start_from_a_checkpoint(semantic_map):
+def test_declarations_survive_a_start_from_a_checkpoint(semantic_map):
     said = turtle(":swivel a owl:Class ; rdfs:subClassOf dm:Seat . :chair1 a :swivel .")
     semantic_map.commit(transaction(1, said))
     before = state(semantic_map), set(semantic_map.inferred())

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from semmap.nodes.coordinator.reconciler.reconcile import body_order
-from semmap.nodes.kb_node.answers.whereabouts import Now
+from semmap.nodes.kb_node.answers.entity_queries import CurrentState
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.sim_node.physics import base_scene
@@ -25,7 +25,7 @@ def flat(tmp_path_factory) -> World:
     made = SemanticMap(home.new_household_journal(tmp_path_factory.mktemp("flat")))
     abox = rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f")
     made.commit(Transaction(id="flat", source="file", insert=tuple(abox)))
-    things = Now(made).entities(Entities())
+    things = CurrentState(made).entities(Entities())
     home.close(made)
     world = World(base_scene.read_mjcf(FLAT_WORLD))
     ordered = [

@@ -7,7 +7,7 @@ POSE = Pose(position_m=(1.0, -2.5, 1e-7))
 TURNED = Pose(position_m=(0.0, 0.0, 0.0), orientation_wxyz=(0.6, 0.0, 0.0, 0.8))
 
 
-def test_only_what_is_given_is_said():
+def test_only_what_is_given_is_asserted():
     assert stars.star("chair1", v.dm("Chair")) == [(CHAIR, v.RDF_TYPE, v.dm("Chair"))]
 
 

@@ -1,1 +1,1 @@
-"""Answers to questions about the map: what follows and why, what could be, snapshots, and dry runs."""
+"""Answers to queries about the map: inferences, explanations, consistency tests and dry runs."""

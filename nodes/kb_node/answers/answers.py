@@ -1,4 +1,4 @@
-"""What the knowledge base answers to the questions of `semmap/bridge`: pure functions of the map."""
+"""Answers of the knowledge base to requests on `semmap/bridge`: pure functions of the map."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from semmap.nodes.kb_node import proofs
-from semmap.nodes.kb_node.answers import asked_terms
+from semmap.nodes.kb_node.answers import term_resolution
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.documents.abox_document import undeclared_classes
 from semmap.nodes.kb_node.owlrl.consistency_check import find_owlrl_faults
@@ -31,71 +31,75 @@ from semmap.schemas.replies import Checked, Document, Inferred
 
 
 def entities_of(semantic_map: SemanticMap, class_name: str | None) -> tuple[Entity, ...]:
-    """The entities of a class, given by its exact name. Raises UnknownClass."""
-    return tuple(semantic_map.entities(asked_terms.class_(semantic_map, class_name) if class_name else None))
+    """Return the entities of a class, given by its exact name. Raises UnknownClass."""
+    return tuple(
+        semantic_map.entities(term_resolution.class_(semantic_map, class_name) if class_name else None)
+    )
 
 
 def infer(semantic_map: SemanticMap, name: str) -> Inferred:
-    """What follows about an entity that was not said, with what is measured on demand. Raises UnknownName."""
-    measured = set(pairs_of(semantic_map.tbox, semantic_map.entities())(semantic_map.places.space(), name))
+    """Return the inferred facts about an entity, including those measured on demand. Raises UnknownName."""
+    measured = set(
+        pair_measurer(semantic_map.tbox, semantic_map.entities())(semantic_map.places.space(), name)
+    )
     subject = v.iri(semantic_map.entity(name).iri)
     further = sorted(t for t in measured if t[0] == subject and not semantic_map.reasoner.holds(t))
-    return _told(chain(semantic_map.inferred(name), further), semantic_map.classes.told_apart)
+    return _to_reply(chain(semantic_map.inferred(name), further), semantic_map.classes.qualified_names)
 
 
-class Inferring(NamedTuple):
-    """What it takes to say, beside the map, what follows about all: enough for a reasoner of one's own."""
+class InferenceInput(NamedTuple):
+    """The input for inference about all entities in another thread, enough to create a separate reasoner."""
 
     held: GivenFacts
     entities: list[Term]
     measured: Callable[[], Iterable[Triple]]
     names: Mapping[Term, str]
-    """Of classes and properties that are called alike."""
+    """Names for classes and properties whose local names are ambiguous."""
 
 
-def inferring(semantic_map: SemanticMap) -> Inferring:
-    """The map as it is now, for `infer_all`."""
-    semantic_map.believe_places()
+def inference_input(semantic_map: SemanticMap) -> InferenceInput:
+    """Return the current map as input for `infer_all`."""
+    semantic_map.ensure_derived()
     pairs, placed, limits = (
-        pairs_of(semantic_map.tbox, semantic_map.entities()),
+        pair_measurer(semantic_map.tbox, semantic_map.entities()),
         semantic_map.placed(),
         semantic_map.classes.limits,
     )
-    return Inferring(
+    return InferenceInput(
         semantic_map.reasoner.given_facts(),
         [v.iri(entity.iri) for entity in semantic_map.entities()],
         lambda: pairs(Space(placed, limits), None),
-        semantic_map.classes.told_apart,
+        semantic_map.classes.qualified_names,
     )
 
 
-def infer_all(inferring: Inferring) -> Inferred:
-    """What follows about all entities that was not said, one after another; for any thread."""
-    reasoner = Reasoner.of(inferring.held)
+def infer_all(given: InferenceInput) -> Inferred:
+    """Return the inferred facts about all entities, one entity after another; for any thread."""
+    reasoner = Reasoner.of(given.held)
     by_subject: dict[Term, set[Triple]] = {}
-    for triple in inferring.measured():
+    for triple in given.measured():
         by_subject.setdefault(triple[0], set()).add(triple)
     triples = (
         triple
-        for iri in inferring.entities
+        for iri in given.entities
         for triple in chain(
             sorted(reasoner.inferred(iri, None, None)),
             sorted(t for t in by_subject.get(iri, ()) if not reasoner.holds(t)),
         )
     )
-    return _told(triples, inferring.names)
+    return _to_reply(triples, given.names)
 
 
-def _told(triples: Iterable[Triple], names: Mapping[Term, str]) -> Inferred:
-    """Without what is true of everything or of nameless classes."""
-    triples = tuple(worth_saying(triples))
+def _to_reply(triples: Iterable[Triple], names: Mapping[Term, str]) -> Inferred:
+    """Return the reply, without trivial facts."""
+    triples = tuple(without_trivial(triples))
     return Inferred(triples=triples, text=tuple(v.spoken(t, names) for t in triples))
 
 
-def pairs_of(
+def pair_measurer(
     tbox: Collection[Triple], entities: Iterable[Entity]
 ) -> Callable[[Space, str | None], Iterator[Triple]]:
-    """Measures pairs of these entities, of all or (given a name) of one, as triples."""
+    """Return a function that measures pairs of these entities, for all or for one name, as triples."""
     derived = PairProperties(tbox)
     iris = {entity.name: v.iri(entity.iri) for entity in entities}
 
@@ -110,8 +114,8 @@ def pairs_of(
     return measured
 
 
-def worth_saying(triples: Iterable[Triple]) -> Iterator[Triple]:
-    """Without what is true of everything or of nameless classes."""
+def without_trivial(triples: Iterable[Triple]) -> Iterator[Triple]:
+    """Yield the triples without facts that hold for everything, and without unnamed classes."""
     return (
         (s, p, o)
         for s, p, o in triples
@@ -122,8 +126,8 @@ def worth_saying(triples: Iterable[Triple]) -> Iterator[Triple]:
     )
 
 
-def said_of_place(semantic_map: SemanticMap, entity: Entity | None = None) -> Iterator[Fact]:
-    """What is asserted of where an entity is, or all entities are."""
+def asserted_locations(semantic_map: SemanticMap, entity: Entity | None = None) -> Iterator[Fact]:
+    """Yield the asserted locations of an entity, or of all entities."""
     iri = None if entity is None else v.iri(entity.iri)
     for property_, (_, is_inverse) in contradictions.PROPERTIES.items():
         for triple in semantic_map.reasoner.asserted(
@@ -133,84 +137,88 @@ def said_of_place(semantic_map: SemanticMap, entity: Entity | None = None) -> It
                 yield fact
 
 
-def withheld(semantic_map: SemanticMap, entity: Entity | None = None) -> Iterator[str]:
-    """The facts about places, or one entity's, that would contradict the map, and how, a sentence each."""
-    beliefs = semantic_map.beliefs
-    for fact in sorted(beliefs.withheld):
+def suppressed_facts(semantic_map: SemanticMap, entity: Entity | None = None) -> Iterator[str]:
+    """Yield a sentence on each suppressed fact, or on those of one entity, and why it is suppressed."""
+    derived_facts = semantic_map.derived_facts
+    for fact in sorted(derived_facts.suppressed):
         if entity is None or v.iri(entity.iri) in (fact[0], fact[2]):
-            yield beliefs.told(fact)
+            yield derived_facts.describe(fact)
 
 
-class Picture(NamedTuple):
-    """The map at one moment, for work beside it: what is asserted, and what of it to write."""
+class ExportSnapshot(NamedTuple):
+    """The map at one moment, for export in another thread: the asserted triples and those to write."""
 
     asserted: list[Triple]
     written: list[Triple]
     seq: int
     prefixes: Prefixes = MappingProxyType(v.PREFIXES)
     measured: Callable[[], Iterable[Triple]] = tuple
-    """What is measured of pairs: worked out beside the map, because it takes as long as there are things."""
+    """Measured facts about pairs. They are computed in another thread, because that takes long for large
+    maps."""
 
 
-def picture(semantic_map: SemanticMap, inferred: bool) -> Picture:
-    """The map as it is now, to be written: the ABox or, if `inferred`, what holds about those in it."""
-    semantic_map.believe_places()
+def export_snapshot(semantic_map: SemanticMap, inferred: bool) -> ExportSnapshot:
+    """Return the current map for export: the ABox or, if `inferred`, all that holds about its individuals."""
+    semantic_map.ensure_derived()
     abox = semantic_map.abox()
     aside = set(semantic_map.reasoner.suppressed())
     held = [triple for triple in abox if triple not in aside] if aside else abox
     following: list[Triple] = []
     if inferred:
         abox = held
-        following = followed(semantic_map.reasoner, semantic_map.tbox, abox)
+        following = inferred_triples(semantic_map.reasoner, semantic_map.tbox, abox)
     declared = [(c, v.RDF_TYPE, v.OWL_CLASS) for c in undeclared_classes(abox, semantic_map.classes)]
     written = [*abox, *following, *declared]
     used = prefixes.used_by(written, semantic_map.classes.prefixes)
-    made = Picture([*semantic_map.tbox, *held], written, semantic_map.seq, used)
+    made = ExportSnapshot([*semantic_map.tbox, *held], written, semantic_map.seq, used)
     if not inferred:
         return made
     pairs, placed, limits = (
-        pairs_of(semantic_map.tbox, semantic_map.entities()),
+        pair_measurer(semantic_map.tbox, semantic_map.entities()),
         semantic_map.placed(),
         semantic_map.classes.limits,
     )
     return made._replace(measured=lambda: pairs(Space(placed, limits), None))
 
 
-def followed(reasoner: Reasoner, tbox: Collection[Triple], abox: Collection[Triple]) -> list[Triple]:
-    """What follows about the individuals of an ABox that are none of the TBox."""
+def inferred_triples(reasoner: Reasoner, tbox: Collection[Triple], abox: Collection[Triple]) -> list[Triple]:
+    """Return the inferred triples about the individuals of an ABox that are not in the TBox."""
     individuals = {s for s, _, _ in abox} | {o for _, p, o in abox if p != v.RDF_TYPE}
     return [
         triple
         for individual in individuals - {s for s, _, _ in tbox}
-        for triple in worth_saying(reasoner.inferred(individual, None, None))
+        for triple in without_trivial(reasoner.inferred(individual, None, None))
     ]
 
 
-def export(picture: Picture, syntax: RdfFormat) -> Document:
-    """The map as a document. Raises Inconsistent, or Refused for a text that the syntax cannot hold."""
-    checked = check(picture.asserted, "semmap")
+def export(snapshot: ExportSnapshot, syntax: RdfFormat) -> Document:
+    """Return the map as a document.
+
+    Raises Inconsistent, or Refused for a text that the syntax cannot express.
+    """
+    checked = check(snapshot.asserted, "semmap")
     if not checked.consistent:
         raise errors.Inconsistent(checked.text, explanation=checked.explanation)
-    return document(picture, syntax)
+    return document(snapshot, syntax)
 
 
-def document(picture: Picture, syntax: RdfFormat) -> Document:
-    """The map as a document, unchecked. Raises Refused for a text that the syntax cannot hold."""
-    written = picture.written
-    if measured := set(picture.measured()).difference(written):
+def document(snapshot: ExportSnapshot, syntax: RdfFormat) -> Document:
+    """Return the map as a document, unchecked. Raises Refused for a text that the syntax cannot express."""
+    written = snapshot.written
+    if measured := set(snapshot.measured()).difference(written):
         written = [*written, *measured]
     return Document(
-        content=rdf.serialise(written, syntax, picture.prefixes),
+        content=rdf.serialise(written, syntax, snapshot.prefixes),
         media_type=rdf.MEDIA_TYPES[syntax],
         triples=len(written),
-        seq=picture.seq,
+        seq=snapshot.seq,
     )
 
 
 def check(triples: Iterable[Triple], engine: str, is_over: Callable[[], bool] = lambda: False) -> Checked:
-    """Are the triples (TBox and ABox) consistent? Worked out from nothing, so that it is a check.
+    """Check the consistency of triples (TBox and ABox) with a new reasoner, independent of the map's own.
 
-    With the engine "owlrl" it is given up as soon as `is_over()`. Raises Refused then.
+    With the engine "owlrl" the check is cancelled as soon as `is_over()` returns True. Raises Refused then.
     """
     triples = list(triples)
     start = time.perf_counter()
@@ -222,7 +230,7 @@ def check(triples: Iterable[Triple], engine: str, is_over: Callable[[], bool] = 
         try:
             Reasoner(triples, scattered=True)
         except Inconsistent as error:
-            explanation = proofs.message(error.explanation)
+            explanation = proofs.to_message(error.explanation)
         reason = explanation.text if explanation else ""
     return Checked(
         consistent=not reason,

@@ -1,4 +1,4 @@
-"""What changed in the map between two commits, and when a spatial relation held: read from the journal."""
+"""Differences between two commits, and the times at which a spatial relation held, from the journal."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ import time
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, get_args
 
-from semmap.nodes.kb_node.answers.beginnings import Moves
-from semmap.nodes.kb_node.answers.beginnings import spells as spells_of
+from semmap.nodes.kb_node.answers.fact_intervals import PoseChanges, find_intervals
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact, Facts
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
@@ -26,11 +25,11 @@ from semmap.schemas.relations import RelationName
 
 _KEPT: Final[dict[RelationName, KeptRelation]] = {name: name for name in get_args(KeptRelation)}
 _LONGEST = 10
-"""How many spells are told one by one in words."""
+"""Intervals that are listed one by one in the text."""
 
 
-def difference(journal: Journal, past: HistoryReader, query: Diff, limits: Thresholds) -> Difference:
-    """What changed between `query.since` and `query.until`. Raises Refused, BadRequest."""
+def compute_difference(journal: Journal, past: HistoryReader, query: Diff, limits: Thresholds) -> Difference:
+    """Return what changed between `query.since` and `query.until`. Raises Refused, BadRequest."""
     first = past.commit_at(query.since)
     last = past.last if query.until is None else past.commit_at(query.until)
     if first > last:
@@ -45,7 +44,7 @@ def difference(journal: Journal, past: HistoryReader, query: Diff, limits: Thres
     was, is_ = (_facts(there.values(), limits) for there in (then, now))
     differing = sorted([(fact, False) for fact in was - is_] + [(fact, True) for fact in is_ - was])
     relations = tuple(
-        Related(subject=s, relation=_KEPT[relation], object=o, came=came, text=_said(relation, came, o))
+        Related(subject=s, relation=_KEPT[relation], object=o, came=came, text=_phrase(relation, came, o))
         for (s, relation, o), came in differing
     )
     return Difference(
@@ -59,12 +58,12 @@ def difference(journal: Journal, past: HistoryReader, query: Diff, limits: Thres
 
 
 def _stamp_ns(journal: Journal, seq: int) -> int:
-    """When a commit was made; what the history begins with, and what is older, has the stamp of that."""
+    """Return the time of a commit. Compacted commits have the time of the first snapshot."""
     begins = journal.beginning
     return begins.stamp_ns if begins.seq and seq <= begins.seq else journal.stamps.of(max(seq, 1))
 
 
-def _said(relation: RelationName, came: bool, other: str) -> str:
+def _phrase(relation: RelationName, came: bool, other: str) -> str:
     words = PHRASES[relation]
     return f"{words if came else words.replace('is ', 'is no longer ', 1)} {other}"
 
@@ -76,14 +75,14 @@ def _facts(there: Iterable[Entity], limits: Thresholds) -> set[Fact]:
     return set(facts)
 
 
-def spells(journal: Journal, past: HistoryReader, query: WasWhen, limits: Thresholds) -> Spells:
-    """When the relation held. Raises UnknownName, BadRequest for a word that several things have."""
+def find_spells(journal: Journal, past: HistoryReader, query: WasWhen, limits: Thresholds) -> Spells:
+    """Return when the relation held. Raises UnknownName; BadRequest for an ambiguous word."""
     there = {entity.name: entity for entity in past.entities(past.last)} if past.last else {}
     one, other = (_name(word, there, past) for word in (query.name, query.other))
-    text, told = _told(one, query.relation, other, journal, past, limits)
-    if not told and (bearer := _borne_by(one, query.relation, other, there, limits)) is not None:
+    text, told = _find_spells(one, query.relation, other, journal, past, limits)
+    if not told and (bearer := _find_support(one, query.relation, other, there, limits)) is not None:
         relation, below = bearer
-        borne = _told(one, relation, below, journal, past, limits)[0].replace(one, "it", 1)
+        borne = _find_spells(one, relation, below, journal, past, limits)[0].replace(one, "it", 1)
         where = f"{_spoken(query.relation)} {other}"
         text = f"{one} was never itself {where}; {borne}, and {below} is {where}"
     return Spells(
@@ -96,13 +95,15 @@ def spells(journal: Journal, past: HistoryReader, query: WasWhen, limits: Thresh
     )
 
 
-def _told(
+def _find_spells(
     one: str, relation: KeptRelation, other: str, journal: Journal, past: HistoryReader, limits: Thresholds
 ) -> tuple[str, tuple[Spell, ...]]:
-    """When a relation held, in words and as spells."""
+    """Return when a relation held, as text and as intervals."""
     fact = (one, relation, other)
     first = past.initial_entities().values()
-    found = spells_of(journal.decode_partially(Moves), first, [fact], limits, in_any_place=True)[fact]
+    found = find_intervals(journal.decode_partially(PoseChanges), first, [fact], limits, in_any_place=True)[
+        fact
+    ]
     told = tuple(
         Spell(
             since=since,
@@ -112,17 +113,17 @@ def _told(
         )
         for since, until in found
     )
-    return _in_words(one, f"{_spoken(relation)} {other}", told, time.time_ns()), told
+    return _describe(one, f"{_spoken(relation)} {other}", told, time.time_ns()), told
 
 
 def _spoken(relation: KeptRelation) -> str:
     return PHRASES[relation].removeprefix("is ")
 
 
-def _borne_by(
+def _find_support(
     one: str, relation: KeptRelation, other: str, there: Mapping[str, Entity], limits: Thresholds
 ) -> tuple[KeptRelation, str] | None:
-    """What a thing is on or inside now, where that is in turn on or inside the other; else None."""
+    """Return what an object is on or inside now, if that is itself on or inside `other`, else None."""
     if relation not in ("isOn", "isInside"):
         return None
     space = Space(map(PlacedEntity.of, there.values()), limits)
@@ -140,14 +141,14 @@ def _borne_by(
 
 
 def _name(word: str, there: Mapping[str, Entity], past: HistoryReader) -> str:
-    """The entity that a word names: by its name, now or ever, else by reference or class."""
+    """Return the entity that a word names: by its present or former name, by label or by class."""
     if word in there or past.knows(word):
         return word
     return resolve_single(tuple(there.values()), word)
 
 
-def _in_words(name: str, where: str, told: Sequence[Spell], now_ns: int) -> str:
-    """`cup1 has been on table1 since commit 4 (for 2 min); before that from commit 1 until commit 3 ...`."""
+def _describe(name: str, where: str, told: Sequence[Spell], now_ns: int) -> str:
+    """Return `cup1 has been on table1 since commit 4 (for 2 min); before that from commit 1 until ...`."""
     if not told:
         return f"{name} was never {where}"
     spans = [_span(spell, now_ns) for spell in told if spell.until is not None]
@@ -161,7 +162,7 @@ def _in_words(name: str, where: str, told: Sequence[Spell], now_ns: int) -> str:
 
 
 def _span(spell: Spell, now_ns: int) -> str:
-    """`from commit 1 until commit 3 (for 20 s, until 5 min ago)`."""
+    """Return `from commit 1 until commit 3 (for 20 s, until 5 min ago)`."""
     ago = wording.duration((now_ns - (spell.until_ns or now_ns)) / 1e9)
     return f"from {_beginning(spell)} until commit {spell.until} ({_length(spell, now_ns)}, until {ago} ago)"
 

@@ -1,4 +1,4 @@
-"""The things and places of a map as they are spoken of, each with what bears it."""
+"""The objects and places of a map with their nouns and supports, for descriptions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from semmap.schemas.entities import Entity
 from semmap.schemas.relations import RelationName
 
 LARGEST: Final = 10_000
-"""Of a map with more things (a quarter of a second) only their numbers are told."""
+"""For larger maps only numbers are described, because more takes a quarter of a second."""
 _HOW: Final[dict[RelationName, How]] = {"isInside": "in", "isOn": "on"}
 _SEATS: Final = frozenset(("Chair", "Stool"))
 _TABLES: Final = frozenset(("Table", "Desk"))
@@ -31,7 +31,7 @@ _DETERMINERS: Final = frozenset(("a", "an", "the", "my", "your", "his", "her", "
 
 
 class Inventories:
-    """Takes stock of a map; owned by the node's thread."""
+    """Collects objects and places for descriptions. Owned by the node's thread."""
 
     def __init__(self, semantic_map: SemanticMap) -> None:
         self._map = semantic_map
@@ -40,19 +40,19 @@ class Inventories:
 
     @property
     def nouns(self) -> Nouns:
-        """What things are called."""
+        """The nouns for entities."""
         if self._named is None or self._named[0] is not self._map.classes:
             self._named = (self._map.classes, Nouns(self._map.classes))
         return self._named[1]
 
     def whole(self) -> Inventory:
-        """All that there is after the last commit, worked out once a commit."""
+        """Return all objects and places after the last commit, collected once per commit."""
         if self._whole is None or self._whole[0] != self._map.seq:
             self._whole = (self._map.seq, self._of(self._map.entities()))
         return self._whole[1]
 
     def numbers(self) -> Inventory:
-        """All that there is, without where it is."""
+        """Return all objects and places without locations."""
         noun = self.nouns.of
         entities = tuple(self._map.entities())
         return Inventory(
@@ -65,8 +65,8 @@ class Inventories:
         )
 
     def around(self, entity: Entity) -> Inventory:
-        """What is in a place and its parts; of a thing, what it is on, in and beside, and what bears that."""
-        self._map.believe_places()
+        """Return the contents of a place and its parts, or an object with what surrounds it."""
+        self._map.ensure_derived()
         names = {entity.name, *(other for _, other in self._map.places.about(entity.name))}
         space = self._map.places.space()
         if _is_table(entity) and (solid := space.solids.get(entity.name)) is not None:
@@ -74,17 +74,17 @@ class Inventories:
         if entity.place:
             places = Inventory((), self._places())
             names |= set(places.parts_of(entity.name))
-        found = filter(None, map(self._map.find, sorted(self._map.places.upward(names))))
+        found = filter(None, map(self._map.find, sorted(self._map.places.with_supported(names))))
         return self._of(found)
 
     def _of(self, entities: Iterable[Entity]) -> Inventory:
-        self._map.believe_places()
-        left_out = self._map.beliefs.left_out
+        self._map.ensure_derived()
+        left_out = self._map.derived_facts.left_out
         things = [self._thing(entity, left_out) for entity in entities if not entity.place]
         return Inventory(things, self._places())
 
     def _places(self) -> Iterator[Place]:
-        """All places: their names are to tell them apart."""
+        """Yield all places; their names distinguish them."""
         places = [entity for entity in self._map.entities() if entity.place]
         space, parts = self._map.places.space(), _parts_said(places)
         for place in places:
@@ -115,7 +115,7 @@ class Inventories:
         )
 
     def _table_of(self, entity: Entity) -> str | None:
-        """The nearest table that a thing is near to, if it is a seat."""
+        """Return the nearest table of a seat."""
         space = self._map.places.space()
         if _SEATS.isdisjoint(entity.types) or (solid := space.solids.get(entity.name)) is None:
             return None
@@ -129,7 +129,7 @@ class Inventories:
         return min(tables)[1] if tables else None
 
     def _states(self, entity: Entity) -> str:
-        """What is so of it by properties such as "is open": `open and switched on`."""
+        """Return the states of an entity from properties such as "is open": `open and switched on`."""
         labels = self.nouns.states
         stated = entity.properties.items()
         return nouns.listed([labels[p] for p, is_so in stated if is_so is True and p in labels])
@@ -140,7 +140,7 @@ def _is_table(entity: Entity | None) -> bool:
 
 
 def _parts_said(entities: Iterable[Entity]) -> dict[str, str]:
-    """Place to the place that it is said to be a part of."""
+    """Return by place which place it is stated to be part of."""
     found: dict[str, str] = {}
     for entity in entities:
         stated = entity.properties.get(_PARTS, ()) if entity.place else ()
@@ -150,7 +150,7 @@ def _parts_said(entities: Iterable[Entity]) -> dict[str, str]:
 
 
 def _around(space: Space, name: str) -> str | None:
-    """The smallest place that a place is in, by its extent."""
+    """Return the smallest place around a place, by extent."""
     solid = space.solids.get(name)
     if solid is None:
         return None
@@ -159,7 +159,7 @@ def _around(space: Space, name: str) -> str | None:
 
 
 class Nouns:
-    """What things are called in a sentence: by their references where these are nouns, else by class."""
+    """Nouns for entities: their label if it is a noun, else their class."""
 
     def __init__(self, classes: ClassTable) -> None:
         rows = {row.name: row for row in classes.rows}
@@ -173,19 +173,20 @@ class Nouns:
         }
         self.states = {
             row.name: label.removeprefix("is ")
-            for row in classes.stated.rows()
+            for row in classes.property_table.rows()
             if row.range == ("boolean",) and (label := row.labels.get("en", "")).startswith("is ")
         }
-        """Of properties that are true or false, what they say of a thing."""
+        """Adjectives for boolean properties."""
 
     def kind(self, entity: Entity) -> str:
-        """What its class is called."""
+        """Return the name of an entity's class."""
         return self._labels.get(entity.class_) or spoken(entity.class_)
 
     def of(self, entity: Entity) -> str:
-        """A singular noun phrase without article. What is no such phrase by its looks is not repeated.
+        """Return a singular noun phrase without article; labels that are not noun phrases are not used.
 
-        In title case it is a proper name: of a reference that ends in a noun, the noun is in lower case.
+        A label in title case is a proper name, unless it ends in a known noun. Then it is returned in lower
+        case.
         """
         label = self.kind(entity)
         reference = (entity.preferred_reference or "").strip()

@@ -1,4 +1,4 @@
-"""The map, page by page: a snapshot of a million entities is too much for one message, and one answer."""
+"""Snapshots in pages, because a million entities are too many for one message."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ from semmap.schemas.bridge import SnapshotQuery
 from semmap.schemas.commits import Snapshot
 
 _PATIENCE_S = 0.5
-"""For those who follow the map to ask for its first page after a start, and for the next one."""
+"""Time in which clients are expected to request the first page after a start, and each further page."""
 
 
 class Pages:
-    """Pages of a map that may change between two of them: each is as of the commit that it names."""
+    """Pages of a map that may change in between. Each page names the commit that it is as of."""
 
     def __init__(self, semantic_map: SemanticMap) -> None:
         self._map = semantic_map
         self._names: list[str] = []
         self._asked_s = time.monotonic()
-        """When a page was asked for that others follow, or when it was time to begin."""
+        """Time of the last request that others follow, or of the start."""
 
     @property
-    def may_follow(self) -> bool:
-        """Whether somebody is likely to ask for a page in a moment: then nothing else should delay it."""
+    def is_request_expected(self) -> bool:
+        """Return whether a request for a page is likely soon. Other work should not delay it."""
         return time.monotonic() - self._asked_s < _PATIENCE_S
 
     def snapshot(self, query: SnapshotQuery) -> Snapshot:
-        """All entities, or the page that is asked for.
+        """Return all entities, or the requested page.
 
-        The names are sorted once, for the first page. An entity that came since is in none of the others: the
-        commit that brought it is later than the first page.
+        The names are sorted once, for the first page. An entity that is added later is in none of the other
+        pages; the commit that added it is later than the first page.
         """
         if query.limit is None:
             return self._map.snapshot()

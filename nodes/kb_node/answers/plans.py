@@ -1,4 +1,4 @@
-"""What a plan is drawn from: entities and walls as outlines."""
+"""Floor plans: entities and walls as outlines."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from semmap.schemas.entities import Entity, Stated
 from semmap.schemas.plans import Corners, Outline, Plan, PlannedPlace, PlannedThing
 from semmap.schemas.polygons import Polygon, extent_of
 
-_NO_WALLS = "no simulator tells where the walls are, so they are where no place and no door is"
+_NO_WALLS = "no simulator provides the walls, so they are assumed where there is neither a place nor a door"
 
 
 def plan_of(entities: Iterable[Entity], walls: tuple[Outline, ...] | None) -> Plan:
-    """The plan of these entities, by name; `walls` None where nobody knows them."""
+    """Return the plan of these entities, sorted by name. `walls` is None if they are unknown."""
     places: list[PlannedPlace] = []
     things: list[PlannedThing] = []
     for entity in sorted(entities, key=lambda e: e.name):

@@ -1,4 +1,4 @@
-"""Questions about one triple, asked in words: why it holds, why it cannot, and whether it could."""
+"""The commands `explain` and `could`: why a statement holds or cannot hold, and whether it could."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import NamedTuple
 from msgspec import structs
 
 from semmap.nodes.kb_node import proofs
-from semmap.nodes.kb_node.answers import asked_terms
-from semmap.nodes.kb_node.answers.asked_terms import RELATIONS
+from semmap.nodes.kb_node.answers import term_resolution
+from semmap.nodes.kb_node.answers.term_resolution import RELATIONS
 from semmap.nodes.kb_node.reasoner import GivenFacts, Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner import explanations as reasons
 from semmap.nodes.kb_node.reasoner.entailment.explaining import nearby, why_entailed, why_excluded
@@ -25,44 +25,46 @@ from semmap.schemas.explanations import Explanation, Term, Triple
 from semmap.schemas.replies import Possible
 
 _QUICK = 2000
-"""Triples about an individual with which supposing something of it still takes milliseconds."""
+"""Triples about an individual up to which an assumption about it takes milliseconds."""
 _COMPARED = 50
-"""Values that are looked at for what would be the same."""
+"""Values that are compared for what would become the same."""
 
 
 class Undecided(NotCompilable):
-    """Neither the rules nor a refutation decide it at once: a proof is to be searched for, on a copy."""
+    """Raised if neither the rules nor a refutation decide it, so that a proof must be searched on a copy."""
 
 
-class Asked(NamedTuple):
-    """A question as triples: the one that is meant, or several that a word may stand for."""
+class StatementQuestion(NamedTuple):
+    """A statement as triples: one triple, or several if a word is ambiguous."""
 
     triples: tuple[Triple, ...]
     negated: bool = False
 
     @property
     def terms(self) -> tuple[Term, ...]:
-        """What it is about."""
+        """The subjects and objects."""
         return tuple(dict.fromkeys(term for s, _, o in self.triples for term in (s, o)))
 
 
-def of_explain(semantic_map: SemanticMap, question: Explain) -> Asked:
-    """What `explain` asks. Raises UnknownName, UnknownClass, BadRequest for an unknown property."""
-    subject = asked_terms.individual(semantic_map, question.name)
-    predicate = asked_terms.property_(semantic_map, question.predicate)
-    values = asked_terms.values(semantic_map, subject, predicate, question.value)
-    return Asked(tuple((subject, predicate, value) for value in values), question.negated)
+def parse_explain(semantic_map: SemanticMap, question: Explain) -> StatementQuestion:
+    """Return the statement that `explain` is about. Raises UnknownName, UnknownClass, BadRequest."""
+    subject = term_resolution.individual(semantic_map, question.name)
+    predicate = term_resolution.property_(semantic_map, question.predicate)
+    values = term_resolution.values(semantic_map, subject, predicate, question.value)
+    return StatementQuestion(tuple((subject, predicate, value) for value in values), question.negated)
 
 
-def of_could(semantic_map: SemanticMap, question: Could) -> Asked:
-    """What `could` asks. Raises UnknownName, UnknownClass, BadRequest for an unknown property."""
-    subject = asked_terms.individual(semantic_map, question.name)
-    predicate = asked_terms.property_(semantic_map, question.predicate)
-    return Asked(((subject, predicate, asked_terms.value(semantic_map, predicate, question.value)),))
+def parse_could(semantic_map: SemanticMap, question: Could) -> StatementQuestion:
+    """Return the statement that `could` is about. Raises UnknownName, UnknownClass, BadRequest."""
+    subject = term_resolution.individual(semantic_map, question.name)
+    predicate = term_resolution.property_(semantic_map, question.predicate)
+    return StatementQuestion(
+        ((subject, predicate, term_resolution.value(semantic_map, predicate, question.value)),)
+    )
 
 
-def is_quick(reasoner: Reasoner, asked: Asked) -> bool:
-    """Whether supposing it is quick: the reasoner works change by change, and touches few triples."""
+def is_quick(reasoner: Reasoner, asked: StatementQuestion) -> bool:
+    """Return whether an assumption is quick: the reasoner is incremental, and few triples change."""
     return reasoner.is_compiled and not any(
         _has_many(reasoner, term)
         for s, p, o in asked.triples
@@ -70,84 +72,84 @@ def is_quick(reasoner: Reasoner, asked: Asked) -> bool:
     )
 
 
-def copy_of(held: GivenFacts, names: Mapping[Term, str]) -> Reasoner:
-    """A reasoner for work beside the map's own; `names` tell its classes apart."""
+def copy_reasoner(held: GivenFacts, names: Mapping[Term, str]) -> Reasoner:
+    """Return a reasoner for another thread; `names` distinguish classes with equal local names."""
     reasoner = Reasoner.of(held)
     reasoner.words.disambiguate(names)
     return reasoner
 
 
-def _told(reasoner: Reasoner, found: reasons.Explanation) -> Explanation:
-    """An explanation as it goes over the wire; what is computed in it is told as measured."""
+def _to_message(reasoner: Reasoner, found: reasons.Explanation) -> Explanation:
+    """Return an explanation as a wire message; computed facts are described as measured."""
     computed = [fact for fact in found.support if reasoner.is_computed(fact)]
-    message = proofs.message(found)
+    message = proofs.to_message(found)
     if not computed:
         return message
     return structs.replace(message, text=mark_measured(message.text, computed, reasoner.words))
 
 
-def why(reasoner: Reasoner, asked: Asked) -> Explanation | None:
-    """Why it holds by the rules; None if it does not."""
+def why(reasoner: Reasoner, asked: StatementQuestion) -> Explanation | None:
+    """Return why the statement holds by the rules, or None."""
     found = next(filter(None, map(reasoner.explain, asked.triples)), None)
-    return None if found is None else _told(reasoner, found)
+    return None if found is None else _to_message(reasoner, found)
 
 
-def explain(reasoner: Reasoner, asked: Asked, *, anew: bool = True) -> Explanation:
-    """Why it holds, or cannot hold.
+def explain(reasoner: Reasoner, asked: StatementQuestion, *, recompute: bool = True) -> Explanation:
+    """Return why the statement holds or cannot hold.
 
-    What no rule derives or contradicts is proved or refuted from what is near, if a proof is found there.
+    If no rule derives or contradicts it, a proof or a refutation is searched in the nearby triples.
 
     Raises:
-        Refused: it does not hold; or it holds, or nothing says that it cannot.
-        NotCompilable: everything would have to be worked out `anew`, and that is not wanted; Undecided if
-            only what is near would have to be.
+        Refused: it does not hold, or (negated) it holds or is not excluded.
+        NotCompilable: everything must be computed again, and `recompute` is False; Undecided if only the
+            nearby triples must be.
     """
     first = asked.triples[0]
     clause = triple_clause(first, reasoner.words)
     if asked.negated:
-        if (denied := refute(reasoner, first, allow_recompute=anew)) is not None:
-            return _told(reasoner, denied)
+        if (denied := refute(reasoner, first, allow_recompute=recompute)) is not None:
+            return _to_message(reasoner, denied)
         holds = reasoner.explain(first)
         if holds is None:
-            if not anew:
+            if not recompute:
                 raise Undecided("no rule excludes it, and none derives it")
             near = _near(reasoner, asked)
             if (further := why_excluded(near, first, words=reasoner.words)) is not None:
-                return _told(reasoner, further)
+                return _to_message(reasoner, further)
             holds = why_entailed(near, first, words=reasoner.words)
         raise errors.Refused(
-            f"it does hold: {holds.text}"
-            if holds
-            else f"it is not known that {clause}, but nothing excludes it"
+            f"it holds: {holds.text}" if holds else f"it is not known that {clause}, but nothing excludes it"
         )
     if (found := why(reasoner, asked)) is not None:
         return found
-    if (different := why_different(reasoner, first, allow_recompute=anew)) is not None:
-        return _told(reasoner, different)
-    if (excluded := refute(reasoner, first, allow_recompute=anew)) is not None:
-        told = _told(reasoner, excluded)
+    if (different := why_different(reasoner, first, allow_recompute=recompute)) is not None:
+        return _to_message(reasoner, different)
+    if (excluded := refute(reasoner, first, allow_recompute=recompute)) is not None:
+        told = _to_message(reasoner, excluded)
         raise errors.Refused(f"it does not hold: {told.text}", explanation=told)
-    if not anew:
+    if not recompute:
         raise Undecided("no rule derives it, and none excludes it")
     near = _near(reasoner, asked)
     if (further := why_entailed(near, first, words=reasoner.words)) is not None:
-        return _told(reasoner, further)
+        return _to_message(reasoner, further)
     if (excluded := why_excluded(near, first, words=reasoner.words)) is not None:
-        told = _told(reasoner, excluded)
+        told = _to_message(reasoner, excluded)
         raise errors.Refused(f"it does not hold: {told.text}", explanation=told)
     raise errors.Refused(f"it does not hold that {clause}, and nothing excludes it")
 
 
-def _near(reasoner: Reasoner, asked: Asked) -> Reasoner:
-    """A reasoner that holds what is near, in which a proof is searched for."""
+def _near(reasoner: Reasoner, asked: StatementQuestion) -> Reasoner:
+    """Return a reasoner with the nearby triples, in which a proof is searched."""
     return Reasoner(nearby(reasoner, asked.terms), closed=reasoner.closed)
 
 
-def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True, against: str | None = None) -> Possible:
-    """Whether it could hold; the reasoner is as before. `against` is what geometry says of it, a clause.
+def could(
+    reasoner: Reasoner, asked: StatementQuestion, *, recompute: bool = True, against: str | None = None
+) -> Possible:
+    """Return whether the statement could hold. The reasoner is unchanged. `against` is a geometric conflict.
 
     Raises:
-        NotCompilable: everything would have to be worked out `anew`, and that is not wanted.
+        NotCompilable: everything must be computed again, and `recompute` is False.
     """
     triple = asked.triples[0]
     clause = triple_clause(triple, reasoner.words)
@@ -155,12 +157,12 @@ def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True, against: str |
         return Possible(possible=True, text=f"yes: {clause} already")
     measured: list[Triple] = []
     try:
-        while (excluded := refute(reasoner, triple, allow_recompute=anew)) is not None:
+        while (excluded := refute(reasoner, triple, allow_recompute=recompute)) is not None:
             computed = [fact for fact in excluded.support if reasoner.is_computed(fact)]
             if not computed:
                 text = f"no: {excluded.text}"
-                return Possible(possible=False, text=text, explanation=_told(reasoner, excluded))
-            reasoner.update_computed(remove=computed)  # nothing that is computed refuses a commit
+                return Possible(possible=False, text=text, explanation=_to_message(reasoner, excluded))
+            reasoner.update_computed(remove=computed)  # computed facts never cause a commit to be rejected
             measured += computed
     finally:
         if measured:
@@ -170,14 +172,14 @@ def could(reasoner: Reasoner, asked: Asked, *, anew: bool = True, against: str |
         seen = " and ".join(triple_clause(fact, reasoner.words) for fact in measured)
         text += f", although by their poses {seen}"
     elif against is not None:
-        text += f", but as things are, {against}"
+        text += f", but according to the poses, {against}"
     if same := sorted(_would_be_same(reasoner, triple)):
         text += "; but then " + " and ".join(triple_clause(pair, reasoner.words) for pair in same)
     return Possible(possible=True, text=text)
 
 
 def _would_be_same(reasoner: Reasoner, triple: Triple) -> Iterator[Triple]:
-    """What a triple would make the same, as where a property has one value at most."""
+    """Yield the equalities that a triple would imply, for example by a functional property."""
     s, p, o = triple
     if o.startswith('"') or p in RELATIONS.values():
         return

@@ -1,7 +1,7 @@
-"""When things were last seen, and which are seen to be gone: answers `last-seen`.
+"""When entities were last seen, and which are missing: the command `last-seen`.
 
-Commits tell where a thing was last put or seen to move to. As long as it stays there nothing is committed, so
-when a camera last had it in sight is taken from what perception publishes, and kept in memory only.
+Commits record where an entity was last placed or observed. Nothing is committed while it stays there. The
+time of the last observation therefore comes from the messages of perception, and is kept in memory only.
 """
 
 from __future__ import annotations
@@ -21,60 +21,62 @@ _JUST_NOW_S: Final = 10.0
 
 
 class Sightings:
-    """What is known of when things were seen. `see`, `is_gone` and `there` are for the node's thread."""
+    """The times of observations. `record`, `is_missing` and `describe_present` are for the node's thread."""
 
     def __init__(self, past: HistoryReader) -> None:
         self._past = past
         self._seen_ns: dict[str, int] = {}
 
-    def see(self, seen: Observations) -> None:
-        """Take note of one look."""
+    def record(self, seen: Observations) -> None:
+        """Store the observations of one frame."""
         self._seen_ns.update((one.entity, seen.stamp_ns) for one in seen.observations if one.entity)
 
-    def is_gone(self, entity: Entity) -> bool:
-        """Whether perception has said that an entity of the map is not where it should be."""
+    def is_missing(self, entity: Entity) -> bool:
+        """Return whether perception has reported that an entity is not where it should be."""
         return entity.conflict in (MISSING, DISPLACED)
 
-    def there(self, entity: Entity) -> Sighting:
-        """Where an entity of the map is, as far as anybody knows."""
-        return self._told(sighting(entity, None), None)
+    def describe_present(self, entity: Entity) -> Sighting:
+        """Return where an entity of the map is, as far as is known."""
+        return self._describe(sighting(entity, None), None)
 
-    def gone(self, name: str, entity: Entity | None) -> Sighting:
-        """Where an entity was that was removed, or is seen to be gone. For any thread. Raises UnknownName."""
+    def describe_removed(self, name: str, entity: Entity | None) -> Sighting:
+        """Return where a removed or missing entity was. For any thread. Raises UnknownName."""
         if entity is not None:
-            return self._told(sighting(entity, None), self._past.in_conflict_since(entity), entity.conflict)
+            return self._describe(
+                sighting(entity, None), self._past.in_conflict_since(entity), entity.conflict
+            )
         found = self._past.last_seen(name)
         by_sight = found.removed is not None and found.removed.source == "perception"
-        return self._told(found, found.removed if by_sight else None)
+        return self._describe(found, found.removed if by_sight else None)
 
-    def _told(self, found: Sighting, gone: Provenance | None, how: str = "") -> Sighting:
+    def _describe(self, found: Sighting, gone: Provenance | None, how: str = "") -> Sighting:
         seen_ns = self._seen_ns.get(found.name)
         if seen_ns is not None and seen_ns <= found.provenance.stamp_ns:
             seen_ns = None  # of its former place
         now_ns = time.time_ns()
         if gone is not None:
-            text = f"seen to be gone {_at(gone, now_ns)}: {how or gone.reason}"
+            text = f"reported missing {_at(gone, now_ns)}: {how or gone.reason}"
         elif found.removed is not None:
             text = f"removed {_at(found.removed, now_ns)} by {_author(found.removed)}"
         else:
-            text = _of_what_is_there(found.provenance, seen_ns, now_ns)
+            text = _describe_observed(found.provenance, seen_ns, now_ns)
         return structs.replace(found, gone=gone, seen_ns=seen_ns, text=text)
 
 
-def _of_what_is_there(placed: Provenance, seen_ns: int | None, now_ns: int) -> str:
+def _describe_observed(placed: Provenance, seen_ns: int | None, now_ns: int) -> str:
     if seen_ns is not None:
         ago_s = (now_ns - seen_ns) / 1e9
         if ago_s < _JUST_NOW_S:
-            return "in sight of a camera just now"
-        return f"last in sight {wording.duration(ago_s)} ago; not seen since, nor seen to be gone"
+            return "in view of a camera now"
+        return f"last in view {wording.duration(ago_s)} ago; not seen since, not reported missing"
     if not placed.commit:
-        return "neither seen so far nor seen to be gone"
+        return "never seen, not reported missing"
     how = "last seen" if placed.source == "perception" else f"placed by {_author(placed)}"
-    return f"{how} {_at(placed, now_ns)}; not seen since, nor seen to be gone"
+    return f"{how} {_at(placed, now_ns)}; not seen since, not reported missing"
 
 
 def _at(said: Provenance, now_ns: int) -> str:
-    """`at commit 7, 12 min ago`."""
+    """Return `at commit 7, 12 min ago`."""
     return f"at commit {said.commit}, {wording.duration((now_ns - said.stamp_ns) / 1e9)} ago"
 
 

@@ -1,1 +1,1 @@
-"""Documents in and out, in the syntaxes of RDF and OWL: ABoxes, and TBoxes with what they import."""
+"""Import and export of documents in RDF and OWL syntaxes: ABoxes, and TBoxes with their imports."""

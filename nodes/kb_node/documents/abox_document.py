@@ -1,4 +1,4 @@
-"""RDF documents that describe an ABox: what of them may come into the map."""
+"""RDF documents that describe an ABox, and which of their triples the map accepts."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from itertools import chain
 from operator import itemgetter
 from typing import NamedTuple
 
-from semmap.nodes.kb_node.by_property import by_property
 from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.grouping import group_by_property
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import stars
 from semmap.ontology import vocabulary as v
@@ -18,7 +18,7 @@ from semmap.schemas.explanations import Term, Triple
 _VOCABULARIES = (v.RDF, v.RDFS, v.OWL, v.XSD)
 _TBOX = f"<{v.TBOX}"
 _OF_STARS = (v.COORDINATES, v.THREE_DIM_SIZE, v.PREFERRED_REFERENCE, v.ALTERNATIVE_REFERENCE)
-"""The classes of what describes an entity, in which semmap writes whatever the TBox."""
+"""Classes of the individuals that describe an entity. semmap writes them with any TBox."""
 _FEW = 5
 _WHOLES = (v.COORDINATE_XYZ, v.ORIENTATION_WXYZ, v.SIZE_XYZ)
 _FLOATS = frozenset(chain(*_WHOLES))
@@ -27,26 +27,28 @@ _CLASSES = frozenset((v.OWL_CLASS, v.RDFS_CLASS))
 _NUMBERS = tuple(f"^^{v.iri(v.XSD + kind)}" for kind in ("integer", "decimal", "double", "float"))
 
 
-class SortedOut(NamedTuple):
-    """The triples that fit the TBox, a word on each individual left out, and on what may be a mistake."""
+class FilteredDocument(NamedTuple):
+    """The accepted triples, a note on each individual that is left out, and notes on possible mistakes."""
 
     triples: list[Triple]
     skipped: list[str]
     notes: list[str]
 
 
-def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bool) -> SortedOut:
-    """What of a document may come into the map. A number of a star may be written as any kind of number.
+def filter_document(
+    triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bool
+) -> FilteredDocument:
+    """Return the triples of a document that the map accepts. Numbers may be of any numeric datatype.
 
-    Raises UnknownClass naming all individuals of unknown classes, unless `skip_unknown`; then what is of
-    unknown classes only is left out, with the star that only it uses, and of the others the unknown class.
-    Raises BadFile for a TBox.
+    Raises UnknownClass with all individuals of unknown classes, unless `skip_unknown`. In that case
+    individuals that have only unknown classes are left out, with the triples that describe only them, and the
+    others lose the unknown classes. Raises BadFile for a TBox.
     """
     triples = list(triples)
-    said = by_property(triples)
-    if _has_other_numbers(said, classes.number_kinds):
-        triples = _with_numbers(triples, classes.number_kinds)
-        said = by_property(triples)
+    said = group_by_property(triples)
+    if _has_other_numbers(said, classes.number_datatypes):
+        triples = _with_numbers(triples, classes.number_datatypes)
+        said = group_by_property(triples)
     types_said = said.get(v.RDF_TYPE, [])
     used = set(map(itemgetter(2), types_said))
     declared = {s for s, _, o in types_said if o in _CLASSES} if used & _CLASSES else set[Term]()
@@ -71,30 +73,30 @@ def sort_out(triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bo
         gone = {s for s, _ in unknown} - {s for s, _, o in types_said if o in described}
         doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
         kept = _without(gone, [t for t in triples if t not in doubtful])
-        said = by_property(kept)
+        said = group_by_property(kept)
     notes = (*_unknown_properties(said, classes), *_own_classes(declared, classes), *_halves(said, kept))
-    return SortedOut(kept, words, list(notes))
+    return FilteredDocument(kept, words, list(notes))
 
 
 def undeclared_classes(triples: Iterable[Triple], classes: ClassTable) -> set[Term]:
-    """The classes with a name that individuals are of, and that neither the TBox nor these triples declare.
+    """Return the named classes of individuals that neither the TBox nor these triples declare.
 
-    The document that brought the individuals declared them; without that it would have been refused.
+    The document that added the individuals declared them, otherwise it would have been rejected.
     """
     types = [(s, o) for s, p, o in triples if p == v.RDF_TYPE and o.startswith("<")]
     declared = {s for s, o in types if o in _CLASSES}.union(classes.names, _OF_STARS)
     return {o for _, o in types if o not in declared and not is_built_in(o)}
 
 
-def strangers(
+def find_undescribed(
     triples: Sequence[Triple], reasoner: Reasoner, stays: Callable[[Triple], bool] = lambda _: True
 ) -> dict[Term, Triple]:
-    """What something is related to though nobody says what it is, each with the first triple that does so.
+    """Return individuals that are referenced but not described, each with the first triple that does so.
 
-    What the reasoner holds counts, too, as far as it `stays`.
+    What the reasoner holds counts as a description, if `stays` is True for it.
     """
     relations = {s for s, _, _ in reasoner.asserted(None, v.RDF_TYPE, v.OWL_OBJECT_PROPERTY)}
-    said = by_property(triples)
+    said = group_by_property(triples)
     related = {o for p in relations & said.keys() for _, _, o in said[p]}
     related.difference_update(map(itemgetter(0), said.get(v.RDF_TYPE, ())))
     strange = {o for o in related if not any(map(stays, reasoner.asserted(o, v.RDF_TYPE, None)))}
@@ -105,15 +107,15 @@ def strangers(
     return found
 
 
-def of_strangers(found: Mapping[Term, Triple]) -> str:
-    """One sentence on them."""
+def undescribed_note(found: Mapping[Term, Triple]) -> str:
+    """Return one sentence on the undescribed individuals."""
     few = ", ".join(f"{_called(term)} ({v.spoken(said)})" for term, said in [*found.items()][:_FEW])
     more = f" and {len(found) - _FEW} more" if len(found) > _FEW else ""
     return f"referenced but not described: {few}{more}"
 
 
 def _with_subclasses(roots: frozenset[Term], below: list[Triple]) -> set[Term]:
-    """Classes, and those which triples of `rdfs:subClassOf` put below them."""
+    """Return the classes and their subclasses by `rdfs:subClassOf` triples."""
     found, above = set(roots), [(s, o) for s, _, o in below]
     while more := {s for s, o in above if o in found and s not in found}:
         found |= more
@@ -121,7 +123,7 @@ def _with_subclasses(roots: frozenset[Term], below: list[Triple]) -> set[Term]:
 
 
 def _has_other_numbers(said: Mapping[Term, list[Triple]], kinds: Mapping[Term, Term]) -> bool:
-    """Whether a number is of another kind than its property asks for."""
+    """Return whether a number has another datatype than its property requires."""
     return any(
         o.endswith(_NUMBERS)
         for p, kind in kinds.items()
@@ -131,10 +133,10 @@ def _has_other_numbers(said: Mapping[Term, list[Triple]], kinds: Mapping[Term, T
 
 
 def _with_numbers(triples: list[Triple], kinds: Mapping[Term, Term]) -> list[Triple]:
-    """`triples` where each number is of the kind that its property asks for.
+    """Return the triples with the datatypes that the properties of numbers require.
 
-    `0` and `0.5` in Turtle are an integer and a decimal, and many a map says double where its ontology wants
-    a float; they mean the number all the same.
+    `0` and `0.5` in Turtle are an integer and a decimal, and many maps use double where the ontology requires
+    float.
     """
     return [
         (s, p, v.literal(v.lexical(o), kinds[p])) if p in kinds and o.endswith(_NUMBERS) else (s, p, o)
@@ -143,9 +145,9 @@ def _with_numbers(triples: list[Triple], kinds: Mapping[Term, Term]) -> list[Tri
 
 
 def _unknown_properties(said: Mapping[Term, list[Triple]], classes: ClassTable) -> list[str]:
-    """A word on the properties in the TBox's namespace that it does not have: they may be misspelt."""
+    """Return a note on unknown properties in the TBox's namespace, because they may be misspelt."""
     if not any(p.startswith(_TBOX) for p in classes.properties):
-        return []  # the TBox is somebody else's, and these are the words of stars
+        return []  # the TBox is from elsewhere, and these properties describe entities
     used = {p for p in said if p.startswith(_TBOX)} - classes.properties
     declared = {s for s, _, o in said.get(v.RDF_TYPE, ()) if o in v.PROPERTY_KINDS} if used else set()
     unknown = used - declared
@@ -157,7 +159,7 @@ def _unknown_properties(said: Mapping[Term, list[Triple]], classes: ClassTable) 
 
 
 def _own_classes(declared: set[Term], classes: ClassTable) -> list[str]:
-    """A word on classes that the TBox does not have: nobody can ask the map for things of them."""
+    """Return a note on classes that only the map declares, because clients cannot query them."""
     names = sorted(v.local_name(c) for c in declared.difference(classes.names))
     if not names:
         return []
@@ -169,7 +171,7 @@ def _own_classes(declared: set[Term], classes: ClassTable) -> list[str]:
 
 
 def _halves(said: Mapping[Term, list[Triple]], triples: list[Triple]) -> list[str]:
-    """A word on positions, orientations and sizes that lack a number: they are as good as none."""
+    """Return a note on incomplete positions, orientations and sizes, which are ignored."""
     having = {p: set(map(itemgetter(0), said.get(p, ()))) for p in _FLOATS}
     if all(having[p] == having[whole[0]] for whole in _WHOLES for p in whole):
         return []
@@ -193,12 +195,12 @@ def _called(individual: Term) -> str:
 
 
 def is_built_in(term: Term) -> bool:
-    """Is it a term of OWL's own vocabularies, or an anonymous class?"""
+    """Return whether a term is part of the OWL vocabularies or an anonymous class."""
     return term.startswith("_:") or (term.startswith("<") and v.bare(term).startswith(_VOCABULARIES))
 
 
 def _without(gone: set[Term], triples: list[Triple]) -> list[Triple]:
-    """`triples` without those about `gone`, and about what is in no other star."""
+    """Return the triples without those about `gone` and about nodes that describe nothing else."""
     edges = [(s, o) for s, p, o in triples if p in stars.STAR_PROPERTIES]
     gone = gone.union({o for s, o in edges if s in gone} - {o for s, o in edges if s not in gone})
     return [(s, p, o) for s, p, o in triples if s not in gone and o not in gone]

@@ -1,4 +1,4 @@
-"""Blank nodes have no names: which of two graphs stand for the same?"""
+"""Matching of blank nodes between two graphs."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from collections.abc import Collection, Iterable, Mapping
 from semmap.schemas.explanations import Term, Triple
 
 
-def labelled_like(new: Collection[Triple], known: Collection[Triple]) -> frozenset[Triple]:
-    """`new`, where a blank node of which it says what `known` says of one has that one's label.
+def relabel_like(new: Collection[Triple], known: Collection[Triple]) -> frozenset[Triple]:
+    """Return `new` with the labels of `known` for blank nodes that both describe in the same way.
 
-    The two have no label in common.
+    The two graphs must not share labels.
     """
     colors = _colors([*new, *known])
     free: dict[int, list[Term]] = defaultdict(list)
@@ -23,14 +23,14 @@ def labelled_like(new: Collection[Triple], known: Collection[Triple]) -> frozens
 
 
 def _colors(triples: Iterable[Triple]) -> Mapping[Term, int]:
-    """A number for each blank node; those that nothing tells apart have the same (color refinement)."""
+    """Return a number for each blank node; indistinguishable ones have the same (color refinement)."""
     about: dict[Term, list[Triple]] = defaultdict(list)
     for triple in triples:
         for node in filter(_is_blank, {triple[0], triple[2]}):
             about[node].append(triple)
     colors = dict.fromkeys(about, 0)
     count = 0
-    while count < (count := len(set(colors.values()))):  # the last round told more of them apart
+    while count < (count := len(set(colors.values()))):  # the last round distinguished more of them
         numbers: dict[object, int] = {}
         colors = {
             node: numbers.setdefault((colors[node], *_seen_from(node, said, colors)), len(numbers))
@@ -40,7 +40,7 @@ def _colors(triples: Iterable[Triple]) -> Mapping[Term, int]:
 
 
 def _seen_from(node: Term, said: Iterable[Triple], colors: Mapping[Term, int]) -> list[Triple]:
-    """What is said of a blank node, with colors for the others' labels."""
+    """Return the triples about a blank node, with colors in place of other labels."""
 
     def name(term: Term) -> str:
         if term == node:

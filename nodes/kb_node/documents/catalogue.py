@@ -1,4 +1,4 @@
-"""XML catalogues, as Protégé writes them beside an ontology: which file an import stands for."""
+"""XML catalogues, as written by Protégé next to an ontology: they map imports to files."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _BASE = "{http://www.w3.org/XML/1998/namespace}base"
 
 
 def find(folder: Path, iri: str) -> Path | None:
-    """The file that the catalogue of a folder has for an ontology, if there is such a file.
+    """Return the file that the catalogue of a folder lists for an ontology, if it exists.
 
-    Raises BadFile for a catalogue that is no XML.
+    Raises BadFile for a catalogue that is not valid XML.
     """
     return _find(folder / FILENAME, iri, set())
 
@@ -45,7 +45,7 @@ def _find(catalogue: Path, iri: str, seen: set[Path]) -> Path | None:
 
 
 def _entries(element: ElementTree.Element, folder: Path) -> Iterator[tuple[ElementTree.Element, Path]]:
-    """The entries of a catalogue and its groups, with the folder that their paths start from."""
+    """Yield the entries of a catalogue and its groups, with the base folder of their paths."""
     folder = _path(folder, element.get(_BASE, "")) or folder
     for child in element:
         yield child, folder
@@ -63,7 +63,7 @@ def _path_of(entry: ElementTree.Element, folder: Path, iri: str) -> Path | None:
 
 
 def _path(folder: Path, uri: str) -> Path | None:
-    """The path of a relative reference or a file's URI; None for what is elsewhere."""
+    """Return the path of a relative reference or file URI, or None for other URIs."""
     parts = urlsplit(uri)
     if parts.scheme not in ("", "file") or parts.netloc not in ("", "localhost"):
         return None

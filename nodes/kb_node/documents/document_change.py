@@ -1,4 +1,4 @@
-"""What a file brings into the map, as a transaction."""
+"""Converts documents to transactions."""
 
 from __future__ import annotations
 
@@ -15,57 +15,62 @@ from semmap.schemas.explanations import Triple
 from semmap.schemas.packing import unpacked
 
 
-def of_document(
+def make_document_transaction(
     semantic_map: SemanticMap, load: LoadDocument, triples: Iterable[Triple]
-) -> tuple[Transaction, abox_document.SortedOut]:
-    """What of an ABox may come into the map, and what is to be said of the rest.
+) -> tuple[Transaction, abox_document.FilteredDocument]:
+    """Return the transaction of an ABox document, and what was filtered from it.
 
-    Raises UnknownClass, BadFile for a TBox, UnknownName for what nobody describes if the load is strict.
+    Raises UnknownClass, BadFile for a TBox, and UnknownName for undescribed individuals if the load is
+    strict.
     """
-    sorted_out = abox_document.sort_out(triples, semantic_map.classes, skip_unknown=load.skip_unknown)
+    filtered = abox_document.filter_document(triples, semantic_map.classes, skip_unknown=load.skip_unknown)
     stays = semantic_map.tbox.__contains__ if load.replace else lambda _: True
-    if found := abox_document.strangers(sorted_out.triples, semantic_map.reasoner, stays):
-        said = abox_document.of_strangers(found)
+    if found := abox_document.find_undescribed(filtered.triples, semantic_map.reasoner, stays):
+        said = abox_document.undescribed_note(found)
         if load.strict:
             raise errors.UnknownName(said)
-        sorted_out.notes.append(f"{said}; --strict refuses such files")
+        filtered.notes.append(f"{said}; --strict rejects such files")
     transaction = _transaction(
         load,
         retract=semantic_map.abox() if load.replace else (),
-        insert=_outside(sorted_out.triples, semantic_map.tbox),
+        insert=_outside(filtered.triples, semantic_map.tbox),
     )
-    return transaction, sorted_out
+    return transaction, filtered
 
 
-def is_all(triples: Sequence[Triple], transaction: Transaction) -> bool:
-    """Is a transaction nothing but what a document says, word by word?"""
+def is_exact_copy(triples: Sequence[Triple], transaction: Transaction) -> bool:
+    """Return whether a transaction inserts exactly the triples of a document."""
     insert = transaction.insert
     return not transaction.retract and len(insert) == len(triples) and all(map(is_, insert, triples))
 
 
 def _outside(triples: list[Triple], tbox: frozenset[Triple]) -> Iterable[Triple]:
-    """Those that the TBox does not say."""
+    """Return the triples that are not in the TBox."""
     said = tbox.intersection(triples)
     return (t for t in triples if t not in said) if said else triples
 
 
-def tbox_of(semantic_map: SemanticMap, load: LoadTBox, *, label_prefix: str) -> list[Triple]:
-    """The triples of a TBox, with its prefixes and what is in space.
+def read_tbox(semantic_map: SemanticMap, load: LoadTBox, *, label_prefix: str) -> list[Triple]:
+    """Return the triples of a TBox with its prefixes and spatial roots.
 
-    The present TBox's declared spatial roots stay until others are declared.
-    Raises BadFile, UnknownClass.
+    The spatial roots that the present TBox declares stay until others are declared. Raises BadFile,
+    UnknownClass.
     """
     content = unpacked(load.content, load.filename)
-    triples = tbox_declarations.declared(
+    triples = tbox_declarations.with_declarations(
         rdf.parse(content, load.filename, label_prefix=label_prefix),
         of_file=rdf.prefixes(content),
         spatial_root=load.spatial_root,
     )
-    return triples if load.spatial_root else tbox_declarations.keeping_roots(triples, semantic_map.classes)
+    return (
+        triples
+        if load.spatial_root
+        else tbox_declarations.with_spatial_roots_of(triples, semantic_map.classes)
+    )
 
 
 def require_no_map(semantic_map: SemanticMap, load: LoadTBox, tbox: Iterable[Triple]) -> None:
-    """Raises BadFile for a TBox that describes what the map has: as a part of it nothing could be changed."""
+    """Raise BadFile for a TBox that describes entities of the map, which could not be changed any more."""
     there = set(tbox_validation.described_by(semantic_map.tbox, semantic_map.classes))
     described = tbox_validation.described_by(tbox, semantic_map.classes)
     if again := [name for name in described if name not in there and semantic_map.find(name) is not None]:
@@ -75,13 +80,15 @@ def require_no_map(semantic_map: SemanticMap, load: LoadTBox, tbox: Iterable[Tri
         )
 
 
-def of_tbox(semantic_map: SemanticMap, load: LoadTBox, tbox: frozenset[Triple]) -> Transaction | None:
-    """What another TBox changes of the ABox: its imports. None if it is the one that holds."""
-    imports, before = tbox_validation.imports(tbox), tbox_validation.imports(semantic_map.tbox)
+def make_tbox_transaction(
+    semantic_map: SemanticMap, load: LoadTBox, tbox: frozenset[Triple]
+) -> Transaction | None:
+    """Return how another TBox changes the imports of the ABox, or None if it is the present TBox."""
+    imports, before = tbox_validation.import_triples(tbox), tbox_validation.import_triples(semantic_map.tbox)
     transaction = _transaction(
         load,
-        retract=(t for t in before if t not in imports and semantic_map.has(t)),
-        insert=(t for t in imports if not semantic_map.has(t)),
+        retract=(t for t in before if t not in imports and semantic_map.is_asserted(t)),
+        insert=(t for t in imports if not semantic_map.is_asserted(t)),
     )
     imports_differ = transaction.retract or transaction.insert
     if not imports_differ and tbox == semantic_map.tbox:

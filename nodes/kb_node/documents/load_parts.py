@@ -1,4 +1,4 @@
-"""A large load in parts, each a transaction of its own: what is done is done, and memory stays bounded."""
+"""Splits a large load into several transactions, which limits memory and keeps completed parts."""
 
 from __future__ import annotations
 
@@ -12,13 +12,16 @@ from semmap.schemas.commits import Commit, Transaction
 from semmap.schemas.explanations import Triple
 
 PART: Final = 100_000
-"""Triples; a part ends with the star that it ends in."""
+"""Triples per part. The last entity of a part is completed."""
 _STAR: Final = 64
-"""Triples of a star, at most."""
+"""Largest number of triples of an entity."""
 
 
-def in_parts(transaction: Transaction, size: int = PART) -> list[Transaction]:
-    """The same, part by part: the last one has its command's id, so that this is done when all are."""
+def split(transaction: Transaction, size: int = PART) -> list[Transaction]:
+    """Split a transaction into parts. Only the last part has the original id.
+
+    The command therefore counts as done only when all parts are.
+    """
     triples = transaction.insert
     ends = list(_ends(triples, size))
     parts = []
@@ -38,7 +41,7 @@ def in_parts(transaction: Transaction, size: int = PART) -> list[Transaction]:
 def commit_each(
     parts: Sequence[Transaction], commit: Callable[[Transaction], Commit | None], tell: Callable[[str], None]
 ) -> list[Commit]:
-    """Those of the parts that change anything. Raises a part's error, which says what is committed."""
+    """Commit the parts and return the commits. Raises the error of a part with the commits made so far."""
     made: list[Commit] = []
     for number, part in enumerate(parts, start=1):
         tell(f"part {number} of {len(parts)}")
@@ -51,7 +54,7 @@ def commit_each(
 
 
 def _ends(triples: Sequence[Triple], size: int) -> Iterator[int]:
-    """Where parts end: before a triple whose subject those right before it do not mention."""
+    """Yield the ends of parts, before a triple whose subject the preceding triples do not mention."""
     end = size
     while end < len(triples):
         near = {term for s, _, o in triples[max(0, end - _STAR) : end] for term in (s, o)}

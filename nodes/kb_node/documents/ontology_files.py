@@ -1,7 +1,7 @@
-"""Ontologies in files, with what they import: found by what a person says, by a catalogue or beside them.
+"""Reads ontology files with their imports, which are found by option, by a catalogue or next to them.
 
-Nothing is fetched from the network. The files become one graph, in which imports have the names of the
-ontologies that were found for them, so that the graph itself tells which are missing.
+Nothing is fetched from the network. The files become one graph. Its imports have the names of the ontologies
+that were found for them, so the graph shows which are missing.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ VERSION = v.iri(f"{v.OWL}versionIRI")
 
 
 class Gathered(NamedTuple):
-    """The ontologies of some files and all that they import, as far as it is there."""
+    """The ontologies of some files with all imports that were found."""
 
     triples: list[Triple]
     files: tuple[Path, ...]
-    """All that were read: first those that were named."""
+    """All files that were read, the named ones first."""
     found: Mapping[str, Path]
-    """Import to file."""
+    """File by import."""
     missing: tuple[str, ...]
-    """The imports for which there is no file."""
+    """The imports without a file."""
     prefixes: Prefixes = MappingProxyType({})
-    """What the files declare; where they differ, what the first says."""
+    """The declared prefixes; if files differ, those of the first file."""
 
 
 class Header(NamedTuple):
-    """What some triples say of the ontologies that they are. IRIs are terms."""
+    """The header triples of ontologies. IRIs are terms."""
 
     ontologies: tuple[Term, ...]
     versions: tuple[Term, ...]
@@ -47,7 +47,7 @@ class Header(NamedTuple):
 
 
 def header(triples: Iterable[Triple]) -> Header:
-    """The ontologies with their versions and imports."""
+    """Return the ontologies with their versions and imports."""
     said: dict[Term, dict[Term, None]] = {v.OWL_ONTOLOGY: {}, VERSION: {}, v.OWL_IMPORTS: {}}
     for s, p, o in triples:
         if p == v.RDF_TYPE and o == v.OWL_ONTOLOGY:
@@ -58,16 +58,16 @@ def header(triples: Iterable[Triple]) -> Header:
 
 
 def missing_imports(triples: Iterable[Triple]) -> tuple[str, ...]:
-    """The IRIs of the imports of a graph that are not in it."""
+    """Return the IRIs of imports that are not in the graph."""
     ontologies, versions, imports = header(triples)
     there = {_plain(term) for term in (*ontologies, *versions)}
     return tuple(v.bare(term) for term in imports if _plain(term) not in there)
 
 
 def gather(named: Sequence[Path], given: Mapping[str, Path]) -> Gathered:
-    """Read ontologies with all that they import, in every syntax; a folder stands for the ontologies in it.
+    """Read ontologies with all imports, in any syntax. A folder stands for the ontologies in it.
 
-    `given` says which file an import is. Raises BadFile for what cannot be read.
+    `given` maps imports to files. Raises BadFile for an unreadable file.
     """
     gathering = _Gathering([path for one in named for path in _files_of(one)], given)
     while gathering.to_read:
@@ -86,7 +86,7 @@ class _Gathering:
         self._stands_for: dict[Term, Path] = {}
 
     def read(self, path: Path) -> None:
-        """Take in a file, and note which others it needs."""
+        """Read a file, and queue its imports."""
         if path in self._read:
             return
         triples = self._read[path] = self._triples(path)
@@ -96,7 +96,7 @@ class _Gathering:
                 self.to_read.append(found)
 
     def gathered(self) -> Gathered:
-        """All files in one graph."""
+        """Return all files in one graph."""
         names = {term: self._name_of(path, term) for term, path in self._stands_for.items()}
         triples: dict[Triple, None] = {}
         for content in self._read.values():
@@ -121,7 +121,7 @@ class _Gathering:
         return declared
 
     def _name_of(self, path: Path, wanted: Term) -> Term:
-        """The ontology of a file that was found for an import: that one, where there are several."""
+        """Return the ontology in a file that was found for an import, or `wanted` if there are several."""
         named = [o for o in header(self._read[path]).ontologies if o.startswith("<")]
         return wanted if wanted in named or not named else named[0]
 
@@ -144,7 +144,7 @@ class _Gathering:
         return None
 
     def _find_in(self, folder: Path, term: Term) -> Path | None:
-        """The file in a folder that is the ontology, or else the one that is called like it."""
+        """Return the file in a folder that contains the ontology, or else has its name."""
         name = unquote(_plain(term).partition("#")[0].rstrip("/").rpartition("/")[2])
         if not name:
             return None
@@ -157,7 +157,7 @@ class _Gathering:
         return called[0].resolve() if called else None
 
     def _is(self, path: Path, term: Term) -> bool:
-        """Is it the file of that ontology? What cannot be read is none."""
+        """Return whether a file contains the ontology. An unreadable file does not."""
         try:
             ontologies, versions, _ = header(self._triples(path.resolve()))
         except errors.BadFile:
@@ -165,14 +165,14 @@ class _Gathering:
         return _plain(term) in {_plain(o) for o in (*ontologies, *versions)}
 
     def _triples(self, path: Path) -> list[Triple]:
-        """The triples of a file, which is parsed once."""
+        """Return the triples of a file, which is parsed once."""
         if path not in self._parsed:
             self._parsed[path] = read(self._called.get(path, path), f"t{len(self._parsed)}x")
         return self._parsed[path]
 
 
 def read(path: Path, label_prefix: str = "") -> list[Triple]:
-    """The triples of a file, its blank nodes named with `label_prefix`. Raises BadFile."""
+    """Return the triples of a file, with `label_prefix` for its blank nodes. Raises BadFile."""
     try:
         content = path.read_bytes()
     except FileNotFoundError:
@@ -183,7 +183,7 @@ def read(path: Path, label_prefix: str = "") -> list[Triple]:
 
 
 def _file_below(folders: Iterable[Path], iri: str) -> Path | None:
-    """The file of a `file:` IRI, if it is below one of these folders: no ontology has any other file read."""
+    """Return the file of a `file:` IRI if it is in one of these folders; other files are never read."""
     if not iri.startswith("file:"):
         return None
     path = Path(unquote(urlsplit(iri).path)).resolve()
@@ -199,7 +199,7 @@ def _files_of(path: Path) -> list[Path]:
 
 
 def _ontologies_in(folder: Path) -> list[Path]:
-    """The files of a folder that are called like ontologies."""
+    """Return the files of a folder with the suffixes of ontologies."""
     try:
         return sorted(
             path
@@ -211,5 +211,5 @@ def _ontologies_in(folder: Path) -> list[Path]:
 
 
 def _plain(term: Term) -> str:
-    """An IRI as it is compared: an ontology's may end in a `#` or `/`, or not."""
+    """Return an IRI for comparison, without a `#` or `/` at its end."""
     return v.bare(term).rstrip("#/") if term.startswith("<") else term

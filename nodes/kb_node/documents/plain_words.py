@@ -1,7 +1,7 @@
-"""What many words of Turtle stand for at once, where that can be told at sight: names and typed literals.
+"""Converts many common words of Turtle to terms at once: prefixed names and typed literals.
 
-Words of one kind are joined, looked at and rewritten as one text, so that no line of Python runs for each of
-them. A kind that is not plain throughout is left out, and looked at word by word elsewhere.
+Words of one kind are joined and rewritten as one text, so that no Python code runs for each word. If some
+words of a kind are unusual, all of them are left out and converted one by one elsewhere.
 """
 
 from __future__ import annotations
@@ -11,17 +11,17 @@ from collections.abc import Callable, Iterable, Mapping
 from semmap.schemas.explanations import Term
 
 _FEWEST = 100
-"""Words of a kind; fewer are looked at as quickly one by one."""
+"""Words of a kind below which converting them one by one is as fast."""
 _MOST_KINDS = 20
 
 
 def plain_terms(
     words: Iterable[str], namespaces: Mapping[str, str], datatype: Callable[[str], Term | None]
 ) -> dict[str, Term]:
-    """The terms of those of some words that are plain, and have many others of their kind beside them.
+    """Return the terms of those words that are common and have many others of their kind.
 
-    `namespaces` are those of plain prefixes; `datatype(word)` is that of a literal whose text stays as it is,
-    None for any other.
+    `namespaces` are those of common prefixes. `datatype(word)` returns the datatype if its literals keep
+    their text, or None.
     """
     names: dict[str, list[str]] = {}
     literals: dict[str, list[str]] = {}
@@ -47,7 +47,7 @@ def plain_terms(
 
 
 def _names(words: list[str], prefix: str, namespace: str) -> list[Term]:
-    """IRIs of words that begin with `prefix:`; none if some may need a closer look."""
+    """Return the IRIs of words that begin with `prefix:`, or none if some are unusual."""
     text = "\n".join(("", *words, ""))
     begin = f"\n{prefix}:"
     locals_ = text.replace(begin, "")
@@ -59,7 +59,7 @@ def _names(words: list[str], prefix: str, namespace: str) -> list[Term]:
 
 
 def _literals(words: list[str], kind: str, datatype: Term) -> list[Term]:
-    """Literals of words that begin with `"` and end with `^^kind`; none if some may need a closer look."""
+    """Return the literals of words that end with `^^kind`, or none if some are unusual."""
     text = "\n".join(("", *words, ""))
     end = f'"^^{kind}\n'
     if text.count('"') != 2 * len(words) or text.count(end) != len(words) or f"\n{end}" in text:

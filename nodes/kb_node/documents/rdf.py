@@ -1,7 +1,7 @@
-"""Documents in and out, in every syntax of RDF, and in those of OWL; terms are strings in N-Triples form.
+"""Import and export in all RDF syntaxes, and import in OWL syntaxes. Terms are strings in N-Triples form.
 
-Oxigraph reads and writes RDF: strict, fast, never on the network, and every literal comes back as it went.
-Large plain Turtle is read faster, to the same outcome (`plain_turtle.py`). OWL's own syntaxes are only read
+Oxigraph reads and writes RDF: strictly, fast, without network access, and without changing literals. Large
+Turtle files are read faster with the same result (`plain_turtle.py`). The OWL syntaxes are only read
 (`owl/`).
 """
 
@@ -17,7 +17,7 @@ from xml.parsers import expat
 import pyoxigraph
 
 from semmap.nodes.kb_node.documents import plain_turtle
-from semmap.nodes.kb_node.documents.fault_lines import line_of_fault
+from semmap.nodes.kb_node.documents.error_lines import find_error_line
 from semmap.nodes.kb_node.documents.owl import syntaxes as owl_syntaxes
 from semmap.nodes.kb_node.documents.owl.syntaxes import OwlSyntax
 from semmap.ontology import vocabulary as v
@@ -32,7 +32,7 @@ _SYNTAX = {
     "ntriples": pyoxigraph.RdfFormat.N_TRIPLES,
     "jsonld": pyoxigraph.RdfFormat.JSON_LD,
 }
-_SPOKEN: dict[RdfFormat | OwlSyntax, str] = {
+_SYNTAX_NAMES: dict[RdfFormat | OwlSyntax, str] = {
     "rdfxml": "RDF/XML",
     "turtle": "Turtle",
     "ntriples": "N-Triples",
@@ -47,9 +47,9 @@ MEDIA_TYPES: dict[str, str] = {
     "ntriples": "application/n-triples",
     "jsonld": "application/ld+json",
 }
-_TOLD_EVERY = 50_000
+_PROGRESS_EVERY = 50_000
 _LARGE = 1 << 20
-"""Bytes from which on it pays to look whether a document can be read faster."""
+"""Bytes from which it is worth trying the fast reader."""
 _BOM = b"\xef\xbb\xbf"
 _XML = re.compile(rb"\s*<(\?xml|!DOCTYPE|!--|[\w.:-]+\s[^>]*\bxmlns)")
 _JSON = re.compile(rb"\s*(\{|\[\s*(\{|\]\s*\Z))")
@@ -57,12 +57,12 @@ _LINE = re.compile(r"\bline \d")
 _NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 
 
-_LONG_WORD = "buffer maximal size"
-"""What pyoxigraph says, as a MemoryError, of a term that does not fit into its buffer."""
+_BUFFER_ERROR = "buffer maximal size"
+"""The text of pyoxigraph's MemoryError for a term that does not fit into its buffer."""
 
 
 def syntax_of(content: bytes) -> RdfFormat | OwlSyntax:
-    """The syntax that `content` begins like: Turtle (of which N-Triples is a part) when like no other."""
+    """Return the syntax that `content` begins like; Turtle, which includes N-Triples, by default."""
     if _XML.match(content):
         return "owlxml" if owl_syntaxes.is_owl_xml(content) else "rdfxml"
     return "jsonld" if _JSON.match(content) else owl_syntaxes.owl_syntax_of(content) or "turtle"
@@ -71,9 +71,9 @@ def syntax_of(content: bytes) -> RdfFormat | OwlSyntax:
 def parse(
     content: bytes, filename: str, *, label_prefix: str = "", progress: Callable[[int], None] = lambda _: None
 ) -> list[Triple]:
-    """The triples of a document. Blank nodes get `label_prefix`, so that those of two files do not meet.
+    """Return the triples of a document. Blank nodes get `label_prefix`, so that those of two files differ.
 
-    `progress` is told now and then how many there are so far. Raises BadFile with the place of the fault.
+    `progress` receives the number of triples now and then. Raises BadFile with the position of the error.
     """
     name = filename or "the document"
     content = content.removeprefix(_BOM)
@@ -101,23 +101,23 @@ def parse(
     except (SyntaxError, ValueError) as error:
         reason = _reason(error)
         if syntax in ("rdfxml", "jsonld") and isinstance(error, SyntaxError) and not _LINE.search(reason):
-            line = line_of_fault(content, _SYNTAX[syntax], v.ABOX)
+            line = find_error_line(content, _SYNTAX[syntax], v.ABOX)
             reason += f" (line {line})" if syntax == "rdfxml" else f" (at or before line {line})"
-        raise errors.BadFile(f"{name} is not valid {_SPOKEN[syntax]}: {reason}") from None
+        raise errors.BadFile(f"{name} is not valid {_SYNTAX_NAMES[syntax]}: {reason}") from None
     except MemoryError as error:
-        if _LONG_WORD not in str(error):
+        if _BUFFER_ERROR not in str(error):
             raise
         raise errors.BadFile(
-            f"{name} is not valid {_SPOKEN[syntax]}: it has a word or a text of more than 16 MB"
+            f"{name} is not valid {_SYNTAX_NAMES[syntax]}: it has a word or a text of more than 16 MB"
         ) from None
 
 
 def _triples(
     quads: Iterable[pyoxigraph.Quad], label_prefix: str, progress: Callable[[int], None]
 ) -> list[Triple]:
-    """The triples as text; the same term is the same object, which is what bounds the memory of big files.
+    """Return the triples as text. Equal terms are the same object, which limits the memory of large files.
 
-    A quad is put into words once rather than its terms one by one, which takes half the time.
+    Formatting a whole quad takes half the time of formatting its terms.
     """
     terms: dict[str, str] = {}
     shared = terms.setdefault
@@ -134,13 +134,13 @@ def _triples(
         if o[0] == "_" or o[:2] == "<<":
             o = _label(o, label_prefix)
         add((s, shared(p, p), shared(o, o)))
-        if len(triples) % _TOLD_EVERY == 0:
+        if len(triples) % _PROGRESS_EVERY == 0:
             progress(len(triples))
     return triples
 
 
 def _label(term: str, label_prefix: str) -> str:
-    """A blank node with its prefix."""
+    """Return a blank node with its prefix."""
     if not term.startswith("_:"):
         raise ValueError("it makes a statement about a triple, which OWL cannot express")
     return f"_:{label_prefix}{term[2:]}"
@@ -160,27 +160,26 @@ def _reason(error: Exception) -> str:
 
 
 def _require_well_formed(content: bytes) -> None:
-    """Oxigraph takes an end within elements for the end of the document, and unfolds entities without bounds.
+    """Check with Expat that XML is complete and that its entities are limited.
 
-    Expat notices the one and bounds the other. Raises ValueError.
+    Oxigraph accepts a document that ends within an element, and expands entities without limit. Raises
+    ValueError.
     """
     parser = expat.ParserCreate()
-    parser.EntityDeclHandler = _require_within
+    parser.EntityDeclHandler = _reject_external_entity
     try:
         parser.Parse(content, True)
     except expat.ExpatError as error:
         raise ValueError(str(error)) from None
 
 
-def _require_within(name: str, _: bool, text: str | None, *where: str | None) -> None:
+def _reject_external_entity(name: str, _: bool, text: str | None, *where: str | None) -> None:
     if text is None:
-        raise ValueError(
-            f"the entity '{name}' is elsewhere ({where[1]}), and nothing but this document is read"
-        )
+        raise ValueError(f"the external entity '{name}' ({where[1]}) is not allowed")
 
 
 def prefixes(content: bytes) -> dict[str, str]:
-    """Prefix to namespace, as a document that `parse` reads declares them before its first triple."""
+    """Return the prefixes that a document declares before its first triple, with their namespaces."""
     content = content.removeprefix(_BOM)
     syntax = syntax_of(content)
     if syntax == "functional" or syntax == "manchester" or syntax == "owlxml":
@@ -194,9 +193,9 @@ def prefixes(content: bytes) -> dict[str, str]:
 def serialise(
     triples: Iterable[Triple], syntax: RdfFormat, prefixes: Prefixes = MappingProxyType(v.PREFIXES)
 ) -> bytes:
-    """A document in which `triples` are sorted and prefixed; `parse` gives them back.
+    """Return a document with sorted and prefixed triples, which `parse` reads back unchanged.
 
-    Raises Refused for a text that the syntax cannot hold.
+    Raises Refused for a text that the syntax cannot express.
     """
     lines = "".join(sorted(f"{s} {p} {o} .\n" for s, p, o in triples)).encode()
     if syntax == "ntriples":
@@ -211,7 +210,7 @@ def serialise(
 
 
 def _as_xml(document: bytes) -> bytes:
-    """What an XML reader would change or not accept: line ends are escaped, control characters refused."""
+    """Escape line ends, which XML readers change. Raises Refused for control characters."""
     if found := _NOT_XML.search(document.decode()):
         raise errors.Refused(f"RDF/XML cannot hold the character {found[0]!r}; export as Turtle instead")
     return document.replace(b"\r", b"&#13;")

@@ -1,4 +1,4 @@
-"""Terms that come over the wire: are they RDF at all?"""
+"""Validation of RDF terms that are received over the wire."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _TRIPLE = re.compile(rf"(?:{_IRI}|{_BLANK}) {_IRI} (?:{_IRI}|{_BLANK}|{_LITERAL}
 
 
 def require_triples(triples: Iterable[Triple]) -> None:
-    """Raises BadRequest for one that is not of RDF terms in N-Triples syntax."""
+    """Raise BadRequest for a triple that is not valid N-Triples."""
     for triple in triples:
         line = " ".join(triple)
         if not _TRIPLE.fullmatch(line):

@@ -1,1 +1,1 @@
-"""Entities and their stars: read from triples, changed in triples, and the table of their classes."""
+"""Entities and their triples: reading, writing, and the class and property tables."""

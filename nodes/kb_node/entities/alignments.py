@@ -1,7 +1,7 @@
-"""Other people's vocabularies: which of their classes are things in space, and how poses are said in them.
+"""Alignments with other vocabularies: their spatial classes, and how they express poses.
 
-Each is a file of `ontology/alignments/`; docs/ontologies.md says what may stand in one. An alignment holds
-for a TBox that has classes or properties in one of its namespaces.
+Each alignment is a file in `ontology/alignments/`; docs/ontologies.md describes the format. An alignment
+applies to a TBox with classes or properties in one of its namespaces.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from semmap.schemas.explanations import Term
 _PLAIN = frozenset({"title", "prefixes", "order", "origin", "why"})
 
 Path = Annotated[tuple[Term, ...], Meta(max_length=8)]
-"""Properties to follow from an entity to the individual that says it; of several objects the least counts."""
+"""Properties to follow from an entity to the individual with the value; the smallest object is used."""
 
 
-class PoseWords(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """How a pose is said: at the end of `path`, as text of numbers."""
+class PoseMapping(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """How a pose is expressed: at the end of `path`, as text with numbers."""
 
     path: Path = ()
     position: Term
@@ -35,13 +35,13 @@ class PoseWords(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Property: four numbers, a unit quaternion."""
     order: Literal["xyzw", "wxyz"] = "xyzw"
     origin: Literal["middle", "bottom"] = "middle"
-    """What of the thing is at the position: the middle of its box, or the middle of its bottom."""
+    """The point of the entity at the position: the centre of its box, or of its bottom."""
     relative: Term | None = None
-    """Property of a pose that is not in the map frame: such a one is not read."""
+    """Property of a pose that is not in the map frame. Such a pose is not read."""
 
 
-class SizeWords(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """How an extent along the body's own axes is said: at the end of `path`, a property each [m]."""
+class SizeMapping(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """How a size along the body's axes is expressed: at the end of `path`, one property per axis [m]."""
 
     path: Path = ()
     x: Term
@@ -49,13 +49,13 @@ class SizeWords(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     z: Term
 
 
-class SetAside(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """A statement of the ontology that does not count, because no map could be kept with it."""
+class IgnoredStatement(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A statement of the ontology that is ignored, because it would make every map inconsistent."""
 
     triple: tuple[Term, Term, Term]
     why: str
     instead: tuple[Term, Term, Term] | None = None
-    """What counts in its place."""
+    """The statement to use in its place."""
 
 
 class Alignment(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -64,26 +64,26 @@ class Alignment(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     title: str
     prefixes: dict[str, str]
     namespaces: tuple[str, ...]
-    """Prefixes: a TBox with classes or properties in one of them speaks this vocabulary."""
+    """Prefixes. The alignment applies to a TBox with classes or properties in one of them."""
     things: tuple[Term, ...] = ()
-    """Roots of the classes of things in space."""
+    """Roots of the spatial classes."""
     places: tuple[Term, ...] = ()
-    """Roots of the classes of places: they never have a body."""
+    """Roots of the classes of places, which never have a body."""
     solid: tuple[Term, ...] = ()
-    """Roots of the classes that have bodies all the same: a wall, where that is below a place."""
+    """Roots of classes that have bodies although they are below a place, such as a wall."""
     fixed: tuple[Term, ...] = ()
-    """Roots of the classes whose bodies stay where they are put."""
+    """Roots of the classes with fixed bodies."""
     names: tuple[Term, ...] = ()
-    """Properties of what people call a thing, the best first."""
-    pose: tuple[PoseWords, ...] = ()
-    size: tuple[SizeWords, ...] = ()
-    set_aside: tuple[SetAside, ...] = ()
+    """Properties with the name of an entity, best first."""
+    pose: tuple[PoseMapping, ...] = ()
+    size: tuple[SizeMapping, ...] = ()
+    set_aside: tuple[IgnoredStatement, ...] = ()
     relations: dict[Literal["isOn", "isInside", "isLocatedIn"], Term] = {}
-    """Relation that can be measured to the property by which the vocabulary states it."""
+    """By measurable relation: the property for it in the vocabulary."""
 
     @property
     def edges(self) -> frozenset[Term]:
-        """The properties that lead from an entity to the individuals that describe it, and on."""
+        """The properties that lead from an entity to the individuals that describe it."""
         return frozenset(p for path in self._paths for p in path)
 
     @property
@@ -91,27 +91,27 @@ class Alignment(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
         return (*(words.path for words in self.pose), *(words.path for words in self.size))
 
     @property
-    def first_words(self) -> frozenset[Term]:
-        """The properties by which an entity itself begins to say where it is, how big, how called."""
+    def entry_properties(self) -> frozenset[Term]:
+        """The properties of an entity itself from which its pose, size or name is found."""
         poses = {words.path[0] if words.path else words.position for words in self.pose}
         sizes = {words.path[0] if words.path else words.x for words in self.size}
         return frozenset((*poses, *sizes, *self.names, v.RDFS_LABEL))
 
 
-def of_namespaces(namespaces: Iterable[str]) -> tuple[Alignment, ...]:
-    """The shipped alignments of the vocabularies with these namespaces."""
+def find_for_namespaces(namespaces: Iterable[str]) -> tuple[Alignment, ...]:
+    """Return the shipped alignments for these namespaces."""
     there = set(namespaces)
     return tuple(known for known in shipped() if not there.isdisjoint(known.namespaces))
 
 
 @cache
 def shipped() -> tuple[Alignment, ...]:
-    """All that come with semmap, by file name."""
+    """Return all shipped alignments in the order of file names."""
     return tuple(read(path.read_text(), path.name) for path in sorted(ALIGNMENTS.glob("*.toml")))
 
 
 def read(text: str, name: str) -> Alignment:
-    """The alignment in a file's text. Raises BadFile."""
+    """Parse an alignment file. Raises BadFile."""
     try:
         raw = tomllib.loads(text)
         prefixes = msgspec.convert(raw.get("prefixes", {}), dict[str, str])
@@ -123,7 +123,7 @@ def read(text: str, name: str) -> Alignment:
 
 
 def _resolved(value: Any, prefixes: Mapping[str, str], key: str = "") -> Any:
-    """What a file says, with terms for prefixed names."""
+    """Return the content of a file with terms for prefixed names."""
     if key in _PLAIN:
         return value
     if isinstance(value, dict):

@@ -1,4 +1,4 @@
-"""The class table: what commands need to know of the TBox, worked out once when it is loaded."""
+"""The class table: the information on TBox classes that commands need, computed once per TBox."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ _LABELS = (v.RDFS_LABEL, v.SKOS_PREF_LABEL, v.SKOS_ALT_LABEL)
 
 
 class Kind(NamedTuple):
-    """What the classes of an entity say of it. Names are those of the class table."""
+    """What the classes of an entity imply. Names are those of the class table."""
 
     class_name: str
-    """The most special spatial class that is asserted, or else the most special one that follows."""
+    """The most specific asserted spatial class, or else the most specific inferred one."""
     types: tuple[str, ...]
     place: bool
     fixed: bool
@@ -39,7 +39,7 @@ class Kind(NamedTuple):
 
 
 class ClassTable:
-    """The named classes of a TBox: which are of things in space, which are places, what they look like."""
+    """The named classes of a TBox: which are spatial, which are places, and their models."""
 
     def __init__(self, reasoner: Reasoner) -> None:
         self._reasoner = reasoner
@@ -52,38 +52,42 @@ class ClassTable:
             (prefixes.split(term)[0] for term in (*classes, *self.properties) if term.startswith("<")),
             prefixes.declared_in(reasoner.asserted(None, prefixes.PREFERRED_PREFIX, None)),
         )
-        """Those of the namespaces in which the TBox has classes and properties."""
+        """The prefixes of the namespaces in which the TBox has classes and properties."""
         self.names: dict[Term, str] = prefixes.names(classes, self.prefixes)
-        """Class to name: its local name, with a prefix where several classes share that."""
+        """Class to name: its local name, with a prefix if several classes share it."""
         self.iris = {name: c for c, name in self.names.items()}
         self.prefixed: dict[Term, str] = {c: prefixes.prefixed(c, self.prefixes) for c in self.names}
-        """Class to name with its prefix, which always means that class."""
+        """Class to name with its prefix, which is always unambiguous."""
         reasoner.words.disambiguate(self.prefixed)
-        self.alignments: tuple[Alignment, ...] = alignments.of_namespaces(self.prefixes.values())
-        """Those that say how the TBox's vocabulary tells positions, sizes and names."""
+        self.alignments: tuple[Alignment, ...] = alignments.find_for_namespaces(self.prefixes.values())
+        """The alignments that apply to the TBox."""
         self.edges = frozenset(stars.STAR_PROPERTIES).union(*(known.edges for known in self.alignments))
-        """The properties that lead from an entity to the individuals that describe it, and on."""
-        self.first_words = frozenset[Term]().union(*(known.first_words for known in self.alignments))
-        """The alignments' properties by which an entity begins to describe itself."""
+        """The properties that lead from an entity to the individuals that describe it."""
+        self.entry_properties = frozenset[Term]().union(
+            *(known.entry_properties for known in self.alignments)
+        )
+        """The properties of alignments by which an entity begins to describe itself."""
         self.declared_roots = tuple(
             sorted(s for s, _, o in reasoner.asserted(None, v.SPATIAL, None) if o in _TRUE)
         )
-        """Those that the TBox or whoever loaded it calls so, in so many words."""
+        """The roots that the TBox or the option `--spatial-root` declares."""
         self.spatial_roots: tuple[Term, ...] = tuple(self._spatial_roots())
-        """The classes whose instances, and those of whose subclasses, are things in space."""
+        """The roots of the spatial classes."""
         self.spatial: frozenset[Term] = self._named_below(*self.spatial_roots)
         self._solid = self._named_below(*(c for known in self.alignments for c in known.solid))
         places = self._named_below(v.LOCATION, *(c for known in self.alignments for c in known.places))
         self.places: frozenset[Term] = places - self._solid
         self.property_names = PropertyNames(reasoner, self.properties, self.prefixes)
-        self.stated = PropertyTable(
-            reasoner, self.property_names, self.names, self.prefixes, self.edges | self.first_words
+        self.property_table = PropertyTable(
+            reasoner, self.property_names, self.names, self.prefixes, self.edges | self.entry_properties
         )
         self._depth = {c: len(reasoner.superclasses(c)) for c in self.names}
         self._parents = {c: tuple(self._named_parents(c)) for c in self.names}
         named = {**self.names, **self.property_names.names}
-        self.told_apart: dict[Term, str] = {t: name for t, name in named.items() if name != v.local_name(t)}
-        """The classes and properties whose names have a prefix, because others are called alike."""
+        self.qualified_names: dict[Term, str] = {
+            t: name for t, name in named.items() if name != v.local_name(t)
+        }
+        """The classes and properties whose names have a prefix because they are ambiguous."""
         self.models: dict[Term, str] = {c: self._nearest(c, v.MODEL) for c in self.names}
         built_in = self._named_below(*(c for known in self.alignments for c in known.fixed))
         self.fixed: frozenset[Term] = frozenset(
@@ -92,13 +96,13 @@ class ClassTable:
         self.limits = thresholds.read_thresholds(
             lambda p, a: (o for _, _, o in reasoner.asserted(p, a, None))
         )
-        """When the spatial relations hold."""
+        """The thresholds of the spatial relations."""
         self._spoken: dict[frozenset[Term], tuple[str, ...]] = {}
         self._kinds: dict[tuple[frozenset[Term], frozenset[Term]], Kind | None] = {}
 
     @cached_property
-    def number_kinds(self) -> dict[Term, Term]:
-        """The kind of number that properties ask for: a star's, and with alignments all of the TBox."""
+    def number_datatypes(self) -> dict[Term, Term]:
+        """The numeric datatypes of properties: those of semmap, and with alignments all of the TBox."""
         known = dict.fromkeys((*v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ, *v.SIZE_XYZ), v.XSD_FLOAT)
         if self.alignments:
             for p in self.properties:
@@ -107,7 +111,7 @@ class ClassTable:
         return known
 
     def _number_kind(self, p: Term, seen: frozenset[Term]) -> Term | None:
-        """The number that is the range of a property, or of one above it."""
+        """Return the numeric datatype in the range of a property or of its superproperties."""
         kinds = {o for _, _, o in self._reasoner.asserted(p, v.RDFS_RANGE, None)}.intersection(_NUMBERS)
         if kinds:
             return min(kinds)
@@ -117,18 +121,18 @@ class ClassTable:
 
     @property
     def ambiguous(self) -> dict[str, tuple[str, ...]]:
-        """Each local name that several classes share, with the names that tell them apart."""
+        """The local names that several classes share, with the unambiguous names."""
         shared = prefixes.told_apart(self.names.keys(), self.prefixes)
         return {local: tuple(names) for local, names in shared.items()}
 
-    def special_first(self, types: Iterable[Term]) -> list[Term]:
-        """Those of `types` that are named classes of the TBox, the most special one first."""
+    def most_specific_first(self, types: Iterable[Term]) -> list[Term]:
+        """Return those of `types` that are named classes of the TBox, the most specific first."""
         return sorted((t for t in types if t in self.names), key=lambda c: (-self._depth[c], c))
 
     def kind(self, types: frozenset[Term], asserted: frozenset[Term]) -> Kind | None:
-        """What an individual is that has these classes, some of them asserted; None if it is no entity.
+        """Return what these classes imply for an individual, or None if it is not an entity.
 
-        A map has few combinations of classes, so each is worked out once.
+        A map has few combinations of classes, so each is computed once.
         """
         try:
             return self._kinds[types, asserted]
@@ -136,15 +140,15 @@ class ClassTable:
             found = self._kinds[types, asserted] = self._kind(types, asserted)
             return found
 
-    def spoken_types(self, types: frozenset[Term]) -> tuple[str, ...]:
-        """The names of an individual's classes, the most special ones first."""
+    def type_names(self, types: frozenset[Term]) -> tuple[str, ...]:
+        """Return the names of an individual's classes, the most specific first."""
         known = self._spoken.get(types)
         if known is None:
-            known = self._spoken[types] = tuple(self.names[t] for t in self.special_first(types))
+            known = self._spoken[types] = tuple(self.names[t] for t in self.most_specific_first(types))
         return known
 
     def _kind(self, types: frozenset[Term], asserted: frozenset[Term]) -> Kind | None:
-        named = self.special_first(types)
+        named = self.most_specific_first(types)
         spatial = [t for t in named if t in self.spatial]
         if not spatial:
             return None
@@ -159,11 +163,11 @@ class ClassTable:
 
     @cached_property
     def rows(self) -> list[ClassInfo]:
-        """One row a class, by name, without counts."""
+        """One row per class, by name, without counts."""
         return sorted(map(self._row, self.names), key=lambda row: row.name)
 
-    def counted(self, entities: Iterable[Entity]) -> Iterator[ClassInfo]:
-        """The rows with the number of entities of each class, asserted and inferred."""
+    def with_counts(self, entities: Iterable[Entity]) -> Iterator[ClassInfo]:
+        """Return the rows with the number of asserted and inferred entities of each class."""
         asserted: dict[str, int] = {}
         inferred: dict[str, int] = {}
         for entity in entities:
@@ -177,7 +181,7 @@ class ClassTable:
 
     @cached_property
     def index(self) -> NameIndex:
-        """Finds a class by what people call it."""
+        """An index of classes by names and labels."""
         return NameIndex(
             Named(row.name, row.iri, row.prefixed, (*row.labels.values(), *row.also)) for row in self.rows
         )
@@ -196,7 +200,9 @@ class ClassTable:
             iri=v.bare(c),
             prefixed=self.prefixed[c],
             parents=tuple(self.names[p] for p in self._parents[c]),
-            ancestors=tuple(self.names[a] for a in self.special_first(self._reasoner.superclasses(c) - {c})),
+            ancestors=tuple(
+                self.names[a] for a in self.most_specific_first(self._reasoner.superclasses(c) - {c})
+            ),
             labels=labels,
             also=tuple(also),
             comment=v.lexical(comments[0]) if comments else "",
@@ -207,10 +213,10 @@ class ClassTable:
         )
 
     def _spatial_roots(self) -> list[Term]:
-        """What the TBox says (`dm:spatial`, the domain of hasPosition, Physical_Thing), else its alignments.
+        """Return the declared spatial roots, or else those of the alignments.
 
-        A TBox that speaks the household's language and says none of it means all but its Properties. Of any
-        other TBox nobody knows, and nothing of it is in space until somebody says what is.
+        A root is declared by `dm:spatial`, the domain of hasPosition, or Physical_Thing. In a household TBox
+        without any of these, all classes except properties are spatial. In any other TBox, none is.
         """
         asserted = self._reasoner.asserted
         said = set(self.declared_roots) or {o for _, _, o in asserted(v.HAS_POSITION, v.RDFS_DOMAIN, None)}
@@ -229,12 +235,12 @@ class ClassTable:
         )
 
     def _nearest(self, c: Term, annotation: Term) -> str:
-        """The value of `annotation` at `c` or its nearest ancestor, breadth first; "" when there is none."""
+        """Return the value of `annotation` at `c` or its nearest ancestor, breadth first, or ""."""
         seen, level = set[Term](), [c]
         while level:
             for ancestor in level:
                 if values := [value for _, _, value in self._reasoner.asserted(ancestor, annotation, None)]:
-                    return v.lexical(min(values))  # of several always the same one, after a restart too
+                    return v.lexical(min(values))  # the smallest, so that it is the same after a restart
             seen.update(level)
             level = [p for a in level for p in self._parents.get(a, ()) if p not in seen]
         return ""

@@ -1,4 +1,4 @@
-"""Entities and their stars, read from the triples."""
+"""Reads entities from triples."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from itertools import islice
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.entities import aligned
+from semmap.nodes.kb_node.entities import aligned_values
 from semmap.nodes.kb_node.entities.class_table import ClassTable, Kind
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import stars
@@ -25,21 +25,21 @@ from semmap.schemas.joints import OPENING, SWITCHING
 _NAME = re.compile(NAME_PATTERN)
 _FEW = 16
 _MANY_TRIPLES = 100
-"""For one subject: to look through so many takes longer than to look it up."""
-_LONGEST_WAY = 8
+"""Triples per subject beyond which looking it up is faster than scanning."""
+_MAX_PATH = 8
 _IRI = re.compile("<(https?|urn|file):", re.IGNORECASE)
 _OF_THE_TBOX = Provenance(commit=0, stamp_ns=0, source="file", reason="the TBox says so")
 
 
 Objects = Mapping[Term, Sequence[Term]]
-"""What is asserted of a subject: predicate to objects."""
+"""The asserted objects of a subject by predicate."""
 About = Callable[[Term], Objects]
 
 
 def about(reasoner: Reasoner, triples: Collection[Triple], new: Set[Term]) -> About:
-    """What is asserted of each subject; of `new` ones, `triples` hold all there is.
+    """Return a lookup of what is asserted about a subject. `triples` contain everything about `new` ones.
 
-    Where these are few among very many, they are looked up as well.
+    If these are few among very many triples, they are looked up in the reasoner, too.
     """
     if len(triples) > _MANY_TRIPLES * len(new):
         return reasoner.about
@@ -58,11 +58,10 @@ def read_entity(
     provenance: Provenance,
     about: About | None = None,
 ) -> Entity | None:
-    """The Entity that the triples about `iri` describe, all of it by `provenance`; None if it is no entity.
+    """Return the entity that the triples about `iri` describe, or None if it is not an entity.
 
-    `about` is where to look the triples up, if not in the reasoner. Raises BadRequest for an entity that
-    cannot be named, or whose star makes no sense: a number that is none, is not finite or is out of all
-    bounds, a size that is not positive.
+    All of it gets `provenance`. `about` is a lookup to use in place of the reasoner. Raises BadRequest for an
+    entity without a valid name, or with an invalid number or size.
     """
     types = reasoner.types(iri)
     if types.isdisjoint(classes.spatial):
@@ -70,15 +69,15 @@ def read_entity(
     about = about or reasoner.about
     said = about(iri)
     if classes.alignments and iri.startswith("_:"):
-        return None  # a part that somebody describes without naming it: nobody could ask for it
+        return None  # an unnamed part, which clients cannot refer to
     kind = classes.kind(types, frozenset(said.get(v.RDF_TYPE, ())))
     if kind is None:
         raise errors.InternalError(f"{iri} is a spatial individual without a class")
     pose, size_m = read_place(about, classes, iri)
     preferred = _references(about, said.get(v.HAS_PREFERRED_REFERENCE, ()))
     if classes.alignments:
-        preferred = preferred or aligned.names(classes.alignments, about, iri)[:1]
-    return entity_of(
+        preferred = preferred or aligned_values.names(classes.alignments, about, iri)[:1]
+    return make_entity(
         iri,
         kind,
         provenance,
@@ -86,31 +85,31 @@ def read_entity(
         size_m=size_m,
         preferred=preferred,
         alternatives=_references(about, said.get(v.HAS_ALTERNATIVE_REFERENCE, ())),
-        conflict="; ".join(sorted(map(_said, said.get(v.CONFLICTING_OBSERVATION, ())))),
+        conflict="; ".join(sorted(map(_text, said.get(v.CONFLICTING_OBSERVATION, ())))),
         tracked=_tracked(iri, said.get(v.TRACKED_FROM, ())),
         model=stated_model(said),
-        properties=classes.stated.stated(said),
+        properties=classes.property_table.read_values(said),
     )
 
 
 def read_place(about: About, classes: ClassTable, iri: Term) -> tuple[Pose | None, Size | None]:
-    """Where a thing is and how large: of a place with a polygon for its extent, the upright box around that.
+    """Return the pose and size; for a place with a polygon as extent, those of the box around it.
 
-    Raises BadRequest for numbers that make no sense, and for an extent that is no polygon.
+    Raises BadRequest for invalid numbers or an invalid polygon.
     """
     said = about(iri)
     size_m = _size(about, iri, said.get(v.HAS_SIZE, ()))
     pose = _pose(about, iri, said.get(v.HAS_POSITION, ()))
     if classes.alignments:
-        size_m = size_m or aligned.size(classes.alignments, about, iri)
-        pose = pose or aligned.pose(classes.alignments, about, iri, size_m)
+        size_m = size_m or aligned_values.size(classes.alignments, about, iri)
+        pose = pose or aligned_values.pose(classes.alignments, about, iri, size_m)
     if v.HAS_EXTENT in said:
         return _around(iri, said[v.HAS_EXTENT], pose, size_m)
     return pose, size_m
 
 
 def _around(iri: Term, extents: Sequence[Term], pose: Pose | None, size_m: Size | None) -> tuple[Pose, Size]:
-    """The box around an extent, on the floor and as high as is said. Raises BadRequest."""
+    """Return the box around an extent, with the given floor and height. Raises BadRequest."""
     text = min(extents)
     try:
         polygon = polygons.read_wkt(v.lexical(text) if text.startswith('"') else text)
@@ -122,7 +121,7 @@ def _around(iri: Term, extents: Sequence[Term], pose: Pose | None, size_m: Size 
     return Pose(position_m=at), size
 
 
-def entity_of(
+def make_entity(
     iri: Term,
     kind: Kind,
     provenance: Provenance,
@@ -136,10 +135,10 @@ def entity_of(
     model: str = "",
     properties: dict[str, Stated] | None = None,
 ) -> Entity:
-    """The entity of a kind whose star says this, all of it by `provenance`.
+    """Return an entity with these values, all with `provenance`.
 
-    Of several preferred references the first in the alphabet counts. `model` is what is stated of that, or ""
-    where the class, the name and the size say it. Raises BadRequest for one that cannot be named.
+    Of several labels the first in the alphabet is used. `model` is the stated model, or "" if it follows from
+    class, name and size. Raises BadRequest for an invalid name.
     """
     name = _name(iri, kind.class_name)
     stated = properties or {}
@@ -168,21 +167,21 @@ def entity_of(
     )
 
 
-def model_of(known: Entity, classes: ClassTable, said: Objects, size_m: Size | None) -> str:
-    """The model of an entity of the same class of which this is asserted, of this size."""
+def choose_model(known: Entity, classes: ClassTable, said: Objects, size_m: Size | None) -> str:
+    """Return the model of an entity of the same class with these assertions and this size."""
     class_ = classes.iris.get(known.class_)
     usual = known.model if class_ is None else classes.models[class_]
     return stated_model(said) or chosen(usual, known.name, size_m)
 
 
 def stated_model(said: Objects) -> str:
-    """The model that an entity is stated to have, or ""."""
+    """Return the model that is stated for an entity, or ""."""
     terms = said.get(v.MODEL, ())
-    return _said(min(terms)) if terms else ""
+    return _text(min(terms)) if terms else ""
 
 
-def moved(reasoner: Reasoner, known: Entity, provenance: Provenance) -> Entity:
-    """`known` where it is now, of whose star nothing but coordinates is otherwise. Raises BadRequest."""
+def read_moved(reasoner: Reasoner, known: Entity, provenance: Provenance) -> Entity:
+    """Return `known` at its new pose, if nothing but coordinates has changed. Raises BadRequest."""
     iri = v.iri(known.iri)
     said = reasoner.about(iri)
     pose = _pose(reasoner.about, iri, said.get(v.HAS_POSITION, ()))
@@ -192,7 +191,7 @@ def moved(reasoner: Reasoner, known: Entity, provenance: Provenance) -> Entity:
 
 
 def read_again(reasoner: Reasoner, classes: ClassTable, known: Entity) -> Entity | None:
-    """An entity as this code reads it, changed when it was; None if it is none any more."""
+    """Read an entity again with its old provenance; None if it is not an entity any more."""
     entity = read_entity(reasoner, classes, v.iri(known.iri), known.provenance)
     if entity is None:
         return None
@@ -207,15 +206,18 @@ def read_again(reasoner: Reasoner, classes: ClassTable, known: Entity) -> Entity
     )
 
 
-def of_the_tbox(reasoner: Reasoner, classes: ClassTable) -> list[Entity]:
-    """The entities that a TBox itself has; `reasoner` may hold more, then theirs too."""
+def read_tbox_entities(reasoner: Reasoner, classes: ClassTable) -> list[Entity]:
+    """Return the entities that a TBox itself describes, and others that `reasoner` holds."""
     iris = {i for c in classes.spatial for i in reasoner.instances(c)}
     read = (read_entity(reasoner, classes, iri, _OF_THE_TBOX) for iri in sorted(iris))
     return [entity for entity in read if entity is not None]
 
 
-def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
-    """`entity` with the provenance of what is still as in `known`; `concerned`: something was said of it."""
+def inherit_provenance(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
+    """Return `entity` with the provenance of `known` for all unchanged parts.
+
+    `concerned` means that the commit is about the entity.
+    """
     same_shape = (entity.class_, entity.size_m, entity.model, entity.fixed) == (
         known.class_,
         known.size_m,
@@ -249,7 +251,7 @@ def inherit(entity: Entity, known: Entity, *, concerned: bool) -> Entity:
 
 
 def _name(iri: Term, class_name: str) -> str:
-    """The name that an entity's IRI (http, https, urn or file) ends in. Raises BadRequest."""
+    """Return the name at the end of an entity's IRI (http, https, urn or file). Raises BadRequest."""
     if not iri.startswith("<"):
         raise errors.BadRequest(f"a {class_name} is a blank node; an entity needs an IRI")
     if not _IRI.match(iri):
@@ -263,22 +265,22 @@ def _name(iri: Term, class_name: str) -> str:
     return name
 
 
-def owners(reasoner: Reasoner, classes: ClassTable, subject: Term) -> set[Term]:
-    """The individuals to whose star a triple about `subject` may belong: itself, and who points to it.
+def find_owners(reasoner: Reasoner, classes: ClassTable, subject: Term) -> set[Term]:
+    """Return the individuals that a triple about `subject` may describe: itself and those that refer to it.
 
-    With alignments also who points to these, as far as the way to a pose or a size may be long.
+    With alignments, also those that refer to these, up to the longest path to a pose or size.
     """
-    found = {subject, *users(reasoner, subject)}
+    found = {subject, *find_users(reasoner, subject)}
     if classes.alignments:
         latest = {subject}
-        for _ in range(_LONGEST_WAY):
+        for _ in range(_MAX_PATH):
             pointing = (triple for node in latest for triple in reasoner.asserted(None, None, node))
             latest = {s for s, p, _ in pointing if p in classes.edges} - found
             found |= latest
     return found
 
 
-def read_star(
+def read_entity_triples(
     reasoner: Reasoner,
     classes: ClassTable,
     iri: Term,
@@ -286,8 +288,8 @@ def read_star(
     leaving: Set[Term],
     tbox: frozenset[Triple],
 ) -> Star:
-    """The triples about an entity, as `star_of` has them. Raises Refused."""
-    own, incoming = star_of(reasoner, classes, iri, leaving, tbox)
+    """Return the triples about an entity as a message; see `entity_triples`. Raises Refused."""
+    own, incoming = entity_triples(reasoner, classes, iri, leaving, tbox)
     aside = reasoner.suppressed_about([iri]) if reasoner.has_suppressed else ()
     return Star(
         seq=seq,
@@ -300,29 +302,31 @@ def read_star(
     )
 
 
-def star_of(
+def entity_triples(
     reasoner: Reasoner, classes: ClassTable, iri: Term, leaving: Set[Term], tbox: frozenset[Triple]
 ) -> tuple[list[Triple], list[Triple]]:
-    """The triples about an entity: its own, and what others say of it.
+    """Return the triples about an entity: its own, and those of others that refer to it.
 
-    What is used only by entities of `leaving` (among them this one) counts as its own; what the TBox
-    says does not. Raises Refused for an entity that the TBox itself has.
+    Individuals that only the entities in `leaving` use (this one included) count as its own; triples of the
+    TBox do not. Raises Refused for an entity of the TBox.
     """
     own = list(reasoner.asserted(iri))
     if not tbox.isdisjoint(own):
-        raise errors.Refused(f"{v.local_name(iri)} is part of the TBox, which no command changes")
+        raise errors.Refused(f"{v.local_name(iri)} is part of the TBox, which commands cannot change")
     nodes = {o for _, p, o in own if p in stars.STAR_PROPERTIES} - leaving
     for node in sorted(nodes):
-        if all(user in leaving for user in users(reasoner, node)):
+        if all(user in leaving for user in find_users(reasoner, node)):
             own += [t for t in reasoner.asserted(node) if t not in tbox]
     if classes.alignments:
-        for node in sorted(_belongings(reasoner, classes, iri, leaving) - nodes):
+        for node in sorted(_find_describing_nodes(reasoner, classes, iri, leaving) - nodes):
             own += [t for t in reasoner.asserted(node) if t not in tbox]
     return own, [t for t in reasoner.asserted(None, None, iri) if t[0] != iri]
 
 
-def _belongings(reasoner: Reasoner, classes: ClassTable, iri: Term, leaving: Set[Term]) -> set[Term]:
-    """The individuals that describe an entity by an alignment's words, or namelessly, and nobody else."""
+def _find_describing_nodes(
+    reasoner: Reasoner, classes: ClassTable, iri: Term, leaving: Set[Term]
+) -> set[Term]:
+    """Return the individuals that describe only this entity, by an alignment or as blank nodes."""
     found: set[Term] = set()
     pending = [iri]
     while pending:
@@ -337,10 +341,10 @@ def _belongings(reasoner: Reasoner, classes: ClassTable, iri: Term, leaving: Set
     return found
 
 
-def users(reasoner: Reasoner, node: Term) -> Iterable[Term]:
-    """The individuals in whose star `node` is; one that uses it twice comes twice."""
+def find_users(reasoner: Reasoner, node: Term) -> Iterable[Term]:
+    """Return the individuals that `node` describes; one that uses it twice occurs twice."""
     incoming = list(islice(reasoner.asserted(None, None, node), _FEW))
-    if len(incoming) < _FEW:  # one look at all of them is quicker than one for each property
+    if len(incoming) < _FEW:  # reading all is faster than a lookup for each property
         return [s for s, p, _ in incoming if p in stars.STAR_PROPERTIES]
     return (s for p in stars.STAR_PROPERTIES for s, _, _ in reasoner.asserted(None, p, node))
 
@@ -371,7 +375,7 @@ def _size(about: About, iri: Term, nodes: Sequence[Term]) -> tuple[float, float,
 
 
 def _numbers(iri: Term, predicates: Sequence[Term], said: Objects) -> tuple[float, ...] | None:
-    """One number a predicate; None where one is missing."""
+    """Return one number per predicate, or None if one is missing."""
     if said.keys().isdisjoint(predicates):
         return None
     found: list[float] = []
@@ -386,7 +390,7 @@ def _numbers(iri: Term, predicates: Sequence[Term], said: Objects) -> tuple[floa
             value = math.nan
         if not abs(value) <= REACH_M:
             raise errors.BadRequest(
-                f"{v.local_name(iri)}: {v.local_name(predicate)} is {_said(term)}; it must be a number"
+                f"{v.local_name(iri)}: {v.local_name(predicate)} is {_text(term)}; it must be a number"
                 f" from -{REACH_M:g} to {REACH_M:g}"
             )
         found.append(value)
@@ -394,10 +398,10 @@ def _numbers(iri: Term, predicates: Sequence[Term], said: Objects) -> tuple[floa
 
 
 def _tracked(iri: Term, terms: Sequence[Term]) -> Tracked:
-    """Raises BadRequest for what is no source of live poses."""
+    """Return the source of live poses. Raises BadRequest for an unknown source."""
     if not terms:
         return ""
-    source = _said(min(terms))
+    source = _text(min(terms))
     if source == "sim":
         return "sim"
     if source == "stream":
@@ -407,7 +411,7 @@ def _tracked(iri: Term, terms: Sequence[Term]) -> Tracked:
     )
 
 
-def _said(term: Term) -> str:
+def _text(term: Term) -> str:
     return v.lexical(term) if term[0] == '"' else v.local_name(term)
 
 

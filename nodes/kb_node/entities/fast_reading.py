@@ -1,7 +1,7 @@
-"""Entities read off the shape of their stars: what is where in a run is found out once a shape.
+"""Fast reading of new entities whose triples have a known pattern, which is analysed once.
 
-A run is read at sight when it is the star of one new entity, with each part said at most once, in nodes that
-are its own. Whatever is not so regular, or makes no sense, is left to `entities.read_entity`.
+A run of triples is regular if it describes one new entity, with each part at most once, and with nodes that
+belong only to it. Anything else, or an invalid run, is left to `entity_reading.read_entity`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 from weakref import WeakKeyDictionary
 
 from semmap.nodes.kb_node.entities.class_table import ClassTable, Kind
-from semmap.nodes.kb_node.entities.entity_reading import entity_of
+from semmap.nodes.kb_node.entities.entity_reading import make_entity
 from semmap.nodes.kb_node.reasoner import Form, Reasoner, UniformRuns
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -23,20 +23,19 @@ _EXTENT: Final = frozenset((v.HAS_EXTENT,))
 Places = tuple[int, ...]
 _Star = tuple[Sequence[Term], Sequence[Term]]
 """The individuals of a run, the entity first, and its other objects."""
-"""Which of a run's other objects."""
 
-_OF_FEW = (v.CONFLICTING_OBSERVATION, v.TRACKED_FROM, v.MODEL)
+_RARE = (v.CONFLICTING_OBSERVATION, v.TRACKED_FROM, v.MODEL)
 
 
 class _Text(NamedTuple):
-    """A reference: the individual that has it, and which of the other objects it is."""
+    """A reference: its individual and the index of its text among the other objects."""
 
     node: int
     place: int
 
 
 class _Stated(NamedTuple):
-    """A property: the individuals and which of the other objects are its values."""
+    """A property: its values by index, as individuals and among the other objects."""
 
     property: Term
     nodes: tuple[int, ...]
@@ -44,7 +43,7 @@ class _Stated(NamedTuple):
 
 
 class Pattern(NamedTuple):
-    """Where the parts of an entity are in each run of a shape."""
+    """The positions of an entity's parts in each run of a shape."""
 
     kind: Kind
     position: Places | None
@@ -56,20 +55,17 @@ class Pattern(NamedTuple):
 
 
 class _Irregular(Exception):
-    """Not to be read at sight."""
+    """Raised for a run that is not regular."""
 
 
 class Patterns:
-    """The patterns of the shapes that have been met."""
+    """The patterns of known shapes."""
 
     def __init__(self) -> None:
         self._known: WeakKeyDictionary[object, Pattern | None] = WeakKeyDictionary()
 
     def of(self, alike: UniformRuns, star: _Star, reasoner: Reasoner, classes: ClassTable) -> Pattern | None:
-        """Where the parts of an entity are in all stars of a shape, of which this is one.
-
-        None if it is not to be told at sight.
-        """
+        """Return the pattern of all runs of a shape, of which `star` is one, or None if it is not regular."""
         try:
             return self._known[alike.shape]
         except KeyError:
@@ -77,12 +73,10 @@ class Patterns:
             return found
 
 
-def read_at_sight(
-    pattern: Pattern, star: _Star, provenance: Provenance, classes: ClassTable
-) -> Entity | None:
-    """The entity that this is the star of; None if it is not to be told at sight.
+def read_regular(pattern: Pattern, star: _Star, provenance: Provenance, classes: ClassTable) -> Entity | None:
+    """Return the entity that a run describes, or None if it is not regular.
 
-    Raises BadRequest for one that cannot be named.
+    Raises BadRequest for an invalid name.
     """
     names, others = star
     try:
@@ -98,7 +92,7 @@ def read_at_sight(
             return None
     except ValueError:
         return None
-    return entity_of(
+    return make_entity(
         names[0],
         pattern.kind,
         provenance,
@@ -106,7 +100,7 @@ def read_at_sight(
         size_m=size,  # type: ignore[arg-type]
         preferred=_texts(pattern.preferred, names, others),
         alternatives=_texts(pattern.alternatives, names, others),
-        properties=classes.stated.stated(
+        properties=classes.property_table.read_values(
             {
                 said.property: [names[i] for i in said.nodes] + [others[i] for i in said.places]
                 for said in pattern.stated
@@ -118,7 +112,7 @@ def read_at_sight(
 
 
 def _numbers(places: Places | None, others: Sequence[Term]) -> tuple[float, ...] | None:
-    """Raises ValueError for one that is none, or is out of bounds."""
+    """Return the numbers. Raises ValueError for an invalid one."""
     if places is None:
         return None
     found = tuple([float(others[place].split('"', 2)[1]) for place in places])
@@ -129,20 +123,20 @@ def _numbers(places: Places | None, others: Sequence[Term]) -> tuple[float, ...]
 
 
 def _texts(texts: Sequence[_Text], names: Sequence[Term], others: Sequence[Term]) -> list[str]:
-    """In the order of the nodes' names."""
+    """Return the texts in the order of the nodes' names."""
     if len(texts) > 1:
         texts = sorted(texts, key=lambda text: names[text.node])
     return [v.lexical(others[text.place]) for text in texts]
 
 
 def _pattern(form: Form, star: _Star, reasoner: Reasoner, classes: ClassTable) -> Pattern | None:
-    """The pattern of all stars that are alike this one; None for an irregular one."""
+    """Return the pattern of all runs like this one, or None if it is not regular."""
     names, others = star
     entity, *nodes = map(reasoner.types, names)
     if entity.isdisjoint(classes.spatial) or not all(map(classes.spatial.isdisjoint, nodes)):
         return None
-    said = _Said(form, others)
-    if said.is_out_of_the_ordinary or said.speaks(classes.first_words) or said.speaks(_EXTENT):
+    said = _RunContent(form, others)
+    if said.is_unusual or said.uses(classes.entry_properties) or said.uses(_EXTENT):
         return None
     kind = classes.kind(entity, frozenset(said.classes))
     if kind is None:
@@ -162,13 +156,13 @@ def _pattern(form: Form, star: _Star, reasoner: Reasoner, classes: ClassTable) -
         return None
 
 
-class _Said:
-    """What a star says of its first individual and of the others, by place."""
+class _RunContent:
+    """The content of a run about its first individual and the others, by position."""
 
     def __init__(self, form: Form, others: Sequence[Term]) -> None:
         self._others = others
         self.classes: list[Term] = []
-        """Those asserted of the entity."""
+        """The classes asserted for the entity."""
         self._nodes: dict[tuple[int, Term], list[int]] = {}
         self._places: dict[tuple[int, Term], list[int]] = {}
         place = count()
@@ -181,16 +175,16 @@ class _Said:
                 self._places.setdefault((subject, p), []).append(next(place))
 
     @property
-    def is_out_of_the_ordinary(self) -> bool:
-        """Whether it says what few entities do: perception against it, tracking, a model."""
-        return any((0, p) in by for p in _OF_FEW for by in (self._nodes, self._places))
+    def is_unusual(self) -> bool:
+        """Return whether it has rare parts: a conflict, tracking or a model."""
+        return any((0, p) in by for p in _RARE for by in (self._nodes, self._places))
 
-    def speaks(self, words: Set[Term]) -> bool:
-        """Whether the entity says anything by one of these properties."""
+    def uses(self, words: Set[Term]) -> bool:
+        """Return whether the entity has one of these properties."""
         return any(place == 0 and p in words for by in (self._nodes, self._places) for place, p in by)
 
     def node(self, predicate: Term) -> int | None:
-        """The only node that the entity has by a predicate, if it has any."""
+        """Return the only node that the entity has for a predicate, if any."""
         nodes = self._nodes_by(predicate)
         if len(nodes) > 1:
             raise _Irregular
@@ -198,11 +192,11 @@ class _Said:
 
     def _nodes_by(self, predicate: Term) -> list[int]:
         if (0, predicate) in self._places:
-            raise _Irregular  # it is somebody else's, too
+            raise _Irregular  # another entity uses it, too
         return self._nodes.get((0, predicate), [])
 
     def numbers(self, node: int | None, predicates: Sequence[Term]) -> Places | None:
-        """Where a node's numbers are, if it has any: then one for each predicate."""
+        """Return the positions of a node's numbers, one per predicate, or None if it has none."""
         if node is None:
             return None
         found = [self._literal(node, predicate) for predicate in predicates]
@@ -213,21 +207,21 @@ class _Said:
         return None
 
     def texts(self, predicate: Term) -> Iterator[_Text]:
-        """The references that the entity has by a predicate."""
+        """Yield the references of the entity for a predicate."""
         for node in self._nodes_by(predicate):
             place = self._literal(node, v.LEXICAL_REFERENCE)
             if place is not None:
                 yield _Text(node, place)
 
     def stated(self, classes: ClassTable) -> Iterator[_Stated]:
-        """The other properties of the entity."""
-        for predicate in classes.stated.by_iri:
+        """Yield the other properties of the entity."""
+        for predicate in classes.property_table.by_iri:
             nodes, places = (by.get((0, predicate), []) for by in (self._nodes, self._places))
             if nodes or places:
                 yield _Stated(predicate, tuple(nodes), tuple(places))
 
     def _literal(self, node: int, predicate: Term) -> int | None:
-        """Where the only value of a node is; None if it has none."""
+        """Return the position of a node's only value, or None."""
         places = self._places.get((node, predicate), [])
         if (node, predicate) in self._nodes or len(places) > 1:
             raise _Irregular

@@ -1,4 +1,4 @@
-"""What people call the properties of a TBox: names, prefixed names, IRIs and labels."""
+"""The names of TBox properties: names, prefixed names, IRIs and labels."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from semmap.schemas.explanations import Term
 
 
 class PropertyNames:
-    """The one place where a word becomes a property."""
+    """Converts words to properties. No other module does."""
 
     def __init__(self, reasoner: Reasoner, properties: Collection[Term], known_prefixes: Prefixes) -> None:
         self._reasoner = reasoner
@@ -23,12 +23,12 @@ class PropertyNames:
         self.names: dict[Term, str] = prefixes.names(
             [p for p in properties if p.startswith("<")], known_prefixes
         )
-        """Property to name: its local name, with a prefix where several properties share that."""
+        """Property to name: its local name, with a prefix if several properties share it."""
 
     def find(self, word: str, *, among: Callable[[Term], bool] = lambda _: True) -> Term | None:
-        """The property that `word` means, of several the one that is `among` those wanted.
+        """Return the property that `word` means; of several, the one that is `among` the wanted ones.
 
-        Raises BadRequest for a word that may still mean several.
+        Raises BadRequest for an ambiguous word.
         """
         try:
             name = self._index.find(word)
@@ -40,11 +40,11 @@ class PropertyNames:
         return None if name is None else self._by_name[name]
 
     def did_you_mean(self, word: str, among: Callable[[Term], bool] = lambda _: True) -> str:
-        """The nearest names of those wanted, or nothing."""
+        """Return the most similar names of wanted properties, as a text, or ""."""
         return NameIndex(map(self._named, filter(among, self.names))).did_you_mean(word)
 
     def labels(self, term: Term) -> Iterable[str]:
-        """In every language."""
+        """Return the labels in every language."""
         return (v.lexical(o) for _, _, o in self._reasoner.asserted(term, v.RDFS_LABEL) if o.startswith('"'))
 
     @cached_property

@@ -1,4 +1,4 @@
-"""The property table: what may be stated of an entity by name, worked out once when a TBox is loaded."""
+"""The property table: the properties that can be set on an entity, computed once per TBox."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ STRUCTURAL: Mapping[Term, str] = {
     v.TRACKED_FROM: "track {name}",
     v.RDF_TYPE: "update {name} --class CLASS",
 }
-"""What makes up an entity's star has options of its own."""
+"""Properties with command options of their own."""
 _TYPE = frozenset(("type", "class"))
 _TEXT = frozenset((v.XSD_STRING,))
 _OF_A_STAR = frozenset((v.LEXICAL_REFERENCE, *v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ, *v.SIZE_XYZ))
 
 
 class Property(NamedTuple):
-    """A data or object property. `ranges` are its own and those of the properties above it."""
+    """A data or object property. `ranges` includes those of its superproperties."""
 
     iri: Term
     name: str
@@ -44,9 +44,9 @@ class Property(NamedTuple):
 
 
 class PropertyTable:
-    """The data and object properties of a TBox, by IRI, local name and label; and its individuals.
+    """The data and object properties of a TBox, by IRI, local name and label, and its individuals.
 
-    With them is the annotation `dm:model`, which a class has, and an entity may have.
+    The annotation `dm:model` of classes and entities is included.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class PropertyTable:
         known_prefixes: Mapping[str, str] = MappingProxyType({}),
         edges: Set[Term] = frozenset(),
     ) -> None:
-        """`edges` are more properties that make up an entity's star."""
+        """Read the table. `edges` are further properties that are not set by name."""
         self._reasoner = reasoner
         self._names = names
         self._class_names = class_names
@@ -88,18 +88,17 @@ class PropertyTable:
                 else frozenset(o for q in above for _, _, o in reasoner.asserted(q, v.RDFS_RANGE, None)),
             )
 
-    def stated(self, said: Mapping[Term, Iterable[Term]]) -> dict[str, property_values.Stated]:
-        """The properties of an individual of which this is asserted, by name: functional ones as scalars."""
+    def read_values(self, said: Mapping[Term, Iterable[Term]]) -> dict[str, property_values.Stated]:
+        """Return the properties by name of an individual with these assertions; functional as scalars."""
         known = said.keys() & self.by_iri.keys()
         if not known:
             return {}
         return dict(sorted(_shown(self.by_iri[p], said[p]) for p in known))
 
     def find(self, word: str, name: str = "NAME") -> Property:
-        """The property that `word` means: a name, an IRI in <>, a prefixed name or a label.
+        """Return the property that `word` means: a name, an IRI in <>, a prefixed name or a label.
 
-        Raises BadRequest with the nearest names; for what makes up the star of entity `name`, with the
-        option that changes it.
+        Raises BadRequest with the most similar names, or with the command for a property that has one.
         """
         if _fold(word) in _TYPE:
             p: Term | None = v.RDF_TYPE
@@ -116,10 +115,10 @@ class PropertyTable:
     def term(
         self, prop: Property, text: str, named: Callable[[str], Term | None], names: Collection[str]
     ) -> Term:
-        """The value that `text` denotes for a property; `named` finds the map's individuals, among `names`.
+        """Return the value that `text` denotes; `named` finds individuals of the map, among `names`.
 
-        Raises BadRequest for a literal outside the range and for a model that there is not, UnknownName for
-        an individual that does not exist.
+        Raises BadRequest for a literal outside the range or an unknown model, and UnknownName for an
+        individual that does not exist.
         """
         if prop.iri == v.MODEL:
             require_model(text)
@@ -138,7 +137,7 @@ class PropertyTable:
         raise errors.UnknownName(f"no individual is named '{text}'{hint}")
 
     def rows(self) -> Iterator[PropertyInfo]:
-        """One row a property, by name."""
+        """Yield one row per property, by name."""
         for prop in sorted(self.by_iri.values(), key=lambda p: p.name):
             domains = {
                 o for q in self._above(prop.iri) for _, _, o in self._reasoner.asserted(q, v.RDFS_DOMAIN)
@@ -157,27 +156,27 @@ class PropertyTable:
             )
 
     def _called(self, classes: Iterable[Term]) -> tuple[str, ...]:
-        """Classes by the class table's names, datatypes by their own; not what follows from the others."""
+        """Return the names of classes and datatypes, without those that follow from others."""
         named = [c for c in classes if c.startswith("<")]
         narrow = [c for c in named if not any(self._is_below(d, c) for d in named)]
         return tuple(sorted(self._class_names.get(c) or v.local_name(c) for c in narrow))
 
     def _is_below(self, narrow: Term, wide: Term) -> bool:
-        """Is a class a subclass of another, and not the other way round?"""
+        """Return whether a class is a proper subclass of another."""
         holds, sub_class_of = self._reasoner.holds, v.RDFS_SUB_CLASS_OF
         return (
             narrow != wide and holds((narrow, sub_class_of, wide)) and not holds((wide, sub_class_of, narrow))
         )
 
     def _individual(self, prop: Property, word: str) -> Term | None:
-        """The TBox's individual of this name or label; of several that one which the range has."""
+        """Return the TBox individual of this name or label; of several, the one in the range."""
         found = self._individuals.get(_fold(word), set())
         if len(found) > 1:
             found = found & self._allowed(prop) or found
         return min(found, default=None)
 
     def _allowed(self, prop: Property) -> set[Term]:
-        """The TBox's individuals that are of all classes of the range; none without a range."""
+        """Return the TBox individuals that are in all classes of the range; none without a range."""
         if prop.is_data or not prop.ranges:
             return set()
         return self._of_the_tbox.intersection(*(self._reasoner.instances(c) for c in prop.ranges))
@@ -187,14 +186,14 @@ class PropertyTable:
 
     @cached_property
     def _individuals(self) -> dict[str, set[Term]]:
-        """Names and labels of the individuals that the TBox declares."""
+        """The names and labels of the individuals that the TBox declares."""
         words: dict[str, set[Term]] = {}
         for i in self._of_the_tbox:
             self._note(words, i)
         return words
 
     def _term(self, word: str) -> Term | None:
-        """A term as it is written, or a name with a prefix that queries know; None for another word."""
+        """Return a term that is written as such or with a known prefix, or None for another word."""
         prefix, colon, name = word.partition(":")
         if word.startswith("<") and word.endswith(">"):
             return word
@@ -212,7 +211,7 @@ class PropertyTable:
         return any(self._reasoner.asserted(p, v.RDF_TYPE, kind))
 
     def _above(self, p: Term) -> set[Term]:
-        """The property and those that it is a subproperty of."""
+        """Return the property and its superproperties."""
         found, level = {p}, [p]
         while level:
             level = [
@@ -225,7 +224,7 @@ class PropertyTable:
 
 
 def _shown(prop: Property, terms: Iterable[Term]) -> tuple[str, property_values.Stated]:
-    values = tuple(sorted(map(property_values.plain, terms), key=str))
+    values = tuple(sorted(map(property_values.to_json_value, terms), key=str))
     return prop.name, values[0] if prop.functional and len(values) == 1 else values
 
 

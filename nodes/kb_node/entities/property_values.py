@@ -1,4 +1,4 @@
-"""Values of properties: literals as people and JSON write them, typed by a property's range."""
+"""Values of properties: literals as written by people and in JSON, typed by the range."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _BOOLEANS = {
 }
 _FLOATS = frozenset((v.XSD_FLOAT, v.iri(f"{v.XSD}double")))
 _INFINITE = frozenset(("INF", "-INF", "+INF", "NaN"))
-"""How XML Schema writes what is no number."""
+"""The values that are not finite in XML Schema."""
 _LARGEST_FLOAT = 3.4028234663852886e38
 _DECIMAL = v.iri(f"{v.XSD}decimal")
 _INTEGER = v.iri(f"{v.XSD}integer")
@@ -45,10 +45,10 @@ _SAID = {
 
 
 def literal(name: str, ranges: Set[Term], text: str) -> Term:
-    """The literal that `text` denotes for property `name` with these ranges.
+    """Return the literal that `text` denotes for property `name` with these ranges.
 
-    `text` is a literal as N-Triples writes it, or its lexical form; of a text the language may follow after
-    an @. Without a range true and false are booleans, and numbers are numbers. Raises BadRequest.
+    `text` is a literal in N-Triples syntax, or its lexical form; a text may end with @ and a language.
+    Without a range, true and false are booleans, and numbers are numbers. Raises BadRequest.
     """
     if _LITERAL.fullmatch(text):
         return _checked(name, ranges, text, text)
@@ -68,16 +68,16 @@ def literal(name: str, ranges: Set[Term], text: str) -> Term:
     return _checked(name, ranges, text, v.literal(written, datatype))
 
 
-def same(one: Term, other: Term) -> bool:
-    """Do two terms denote the same value, or individual by the same name?"""
+def is_same_value(one: Term, other: Term) -> bool:
+    """Return whether two terms denote the same value, or are the same individual."""
     if one == other:
         return True
     value = datatypes.value(one) if one.startswith('"') else None
     return value is not None and other.startswith('"') and value == datatypes.value(other)
 
 
-def plain(term: Term) -> Value:
-    """A term as JSON has it: booleans, numbers, text (with @ and its language), individuals by name."""
+def to_json_value(term: Term) -> Value:
+    """Return a term as JSON: a boolean, a number, a text (with @ and language) or a name."""
     if not term.startswith('"'):
         return v.local_name(term)
     text, datatype, language = v.lexical(term), v.datatype_of(term), v.language_of(term)
@@ -95,22 +95,22 @@ def plain(term: Term) -> Value:
     return text
 
 
-def spoken(term: Term) -> str:
-    """A term as people write it."""
-    return value_in_words(plain(term))
+def to_text(term: Term) -> str:
+    """Return a term as people write it."""
+    return value_in_words(to_json_value(term))
 
 
 def _checked(name: str, ranges: Set[Term], text: str, term: Term) -> Term:
-    """Raises BadRequest for a literal that is known not to be in the range."""
+    """Return the literal. Raises BadRequest if it is not in the range."""
     if datatypes.is_ill_typed(term):
-        raise _refusal(name, text, v.datatype_of(term))
+        raise _range_error(name, text, v.datatype_of(term))
     for datatype in sorted(r for r in ranges if datatypes.is_datatype(r)):
         if datatypes.excludes(datatype, term):
-            raise _refusal(name, text, datatype)
+            raise _range_error(name, text, datatype)
     return term
 
 
-def _refusal(name: str, text: str, datatype: Term) -> errors.BadRequest:
+def _range_error(name: str, text: str, datatype: Term) -> errors.BadRequest:
     kind = f"xsd:{v.local_name(datatype)}"
     if _LITERAL.fullmatch(text):
         return errors.BadRequest(f"{name} takes a literal of {kind}, not {text}")
@@ -133,7 +133,7 @@ def _guessed(text: str) -> Term:
 
 
 def _float(name: str, text: str, datatype: Term) -> str:
-    """The lexical form of a number. Raises BadRequest for one that is too large."""
+    """Return the lexical form of a number. Raises BadRequest if it is too large."""
     try:
         number = float(text)
     except ValueError:

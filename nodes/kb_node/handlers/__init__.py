@@ -1,1 +1,4 @@
-"""What the knowledge base does for each verb: a message in, a reply out. `node.py` binds it to the wire."""
+"""Handlers for each command of the knowledge base: a message in, a reply out.
+
+`node.py` binds them to the wire.
+"""

@@ -1,10 +1,11 @@
-"""SPARQL over the map: what may be asked, what it means for the store, and who evaluates it where.
+"""SPARQL over the map.
 
-- `queries/` looks at queries and answers them.
+- `queries/` parses and evaluates queries.
 - `triples/` keeps the triples, in memory or on disk, and a log of the commits.
-- `standing_queries/` remembers rows and tells what changes of them.
-- `worker` is the process that follows the commits; the `readers` that it forks evaluate. `service` is their
-  other end in the knowledge base's node, with the `lanes` on which it asks; they talk by `protocol`.
+- `standing_queries/` keeps the rows of standing queries and publishes their changes.
+- `worker` is the process that follows the commits. It forks `readers`, which evaluate queries.
+- `service` is the interface for the knowledge base's node. It sends queries over `lanes`.
+- `protocol` defines the messages between these processes.
 
-Why processes: see `worker`.
+`worker` explains why separate processes are used.
 """

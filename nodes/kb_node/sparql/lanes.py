@@ -1,12 +1,11 @@
-"""Lanes: how the node asks its readers, without anybody between.
+"""Lanes: direct connections between the node and the reader processes.
 
-A lane is a pair of sockets. Its other end the SPARQL process keeps for whichever reader minds it, so that a
-question that no reader has taken waits there for the next. A question has a lane to itself until it is
-answered.
+A lane is a pair of sockets. The SPARQL process keeps the remote end for whichever reader serves the lane, so
+a query that no reader has taken waits there for the next one. A lane has one query at a time.
 
-Whoever asks has a turn, and every query gets a lane soon: where all lanes are taken, only so many queries
-keep theirs that take long. Another is set aside, its reader ended, and begun anew when one of those is done;
-so what it costs not to know beforehand which queries take long is a moment for each.
+Clients are served in turn, and every query gets a lane soon. If all lanes are busy, only a few queries that
+take long keep theirs. The others are preempted: their readers are stopped, and they start again when one of
+the long ones is done. The duration of a query need not be known in advance.
 """
 
 from __future__ import annotations
@@ -23,37 +22,44 @@ from typing import Any, Final
 
 from msgspec import msgpack
 
-from semmap.nodes.kb_node.sparql.protocol import Dismiss, Hire, Left, Outcome, Question, outcomes
-from semmap.nodes.kb_node.sparql.readers import cause_of_death
+from semmap.nodes.kb_node.sparql.protocol import (
+    QueryOutcome,
+    QueryRequest,
+    ReaderExited,
+    StartReader,
+    StopReader,
+    outcomes,
+)
+from semmap.nodes.kb_node.sparql.readers import error_for_signal
 from semmap.nodes.runtime.fair_queue import FairQueue
 from semmap.schemas import codec, errors
 from semmap.schemas.commands import Sparql
 from semmap.schemas.sparql import SparqlResult
 
 LANES: Final = 6
-"""How many queries are evaluated at once."""
-AT_LENGTH: Final = 3
-"""How many of them may take long while others wait."""
+"""Queries that are evaluated at the same time."""
+LONG_RUNNING: Final = 3
+"""Long-running queries that keep their lanes while others wait."""
 LONG_S: Final = 0.3
-"""What takes longer takes long."""
+"""A query that runs longer is long-running [s]."""
 _EACH: Final = 64
 _ALL: Final = 256
-"""Queries of one asker, and of all, that wait at most."""
+"""Queries of one client, and of all, that may wait."""
 _SHORT: Final = 16_000
-"""Bytes that a lane always takes without waiting: there are never two questions in one."""
+"""Bytes that a lane accepts without blocking. A lane never holds two queries."""
 
 
 @dataclass
 class _Query:
-    question: Question
+    question: QueryRequest
     asker: str = ""
     future: Future[SparqlResult] = field(default_factory=Future)
     began_s: float = 0.0
-    was_set_aside: bool = False
+    was_preempted: bool = False
 
-    def takes_long(self, now_s: float) -> bool:
-        """By what is known now."""
-        return self.was_set_aside or now_s - self.began_s >= LONG_S
+    def is_long_running(self, now_s: float) -> bool:
+        """Return whether the query is long-running."""
+        return self.was_preempted or now_s - self.began_s >= LONG_S
 
 
 @dataclass
@@ -63,19 +69,22 @@ class _Lane:
     has_reader: bool = False
     query: _Query | None = None
     is_closing: bool = False
-    """Its reader is being ended."""
+    """Whether its reader is being stopped."""
 
 
 class Lanes:
-    """The node's ends. Any thread may ask."""
+    """The node's ends of the lanes. Any thread may send queries."""
 
     def __init__(self, send: Callable[[Any, Connection | None], None]) -> None:
-        """`send(message, connection)` queues a message, without a connection one to the SPARQL process."""
+        """Create the lanes; `send(message, connection)` queues a message.
+
+        Without a connection the message goes to the SPARQL process.
+        """
         self._send = send
         pairs = [Pipe() for _ in range(LANES)]
         self._lanes = [_Lane(number, here) for number, (here, _) in enumerate(pairs)]
-        self.others: Sequence[Connection] = [there for _, there in pairs]
-        """The other ends; who hands them over closes them here."""
+        self.remote_ends: Sequence[Connection] = [there for _, there in pairs]
+        """The remote ends. They are closed here once they have been passed on."""
         self._waiting: FairQueue[_Query] = FairQueue(each=_EACH, everyone=_ALL)
         self._set_aside: FairQueue[_Query] = FairQueue()
         self._timer: threading.Timer | None = None
@@ -85,11 +94,11 @@ class Lanes:
             threading.Thread(target=self._listen, args=(lane,), name="sparql", daemon=True).start()
 
     def ask(self, command: Sparql, seq: int, demand: int = 0, asker: str = "") -> Future[SparqlResult]:
-        """The answer as of commit `seq` or later, with what was demanded under that number.
+        """Return the answer as of commit `seq` or later, with the measurements of request `demand`.
 
-        Raises Busy when too many queries wait.
+        Raises Busy if too many queries wait.
         """
-        question = Question(
+        question = QueryRequest(
             number=next(self._numbers),
             seq=seq,
             query=command.query,
@@ -103,30 +112,30 @@ class Lanes:
             again_s = self._waiting.put(asker, query)
             if again_s is not None:
                 raise errors.Busy(
-                    f"{len(self._waiting)} SPARQL queries wait already; try again in {again_s:.1f} s",
+                    f"{len(self._waiting)} SPARQL queries are waiting; try again in {again_s:.1f} s",
                     again_s=again_s,
                 )
-            self._hand_out()
+            self._dispatch()
         return query.future
 
-    def leave(self, left: Left) -> None:
-        """A reader is no more."""
+    def on_reader_exit(self, left: ReaderExited) -> None:
+        """Handle the exit of a reader."""
         lane = self._lanes[left.lane]
         with self._lock:
             lane.has_reader = lane.is_closing = False
             query = lane.query
             if query is None:
-                self._hand_out()
+                self._dispatch()
                 return
-            if not left.signal:  # it did not take the question, or has given it back
-                self._hire(lane)
+            if not left.signal:  # it did not take the query, or has returned it
+                self._start_reader(lane)
                 return
             lane.query = None
-            self._hand_out()
-        query.future.set_exception(cause_of_death(left.signal, query.question.timeout_s))
+            self._dispatch()
+        query.future.set_exception(error_for_signal(left.signal, query.question.timeout_s))
 
     def close(self, error: Exception) -> None:
-        """There will be no more readers; nobody waits any longer."""
+        """Fail all queries, because there will be no more readers."""
         with self._lock:
             waiting = [*iter(self._waiting.take, None), *iter(self._set_aside.take, None)]
             left = [*(lane.query for lane in self._lanes), *waiting]
@@ -137,66 +146,68 @@ class Lanes:
         for query in filter(None, left):
             query.future.set_exception(error)
 
-    def _hand_out(self) -> None:
-        """Give the questions that wait to lanes that are free, those with readers first."""
+    def _dispatch(self) -> None:
+        """Assign waiting queries to free lanes, those with readers first."""
         free = [lane for lane in self._lanes if lane.query is None and not lane.is_closing]
         for lane in sorted(free, key=lambda lane: not lane.has_reader):
-            if (query := self._next()) is None:
+            if (query := self._next_query()) is None:
                 return
             lane.query, query.began_s = query, time.monotonic()
             if not lane.has_reader:
-                self._hire(lane)
+                self._start_reader(lane)
             self._put(lane, query)
         if len(self._waiting):
-            self._look_again()
+            self._schedule_preemption()
 
-    def _next(self) -> _Query | None:
-        """The query that is to begin; one that was set aside if few enough are taking long."""
+    def _next_query(self) -> _Query | None:
+        """Return the next query; a preempted one if few enough are long-running."""
         query = None
-        if len(self._set_aside) and len(self._taking_long(time.monotonic())) < AT_LENGTH:
+        if len(self._set_aside) and len(self._long_running(time.monotonic())) < LONG_RUNNING:
             query = self._set_aside.take()
         return query or self._waiting.take()
 
-    def _taking_long(self, now_s: float) -> list[_Lane]:
-        """The lanes whose queries do: first those that were set aside before, then by their age."""
-        lanes = [lane for lane in self._lanes if lane.query is not None and lane.query.takes_long(now_s)]
-        return sorted(lanes, key=lambda lane: (not lane.query.was_set_aside, lane.query.began_s))  # type: ignore[union-attr]
+    def _long_running(self, now_s: float) -> list[_Lane]:
+        """Return the lanes with long-running queries, first those that were preempted before."""
+        lanes = [lane for lane in self._lanes if lane.query is not None and lane.query.is_long_running(now_s)]
+        return sorted(lanes, key=lambda lane: (not lane.query.was_preempted, lane.query.began_s))  # type: ignore[union-attr]
 
-    def _look_again(self) -> None:
-        """When the next query will have taken long."""
+    def _schedule_preemption(self) -> None:
+        """Start a timer for the time when the next query becomes long-running."""
         if self._timer is None:
             now_s = time.monotonic()
-            quick = [lane.query for lane in self._lanes if lane.query and not lane.query.takes_long(now_s)]
+            quick = [
+                lane.query for lane in self._lanes if lane.query and not lane.query.is_long_running(now_s)
+            ]
             wait_s = min((query.began_s + LONG_S - now_s for query in quick), default=LONG_S)
-            self._timer = threading.Timer(wait_s, self._make_room)
+            self._timer = threading.Timer(wait_s, self._preempt)
             self._timer.daemon = True
             self._timer.start()
 
-    def _make_room(self) -> None:
-        """Set aside what takes long, but for a few, as far as others wait."""
+    def _preempt(self) -> None:
+        """Preempt long-running queries beyond a few, if others wait."""
         with self._lock:
             self._timer = None
-            beyond = self._taking_long(time.monotonic())[AT_LENGTH:]
+            beyond = self._long_running(time.monotonic())[LONG_RUNNING:]
             for lane in beyond[: len(self._waiting)]:
                 query, lane.query, lane.is_closing = lane.query, None, True
                 if query is None:
                     raise errors.InternalError("a lane that takes long has no query")
-                query.was_set_aside = True
+                query.was_preempted = True
                 self._set_aside.put(query.asker, query)
-                self._send(Dismiss(lane=lane.number), None)
+                self._send(StopReader(lane=lane.number), None)
             if len(self._waiting):
-                self._look_again()
+                self._schedule_preemption()
 
-    def _hire(self, lane: _Lane) -> None:
+    def _start_reader(self, lane: _Lane) -> None:
         lane.has_reader = True
-        self._send(Hire(lane=lane.number), None)
+        self._send(StartReader(lane=lane.number), None)
 
     def _put(self, lane: _Lane, query: _Query) -> None:
-        """From here, if it cannot take long: to wake another thread does."""
+        """Send from this thread if that cannot block, because a switch of threads takes longer."""
         if len(query.question.query) * 4 > _SHORT:
             self._send(query.question, lane.connection)
         else:
-            with suppress(OSError):  # then all is over, as the SPARQL process's own pipe tells
+            with suppress(OSError):  # the SPARQL process has ended, which its own pipe reports
                 lane.connection.send_bytes(msgpack.encode(query.question))
 
     def _listen(self, lane: _Lane) -> None:
@@ -204,16 +215,16 @@ class Lanes:
             while True:
                 self._take(lane, outcomes.decode(connection.recv_bytes()))
 
-    def _take(self, lane: _Lane, outcome: Outcome) -> None:
+    def _take(self, lane: _Lane, outcome: QueryOutcome) -> None:
         with self._lock:
             query = lane.query
             if query is None or query.question.number != outcome.number:
-                return  # it was given up
+                return  # it was cancelled
             if outcome.old:
                 self._put(lane, query)
                 return
             lane.query = None
-            self._hand_out()
+            self._dispatch()
         if outcome.error is not None:
             query.future.set_exception(errors.from_message(outcome.error))
         else:

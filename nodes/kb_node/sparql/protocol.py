@@ -1,10 +1,10 @@
-"""What the knowledge base's node, its SPARQL process and the readers say to each other, in MessagePack."""
+"""Messages between the knowledge base's node, its SPARQL process and the readers, in MessagePack."""
 
 from __future__ import annotations
 
 from msgspec import Raw, Struct, msgpack
 
-from semmap.nodes.kb_node.beliefs import UNCHANGED, Believed
+from semmap.nodes.kb_node.derived_facts import UNCHANGED, DerivedChanges
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.sparql.triples.dataset import Delta
@@ -17,33 +17,33 @@ from semmap.schemas.sparql import RowsChanged
 NOTHING = Raw(msgpack.encode(None))
 
 
-class Surrounded(Struct, frozen=True, kw_only=True, tag=True):
-    """Where everything is: what a question may need to have measured. Commits tell the rest from then on."""
+class Placements(Struct, frozen=True, kw_only=True, tag=True):
+    """The poses of all entities, for queries that need measurements. Commits update them from then on."""
 
     placed: tuple[PlacedEntity, ...]
     limits: Thresholds
 
 
 class Load(Struct, frozen=True, kw_only=True, tag=True):
-    """All that is asserted after commit `seq`; with `infers`, what follows is wanted, too.
+    """All asserted triples after commit `seq`; with `infers`, inferred triples are needed, too.
 
-    The first message, and the one that comes when commits alone do not tell: when what follows is asked for
-    the first time, and when the TBox is another.
+    It is the first message. It is repeated when inference is requested for the first time and when the TBox
+    changes.
     """
 
     seq: int
     asserted: tuple[Triple, ...]
     infers: bool
-    believed: Believed = UNCHANGED
-    """What is computed, and what is set aside, if what follows is wanted."""
-    surrounded: Surrounded | None = None
+    derived_changes: DerivedChanges = UNCHANGED
+    """The computed and suppressed facts, if inference is needed."""
+    placements: Placements | None = None
 
 
-class LoadKept(Struct, frozen=True, kw_only=True, tag=True):
-    """Instead of `Load`: the triples are in the store at `path`.
+class LoadFromDisk(Struct, frozen=True, kw_only=True, tag=True):
+    """Used instead of `Load`: the triples are in the store at `path`.
 
-    It has all commits up to `seq` and some of those up to `settled`, which follow: only with all of these it
-    is a map.
+    The store has all commits up to `seq` and some of those up to `settled`. It is consistent only after all
+    of these are applied.
     """
 
     path: str
@@ -52,67 +52,67 @@ class LoadKept(Struct, frozen=True, kw_only=True, tag=True):
 
 
 class Committed(Struct, frozen=True, kw_only=True, tag=True):
-    """Every commit from then on, in order."""
+    """A commit; all later commits are sent in order."""
 
     delta: Delta
-    believed: Believed = UNCHANGED
-    """What it changes of what is computed and set aside, if what follows is wanted."""
+    derived_changes: DerivedChanges = UNCHANGED
+    """The changes of computed and suppressed facts, if inference is needed."""
     placed: tuple[PlacedEntity, ...] = ()
-    """The entities that it changes, and the names of those that went, after `Surrounded`."""
+    """The changed entities, and (`removed`) the names of removed ones, after `Placements`."""
     removed: tuple[str, ...] = ()
 
 
-class Demanded(Struct, frozen=True, kw_only=True, tag=True):
-    """A query that may look at what has to be measured; what it needs is to be there under this number."""
+class MeasurementRequest(Struct, frozen=True, kw_only=True, tag=True):
+    """A query that may need measurements. They must be available under the number `demand`."""
 
     demand: int
     query: str
 
 
-class Asked(Struct, frozen=True, kw_only=True, tag=True):
-    """A command about a standing query, to be answered under its number."""
+class StandingCommand(Struct, frozen=True, kw_only=True, tag=True):
+    """A command about a standing query; the reply has its number."""
 
     number: int
     command: Watch | Renew
 
 
-class Hire(Struct, frozen=True, kw_only=True, tag=True):
-    """A lane has no reader and needs one."""
+class StartReader(Struct, frozen=True, kw_only=True, tag=True):
+    """A lane needs a reader."""
 
     lane: int
 
 
-class Dismiss(Struct, frozen=True, kw_only=True, tag=True):
-    """The reader of a lane is to be ended: its query has been set aside."""
+class StopReader(Struct, frozen=True, kw_only=True, tag=True):
+    """Stop the reader of a lane, because its query was preempted."""
 
     lane: int
 
 
-class Answered(Struct, frozen=True, kw_only=True, tag=True):
-    """The answer: the command's reply, encoded, or the error."""
+class CommandReply(Struct, frozen=True, kw_only=True, tag=True):
+    """The encoded reply to a command, or its error."""
 
     number: int
     reply: Raw = NOTHING
     error: ErrorMessage | None = None
 
 
-class Left(Struct, frozen=True, kw_only=True, tag=True):
-    """A lane's reader is no more: it died of a signal, or (0) went because its triples were too old."""
+class ReaderExited(Struct, frozen=True, kw_only=True, tag=True):
+    """The reader of a lane has exited: killed by a signal, or (0) because its triples were too old."""
 
     lane: int
     signal: int
 
 
-class News(Struct, frozen=True, kw_only=True, tag=True):
-    """Rows of a standing query have changed; with `ended` there will be no more."""
+class QueryUpdate(Struct, frozen=True, kw_only=True, tag=True):
+    """Changed rows of a standing query; with `ended` it is the last update."""
 
     rows: RowsChanged | None = None
     watch: str
     ended: bool = False
 
 
-class Question(Struct, frozen=True, kw_only=True):
-    """A query, to be answered by a reader as of commit `seq` or later, on the lane that it came on."""
+class QueryRequest(Struct, frozen=True, kw_only=True):
+    """A query for a reader, to be answered as of commit `seq` or later on the same lane."""
 
     number: int
     seq: int
@@ -121,11 +121,11 @@ class Question(Struct, frozen=True, kw_only=True):
     limit: int
     timeout_s: float
     demand: int = 0
-    """What was measured under this number is needed, too; 0 for nothing."""
+    """The number of the measurements that it needs; 0 for none."""
 
 
-class Outcome(Struct, frozen=True, kw_only=True):
-    """What came of it: a `SparqlResult`, encoded, or the error; or the reader is too `old` and goes."""
+class QueryOutcome(Struct, frozen=True, kw_only=True):
+    """The encoded `SparqlResult` or the error; or the reader is too `old` and exits."""
 
     number: int
     result: Raw = NOTHING
@@ -133,10 +133,19 @@ class Outcome(Struct, frozen=True, kw_only=True):
     old: bool = False
 
 
-ToWorker = Load | LoadKept | Surrounded | Committed | Demanded | Asked | Hire | Dismiss
-FromWorker = Answered | Left | News
+ToWorker = (
+    Load
+    | LoadFromDisk
+    | Placements
+    | Committed
+    | MeasurementRequest
+    | StandingCommand
+    | StartReader
+    | StopReader
+)
+FromWorker = CommandReply | ReaderExited | QueryUpdate
 
 to_worker = codec.decoder(ToWorker)
 from_worker = codec.decoder(FromWorker)
-questions = codec.decoder(Question)
-outcomes = codec.decoder(Outcome)
+questions = codec.decoder(QueryRequest)
+outcomes = codec.decoder(QueryOutcome)

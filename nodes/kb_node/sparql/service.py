@@ -1,7 +1,7 @@
-"""SPARQL as the knowledge base's node sees it: commits go in, futures and news come out.
+"""The interface of the node to SPARQL: commits in, future results and row changes out.
 
-The process is started by the first question and follows from then on. Threads mind its pipe and the lanes of
-its readers, so that the node's own never waits for it.
+The first query starts the process, which follows the commits from then on. Separate threads serve its pipe
+and the lanes of its readers, so that the node's thread never waits.
 """
 
 from __future__ import annotations
@@ -19,25 +19,25 @@ from typing import Any, overload
 
 from msgspec import msgpack
 
-from semmap.nodes.kb_node.beliefs import UNCHANGED, Believed
+from semmap.nodes.kb_node.derived_facts import UNCHANGED, DerivedChanges
 from semmap.nodes.kb_node.relations.facts.pair_properties import PairProperties
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.sparql.lanes import Lanes
 from semmap.nodes.kb_node.sparql.protocol import (
-    Answered,
-    Asked,
+    CommandReply,
     Committed,
-    Demanded,
-    Left,
     Load,
-    LoadKept,
-    News,
-    Surrounded,
+    LoadFromDisk,
+    MeasurementRequest,
+    Placements,
+    QueryUpdate,
+    ReaderExited,
+    StandingCommand,
     from_worker,
 )
-from semmap.nodes.kb_node.sparql.queries.naming import may_name
+from semmap.nodes.kb_node.sparql.queries.predicates import may_use_properties
 from semmap.nodes.kb_node.sparql.triples.dataset import Delta
-from semmap.nodes.kb_node.sparql.triples.large_map import Filled, LargeMap, delta_of
+from semmap.nodes.kb_node.sparql.triples.large_map import FilledStore, LargeMap, delta_of
 from semmap.nodes.runtime.futures import settle
 from semmap.ontology import vocabulary as v
 from semmap.schemas import codec, errors
@@ -52,32 +52,32 @@ log = logging.getLogger(__name__)
 
 
 class SparqlService:
-    """Owned by the node's thread."""
+    """Evaluates SPARQL queries. Owned by the node's thread."""
 
     def __init__(
         self,
         asserted: Callable[[], Iterable[Triple]],
-        publish: Callable[[News], None],
+        publish: Callable[[QueryUpdate], None],
         large_map: LargeMap | None = None,
-        believed: Callable[[], Believed] = Believed,
-        surrounded: Callable[[], Surrounded] | None = None,
+        derived_changes: Callable[[], DerivedChanges] = DerivedChanges,
+        placements: Callable[[], Placements] | None = None,
     ) -> None:
-        """`asserted()` is what the map says now, `publish` gets the news.
+        """Create the service; `asserted()` returns the present triples, and `publish` receives row changes.
 
-        `believed()` is what is computed besides, and what of the asserted is set aside; `surrounded()` is
-        where everything is, for queries about what has to be measured.
+        `derived_changes()` returns the computed and suppressed facts. `placements()` returns the poses, for
+        queries that need measurements.
 
-        With a `large_map` the triples of a large one are in a store on disk, which is made beside the node's
-        other work: after a large commit at once, else when it is asked for the first time. What follows is
+        With a `large_map` the triples of a large map are in a store on disk. The store is created in the
+        background: after a large commit immediately, otherwise at the first query. Inferred triples are
         always kept in memory.
         """
         self._asserted = asserted
-        self._believed = believed
-        self._surrounded = surrounded
+        self._derived_changes = derived_changes
+        self._placements = placements
         self._measured: frozenset[str] = frozenset()
-        """The local names of the properties that have to be measured."""
+        """The local names of the properties that must be measured."""
         self._measures = False
-        """Whether somebody has asked for any."""
+        """Whether a query has requested measurements."""
         self._demands = count(1)
         self._publish = publish
         self._large = large_map
@@ -85,9 +85,9 @@ class SparqlService:
         self._infers = False
         self._seq = 0
         self._since_filling: list[Delta] | None = None
-        """While a store is made: the commits since it was begun."""
-        self._later: list[Callable[[], None]] = []
-        """Commands about standing queries that came meanwhile."""
+        """While a store is created: the commits since its start."""
+        self._deferred: list[Callable[[], None]] = []
+        """Commands about standing queries that wait for the triples."""
 
     @overload
     def ask(self, command: Sparql, seq: int, asker: str = ...) -> Future[SparqlResult]: ...
@@ -96,7 +96,7 @@ class SparqlService:
     @overload
     def ask(self, command: Renew, seq: int, asker: str = ...) -> Future[Done]: ...
     def ask(self, command: Sparql | Watch | Renew, seq: int, asker: str = "") -> Future[Any]:
-        """The reply to a command of `asker` about the map as it is now, after commit `seq`."""
+        """Return the reply to a command of `asker` about the map after commit `seq`."""
         self._seq = seq
         if self._worker is None or not self._worker.is_alive:
             if isinstance(command, Renew):
@@ -109,49 +109,49 @@ class SparqlService:
             self._infers = True
             self._load()
         demand = 0 if isinstance(command, Renew) else self._demand(self._worker, command)
-        if self._since_filling is None or isinstance(command, Sparql):  # which waits for its commit by itself
+        if self._since_filling is None or isinstance(command, Sparql):  # it waits for its commit itself
             return self._worker.ask(command, seq, demand, asker)
         worker, future = self._worker, Future[Any]()
-        self._later.append(lambda: settle(future, lambda: worker.ask(command, self._seq)))
+        self._deferred.append(lambda: settle(future, lambda: worker.ask(command, self._seq)))
         return future
 
     def _demand(self, worker: _Worker, command: Sparql | Watch) -> int:
-        """Have measured what a query may look at; the number under which that is done, 0 for nothing."""
+        """Request the measurements that a query may need. Return their number, or 0 if it needs none."""
         query = command.query
-        if self._surrounded is None or not command.inferred or not self._measured or query is None:
+        if self._placements is None or not command.inferred or not self._measured or query is None:
             return 0
-        if not may_name(query, self._measured):
+        if not may_use_properties(query, self._measured):
             return 0
         if not self._measures:
             self._measures = True
-            worker.send(self._surrounded())
+            worker.send(self._placements())
         demand = next(self._demands)
-        worker.send(Demanded(demand=demand, query=query))
+        worker.send(MeasurementRequest(demand=demand, query=query))
         return demand
 
-    def foresee(self, commit_id: str, turtle: bytes, base: str, *, packed: bytes = b"") -> None:
-        """What a Turtle document says will be inserted by a commit of that id, unless `forget` comes.
+    def prefetch(self, commit_id: str, turtle: bytes, base: str, *, packed: bytes = b"") -> None:
+        """Start to load a Turtle document that the commit with this id will insert.
 
-        `packed` is the same as it came, if that was packed.
+        `discard_prepared` cancels that. `packed` is the compressed document, if it was compressed.
         """
         if self._large is not None and not self._infers and self._since_filling is None:
-            self._large.foresee(commit_id, turtle, base, packed=packed)
+            self._large.prefetch(commit_id, turtle, base, packed=packed)
 
-    def forget(self) -> None:
-        """What was foreseen does not come."""
+    def discard_prepared(self) -> None:
+        """Discard the document that was prefetched."""
         if self._large is not None:
-            self._large.forget()
+            self._large.discard()
 
-    def foretell(self, commit: Commit) -> Callable[[], None]:
-        """A commit that `follow` will get if it stands the check. What is returned says that it will not."""
+    def prepare(self, commit: Commit) -> Callable[[], None]:
+        """Prepare for a commit that is being checked. The returned function aborts the preparation."""
         if self._large is None or self._infers or self._since_filling is not None:
             return lambda: None
-        return self._large.foretell(commit)
+        return self._large.prepare(commit)
 
-    def follow(self, commit: Commit, believed: Believed = UNCHANGED) -> None:
-        """Every commit, in order, and what it changed of what is computed."""
+    def follow(self, commit: Commit, derived_changes: DerivedChanges = UNCHANGED) -> None:
+        """Apply a commit, with its changes of computed facts. Commits must come in order."""
         self._seq = commit.seq
-        is_much = self._large is not None and self._large.is_much(commit)
+        is_much = self._large is not None and self._large.is_large_change(commit)
         if self._since_filling is not None and not commit.tbox:
             self._since_filling.append(delta_of(commit))
         elif is_much and not self._infers:
@@ -164,25 +164,25 @@ class SparqlService:
             self._worker.send(
                 Committed(
                     delta=delta_of(commit),
-                    believed=believed if self._infers else UNCHANGED,
+                    derived_changes=derived_changes if self._infers else UNCHANGED,
                     placed=tuple(map(PlacedEntity.of, commit.changed)) if self._measures else (),
                     removed=tuple(gone.name for gone in commit.removed) if self._measures else (),
                 )
             )
 
     def _load(self) -> None:
-        """Let the process have the map as it is."""
+        """Send the present map to the process."""
         if self._worker is None:
             return
         if self._infers or self._large is None or not self._large.is_large:
             self._since_filling = None
             self._load_into_memory(self._worker)
         elif self._since_filling is None:
-            kept = self._large.kept(self._seq)
+            kept = self._large.find_store(self._seq)
             if kept is None:
                 self._fill()
             else:
-                self._take_over(*kept)
+                self._use_store(*kept)
 
     def _fill(self, commit: Commit | None = None) -> None:
         if self._large is None:
@@ -190,12 +190,12 @@ class SparqlService:
         since: list[Delta] = []
         self._since_filling = since
 
-        def on_done(done: Future[Filled]) -> None:
+        def on_done(done: Future[FilledStore]) -> None:
             if self._since_filling is not since:
-                return  # it is not wanted any more
+                return  # it is not needed any more
             self._since_filling = None
             if (error := done.exception()) is None:
-                self._take_over(done.result(), since)
+                self._use_store(done.result(), since)
             elif self._worker is not None:
                 log.warning("SPARQL keeps its triples in memory: %s", error)
                 self._load_into_memory(self._worker)
@@ -203,39 +203,39 @@ class SparqlService:
         self._large.fill(self._seq, lambda: self._seq, commit).add_done_callback(on_done)
 
     def _load_into_memory(self, worker: _Worker) -> None:
-        believed = self._believed() if self._infers else UNCHANGED
+        derived_changes = self._derived_changes() if self._infers else UNCHANGED
         asserted = tuple(self._asserted())
-        surrounded = None
-        if self._infers and self._surrounded is not None:
+        placements = None
+        if self._infers and self._placements is not None:
             self._measured = frozenset(map(v.local_name, PairProperties(asserted).sources))
             if self._measures:
-                surrounded = self._surrounded()
+                placements = self._placements()
         worker.send(
             Load(
                 seq=self._seq,
                 asserted=asserted,
                 infers=self._infers,
-                believed=believed,
-                surrounded=surrounded,
+                derived_changes=derived_changes,
+                placements=placements,
             )
         )
-        self._go_on()
+        self._run_deferred()
 
-    def _take_over(self, store: Filled, since: Iterable[Delta]) -> None:
+    def _use_store(self, store: FilledStore, since: Iterable[Delta]) -> None:
         if self._worker is not None:
-            self._worker.send(LoadKept(path=str(store.path), seq=store.seq, settled=store.settled))
+            self._worker.send(LoadFromDisk(path=str(store.path), seq=store.seq, settled=store.settled))
             for delta in since:
                 self._worker.send(Committed(delta=delta))
-        self._go_on()
+        self._run_deferred()
 
-    def _go_on(self) -> None:
-        """The triples are on their way: now for what had to wait for them."""
-        later, self._later = self._later, []
+    def _run_deferred(self) -> None:
+        """Run the commands that waited for the triples, which have been sent."""
+        later, self._deferred = self._deferred, []
         for ask in later:
             ask()
 
     def close(self) -> None:
-        """End the process."""
+        """Stop the process."""
         if self._large is not None:
             self._large.close()
         if self._worker is not None:
@@ -244,9 +244,9 @@ class SparqlService:
 
 
 class _Worker:
-    """The process, while it lives."""
+    """The running process."""
 
-    def __init__(self, publish: Callable[[News], None]) -> None:
+    def __init__(self, publish: Callable[[QueryUpdate], None]) -> None:
         self._publish = publish
         self._numbers = count()
         self._outbox: queue.SimpleQueue[tuple[Connection, Any] | None] = queue.SimpleQueue()
@@ -255,7 +255,7 @@ class _Worker:
         self.is_alive = True
         self._connection, there = Pipe()
         self._lanes = Lanes(self.send)
-        theirs = [there, *self._lanes.others]
+        theirs = [there, *self._lanes.remote_ends]
         fds = [connection.fileno() for connection in theirs]
         self._process = subprocess.Popen(
             [sys.executable, "-P", "-m", "semmap.nodes.kb_node.sparql.worker", *map(str, fds)],
@@ -274,21 +274,21 @@ class _Worker:
             self._outbox.put((connection or self._connection, message))
 
     def ask(self, command: Sparql | Watch | Renew, seq: int, demand: int = 0, asker: str = "") -> Future[Any]:
-        """The reply, as of commit `seq` or later, with what was demanded under that number."""
+        """Return the reply as of commit `seq` or later, with the measurements of request `demand`."""
         with self._lock:
             if self.is_alive:
                 if isinstance(command, Sparql):
                     return self._lanes.ask(command, seq, demand, asker)
                 number, future = next(self._numbers), Future[Any]()
                 self._waiting[number] = (type(command), future)
-                self.send(Asked(number=number, command=command))
+                self.send(StandingCommand(number=number, command=command))
                 return future
         future = Future()
         future.set_exception(_ended())
         return future
 
     def close(self) -> None:
-        """End it."""
+        """Stop the process."""
         self._process.terminate()
         self._process.wait()
 
@@ -298,25 +298,25 @@ class _Worker:
                 connection, message = item
                 connection.send_bytes(msgpack.encode(message))
         except OSError:
-            pass  # `_read` sees the end, too
+            pass  # `_read` notices it, too
 
     def _read(self) -> None:
         try:
             while True:
                 match from_worker.decode(self._connection.recv_bytes()):
-                    case News() as news:
+                    case QueryUpdate() as news:
                         self._publish(news)
-                    case Left() as left:
-                        self._lanes.leave(left)
+                    case ReaderExited() as left:
+                        self._lanes.on_reader_exit(left)
                     case answered:
                         self._answer(answered)
         except (EOFError, OSError):
             pass
         finally:
-            self._bury()
+            self._reap()
 
-    def _bury(self) -> None:
-        """Nobody is waiting for it any longer."""
+    def _reap(self) -> None:
+        """Fail all waiting requests after the process has ended."""
         with self._lock:
             self.is_alive = False
             left = list(self._waiting.values())
@@ -330,7 +330,7 @@ class _Worker:
         self._writer.join()
         self._connection.close()
 
-    def _answer(self, message: Answered) -> None:
+    def _answer(self, message: CommandReply) -> None:
         with self._lock:
             kind, future = self._waiting.pop(message.number)
         if message.error is not None:
@@ -340,4 +340,4 @@ class _Worker:
 
 
 def _ended() -> errors.Refused:
-    return errors.Refused("the process that answers SPARQL has ended; ask again, which starts a new one")
+    return errors.Refused("the SPARQL process has ended; repeat the query to start a new one")

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from msgspec import structs
 
 from semmap.nodes.kb_node.entities.property_table import STRUCTURAL
-from semmap.nodes.kb_node.entities.property_values import plain
+from semmap.nodes.kb_node.entities.property_values import to_json_value
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.ontology import vocabulary as v
 from semmap.schemas.changes import Change, between, of_properties, removed
@@ -105,5 +105,5 @@ def _in_full(
 
 
 def _values(terms: Iterable[Term]) -> Stated | None:
-    values = tuple(map(plain, sorted(terms)))
+    values = tuple(map(to_json_value, sorted(terms)))
     return values[0] if len(values) == 1 else values or None

@@ -178,7 +178,7 @@ class HistoryReader:
         if not tbox_validation.has_individuals(tbox):
             return ()
         reasoner = Reasoner(tbox)
-        return entity_reading.of_the_tbox(reasoner, ClassTable(reasoner))
+        return entity_reading.read_tbox_entities(reasoner, ClassTable(reasoner))
 
     def commit_at(self, when: When) -> int:
         """Return the last commit at a time. Raises Refused for the future and before the history."""

@@ -14,7 +14,7 @@ from semmap.nodes.kb_node.documents.tbox import tbox_declarations, tbox_validati
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.nodes.kb_node.sparql.triples.kept import forget
+from semmap.nodes.kb_node.sparql.triples.disk_stores import forget
 from semmap.nodes.kb_node.storage import closure_cache
 from semmap.nodes.kb_node.storage.existing_map import describe_existing_map
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
@@ -49,17 +49,20 @@ def seed(
     tboxes = (tbox,) if isinstance(tbox, Path) else tuple(tbox)
     name = ", ".join(map(str, tboxes))
     gathered = ontology_files.gather(tboxes, imports)
-    tbox_triples = tbox_declarations.declared(
+    tbox_triples = tbox_declarations.with_declarations(
         gathered.triples, of_file=gathered.prefixes, spatial_root=spatial_root
     )
-    reasoner = tbox_validation.compiled(tbox_triples, name)
+    reasoner = tbox_validation.compile_tbox(tbox_triples, name)
     closed = reasoner.closed  # before the ABox may add to the schema
-    abox_triples = [(v.ABOX_ONTOLOGY, v.RDF_TYPE, v.OWL_ONTOLOGY), *tbox_validation.imports(tbox_triples)]
+    abox_triples = [
+        (v.ABOX_ONTOLOGY, v.RDF_TYPE, v.OWL_ONTOLOGY),
+        *tbox_validation.import_triples(tbox_triples),
+    ]
     notes: list[str] = []
     if abox is not None:
         document = ontology_files.read(abox, "a")
         try:
-            sorted_out = abox_document.sort_out(document, ClassTable(reasoner), skip_unknown=False)
+            filtered = abox_document.filter_document(document, ClassTable(reasoner), skip_unknown=False)
         except errors.UnknownClass as error:
             text = error.text.removesuffix(errors.SKIP_UNKNOWN)
             raise type(error)(
@@ -67,10 +70,10 @@ def seed(
             ) from None
         except errors.BadRequest as error:
             raise type(error)(f"{abox}: {error.text}") from None
-        abox_triples += sorted_out.triples
-        notes = sorted_out.notes
-        if found := abox_document.strangers(sorted_out.triples, reasoner):
-            notes.append(abox_document.of_strangers(found))
+        abox_triples += filtered.triples
+        notes = filtered.notes
+        if found := abox_document.find_undescribed(filtered.triples, reasoner):
+            notes.append(abox_document.undescribed_note(found))
     source = f" from {abox.name}" if abox is not None else ""
     transaction = Transaction(
         id=f"seed-{uuid.uuid4().hex}",

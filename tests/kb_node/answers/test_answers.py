@@ -1,8 +1,8 @@
 import pytest
 
-from semmap.nodes.kb_node.answers import answers, trials
+from semmap.nodes.kb_node.answers import answers, dry_runs
 from semmap.nodes.kb_node.documents import rdf
-from semmap.nodes.kb_node.documents.abox_document import sort_out
+from semmap.nodes.kb_node.documents.abox_document import filter_document
 from semmap.nodes.kb_node.reasoner.rules.general import GeneralEngine
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -41,46 +41,48 @@ def test_listing_is_by_exact_class_name(furnished):
         answers.entities_of(furnished, "Saet")
 
 
-def test_infer_says_what_was_not_said(furnished):
+def test_infer_returns_only_inferred_facts(furnished):
     inferred = answers.infer(furnished, "kitchen1")
     assert "kitchen1 type Location" in inferred.text
-    assert "chair1 type Chair" not in answers.infer_all(answers.inferring(furnished)).text
-    assert "chair1 type Seat" in answers.infer_all(answers.inferring(furnished)).text
+    assert "chair1 type Chair" not in answers.infer_all(answers.inference_input(furnished)).text
+    assert "chair1 type Seat" in answers.infer_all(answers.inference_input(furnished)).text
     with pytest.raises(errors.UnknownName):
         answers.infer(furnished, "sofa1")
 
 
 @pytest.mark.parametrize("syntax", SYNTAXES)
-def test_an_export_replaces_the_map_by_an_equal_one(furnished, syntax):
-    document = answers.export(answers.picture(furnished, inferred=False), syntax)
+def test_an_export_can_replace_the_map_without_a_difference(furnished, syntax):
+    document = answers.export(answers.export_snapshot(furnished, inferred=False), syntax)
     before = furnished.abox()
     assert (document.seq, document.triples) == (1, len(before))
-    kept, skipped, _ = sort_out(rdf.parse(document.content, "export"), furnished.classes, skip_unknown=False)
+    kept, skipped, _ = filter_document(
+        rdf.parse(document.content, "export"), furnished.classes, skip_unknown=False
+    )
     furnished.commit(transaction(2, kept, furnished.abox()))
     assert skipped == []
     assert canonical(furnished.abox()) == canonical(before)
 
 
 @pytest.mark.parametrize("syntax", SYNTAXES)
-def test_an_export_with_what_follows_can_be_loaded(furnished, syntax):
-    document = answers.export(answers.picture(furnished, inferred=True), syntax)
+def test_an_export_with_inferences_can_be_loaded(furnished, syntax):
+    document = answers.export(answers.export_snapshot(furnished, inferred=True), syntax)
     triples = rdf.parse(document.content, "export")
     assert set(turtle(":kitchen1 a dm:Location . :chair1 a dm:Seat .")) <= set(triples)
     assert not {v.OWL_THING, v.dm("Chair")} & {s for s, _, _ in triples}
     before = list(furnished.entities())
-    kept, *_ = sort_out(triples, furnished.classes, skip_unknown=False)
+    kept, *_ = filter_document(triples, furnished.classes, skip_unknown=False)
     furnished.commit(transaction(2, kept, furnished.abox()))
     assert names(furnished.entities()) == names(before)
 
 
 def test_an_inconsistent_map_is_not_exported():
-    wrong = answers.Picture([*home.TBOX, *turtle(":a a dm:Chair , dm:Kitchen .")], [], 0)
+    wrong = answers.ExportSnapshot([*home.TBOX, *turtle(":a a dm:Chair , dm:Kitchen .")], [], 0)
     with pytest.raises(errors.Inconsistent, match="inconsistent: a cannot be") as caught:
         answers.export(wrong, "turtle")
     assert caught.value.explanation is not None
 
 
-def test_check_tells_why_not():
+def test_check_explains_an_inconsistency():
     good = answers.check([*home.TBOX, *turtle(":a a dm:Chair .")], "semmap")
     assert (good.consistent, good.text, good.explanation) == (True, "consistent", None)
     assert good.triples == len(home.TBOX) + 1
@@ -91,52 +93,60 @@ def test_check_tells_why_not():
 
 
 @pytest.mark.parametrize(("more", "consistent"), [("", True), (", dm:Kitchen", False)])
-def test_owlrl_is_of_the_same_opinion(more, consistent):
+def test_owlrl_agrees(more, consistent):
     checked = answers.check([*home.TBOX, *turtle(f":a a dm:Chair {more} .")], "owlrl")
     assert (checked.consistent, checked.engine) == (consistent, "owlrl")
     assert checked.text.startswith("consistent" if consistent else "inconsistent: ")
 
 
-def test_what_follows_is_the_same_on_both_engines(furnished):
-    """The one that works change by change, and the one for graphs that it cannot take."""
-    compiled = answers.infer_all(answers.inferring(furnished)), answers.picture(furnished, inferred=True)
+def test_inferences_are_the_same_with_both_engines(furnished):
+    """The incremental engine, and the general one for graphs that the first cannot compile."""
+    compiled = (
+        answers.infer_all(answers.inference_input(furnished)),
+        answers.export_snapshot(furnished, inferred=True),
+    )
     assert furnished.reasoner.is_compiled
     furnished.reasoner._engine = GeneralEngine(furnished.reasoner.asserted())
     assert not furnished.reasoner.is_compiled
-    general = answers.infer_all(answers.inferring(furnished)), answers.picture(furnished, inferred=True)
+    general = (
+        answers.infer_all(answers.inference_input(furnished)),
+        answers.export_snapshot(furnished, inferred=True),
+    )
     assert set(general[0].triples) == set(compiled[0].triples)
     assert general[0].text == compiled[0].text
     assert set(general[1].written) == set(compiled[1].written)
 
 
-def test_what_is_measured_of_pairs_is_inferred_and_exported(flat):
+def test_measured_pairs_are_inferred_and_exported(flat):
     near = {t[2] for t in answers.infer(flat, "milk1").triples if t[1] == v.dm("isNear")}
     assert v.entity_iri("stove1") in near
-    assert v.entity_iri("counter1") not in near  # on which it stands
+    assert v.entity_iri("counter1") not in near  # it supports the entity
     of_stove = answers.infer(flat, "stove1").triples
     assert (v.entity_iri("stove1"), v.dm("isNear"), v.entity_iri("milk1")) in of_stove
     assert len(set(of_stove)) == len(of_stove)
-    picture = answers.picture(flat, inferred=True)
+    picture = answers.export_snapshot(flat, inferred=True)
     exported = rdf.parse(answers.export(picture, "turtle").content, "export")
-    everything = set(answers.infer_all(answers.inferring(flat)).triples)
+    everything = set(answers.infer_all(answers.inference_input(flat)).triples)
     for name in ("isNear", "isNextTo", "touches", "isUnder", "isAbove"):
         found = {t for t in exported if t[1] == v.dm(name)}
         assert found == {t for t in everything if t[1] == v.dm(name)} != set()
-    plain = rdf.parse(answers.export(answers.picture(flat, inferred=False), "turtle").content, "export")
+    plain = rdf.parse(
+        answers.export(answers.export_snapshot(flat, inferred=False), "turtle").content, "export"
+    )
     assert not any(p == v.dm("isNear") for _, p, _ in plain)
 
 
-def test_classes_that_are_called_alike_are_told_apart_in_what_follows(tmp_path):
+def test_ambiguous_class_names_have_prefixes_in_inferences(tmp_path):
     other = turtle(
         "@prefix lab: <http://lab.org/lab#> . lab:Chair a owl:Class . dm:Chair rdfs:subClassOf lab:Chair ."
     )
     semantic_map = home.new_map(tmp_path, [*home.TBOX, *other])
-    tried = trials.of(semantic_map, lambda: semantic_map.commit(transaction(1, chair("chair1"))))
+    tried = dry_runs.dry_run(semantic_map, lambda: semantic_map.commit(transaction(1, chair("chair1"))))
     semantic_map.commit(transaction(1, chair("chair1")))
     for said in (
         tried.trial.gained,
         answers.infer(semantic_map, "chair1").text,
-        answers.infer_all(answers.inferring(semantic_map)).text,
+        answers.infer_all(answers.inference_input(semantic_map)).text,
     ):
         assert {"chair1 type lab:Chair", "chair1 type Seat"} <= set(said)
     home.close(semantic_map)
@@ -145,12 +155,12 @@ def test_classes_that_are_called_alike_are_told_apart_in_what_follows(tmp_path):
 @pytest.mark.parametrize("syntax", SYNTAXES)
 def test_an_export_declares_the_classes_that_only_its_map_has(semantic_map, syntax):
     said = turtle(":chair1 a dm:Chair ; dm:hasJoint [ a :swivel ] . :swivel a owl:Class .")
-    kept, _, _ = sort_out(said, semantic_map.classes, skip_unknown=False)
+    kept, _, _ = filter_document(said, semantic_map.classes, skip_unknown=False)
     semantic_map.commit(transaction(1, kept))
-    document = answers.export(answers.picture(semantic_map, inferred=False), syntax)
+    document = answers.export(answers.export_snapshot(semantic_map, inferred=False), syntax)
     triples = rdf.parse(document.content, "export")
     assert len(triples) == len(set(triples)) == document.triples
-    again, skipped, notes = sort_out(triples, semantic_map.classes, skip_unknown=False)
+    again, skipped, notes = filter_document(triples, semantic_map.classes, skip_unknown=False)
     assert canonical(again) == canonical(kept)
     assert skipped == []
     assert notes[-1] == MAPS_OWN.format("swivel")

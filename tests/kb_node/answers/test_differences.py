@@ -1,4 +1,4 @@
-"""What happened between two commits, and when something was on something."""
+"""Differences between two commits, and the times of a spatial relation."""
 
 import re
 
@@ -14,7 +14,7 @@ def system(empty_map):
 
 @pytest.fixture(scope="module")
 def told(system):
-    """A client of a map with a cup that went from a table to another and back."""
+    """A client of a map in which a cup was moved from one table to another and back."""
     with system.client() as client:
         client.add("Kitchen", "kitchen1", at=(0, 0, 0), size=(6, 6, 3))  # 2, after the ontology
         client.add("Table", "table1", at=(1, 1, 0), size=(1, 1, 0.7))
@@ -26,7 +26,7 @@ def told(system):
         yield client
 
 
-def test_what_changed_is_told_by_entity(told):
+def test_changes_are_listed_by_entity(told):
     found = told.diff("5", "6")
     assert [(change.name, change.kind) for change in found.changes] == [("cup1", "pose")]
     assert [(r.subject, r.text) for r in found.relations] == [
@@ -36,7 +36,7 @@ def test_what_changed_is_told_by_entity(told):
     assert (found.first, found.last) == (5, 6)
 
 
-def test_there_and_back_is_what_is_left(told):
+def test_a_move_there_and_back_leaves_no_change_of_the_pose(told):
     found = told.diff("5")
     kinds = [(change.name, change.kind) for change in found.changes]
     assert kinds == [("cup1", "pose"), ("cup1", "reference"), ("table2", "removed")]
@@ -45,7 +45,7 @@ def test_there_and_back_is_what_is_left(told):
     assert told.diff("8").changes == told.diff("8").relations == ()
 
 
-def test_every_diff_takes_the_one_map_to_the_other(told):
+def test_every_diff_leads_from_one_map_to_the_other(told):
     for first in range(1, 8):
         for last in range(first, 9):
             names = {e.name for e in told.list(as_of=str(first))}
@@ -58,7 +58,7 @@ def test_every_diff_takes_the_one_map_to_the_other(told):
             assert names == {e.name for e in told.list(as_of=str(last))}
 
 
-def test_when_it_was_there(told):
+def test_times_of_a_relation_are_reported(told):
     found = told.when("cup1", "isOn", "table1")
     assert [(spell.since, spell.until) for spell in found.spells] == [(5, 6), (7, None)]
     assert re.fullmatch(
@@ -77,7 +77,7 @@ def test_when_it_was_there(told):
     assert told.when("table1", "isOn", "cup1").text == "table1 was never on cup1"
 
 
-def test_what_is_in_a_corner_is_in_the_room_too(told):
+def test_an_object_in_a_corner_is_also_in_the_room(told):
     told.add("Corner", "corner1", at=(1, 1, 0), size=(1, 1, 2))  # 9
     assert [(spell.since, spell.until) for spell in told.when("cup1", "isLocatedIn", "kitchen1").spells] == [
         (5, None)
@@ -88,7 +88,7 @@ def test_what_is_in_a_corner_is_in_the_room_too(told):
     told.undo(9)
 
 
-def test_what_cannot_be_asked_is_said(told):
+def test_invalid_queries_are_reported(told):
     with pytest.raises(errors.BadRequest, match="commit 6 comes after commit 5; give the earlier one first"):
         told.diff("6", "5")
     with pytest.raises(errors.Refused, match="there is no commit 99 yet; the last one is 10"):
@@ -97,7 +97,7 @@ def test_what_cannot_be_asked_is_said(told):
         told.when("nothing1", "isOn", "table1")
 
 
-def test_a_place_is_in_a_place_and_a_thing_on_what_bears_it(told):
+def test_a_place_is_in_a_place_and_an_object_on_its_support(told):
     told.add("Location", "flat1", at=(0, 0, 0), size=(9, 9, 3))
     found = told.when("kitchen1", "isLocatedIn", "flat1")
     assert [spell.until for spell in found.spells] == [None]

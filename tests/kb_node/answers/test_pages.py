@@ -21,12 +21,12 @@ def names(snapshot):
     return tuple(entity.name for entity in snapshot.entities)
 
 
-def test_without_a_limit_it_is_all_of_the_map(semantic_map):
+def test_without_a_limit_the_whole_map_is_returned(semantic_map):
     snapshot = Pages(semantic_map).snapshot(SnapshotQuery())
     assert (snapshot.seq, names(snapshot), snapshot.more) == (5, NAMES, False)
 
 
-def test_pages_follow_one_another_by_name(semantic_map):
+def test_pages_are_in_the_order_of_names(semantic_map):
     pages = Pages(semantic_map)
     first = pages.snapshot(SnapshotQuery(limit=2))
     second = pages.snapshot(SnapshotQuery(limit=2, after="chair2"))
@@ -35,7 +35,7 @@ def test_pages_follow_one_another_by_name(semantic_map):
     assert (first.more, second.more, last.more) == (True, True, False)
 
 
-def test_what_goes_between_two_pages_is_in_neither(semantic_map):
+def test_an_entity_that_is_removed_between_two_pages_is_in_neither(semantic_map):
     pages = Pages(semantic_map)
     pages.snapshot(SnapshotQuery(limit=2))
     semantic_map.commit(transaction("gone", retract=chair("chair3")))
@@ -43,7 +43,7 @@ def test_what_goes_between_two_pages_is_in_neither(semantic_map):
     assert (page.seq, names(page), page.more) == (6, ("chair4", "chair5"), False)
 
 
-def test_a_page_may_be_the_last_because_the_rest_has_gone(semantic_map):
+def test_a_page_is_the_last_if_the_remaining_entities_were_removed(semantic_map):
     pages = Pages(semantic_map)
     pages.snapshot(SnapshotQuery(limit=4))
     semantic_map.commit(transaction("gone", retract=chair("chair5")))
@@ -51,17 +51,17 @@ def test_a_page_may_be_the_last_because_the_rest_has_gone(semantic_map):
     assert (names(page), page.more) == ((), False)
 
 
-def test_whoever_fetches_pages_is_expected_to_ask_for_the_next(semantic_map, monkeypatch):
+def test_a_request_for_the_next_page_is_expected(semantic_map, monkeypatch):
     clock = [100.0]
     monkeypatch.setattr(pages_module.time, "monotonic", lambda: clock[0])
     pages = Pages(semantic_map)
-    assert pages.may_follow  # after a start
+    assert pages.is_request_expected  # after a start
     clock[0] += 10.0
-    assert not pages.may_follow
+    assert not pages.is_request_expected
     pages.snapshot(SnapshotQuery(limit=2))
-    assert pages.may_follow
+    assert pages.is_request_expected
     pages.snapshot(SnapshotQuery(limit=200, after="chair2"))
-    assert not pages.may_follow
+    assert not pages.is_request_expected
     pages.snapshot(SnapshotQuery(limit=2))
     clock[0] += 10.0
-    assert not pages.may_follow  # it has given up
+    assert not pages.is_request_expected  # the timeout has passed

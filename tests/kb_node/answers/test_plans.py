@@ -1,4 +1,4 @@
-"""Plans are drawn from where things and places are, part by part, and from the walls that are known."""
+"""Plans contain the outlines of objects and places, part by part, and the known walls."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.kb_node.relations.entities import CORNER, ROOM, TABLE, TOP, thing
 
 SQUARE = "POLYGON ((0 0, 4 0, 4 2, 0 2, 0 0), (1 0.5, 1 1.5, 2 1.5, 2 0.5, 1 0.5))"
 WALL = Outline(corners=((0.0, 0.0), (1.0, 0.0), (1.0, 0.1)), low=0.0, high=2.5)
-NO_WALLS = "no simulator tells where the walls are, so they are where no place and no door is"
+NO_WALLS = "no simulator provides the walls, so they are assumed where there is neither a place nor a door"
 BOX = thing("box1", (1.0, 2.0, 0.5), size=(0.4, 0.2, 0.3))
 
 
@@ -24,7 +24,7 @@ def area(corners):
     return sum(x0 * y1 - x1 * y0 for (x0, y0), (x1, y1) in pairs) / 2
 
 
-def test_a_thing_is_drawn_where_it_stands():
+def test_an_object_is_drawn_at_its_pose():
     plan = plan_of([BOX], ())
     ((box,),) = (plan.things,)
     assert (box.name, box.label, box.class_) == ("box1", "box1", "Box")
@@ -42,14 +42,14 @@ def test_a_thing_is_drawn_where_it_stands():
     assert plan.places == ()
 
 
-def test_a_table_is_drawn_with_its_legs_and_called_as_people_call_it():
+def test_a_table_is_drawn_with_its_legs_and_its_label():
     (table,) = plan_of([TABLE], ()).things
     assert (table.label, len(table.parts) > 1) == ("kitchen table", True)
     assert max(part.high for part in table.parts) == pytest.approx(TOP)
     assert all(area(part.corners) > 0 for part in table.parts)
 
 
-def test_what_is_nowhere_or_of_no_size_is_left_out_and_the_others_are_in_the_order_of_their_names():
+def test_entities_without_pose_or_size_are_omitted_and_the_others_sorted_by_name():
     nowhere = thing("cup1", None)
     unmeasured = structs.replace(thing("gizmo1", (0.0, 0.0, 0.0)), size_m=None, model="")
     plan = plan_of([TABLE, nowhere, unmeasured, BOX], ())
@@ -65,14 +65,14 @@ def test_what_is_nowhere_or_of_no_size_is_left_out_and_the_others_are_in_the_ord
         ({"isOpen": "ajar"}, None, ()),
     ],
 )
-def test_a_door_is_open_or_not_and_connects_places(properties, open_, connects):
+def test_a_door_has_a_state_and_connects_places(properties, open_, connects):
     (door,) = plan_of([said(BOX, "Door", **properties)], ()).things
     assert (door.door, door.open, door.connects) == (True, open_, connects)
     (other,) = plan_of([said(BOX, **properties)], ()).things
     assert (other.door, other.open, other.connects) == (False, None, ())
 
 
-def test_a_place_is_drawn_with_its_height_as_a_box_or_a_polygon_with_holes():
+def test_a_place_is_drawn_as_a_box_or_a_polygon_with_holes():
     corner, kitchen = plan_of([ROOM, CORNER], ()).places
     assert (kitchen.name, kitchen.label, kitchen.class_) == ("kitchen1", "kitchen", "Kitchen")
     assert (kitchen.floor, kitchen.height) == (0.0, 2.5)
@@ -97,8 +97,8 @@ def test_a_place_is_drawn_with_its_height_as_a_box_or_a_polygon_with_holes():
         ([ROOM, thing("wall1", (0.0, 0.0, 0.0), "wall", size=(4.0, 0.1, 2.5))], None, ()),
         ([BOX], None, ()),
     ],
-    ids=["nobody knows", "none", "of the world", "of the map", "no place"],
+    ids=["unknown", "none", "of the world", "of the map", "no place"],
 )
-def test_a_plan_without_walls_says_so(entities, walls, notes):
+def test_a_plan_without_walls_has_a_note(entities, walls, notes):
     plan = plan_of(entities, walls)
     assert (plan.notes, plan.walls) == (notes, walls or ())

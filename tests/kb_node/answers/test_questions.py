@@ -25,14 +25,14 @@ def furnished(semantic_map):
     return semantic_map
 
 
-def explained(semantic_map, name, predicate, value, *, negated=False):
+def explain_relation(semantic_map, name, predicate, value, *, negated=False):
     question = Explain(name=name, predicate=predicate, value=value, negated=negated)
-    return questions.explain(semantic_map.reasoner, questions.of_explain(semantic_map, question))
+    return questions.explain(semantic_map.reasoner, questions.parse_explain(semantic_map, question))
 
 
 def answered(semantic_map, name, predicate, value):
     question = Could(name=name, predicate=predicate, value=value)
-    return questions.could(semantic_map.reasoner, questions.of_could(semantic_map, question))
+    return questions.could(semantic_map.reasoner, questions.parse_could(semantic_map, question))
 
 
 @pytest.mark.parametrize(
@@ -56,8 +56,8 @@ def answered(semantic_map, name, predicate, value):
         ("chair1", v.IS_LOCATED_IN, v.entity_iri("kitchen1"), {"chair1 isLocatedIn kitchen1"}),
     ],
 )
-def test_explain_gives_what_a_triple_rests_on(furnished, name, predicate, value, support):
-    explanation = explained(furnished, name, predicate, value)
+def test_explain_returns_the_supporting_facts(furnished, name, predicate, value, support):
+    explanation = explain_relation(furnished, name, predicate, value)
     assert {v.spoken(triple) for triple in explanation.support} == support
 
 
@@ -72,7 +72,7 @@ def test_explain_gives_what_a_triple_rests_on(furnished, name, predicate, value,
             "xyz",
             "kitchen1",
             errors.BadRequest,
-            "'xyz'; there are type and the properties of the TBox",
+            "'xyz'; use type or a property of the TBox",
         ),
         (
             "chair1",
@@ -90,13 +90,13 @@ def test_explain_gives_what_a_triple_rests_on(furnished, name, predicate, value,
         ),
     ],
 )
-def test_what_cannot_be_explained(furnished, name, predicate, value, error, text):
+def test_statements_that_cannot_be_explained_are_rejected(furnished, name, predicate, value, error, text):
     with pytest.raises(error, match=text):
-        explained(furnished, name, predicate, value)
+        explain_relation(furnished, name, predicate, value)
 
 
-def test_why_two_are_different_although_no_rule_says_so(furnished):
-    explanation = explained(furnished, "chair1", "differentFrom", "kitchen1")
+def test_two_individuals_are_different_although_no_rule_derives_it(furnished):
+    explanation = explain_relation(furnished, "chair1", "differentFrom", "kitchen1")
     assert explanation.conclusion == (v.entity_iri("chair1"), v.OWL_DIFFERENT_FROM, v.entity_iri("kitchen1"))
     assert explanation.supposed == (v.entity_iri("chair1"), v.OWL_SAME_AS, v.entity_iri("kitchen1"))
     assert explanation.text.startswith(
@@ -104,7 +104,7 @@ def test_why_two_are_different_although_no_rule_says_so(furnished):
     )
     assert "nothing is both a Location and an Object" in explanation.text
     with pytest.raises(errors.Refused, match="that chair1 is different from chair2, and nothing excludes it"):
-        explained(furnished, "chair1", "differentFrom", "chair2")
+        explain_relation(furnished, "chair1", "differentFrom", "chair2")
 
 
 def test_a_value_may_be_an_individual_of_another_namespace(tmp_path):
@@ -117,12 +117,12 @@ def test_a_value_may_be_an_individual_of_another_namespace(tmp_path):
     """
     semantic_map = home.new_map(tmp_path, rdf.parse(lab.encode(), "lab.ttl", label_prefix="t"))
     told = "ann does not like bob (asserted)."
-    assert explained(semantic_map, "ann", "likes", "bob", negated=True).text == told
+    assert explain_relation(semantic_map, "ann", "likes", "bob", negated=True).text == told
     assert answered(semantic_map, "ann", "likes", "bob").text == f"no: {told}"
     home.close(semantic_map)
 
 
-def test_what_no_rule_excludes_is_searched_for_on_a_copy():
+def test_a_refutation_without_a_rule_is_searched_on_a_copy():
     reasoner = Reasoner(
         triples(
             ":Person owl:equivalentClass [ owl:unionOf ( :Adult :Child ) ] ."
@@ -132,32 +132,30 @@ def test_what_no_rule_excludes_is_searched_for_on_a_copy():
     )
     robot, other = triple(":ann a :Robot"), triple(":ann a :Child")
     with pytest.raises(questions.Undecided):
-        questions.explain(reasoner, questions.Asked((robot,), negated=True), anew=False)
-    found = questions.explain(reasoner, questions.Asked((robot,), negated=True))
+        questions.explain(reasoner, questions.StatementQuestion((robot,), negated=True), recompute=False)
+    found = questions.explain(reasoner, questions.StatementQuestion((robot,), negated=True))
     assert found.text.startswith("ann is not a Robot, because it is a Person (asserted), ")
     assert (found.conclusion, found.supposed) == (None, robot)
     with pytest.raises(errors.Refused, match="it does not hold: ann is not a Robot, because") as refused:
-        questions.explain(reasoner, questions.Asked((robot,)))
+        questions.explain(reasoner, questions.StatementQuestion((robot,)))
     assert refused.value.explanation == found
     with pytest.raises(errors.Refused, match="it is not known that ann is a Child, but nothing excludes it"):
-        questions.explain(reasoner, questions.Asked((other,), negated=True))
-    with pytest.raises(
-        errors.Refused, match="it does hold: ann knows itself, because everything knows itself"
-    ):
-        questions.explain(reasoner, questions.Asked((triple(":ann :knows :ann"),), negated=True))
+        questions.explain(reasoner, questions.StatementQuestion((other,), negated=True))
+    with pytest.raises(errors.Refused, match="it holds: ann knows itself, because everything knows itself"):
+        questions.explain(reasoner, questions.StatementQuestion((triple(":ann :knows :ann"),), negated=True))
 
 
-def test_why_something_cannot_be(furnished):
-    explanation = explained(furnished, "chair1", "type", "Kitchen", negated=True)
+def test_a_negative_statement_is_explained(furnished):
+    explanation = explain_relation(furnished, "chair1", "type", "Kitchen", negated=True)
     assert (explanation.conclusion, explanation.supposed[1:]) == (None, (v.RDF_TYPE, v.dm("Kitchen")))
     assert explanation.text.startswith("chair1 is not a Kitchen, because it is a chair (asserted), ")
     assert not {explanation.supposed} & set(explanation.support)
     with pytest.raises(
         errors.Refused, match="it is not known that chair1 is a Door, but nothing excludes it"
     ):
-        explained(furnished, "chair1", "type", "Door", negated=True)
-    with pytest.raises(errors.Refused, match="it does hold: chair1 is a Seat, because it is a chair"):
-        explained(furnished, "chair1", "type", "Seat", negated=True)
+        explain_relation(furnished, "chair1", "type", "Door", negated=True)
+    with pytest.raises(errors.Refused, match="it holds: chair1 is a Seat, because it is a chair"):
+        explain_relation(furnished, "chair1", "type", "Seat", negated=True)
 
 
 @pytest.mark.parametrize(
@@ -187,7 +185,7 @@ def test_why_something_cannot_be(furnished):
         ),
     ],
 )
-def test_what_could_be(furnished, question, possible, text):
+def test_possible_and_impossible_statements(furnished, question, possible, text):
     before = set(furnished.reasoner.asserted()), set(furnished.reasoner.inferred())
     answer = answered(furnished, *question)
     assert (answer.possible, answer.text[: len(text)]) == (possible, text)
@@ -201,7 +199,7 @@ def test_what_could_be(furnished, question, possible, text):
         (("sofa1", "type", "Chair"), errors.UnknownName, "'sofa1'"),
         (("chair1", "isLocatedIn", "sofa1"), errors.UnknownName, "no entity is named 'sofa1'"),
         (("chair1", "isLocatedAt", "kitchen1"), errors.BadRequest, "did you mean isLocatedIn"),
-        (("chair1", "same", "kitchen1"), errors.BadRequest, "there are type and the properties of the TBox"),
+        (("chair1", "same", "kitchen1"), errors.BadRequest, "use type or a property of the TBox"),
         (("chair1", "type", "Chiar"), errors.UnknownClass, "did you mean Chair"),
         (
             ("chair1_coordinates", "float_coordinates_x", "left"),
@@ -210,12 +208,12 @@ def test_what_could_be(furnished, question, possible, text):
         ),
     ],
 )
-def test_what_cannot_be_asked(furnished, question, error, text):
+def test_invalid_statements_are_rejected(furnished, question, error, text):
     with pytest.raises(error, match=text):
         answered(furnished, *question)
 
 
-def test_what_would_be_the_same_is_said(tmp_path):
+def test_implied_equalities_are_reported(tmp_path):
     semantic_map = home.new_map(
         tmp_path, (*home.TBOX, *turtle("dm:isPartOf a owl:ObjectProperty , owl:FunctionalProperty ."))
     )
@@ -227,18 +225,18 @@ def test_what_would_be_the_same_is_said(tmp_path):
     home.close(semantic_map)
 
 
-def test_what_would_take_long_is_not_tried_on_the_map_itself(furnished):
+def test_a_slow_test_does_not_use_the_reasoner_of_the_map(furnished):
     crowd = "".join(f":thing{n} a dm:Door ; dm:isLocatedIn :kitchen1 ." for n in range(questions._QUICK + 1))
     ask = Could(name="kitchen1", predicate="sameAs", value="chair2")
-    assert questions.is_quick(furnished.reasoner, questions.of_could(furnished, ask))
+    assert questions.is_quick(furnished.reasoner, questions.parse_could(furnished, ask))
     furnished.commit(transaction(2, turtle(crowd)))
-    asked = questions.of_could(furnished, ask)
+    asked = questions.parse_could(furnished, ask)
     assert not questions.is_quick(furnished.reasoner, asked)
     beside = Reasoner(furnished.reasoner.asserted())
     assert questions.could(beside, asked).text == questions.could(furnished.reasoner, asked).text
-    classes = questions.of_could(furnished, Could(name="Chair", predicate="sameAs", value="Door"))
+    classes = questions.parse_could(furnished, Could(name="Chair", predicate="sameAs", value="Door"))
     with pytest.raises(NotCompilable):
-        questions.could(furnished.reasoner, classes, anew=False)
+        questions.could(furnished.reasoner, classes, recompute=False)
 
 
 @pytest.mark.parametrize(
@@ -253,18 +251,20 @@ def test_what_would_take_long_is_not_tried_on_the_map_itself(furnished):
         (("chair1", "type", "owl:Thing"), "chair1 is something"),
     ],
 )
-def test_what_no_rule_derives_is_explained_too(furnished, question, text):
-    assert explained(furnished, *question).text.startswith(text)
+def test_a_statement_without_a_rule_is_explained_by_a_proof(furnished, question, text):
+    assert explain_relation(furnished, *question).text.startswith(text)
 
 
-def test_a_proof_is_not_searched_for_on_the_map_itself(furnished):
-    asked = questions.of_explain(furnished, Explain(name="Chair", predicate="disjointWith", value="Kitchen"))
+def test_a_proof_is_not_searched_in_the_reasoner_of_the_map(furnished):
+    asked = questions.parse_explain(
+        furnished, Explain(name="Chair", predicate="disjointWith", value="Kitchen")
+    )
     with pytest.raises(NotCompilable):
-        questions.explain(furnished.reasoner, asked, anew=False)
-    asked = questions.of_explain(furnished, Explain(name="chair1", predicate="type", value="Door"))
+        questions.explain(furnished.reasoner, asked, recompute=False)
+    asked = questions.parse_explain(furnished, Explain(name="chair1", predicate="type", value="Door"))
     with pytest.raises(questions.Undecided):
-        questions.explain(furnished.reasoner, asked, anew=False)
-    beside = questions.copy_of(
+        questions.explain(furnished.reasoner, asked, recompute=False)
+    beside = questions.copy_reasoner(
         GivenFacts(nearby(furnished.reasoner, asked.terms), []), furnished.classes.prefixed
     )
     with pytest.raises(
@@ -273,13 +273,13 @@ def test_a_proof_is_not_searched_for_on_the_map_itself(furnished):
         questions.explain(beside, asked)
 
 
-def test_classes_that_are_called_alike_have_prefixes_in_sentences(tmp_path):
+def test_ambiguous_class_names_have_prefixes_in_sentences(tmp_path):
     twin = turtle('<http://a.org/lab.owl#Seat> a owl:Class ; rdfs:label "chair"@en .')
     semantic_map = home.new_map(tmp_path, (*home.TBOX, *twin))
     semantic_map.commit(transaction(1, turtle(":chair1 a dm:Chair . :a a <http://a.org/lab.owl#Seat> .")))
-    said = explained(semantic_map, "chair1", "type", "dm:Seat").text
+    said = explain_relation(semantic_map, "chair1", "type", "dm:Seat").text
     assert said == "chair1 is a Seat, because it is a dm:Chair (asserted), and every dm:Chair is a Seat."
-    copied = questions.copy_of(semantic_map.reasoner.given_facts(), semantic_map.classes.prefixed)
-    asked = questions.of_explain(semantic_map, Explain(name="a", predicate="type", value="lab:Seat"))
+    copied = questions.copy_reasoner(semantic_map.reasoner.given_facts(), semantic_map.classes.prefixed)
+    asked = questions.parse_explain(semantic_map, Explain(name="a", predicate="type", value="lab:Seat"))
     assert questions.explain(copied, asked).text == "a is a lab:Seat (asserted)."
     home.close(semantic_map)

@@ -1,4 +1,4 @@
-"""What has merely not been seen since is told from what was seen to be gone."""
+"""Entities that were not observed lately are distinguished from missing ones."""
 
 import re
 import time
@@ -17,7 +17,7 @@ from tests.kb_node.home import chair, transaction
 
 @pytest.fixture
 def semantic_map(tmp_path):
-    """Commits: 1 two chairs by ann, 2 chair1 misses, 3 something else about chair1, 4 and 5 removals."""
+    """Commits: 1 two chairs by ann, 2 chair1 is missing, 3 another change of chair1, 4 and 5 removals."""
     made = home.new_map(tmp_path)
     eyes = {"source": "perception", "agent": "camera"}
     for step in (
@@ -49,42 +49,45 @@ def look(name, stamp_ns):
     return Observations(stamp_ns=stamp_ns, views=(), observations=(one,))
 
 
-def test_what_is_marked_missing_was_seen_to_be_gone_since_that_was_said(sightings, semantic_map):
+def test_an_entity_marked_as_missing_is_reported_with_the_time_of_the_mark(sightings, semantic_map):
     entity = semantic_map.entity("chair1")
-    assert sightings.is_gone(entity)
-    told = sightings.gone("chair1", entity)
+    assert sightings.is_missing(entity)
+    told = sightings.describe_removed("chair1", entity)
     assert (told.gone.commit, told.removed, told.provenance.commit) == (2, None, 1)
-    assert re.fullmatch(r"seen to be gone at commit 2, \d+ s ago: not seen where it should stand", told.text)
+    assert re.fullmatch(r"reported missing at commit 2, \d+ s ago: not seen where it should stand", told.text)
 
 
-def test_what_perception_removed_was_seen_to_be_gone_and_what_ann_removed_was_not(sightings):
-    seen, tidied = sightings.gone("chair2", None), sightings.gone("chair3", None)
+def test_a_removal_by_perception_is_reported_as_missing_and_one_by_a_client_is_not(sightings):
+    seen, tidied = sightings.describe_removed("chair2", None), sightings.describe_removed("chair3", None)
     assert seen.gone == seen.removed
     assert seen.text.endswith("ago: chair2 is gone: its place was empty in 10 looks")
     assert (tidied.gone, tidied.removed.commit) == (None, 5)
     assert re.fullmatch(r"removed at commit 5, \d+ s ago by operator/ann", tidied.text)
     with pytest.raises(errors.UnknownName):
-        sightings.gone("chair9", None)
+        sightings.describe_removed("chair9", None)
 
 
-def test_what_is_there_is_in_sight_or_has_not_been_seen_since(sightings, semantic_map):
+def test_a_present_entity_is_in_view_or_was_not_seen_since(sightings, semantic_map):
     entity = semantic_map.entity("chair4")
-    assert not sightings.is_gone(entity)
+    assert not sightings.is_missing(entity)
     assert re.fullmatch(
-        r"placed by operator/ann at commit 1, \d+ s ago; not seen since, nor seen to be gone",
-        sightings.there(entity).text,
+        r"placed by operator/ann at commit 1, \d+ s ago; not seen since, not reported missing",
+        sightings.describe_present(entity).text,
     )
-    sightings.see(look("chair4", entity.pose_provenance.stamp_ns - 1))
-    assert sightings.there(entity).seen_ns is None  # before it came there
+    sightings.record(look("chair4", entity.pose_provenance.stamp_ns - 1))
+    assert sightings.describe_present(entity).seen_ns is None  # before it was moved there
     now_ns = time.time_ns()
-    sightings.see(look("chair4", now_ns))
-    told = sightings.there(entity)
-    assert (told.seen_ns, told.text) == (now_ns, "in sight of a camera just now")
+    sightings.record(look("chair4", now_ns))
+    told = sightings.describe_present(entity)
+    assert (told.seen_ns, told.text) == (now_ns, "in view of a camera now")
 
 
-def test_a_look_of_long_ago_is_no_look_of_now(sightings, semantic_map, monkeypatch):
+def test_an_old_observation_is_not_reported_as_current(sightings, semantic_map, monkeypatch):
     entity = semantic_map.entity("chair4")
-    sightings.see(look("chair4", time.time_ns()))
+    sightings.record(look("chair4", time.time_ns()))
     later_ns = time.time_ns() + 180 * 10**9
     monkeypatch.setattr("time.time_ns", lambda: later_ns)
-    assert sightings.there(entity).text == "last in sight 3 min ago; not seen since, nor seen to be gone"
+    assert (
+        sightings.describe_present(entity).text
+        == "last in view 3 min ago; not seen since, not reported missing"
+    )

@@ -18,78 +18,80 @@ def classes():
     return ClassTable(Reasoner(home.TBOX))
 
 
-def test_a_document_of_known_classes_passes_whole(classes):
+def test_a_document_with_known_classes_is_accepted_completely(classes):
     triples = turtle(
         ":a a dm:Chair , owl:NamedIndividual ; dm:hasPosition [ a dm:Coordinates ] . <urn:o> a owl:Ontology ."
     )
-    assert abox_document.sort_out(triples, classes, skip_unknown=False) == (list(triples), [], [])
+    assert abox_document.filter_document(triples, classes, skip_unknown=False) == (list(triples), [], [])
 
 
 def test_all_unknown_classes_are_named(classes):
     triples = turtle(":c a dm:Chiar . :x a dm:Xylophone . :d a dm:Door . :y a dm:Xylophone .")
     with pytest.raises(errors.UnknownClass) as caught:
-        abox_document.sort_out(triples, classes, skip_unknown=False)
+        abox_document.filter_document(triples, classes, skip_unknown=False)
     assert caught.value.text == (
         "unknown classes 'Chiar' (of c; did you mean Chair?), 'Xylophone' (of x, y);"
         " --skip-unknown leaves these out"
     )
 
 
-def test_an_unknown_class_with_a_namesake_is_told_by_its_iri(classes):
+def test_an_unknown_class_with_a_known_local_name_is_reported_by_its_iri(classes):
     with pytest.raises(errors.UnknownClass) as caught:
-        abox_document.sort_out(turtle(":c a <http://lab.org/x#Chair> ."), classes, skip_unknown=False)
+        abox_document.filter_document(turtle(":c a <http://lab.org/x#Chair> ."), classes, skip_unknown=False)
     assert caught.value.text.startswith("unknown class '<http://lab.org/x#Chair>' (of c)")
 
 
-def test_what_is_skipped_takes_its_own_star_along(classes):
+def test_a_skipped_entity_is_skipped_with_its_nodes(classes):
     kept = turtle(":d a dm:Door ; dm:hasPreferredReference :shared . :shared dm:lexicalReference 'it' .")
     skipped = turtle(
         ":x a dm:Xylophone ; dm:hasPosition :x_coordinates ; dm:hasPreferredReference :shared ; dm:near :d ."
         " :x_coordinates a dm:Coordinates ; dm:float_coordinates_x 1 . :d dm:near :x ."
     )
-    triples, words, _ = abox_document.sort_out([*skipped, *kept], classes, skip_unknown=True)
+    triples, words, _ = abox_document.filter_document([*skipped, *kept], classes, skip_unknown=True)
     assert set(triples) == set(kept)
     assert words == ["x (unknown class 'Xylophone')"]
 
 
-def test_what_a_skipped_thing_points_to_stays_when_it_is_a_thing_itself(classes):
+def test_an_entity_that_a_skipped_one_refers_to_is_kept(classes):
     robot = turtle(":robot a dm:Robot ; dm:holds :chair1 .")
     held = turtle(":chair1 a dm:Chair .")
-    assert abox_document.sort_out([*robot, *held], classes, skip_unknown=True).triples == list(held)
+    assert abox_document.filter_document([*robot, *held], classes, skip_unknown=True).triples == list(held)
 
 
-def test_of_two_classes_only_the_unknown_one_is_skipped(classes):
+def test_only_the_unknown_one_of_two_classes_is_skipped(classes):
     triples = turtle(":c a dm:Chair , dm:Antique ; dm:near :d .")
-    kept, words, _ = abox_document.sort_out(triples, classes, skip_unknown=True)
+    kept, words, _ = abox_document.filter_document(triples, classes, skip_unknown=True)
     assert set(kept) == set(turtle(":c a dm:Chair ; dm:near :d ."))
     assert words == ["c (unknown class 'Antique')"]
 
 
-def test_a_class_that_the_document_declares_is_known_but_none_of_the_map(classes):
+def test_a_class_that_the_document_declares_is_accepted_but_is_not_in_the_map(classes):
     triples = turtle(":s a dm:Sofa . dm:Sofa a owl:Class ; rdfs:subClassOf dm:Seat .")
-    sorted_out = abox_document.sort_out(triples, classes, skip_unknown=False)
-    assert sorted_out.skipped == []
-    assert sorted_out.notes == [MAPS_OWN.format("Sofa")]
+    filtered = abox_document.filter_document(triples, classes, skip_unknown=False)
+    assert filtered.skipped == []
+    assert filtered.notes == [MAPS_OWN.format("Sofa")]
 
 
 def test_a_literal_as_class_is_unknown(classes):
     with pytest.raises(errors.UnknownClass):
-        abox_document.sort_out([(v.entity_iri("a"), v.RDF_TYPE, '"Chair"')], classes, skip_unknown=False)
+        abox_document.filter_document(
+            [(v.entity_iri("a"), v.RDF_TYPE, '"Chair"')], classes, skip_unknown=False
+        )
 
 
-def test_numbers_of_a_star_may_be_written_as_any_number(classes):
+def test_numbers_may_have_any_numeric_datatype(classes):
     node = v.entity_iri("a_coordinates")
     said = [
         (node, v.COORDINATE_XYZ[i], v.literal("1", v.iri(v.XSD + kind)))
         for i, kind in enumerate(("integer", "decimal", "double"))
     ]
     meant = [(node, p, v.literal("1", v.XSD_FLOAT)) for p in v.COORDINATE_XYZ]
-    assert abox_document.sort_out(said, classes, skip_unknown=False).triples == meant
+    assert abox_document.filter_document(said, classes, skip_unknown=False).triples == meant
 
 
-def test_a_property_that_may_be_misspelt_is_told(classes):
+def test_a_property_that_may_be_misspelt_is_reported(classes):
     triples = [(v.entity_iri("cup1"), v.dm("hasPositoin"), v.entity_iri("x"))]
-    (note,) = abox_document.sort_out(triples, classes, skip_unknown=False).notes
+    (note,) = abox_document.filter_document(triples, classes, skip_unknown=False).notes
     assert "unknown property 'hasPositoin' (of cup1; did you mean hasPosition" in note
 
 
@@ -105,14 +107,14 @@ HALF = ":p a dm:Coordinates ; dm:float_coordinates_x '1'^^xsd:float"
         (":s dm:float_size_x 1 ; dm:float_size_y 1 .", "s has no float_size_z"),
     ],
 )
-def test_what_lacks_a_number_is_told(text, said, classes):
-    notes = abox_document.sort_out(turtle(text), classes, skip_unknown=False).notes
+def test_incomplete_values_are_reported(text, said, classes):
+    notes = abox_document.filter_document(turtle(text), classes, skip_unknown=False).notes
     notes = [note for note in notes if "unknown" not in note]
     whole = f"incomplete position, orientation or size ignored: {said}"
     assert notes == ([whole] if said else [])
 
 
-def test_of_very_many_that_lack_a_number_a_few_are_told(classes):
+def test_only_a_few_of_many_incomplete_values_are_reported(classes):
     text = "".join(f":s{i} dm:float_size_x 1 ." for i in range(50))
-    *_, note = abox_document.sort_out(turtle(text), classes, skip_unknown=False).notes
+    *_, note = abox_document.filter_document(turtle(text), classes, skip_unknown=False).notes
     assert note.endswith("s4 has no float_size_y and no float_size_z and 45 more")

@@ -1,11 +1,11 @@
-"""Blank nodes of two readings that stand for the same."""
+"""Matching of equivalent blank nodes between two readings."""
 
 from __future__ import annotations
 
 import pytest
 
 from semmap.nodes.kb_node.documents import rdf
-from semmap.nodes.kb_node.documents.blank_nodes import labelled_like
+from semmap.nodes.kb_node.documents.blank_nodes import relabel_like
 from semmap.ontology import HOUSEHOLD_TTL
 
 RESTRICTED = b"<urn:c> <urn:below> [ <urn:on> <urn:p> ; <urn:in> ( <urn:a> [ <urn:not> <urn:b> ] ) ] ."
@@ -14,15 +14,15 @@ CYCLE = b"_:a <urn:next> _:b . _:b <urn:next> _:c . _:c <urn:next> _:a . _:b <ur
 
 
 def compared(before: bytes, after: bytes) -> tuple[int, int]:
-    """How many triples go and how many come."""
+    """Return the number of removed and of added triples."""
     known, new = (frozenset(rdf.parse(c, "f", label_prefix=p)) for c, p in ((before, "a"), (after, "b")))
-    labelled = labelled_like(new, known)
+    labelled = relabel_like(new, known)
     assert len(labelled) == len(new)
     return len(known - labelled), len(labelled - known)
 
 
 @pytest.mark.parametrize("text", [RESTRICTED, TWINS, CYCLE, HOUSEHOLD_TTL.read_bytes()])
-def test_what_is_read_again_is_the_same(text):
+def test_a_repeated_reading_gives_the_same_labels(text):
     assert compared(text, text) == (0, 0)
 
 
@@ -37,5 +37,5 @@ def test_what_is_read_again_is_the_same(text):
         (RESTRICTED + CYCLE, CYCLE.replace(b"<urn:is> <urn:b>", b"<urn:is> <urn:e>") + RESTRICTED, 4, 4),
     ],
 )
-def test_what_changed_is_told_whole_and_nothing_besides(before, after, gone, come):
+def test_only_the_changed_nodes_get_new_labels(before, after, gone, come):
     assert compared(before, after) == (gone, come)

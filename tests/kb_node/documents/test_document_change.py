@@ -14,41 +14,47 @@ def document(**fields):
     return LoadDocument(**SIGNED, **{"replace": False, "skip_unknown": False, **fields})
 
 
-def test_a_document_is_signed_by_who_loads_it(semantic_map):
-    made, _ = document_change.of_document(semantic_map, document(), turtle(":a a dm:Chair ."))
+def test_a_transaction_has_the_author_of_the_load(semantic_map):
+    made, _ = document_change.make_document_transaction(semantic_map, document(), turtle(":a a dm:Chair ."))
     assert (made.id, made.source, made.agent, made.verb, made.reason) == ("7", "file", "a", "load", "why")
     assert (made.insert, made.retract) == (turtle(":a a dm:Chair ."), ())
 
 
-def test_what_the_tbox_says_too_is_not_of_the_abox(semantic_map):
+def test_triples_of_the_tbox_are_not_part_of_the_abox(semantic_map):
     both = turtle(":a a dm:Chair . dm:Chair a owl:Class .")
-    made, _ = document_change.of_document(semantic_map, document(), both)
+    made, _ = document_change.make_document_transaction(semantic_map, document(), both)
     assert made.insert == turtle(":a a dm:Chair .")
 
 
-def test_what_is_replaced_goes_in_the_same_transaction(semantic_map):
+def test_replaced_triples_are_removed_in_the_same_transaction(semantic_map):
     semantic_map.commit(transaction(1, chair()))
-    made, _ = document_change.of_document(semantic_map, document(replace=True), turtle(":a a dm:Chair ."))
+    made, _ = document_change.make_document_transaction(
+        semantic_map, document(replace=True), turtle(":a a dm:Chair .")
+    )
     assert set(made.retract) == set(chair())
 
 
-def test_what_was_left_out_is_told(semantic_map):
+def test_skipped_individuals_are_reported(semantic_map):
     content = turtle(":a a dm:Chair . :b a dm:Chiar .")
-    made, sorted_out = document_change.of_document(semantic_map, document(skip_unknown=True), content)
+    made, filtered = document_change.make_document_transaction(
+        semantic_map, document(skip_unknown=True), content
+    )
     assert made.insert == turtle(":a a dm:Chair .")
-    assert sorted_out.skipped == ["b (unknown class 'Chiar')"]
+    assert filtered.skipped == ["b (unknown class 'Chiar')"]
 
 
-def test_the_tbox_that_holds_is_no_change(semantic_map):
+def test_loading_the_current_tbox_changes_nothing(semantic_map):
     imports = (v.ABOX_ONTOLOGY, v.OWL_IMPORTS, v.iri(v.TBOX.rstrip("#")))
     semantic_map.commit(transaction(1, [imports]))
-    assert document_change.of_tbox(semantic_map, LoadTBox(**SIGNED), frozenset(home.TBOX)) is None
+    assert (
+        document_change.make_tbox_transaction(semantic_map, LoadTBox(**SIGNED), frozenset(home.TBOX)) is None
+    )
 
 
-def test_another_tbox_is_imported_instead(semantic_map):
+def test_another_tbox_changes_the_import(semantic_map):
     before = (v.ABOX_ONTOLOGY, v.OWL_IMPORTS, v.iri(v.TBOX.rstrip("#")))
     semantic_map.commit(transaction(1, [before]))
-    made = document_change.of_tbox(
+    made = document_change.make_tbox_transaction(
         semantic_map, LoadTBox(**SIGNED), frozenset(turtle("<urn:other> a owl:Ontology ."))
     )
     assert made is not None
@@ -59,18 +65,18 @@ def test_another_tbox_is_imported_instead(semantic_map):
 STRANGE = ":a a dm:Chair ; dm:isLocatedIn :kitchn . :kitchn dm:isLocatedIn :b . :b a dm:Kitchen ."
 
 
-def test_what_nobody_describes_is_noted(semantic_map):
-    made, sorted_out = document_change.of_document(semantic_map, document(), turtle(STRANGE))
+def test_undescribed_individuals_are_noted(semantic_map):
+    made, filtered = document_change.make_document_transaction(semantic_map, document(), turtle(STRANGE))
     assert set(made.insert) == set(turtle(STRANGE))
-    assert sorted_out.notes == [
-        "referenced but not described: kitchn (a isLocatedIn kitchn); --strict refuses such files"
+    assert filtered.notes == [
+        "referenced but not described: kitchn (a isLocatedIn kitchn); --strict rejects such files"
     ]
 
 
-def test_what_nobody_describes_is_refused_when_that_is_asked_for(semantic_map):
+def test_undescribed_individuals_are_rejected_if_the_load_is_strict(semantic_map):
     many = "".join(f":a{i} a dm:Chair ; dm:isLocatedIn :k{i} ." for i in range(7))
     with pytest.raises(errors.UnknownName) as caught:
-        document_change.of_document(semantic_map, document(strict=True), turtle(many))
+        document_change.make_document_transaction(semantic_map, document(strict=True), turtle(many))
     assert caught.value.text == (
         "referenced but not described: "
         + ", ".join(f"k{i} (a{i} isLocatedIn k{i})" for i in range(5))
@@ -83,26 +89,28 @@ def test_what_nobody_describes_is_refused_when_that_is_asked_for(semantic_map):
     "text",
     [
         ":a a dm:Chair ; dm:isLocatedIn :b . :b a dm:Kitchen .",
-        ":a a dm:Chair ; dm:isLocatedIn :hall .",  # it is in the map
-        ":a a dm:Chair ; dm:isLocatedIn dm:Kitchen .",  # it is in the TBox
+        ":a a dm:Chair ; dm:isLocatedIn :hall .",  # the map has it
+        ":a a dm:Chair ; dm:isLocatedIn dm:Kitchen .",  # the TBox has it
         ":a a dm:Chair ; rdfs:seeAlso <urn:a> ; owl:sameAs :c ; dm:near :d .",  # no relations
         ":a a dm:Chair ; dm:lexicalReference 'chair' .",
     ],
 )
-def test_what_somebody_describes_is_no_stranger(semantic_map, text, strict):
+def test_described_individuals_are_accepted(semantic_map, text, strict):
     semantic_map.commit(transaction(1, turtle(":hall a dm:Location .")))
-    _, sorted_out = document_change.of_document(semantic_map, document(strict=strict), turtle(text))
-    assert not any("not described" in note for note in sorted_out.notes)
+    _, filtered = document_change.make_document_transaction(
+        semantic_map, document(strict=strict), turtle(text)
+    )
+    assert not any("not described" in note for note in filtered.notes)
 
 
-def test_what_goes_describes_nothing(semantic_map):
+def test_replaced_triples_do_not_describe_individuals(semantic_map):
     semantic_map.commit(transaction(1, turtle(":hall a dm:Location .")))
     strange = turtle(":a a dm:Chair ; dm:isLocatedIn :hall .")
     with pytest.raises(errors.UnknownName, match="hall"):
-        document_change.of_document(semantic_map, document(replace=True, strict=True), strange)
+        document_change.make_document_transaction(semantic_map, document(replace=True, strict=True), strange)
 
 
-def test_a_map_is_not_taken_for_a_tbox(semantic_map):
+def test_a_map_is_not_accepted_as_a_tbox(semantic_map):
     order, tbox = LoadTBox(**SIGNED), turtle(":a a dm:Chair . dm:Chair a owl:Class .")
     document_change.require_no_map(semantic_map, order, tbox)
     semantic_map.commit(transaction(1, turtle(":a a dm:Chair .")))

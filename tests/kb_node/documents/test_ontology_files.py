@@ -1,4 +1,4 @@
-"""Ontologies in files, and their imports: as said, from a catalogue, from beside them, or missing."""
+"""Ontology files and their imports: given, from a catalogue, from the same folder, or missing."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def classes(gathered):
     }
 
 
-def test_one_file_is_what_is_in_it(write):
+def test_one_file_is_read_completely(write):
     path = write("a.ttl", ontology("http://o.org/a"))
     gathered = gather([path], {})
     assert (gathered.files, gathered.found, gathered.missing) == ((path,), {}, ())
@@ -69,7 +69,7 @@ def test_one_file_is_what_is_in_it(write):
         ("b c.ttl", "http://o.org/unlike", "http://o.org/b%20c.ttl"),
     ],
 )
-def test_an_import_is_found_beside_the_file(write, file, iri, wanted):
+def test_an_import_is_found_in_the_same_folder(write, file, iri, wanted):
     path, other = write("a.ttl", ontology("http://o.org/a", wanted)), write(file, ontology(iri))
     gathered = gather([path], {})
     assert gathered.files == (path, other)
@@ -78,14 +78,14 @@ def test_an_import_is_found_beside_the_file(write, file, iri, wanted):
     assert header(gathered.triples).imports == (v.iri(iri),)
 
 
-def test_the_name_of_the_ontology_counts_more_than_that_of_the_file(write):
+def test_the_name_of_the_ontology_takes_precedence_over_the_file_name(write):
     path = write("a.ttl", ontology("http://o.org/a", "http://o.org/b.ttl"))
     write("b.ttl", ontology("http://o.org/something-else"))
     right = write("c.ttl", ontology("http://o.org/b.ttl"))
     assert gather([path], {}).files == (path, right)
 
 
-def test_a_version_is_the_ontology_too(write):
+def test_an_import_may_name_the_version(write):
     path = write("a.ttl", ontology("http://o.org/a", "http://o.org/b/1.0"))
     other = write(
         "x.ttl", ontology("http://o.org/b", more="<http://o.org/b> owl:versionIRI <http://o.org/b/1.0> .")
@@ -94,7 +94,7 @@ def test_a_version_is_the_ontology_too(write):
     assert (gathered.files, gathered.missing) == ((path, other), ())
 
 
-def test_imports_go_on_and_may_go_round(write):
+def test_imports_are_transitive_and_may_be_cyclic(write):
     a = write("a.ttl", ontology("http://o.org/a", "http://o.org/b"))
     b = write("b.ttl", ontology("http://o.org/b", "http://o.org/c"))
     c = write("c.ttl", ontology("http://o.org/c", "http://o.org/a", "http://o.org/b"))
@@ -104,17 +104,17 @@ def test_imports_go_on_and_may_go_round(write):
     assert set(gather([c], {}).triples) == set(gathered.triples)
 
 
-def test_what_is_said_comes_first(write):
+def test_a_given_file_takes_precedence(write):
     path, beside = write("a.ttl", ontology("http://o.org/a", "http://o.org/b")), "b.ttl"
     write(beside, ontology("http://o.org/b"))
     mine = write("mine/b2.ttl", ontology("http://o.org/mine", "http://o.org/d"))
     further = write("mine/d.ttl", ontology("http://o.org/d"))
     gathered = gather([path], {"http://o.org/b": mine})
-    assert gathered.files == (path, mine, further)  # and what that one imports is beside it
+    assert gathered.files == (path, mine, further)  # its own import is next to it
     assert gathered.missing == ()
 
 
-def test_a_catalogue_says_where_imports_are(write):
+def test_a_catalogue_maps_imports_to_files(write):
     all_ = write("elsewhere/my things.ttl", ontology("http://things.org/all", "http://things.org/cups"))
     cups = write(
         "elsewhere/cups.ofn",
@@ -130,14 +130,14 @@ def test_a_catalogue_says_where_imports_are(write):
     assert gathered.missing == ("http://things.org/far", "http://things.org/gone")
 
 
-def test_a_catalogue_that_is_no_xml_is_told(write):
+def test_an_invalid_catalogue_is_reported(write):
     write("catalog-v001.xml", "<catalog>\n<uri>")
     path = write("a.ttl", ontology("http://o.org/a", "http://o.org/b"))
     with pytest.raises(errors.BadFile, match=r"catalog-v001.xml is not a valid XML catalogue: .*line 2"):
         gather([path], {})
 
 
-def test_a_missing_import_is_no_refusal(write):
+def test_a_missing_import_is_not_an_error(write):
     path = write("a.ttl", ontology("http://o.org/a", "http://o.org/nowhere", "http://o.org/b"))
     write("b.ttl", ontology("http://o.org/b"))
     gathered = gather([path], {})
@@ -145,7 +145,7 @@ def test_a_missing_import_is_no_refusal(write):
     assert classes(gathered) == {"http://o.org/a", "http://o.org/b"}
 
 
-def test_broken_files_beside_are_passed_over_and_those_that_are_imported_are_told(write):
+def test_broken_files_are_skipped_unless_they_are_imported(write):
     path = write("a.ttl", ontology("http://o.org/a", "http://o.org/b"))
     write("other.ttl", "http://o.org/b this is\nno Turtle")
     assert gather([path], {}).missing == ("http://o.org/b",)
@@ -154,7 +154,7 @@ def test_broken_files_beside_are_passed_over_and_those_that_are_imported_are_tol
         gather([path], {})
 
 
-def test_a_folder_stands_for_the_ontologies_in_it(write, tmp_path):
+def test_a_folder_stands_for_its_ontologies(write, tmp_path):
     b = write("o/b.ttl", ontology("http://o.org/b", "http://o.org/a"))
     a = write(
         "o/a.owx", '<Ontology xmlns="http://www.w3.org/2002/07/owl#" ontologyIRI="http://o.org/a"></Ontology>'
@@ -168,7 +168,7 @@ def test_a_folder_stands_for_the_ontologies_in_it(write, tmp_path):
         gather([tmp_path / "empty"], {})
 
 
-def test_several_files_know_each_other(write):
+def test_several_files_import_one_another(write):
     a = write("one/a.ttl", ontology("http://o.org/a", "http://o.org/b", "http://o.org/c"))
     b = write("two/x.ttl", ontology("http://o.org/b"))
     c = write("two/c.ttl", ontology("http://o.org/c"))
@@ -176,14 +176,14 @@ def test_several_files_know_each_other(write):
     assert (gathered.files, gathered.missing) == ((a, b, c), ())
 
 
-def test_blank_nodes_of_two_files_do_not_meet(write):
+def test_blank_nodes_of_two_files_are_different(write):
     blank = "_:x a owl:Class ; rdfs:comment '{}' ."
     a = write("a.ttl", ontology("http://o.org/a", "http://o.org/b", more=blank.format("a")))
     write("b.ttl", ontology("http://o.org/b", more=blank.format("b")))
     assert len({s for s, _, _ in gather([a], {}).triples if s.startswith("_:")}) == 2
 
 
-def test_a_file_without_a_name_of_its_own_gets_that_of_the_import(write):
+def test_an_ontology_without_a_name_gets_that_of_the_import(write):
     path = write("a.ttl", ontology("http://o.org/a", "http://o.org/b"))
     write("b.ttl", "<http://o.org/b#C> a <http://www.w3.org/2002/07/owl#Class> .")
     gathered = gather([path], {})
@@ -191,7 +191,7 @@ def test_a_file_without_a_name_of_its_own_gets_that_of_the_import(write):
 
 
 @pytest.mark.parametrize("name", ["nowhere.ttl", "."])
-def test_what_cannot_be_read_is_told(tmp_path, name):
+def test_an_unreadable_file_is_reported(tmp_path, name):
     with pytest.raises(errors.BadFile, match="there is no"):
         gather([tmp_path / name], {})
 
@@ -208,7 +208,7 @@ def test_what_cannot_be_read_is_told(tmp_path, name):
         (["bfo"], {}, 2, ()),
     ],
 )
-def test_real_ontologies_come_with_their_imports(files, given, count, missing):
+def test_real_ontologies_are_read_with_their_imports(files, given, count, missing):
     folder = data_folder() / "ontologies"
     if not folder.is_dir():
         pytest.skip(f"there is no {folder}")
@@ -217,8 +217,8 @@ def test_real_ontologies_come_with_their_imports(files, given, count, missing):
     assert ontology_files.missing_imports(gathered.triples) == missing
 
 
-def test_nameless_nodes_of_two_files_in_functional_syntax_stay_apart(tmp_path):
-    """Their labels are made by the same counting, and anonymous individuals may be labelled alike."""
+def test_blank_nodes_of_two_functional_documents_are_different(tmp_path):
+    """Their labels are numbered alike, and anonymous individuals may have equal labels."""
     for name in ("one", "two"):
         (tmp_path / f"{name}.ofn").write_text(
             f"Prefix(:=<http://o.org/{name}#>) Ontology(<http://o.org/{name}>"
@@ -232,7 +232,7 @@ def test_nameless_nodes_of_two_files_in_functional_syntax_stay_apart(tmp_path):
     assert len({s for s, p, _ in found if p == v.iri(f"{v.OWL}onProperty")}) == 2
 
 
-def test_an_import_by_its_path_is_read_only_below_the_ontology(write, tmp_path):
+def test_a_file_import_is_read_only_below_the_ontology(write, tmp_path):
     write("secret.txt", "root:x:0:0\n")
     below = write("onto/parts/more.ttl", ontology("http://things.org/more"))
     away = write("away/far.ttl", ontology("http://things.org/far"))

@@ -1,4 +1,4 @@
-"""Whatever is read in columns or line by line is what Oxigraph reads; what it would refuse is not read."""
+"""The fast reader returns what Oxigraph reads, and reads nothing that Oxigraph rejects."""
 
 import gc
 import tracemalloc
@@ -71,7 +71,7 @@ BAD = [
 
 
 def slowly(content):
-    """What Oxigraph reads."""
+    """Read with Oxigraph."""
     quads = pyoxigraph.parse(content, pyoxigraph.RdfFormat.TURTLE, base_iri=v.ABOX)
     return rdf._triples(quads, "f", lambda _: None)
 
@@ -82,7 +82,7 @@ def quickly(content):
 
 @st.composite
 def statements(draw):
-    """Statements in Turtle, broken into lines anywhere."""
+    """Statements in Turtle with line breaks anywhere."""
     text = ""
     for _ in range(draw(st.integers(1, 4))):
         words = [draw(SUBJECTS)]
@@ -106,7 +106,7 @@ def triples_in_full(draw):
 
 @pytest.fixture
 def few_are_many(monkeypatch):
-    """As if each kind of words were of very many."""
+    """Treat each kind of words as frequent."""
     monkeypatch.setattr(plain_words, "_FEWEST", 1)
 
 
@@ -115,7 +115,7 @@ def few_are_many(monkeypatch):
 @example(':a :p "1"^^xsd:float .\n:b :p ""^^xsd:float .\n')
 @example(':a :p "^^xsd:float .\n:b :p "a"b"^^xsd:float .\n')
 @example(":a :p ::b .\n:a :p :-b .\n")
-def test_what_is_read_in_columns_is_what_oxigraph_reads(few_are_many, text):
+def test_columns_give_the_result_of_oxigraph(few_are_many, text):
     content = (HEAD + text).encode()
     read = quickly(content)
     if read is not None:
@@ -159,11 +159,11 @@ def _only_declarations(read_words):
         ['"1"^^xsd:float', '"1^^xsd:float'],
     ],
 )
-def test_a_kind_of_words_that_is_not_plain_throughout_is_left_out(few_are_many, words):
+def test_a_kind_with_unusual_words_is_left_out(few_are_many, words):
     assert plain_words.plain_terms(words, {"": "http://x#"}, lambda kind: f"<{kind}>") == {}
 
 
-def test_many_words_of_a_kind_are_told_at_once(few_are_many):
+def test_many_words_of_a_kind_are_converted_at_once(few_are_many):
     found = plain_words.plain_terms(
         [":a_1-b", ":2", "x:y", "<http://x>", '"1.5"^^xsd:float', '""^^xsd:float', '"x"@de'],
         {"": "http://x#"},
@@ -180,7 +180,7 @@ def test_many_words_of_a_kind_are_told_at_once(few_are_many):
 @settings(deadline=None, max_examples=300)
 @given(statements())
 @example(":cup1 a dm:Cup .\n:cup1 a dm:Cup ;\n\ta :x , :y ;\n\n\t. # done\n")
-def test_it_is_what_oxigraph_reads(text):
+def test_the_result_equals_that_of_oxigraph(text):
     content = (HEAD + text).encode()
     read = quickly(content)
     if read is not None:
@@ -189,13 +189,13 @@ def test_it_is_what_oxigraph_reads(text):
 
 @settings(deadline=None, max_examples=100)
 @given(statements(), st.sampled_from(BAD), st.integers(0, 60))
-def test_what_oxigraph_refuses_is_not_read(text, bad, at):
+def test_a_document_that_oxigraph_rejects_is_not_read(text, bad, at):
     words = text.split(" ")
     words.insert(min(at, len(words)), bad)
     content = (HEAD + " ".join(words)).encode()
     read = quickly(content)
     if read is not None:
-        assert read == slowly(content)  # which raises for what is not valid
+        assert read == slowly(content)  # it raises for invalid words
 
 
 @pytest.mark.parametrize(
@@ -208,7 +208,7 @@ def test_what_oxigraph_refuses_is_not_read(text, bad, at):
         "<http://x/y> <http://x/p> _:a .\n",
     ],
 )
-def test_what_programs_write_is_read(text):
+def test_the_usual_output_of_programs_is_read(text):
     content = (HEAD + text).encode()
     assert quickly(content) == slowly(content)
 
@@ -224,21 +224,21 @@ def test_what_programs_write_is_read(text):
         "PREFIX x: <http://y/>\n:a :p 1 .",
     ],
 )
-def test_what_is_not_plain_is_left_to_oxigraph(text):
+def test_unusual_documents_are_left_to_oxigraph(text):
     assert quickly((HEAD + text).encode()) is None
 
 
 @pytest.mark.parametrize(
     "text", [":a :p 1", ":a :p .", ":a :p 1 ;", '"a" :p 1 .', ":a 1 1 .", ":a _:p 1 .", ":a :p 1 2 ."]
 )
-def test_a_fault_is_left_to_oxigraph(text):
+def test_errors_are_left_to_oxigraph(text):
     content = (HEAD + text).encode()
     assert quickly(content) is None
     with pytest.raises(SyntaxError):
         slowly(content)
 
 
-def test_pieces_end_anywhere_between_lines(monkeypatch):
+def test_pieces_end_at_any_line_end(monkeypatch):
     content = (
         HEAD + "".join(f':cup{i} a dm:Cup ;\n\tdm:x "{i}"@de ,\n\t\t{i} .\n' for i in range(50))
     ).encode()
@@ -250,13 +250,13 @@ def test_pieces_end_anywhere_between_lines(monkeypatch):
     assert max(told) == len(expected)
 
 
-def test_many_words_do_not_fill_the_memory(monkeypatch):
+def test_the_word_cache_is_limited(monkeypatch):
     monkeypatch.setattr(plain_turtle, "_REMEMBERED", 3)
     content = (HEAD + "".join(f":cup{i} a dm:Cup .\n:cup{i} dm:x {i} .\n" for i in range(20))).encode()
     assert quickly(content) == slowly(content)
 
 
-def test_a_large_document_is_read_so(monkeypatch):
+def test_a_large_document_is_read_with_the_fast_reader(monkeypatch):
     monkeypatch.setattr(rdf, "_LARGE", 0)
     content = (HEAD + ":cup1 a dm:Cup .\n_:b dm:x :cup1 .\n").encode()
     assert rdf.parse(content, "f.ttl", label_prefix="f") == slowly(content)
@@ -267,7 +267,7 @@ def test_a_large_document_is_read_so(monkeypatch):
         rdf.parse(content.replace(b"Cup", b"C\xfcp"), "f.ttl")
 
 
-def test_nothing_stays_of_what_was_read():
+def test_the_reader_releases_its_memory():
     content = (HEAD + "".join(f":thing{i} dm:isOn :table{i} .\n" for i in range(5000))).encode()
     gc.disable()
     tracemalloc.start()

@@ -10,7 +10,7 @@ from semmap.schemas.entities import Pose
 from tests.kb_node.home import TBOX
 
 
-def test_what_files_hold_and_what_we_write_is_rdf():
+def test_terms_in_files_and_our_terms_are_valid():
     pose = Pose(position_m=(1e-7, -0.0, 1e3))
     require_triples(TBOX)
     require_triples(
@@ -19,7 +19,7 @@ def test_what_files_hold_and_what_we_write_is_rdf():
 
 
 @given(st.text(), st.sampled_from([None, "en", "en-gb"]))
-def test_every_literal_of_ours_is_rdf(text, lang):
+def test_our_literals_are_valid(text, lang):
     require_triples([("_:b0", v.LEXICAL_REFERENCE, v.literal(text, lang=lang))])
 
 
@@ -46,6 +46,6 @@ def test_every_literal_of_ours_is_rdf(text, lang):
         ("_:", "<urn:b>", "<urn:c>"),
     ],
 )
-def test_what_is_no_rdf_is_refused(triple):
+def test_invalid_triples_are_rejected(triple):
     with pytest.raises(errors.BadRequest, match="not a valid N-Triples statement"):
         require_triples([("<urn:a>", "<urn:b>", "<urn:c>"), triple])

@@ -14,7 +14,7 @@ def table(text="", tbox=home.TBOX):
     return ClassTable(Reasoner([*tbox, *turtle(text)]))
 
 
-def test_a_row_says_what_commands_need():
+def test_a_row_has_what_commands_need():
     row = next(row for row in table().rows if row.name == "Chair")
     assert row.iri == v.bare(v.dm("Chair"))
     assert (row.parents, row.ancestors) == (("Seat",), ("Seat", "Object", "Physical_Thing"))
@@ -46,21 +46,21 @@ def test_without_a_domain_of_positions_physical_things_are_spatial():
     assert v.dm("Chair") in table(tbox=tbox).spatial
 
 
-def test_a_cycle_of_subclasses_does_no_harm():
+def test_a_cycle_of_subclasses_is_accepted():
     names = [row.name for row in table("dm:Seat rdfs:subClassOf dm:Chair .").rows]
     assert {"Seat", "Chair"} <= set(names)
 
 
-def test_special_first_is_by_depth_and_leaves_unknown_classes_out():
-    special_first = table().special_first
+def test_the_most_specific_class_is_the_deepest_and_unknown_classes_are_omitted():
+    most_specific_first = table().most_specific_first
     given = [v.OBJECT, v.OWL_THING, v.dm("Chair"), "_:x", v.dm("Nothing_Known")]
-    assert special_first(given) == [v.dm("Chair"), v.OBJECT]
+    assert most_specific_first(given) == [v.dm("Chair"), v.OBJECT]
 
 
 TWINS = "<http://a.org/lab.owl#Chair> a owl:Class ; rdfs:subClassOf dm:Seat ."
 
 
-def test_classes_of_one_local_name_are_told_apart_by_prefixes():
+def test_ambiguous_class_names_have_prefixes():
     classes = table(TWINS)
     assert {"dm:Chair", "lab:Chair", "Seat"} <= set(classes.iris)
     assert "Chair" not in classes.iris
@@ -70,7 +70,7 @@ def test_classes_of_one_local_name_are_told_apart_by_prefixes():
     assert (rows["Seat"].prefixed, rows["lab:Chair"].prefixed) == ("dm:Seat", "lab:Chair")
 
 
-def test_a_prefix_that_the_ontology_declares_is_taken():
+def test_a_prefix_declared_by_the_ontology_is_used():
     declared = f'<http://a.org/lab.owl#> {PREFERRED_PREFIX} "Kit" .'
     assert "kit:Chair" in table(TWINS + declared).iris
 
@@ -78,7 +78,7 @@ def test_a_prefix_that_the_ontology_declares_is_taken():
 @pytest.mark.parametrize(
     "iri", ["http://a.org/x#", "http://a.org/x#A*", "urn:x:A b".replace(" ", "%20"), "http://a/?c=$1"]
 )
-def test_no_name_of_a_class_is_refused(iri):
+def test_an_iri_without_a_local_name_is_accepted(iri):
     classes = table(f"<{iri}> a owl:Class .")
     name = classes.names[f"<{iri}>"]
     assert name
@@ -92,18 +92,18 @@ def test_a_class_is_found_by_its_names_and_labels():
     assert index.find("sofa") is None
 
 
-def test_what_properties_take_is_named_as_classes_are():
+def test_domains_and_ranges_have_the_names_of_the_class_table():
     lab = "<http://a.org/lab.owl#seats> a owl:ObjectProperty ; rdfs:domain dm:Chair ; rdfs:range dm:Seat ."
-    rows = {row.name: row for row in table(TWINS + lab).stated.rows()}
+    rows = {row.name: row for row in table(TWINS + lab).property_table.rows()}
     assert (rows["seats"].domain, rows["seats"].range) == (("dm:Chair",), ("Seat",))
 
 
-def test_other_labels_are_kept_too():
+def test_additional_labels_are_kept():
     row = next(row for row in table('dm:Chair rdfs:label "poltrona"@it .').rows if row.name == "Chair")
     assert (row.labels["it"], row.also) == ("poltrona", ("sedia",))
 
 
-def test_properties_of_one_local_name_are_told_apart():
+def test_ambiguous_property_names_have_prefixes():
     classes = table("<http://a.org/lab.owl#isLocatedIn> a owl:ObjectProperty .")
     find = classes.property_names.find
     assert find("lab:isLocatedIn") == "<http://a.org/lab.owl#isLocatedIn>"
@@ -127,16 +127,16 @@ def zoo(text=""):
     return ClassTable(Reasoner(rdf.parse((ZOO + text).encode(), "zoo")))
 
 
-def test_nothing_of_an_unknown_vocabulary_is_in_space_until_somebody_says_so():
+def test_an_unknown_vocabulary_has_no_spatial_classes_by_default():
     assert (zoo().spatial_roots, zoo().spatial) == ((), frozenset())
     said = zoo(f"z:Animal {v.SPATIAL} true .")
     assert said.spatial_roots == ("<http://zoo.org/zoo#Animal>",)
     assert {said.names[c] for c in said.spatial} == {"Animal", "Cat"}
 
 
-def test_what_the_tbox_says_wins_over_what_is_usual():
+def test_declarations_of_the_tbox_take_precedence():
     assert {row.name for row in table(f"dm:Seat {v.SPATIAL} true .").rows if row.spatial} == {"Seat", "Chair"}
 
 
-def test_classes_of_rdfs_are_classes():
+def test_rdfs_classes_are_classes():
     assert "Dog" in zoo("z:Dog a rdfs:Class .").iris

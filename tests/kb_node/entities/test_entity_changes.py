@@ -1,4 +1,4 @@
-"""What a change of the triples does to the entities."""
+"""Effects of changed triples on entities."""
 
 from semmap.nodes.kb_node.documents import rdf
 from semmap.ontology import vocabulary as v
@@ -9,7 +9,7 @@ X = v.COORDINATE_XYZ[0]
 MEASURED = f"dm:Measured a owl:Class . {X} rdfs:domain dm:Measured ."
 
 
-def test_what_has_coordinates_itself_has_the_classes_that_follow(tmp_path):
+def test_an_individual_with_its_own_coordinates_has_the_inferred_classes(tmp_path):
     tbox = rdf.parse((TBOX_TURTLE + MEASURED).encode(), "tbox.ttl", label_prefix="t")
     semantic_map = home.new_map(tmp_path, tbox)
     semantic_map.commit(transaction(1, chair("chair1")))

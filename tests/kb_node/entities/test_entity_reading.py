@@ -29,7 +29,7 @@ def turned(w, x, y, z):
     )
 
 
-def test_a_star_is_read_back_as_it_was_written(semantic_map):
+def test_an_entity_is_read_back_as_written(semantic_map):
     pose = Pose(position_m=(1.5, -2.25, 0.0), orientation_wxyz=(0.6, 0.0, 0.0, 0.8))
     star = stars.star(
         "chair1",
@@ -45,13 +45,13 @@ def test_a_star_is_read_back_as_it_was_written(semantic_map):
     assert (entity.model, entity.fixed, entity.place) == ("chair", False, False)
 
 
-def test_what_is_not_said_is_none(semantic_map):
+def test_missing_values_are_none(semantic_map):
     entity = entity_of(semantic_map, "")
     assert (entity.pose, entity.size_m, entity.preferred_reference) == (None, None, None)
     assert entity.alternative_references == ()
 
 
-def test_half_a_position_is_none_and_half_an_orientation_is_identity(semantic_map):
+def test_an_incomplete_position_is_none_and_an_incomplete_orientation_is_identity(semantic_map):
     assert (
         entity_of(semantic_map, ':a dm:hasPosition [ dm:float_coordinates_x "1.0"^^xsd:float ] .').pose
         is None
@@ -82,13 +82,13 @@ def test_half_a_position_is_none_and_half_an_orientation_is_identity(semantic_ma
         (positioned(more=turned(2, 0, 0, "x")), "a: float_orientation_z is x; it must be a number"),
     ],
 )  # fmt: skip
-def test_a_star_that_makes_no_sense_is_refused(semantic_map, text, fault):
+def test_an_invalid_entity_is_rejected(semantic_map, text, fault):
     with pytest.raises((errors.BadRequest, errors.Inconsistent), match=fault):
         entity_of(semantic_map, text)
     assert (len(semantic_map), semantic_map.seq) == (0, 0)
 
 
-def test_a_reference_that_is_no_text_is_none(semantic_map):
+def test_a_label_that_is_not_text_is_ignored(semantic_map):
     assert (
         entity_of(
             semantic_map, ":a dm:hasPreferredReference [ dm:lexicalReference :b ] ."
@@ -112,13 +112,13 @@ def test_an_entity_needs_a_name(semantic_map, iri, fault):
         semantic_map.commit(transaction(1, [(iri, v.RDF_TYPE, v.dm("Chair"))]))
 
 
-def test_the_most_special_asserted_class_is_its_class(semantic_map):
+def test_the_most_specific_asserted_class_is_the_class_of_the_entity(semantic_map):
     entity = entity_of(semantic_map, ":a a dm:Object , dm:Seat .")
     assert (entity.class_, entity.model) == ("Chair", "chair")
     assert entity_of(semantic_map, ":a a dm:Door .").fixed
 
 
-def test_of_two_positions_one_is_read_and_both_are_its_own(semantic_map):
+def test_one_of_two_positions_is_read_and_both_belong_to_the_entity(semantic_map):
     two = ":a dm:hasPosition :p2 , :p1 ." + "".join(
         f':p{i} dm:float_coordinates_x "{i}"^^xsd:float ;'
         " dm:float_coordinates_y 0 ; dm:float_coordinates_z 0 ."
@@ -133,7 +133,7 @@ SHARED = [(v.entity_iri(n), v.HAS_PREFERRED_REFERENCE, v.entity_iri("r")) for n 
 REFERENCE = turtle(":r a dm:PreferredReference ; dm:lexicalReference 'chair' .")
 
 
-def test_a_shared_reference_is_nobody_s_own_until_all_users_leave(semantic_map):
+def test_a_shared_label_belongs_to_no_entity_until_all_users_are_removed(semantic_map):
     semantic_map.commit(transaction(1, [*chair(), *chair("chair2"), *SHARED, *REFERENCE]))
     (one,) = semantic_map.stars(["chair1"])
     assert set(one.own) == {*chair(), SHARED[0]}
@@ -147,14 +147,14 @@ def test_a_shared_reference_is_nobody_s_own_until_all_users_leave(semantic_map):
     assert semantic_map.abox() == []
 
 
-def test_removing_two_users_together_takes_what_they_share(semantic_map):
+def test_removing_two_entities_removes_what_they_share(semantic_map):
     semantic_map.commit(transaction(1, [*chair(), *chair("chair2"), *SHARED, *REFERENCE]))
     own = [t for star in semantic_map.stars(["chair1", "chair2"]) for t in star.own]
     semantic_map.commit(transaction(2, retract=own))
     assert semantic_map.abox() == []
 
 
-def test_shared_coordinates_are_nobody_s_own(semantic_map):
+def test_shared_coordinates_belong_to_no_entity(semantic_map):
     also = (v.entity_iri("chair2"), v.HAS_POSITION, v.entity_iri("chair1_coordinates"))
     is_one = (v.entity_iri("chair2"), v.RDF_TYPE, v.dm("Chair"))
     semantic_map.commit(transaction(1, [*chair(), also, is_one]))
@@ -163,14 +163,14 @@ def test_shared_coordinates_are_nobody_s_own(semantic_map):
     assert semantic_map.entity("chair1").pose == semantic_map.entity("chair2").pose is not None
 
 
-def test_what_others_say_is_incoming(semantic_map):
+def test_triples_that_refer_to_the_entity_are_incoming(semantic_map):
     said = turtle(":k dm:near :chair1 .")
     semantic_map.commit(transaction(1, [*chair(), *said]))
     (star,) = semantic_map.stars(["chair1"])
     assert star.incoming == said
 
 
-def test_what_the_tbox_says_is_nobody_s_own(tmp_path):
+def test_triples_of_the_tbox_belong_to_no_entity(tmp_path):
     semantic_map = home.new_map(tmp_path, [*home.TBOX, *REFERENCE])
     semantic_map.commit(transaction(1, [*chair(), SHARED[0]]))
     (star,) = semantic_map.stars(["chair1"])
@@ -178,7 +178,7 @@ def test_what_the_tbox_says_is_nobody_s_own(tmp_path):
     home.close(semantic_map)
 
 
-def test_owners_are_the_thing_and_who_points_to_it(semantic_map):
+def test_owners_are_the_entity_and_those_that_refer_to_it(semantic_map):
     semantic_map.commit(transaction(1, chair()))
     node = v.entity_iri("chair1_coordinates")
-    assert entity_reading.owners(semantic_map.reasoner, semantic_map.classes, node) == {node, CHAIR1}
+    assert entity_reading.find_owners(semantic_map.reasoner, semantic_map.classes, node) == {node, CHAIR1}

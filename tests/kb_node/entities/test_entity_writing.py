@@ -1,4 +1,4 @@
-"""What is wanted of entities, as a change of triples."""
+"""Edits of entities as changes of triples."""
 
 import pytest
 
@@ -14,7 +14,7 @@ TURNED = orientation_from_yaw(1.0)
 
 
 def edited(semantic_map, **fields):
-    """The commit that changes `chair1`, or the entity that is named."""
+    """Commit an edit of `chair1`, or of the named entity."""
     edit = (Edit(**{"name": "chair1", **fields}),)
     return semantic_map.commit(
         Transaction(id=f"edited{fields}{semantic_map.seq}", source="operator", edit=edit)
@@ -22,18 +22,18 @@ def edited(semantic_map, **fields):
 
 
 def added(semantic_map, name="chair1", **fields):
-    """The commit that adds a chair."""
+    """Commit a new chair."""
     new = (NewEntity(name=name, class_iri=v.bare(v.dm("Chair")), **fields),)
     return semantic_map.commit(Transaction(id=f"added {name}{semantic_map.seq}", source="operator", add=new))
 
 
 def removed(semantic_map, *names):
-    """The commit that takes entities out."""
+    """Commit the removal of entities."""
     return semantic_map.commit(Transaction(id=f"removed{semantic_map.seq}", source="operator", remove=names))
 
 
 def placed(semantic_map, **fields):
-    """The commit that puts `chair1` somewhere."""
+    """Commit a new position of `chair1`."""
     return edited(semantic_map, **fields)
 
 
@@ -42,7 +42,7 @@ def coordinates_of(semantic_map, name):
     return [node for _, _, node in edges]
 
 
-def test_what_is_not_given_stays(semantic_map):
+def test_values_that_are_not_given_are_kept(semantic_map):
     semantic_map.commit(transaction(1, chair()))
     placed(semantic_map, at=(1.0, 2.0, 3.0), yaw=1.0)
     assert semantic_map.entity("chair1").pose == Pose(position_m=(1.0, 2.0, 3.0), orientation_wxyz=TURNED)
@@ -52,7 +52,7 @@ def test_what_is_not_given_stays(semantic_map):
     assert semantic_map.entity("chair1").pose == Pose(position_m=(4.0, 5.0, 6.0))
 
 
-def test_the_coordinates_change_where_they_are(semantic_map):
+def test_coordinates_are_updated_in_place(semantic_map):
     semantic_map.commit(transaction(1, chair()))
     before = len(semantic_map.abox())
     nodes = coordinates_of(semantic_map, "chair1")
@@ -60,7 +60,7 @@ def test_the_coordinates_change_where_they_are(semantic_map):
     assert (coordinates_of(semantic_map, "chair1"), len(semantic_map.abox())) == (nodes, before)
 
 
-def test_coordinates_of_two_are_left_to_the_other(semantic_map):
+def test_shared_coordinates_are_kept_for_the_other_entity(semantic_map):
     shared = v.entity_iri("chair1_coordinates")
     other = [t for t in chair("chair2") if t[1] != v.HAS_POSITION and "coordinates" not in t[0]]
     both = [*chair(), *other, (v.entity_iri("chair2"), v.HAS_POSITION, shared)]
@@ -80,7 +80,7 @@ def test_a_first_position(semantic_map):
     assert semantic_map.entity("chair1").pose == Pose(position_m=(1.0, 2.0, 3.0))
 
 
-def test_where_it_is_already_is_no_commit(semantic_map):
+def test_the_same_pose_is_not_a_commit(semantic_map):
     semantic_map.commit(transaction(1, chair()))
     assert placed(semantic_map, at=semantic_map.entity("chair1").pose.position_m) is None
 
@@ -93,7 +93,7 @@ def test_where_it_is_already_is_no_commit(semantic_map):
         ({"yaw": 1.0, "orientation": (1.0, 0.0, 0.0, 0.0)}, errors.BadRequest),
     ],
 )
-def test_a_refusal_changes_nothing(semantic_map, fields, error):
+def test_a_rejected_edit_changes_nothing(semantic_map, fields, error):
     semantic_map.commit(transaction(1, chair()))
     before = home.state(semantic_map)
     with pytest.raises(error):
@@ -101,7 +101,7 @@ def test_a_refusal_changes_nothing(semantic_map, fields, error):
     assert home.state(semantic_map) == before
 
 
-def test_what_the_tbox_has_is_not_placed(tmp_path):
+def test_entities_of_the_tbox_cannot_be_placed(tmp_path):
     throne = [(v.entity_iri("chair1"), v.RDF_TYPE, v.dm("Chair"))]
     throne += stars.position(*map(v.entity_iri, ("chair1", "spot")), Pose(position_m=(0.0, 0.0, 0.0)))
     semantic_map = home.new_map(tmp_path, [*home.TBOX, *throne])
@@ -122,7 +122,7 @@ def nodes_of(semantic_map, name, edge):
     return sorted(o for _, _, o in semantic_map.reasoner.asserted(v.entity_iri(name), edge))
 
 
-def test_an_added_entity_is_its_star(semantic_map):
+def test_a_new_entity_has_all_its_triples(semantic_map):
     made = added(semantic_map, **WHOLE)
     assert set(made.inserted) == set(
         stars.star(
@@ -139,7 +139,7 @@ def test_an_added_entity_is_its_star(semantic_map):
         added(semantic_map, "chair1")
 
 
-def test_two_of_one_name_in_one_transaction_are_refused(semantic_map):
+def test_two_entities_with_the_same_name_in_one_transaction_are_rejected(semantic_map):
     new = NewEntity(name="chair1", class_iri=v.bare(v.dm("Chair")))
     with pytest.raises(errors.NameTaken):
         semantic_map.commit(Transaction(id="two", source="operator", add=(new, new)))
@@ -147,7 +147,7 @@ def test_two_of_one_name_in_one_transaction_are_refused(semantic_map):
 
 
 @pytest.mark.parametrize("name", ["Color", "Coordinates"])
-def test_a_class_that_is_not_of_things_in_space_is_refused(semantic_map, name):
+def test_a_class_that_is_not_spatial_is_rejected(semantic_map, name):
     new = NewEntity(name="x", class_iri=v.bare(v.dm(name)))
     with pytest.raises(errors.UnknownClass, match=name):
         semantic_map.commit(Transaction(id="1", source="operator", add=(new,)))
@@ -156,13 +156,13 @@ def test_a_class_that_is_not_of_things_in_space_is_refused(semantic_map, name):
         edited(semantic_map, class_iri=v.bare(v.dm(name)))
 
 
-def test_a_name_that_is_only_pointed_to_can_be_given(semantic_map):
+def test_a_name_that_is_only_referred_to_can_be_used(semantic_map):
     semantic_map.commit(transaction(1, turtle(":chair2 a dm:Chair ; dm:touches :chair1 .")))
     added(semantic_map, **WHOLE)
     assert semantic_map.entity("chair1").preferred_reference == "seat"
 
 
-def test_the_parts_of_a_star_get_other_names_where_theirs_are_in_use(semantic_map):
+def test_nodes_get_other_names_if_theirs_are_in_use(semantic_map):
     added(semantic_map, "chair1_size")
     semantic_map.commit(
         transaction(1, turtle(':x dm:lexicalReference "x" ; dm:touches :chair1_coordinates .'))
@@ -178,7 +178,7 @@ def test_the_parts_of_a_star_get_other_names_where_theirs_are_in_use(semantic_ma
     assert semantic_map.entity("chair1_size").pose is None
 
 
-def test_an_edit_says_only_what_is_otherwise(semantic_map):
+def test_an_edit_contains_only_the_differences(semantic_map):
     added(semantic_map, **WHOLE)
     said = edited(semantic_map, ref="bench", alt=("stool", "perch"), size=(0.5, 0.5, 0.9))
     assert sorted(v.lexical(o) for _, _, o in said.retracted) == ["1.0", "seat", "throne"]
@@ -189,7 +189,7 @@ def test_an_edit_says_only_what_is_otherwise(semantic_map):
 
 
 @pytest.mark.parametrize("texts", [(), ("a",), ("c", "b", "a"), tuple("abcdefg")])
-def test_all_alternative_references_are_replaced_in_their_order(semantic_map, texts):
+def test_aliases_are_replaced_in_their_order(semantic_map, texts):
     added(semantic_map, **WHOLE)
     bare = len(semantic_map.abox()) - 2 * 3
     edited(semantic_map, alt=texts)
@@ -200,7 +200,7 @@ def test_all_alternative_references_are_replaced_in_their_order(semantic_map, te
     assert len(semantic_map.abox()) == bare + 6
 
 
-def test_a_reference_of_two_is_left_to_the_other(semantic_map):
+def test_a_shared_label_is_kept_for_the_other_entity(semantic_map):
     added(semantic_map, "chair1", ref="seat")
     added(semantic_map, "chair2")
     shared = nodes_of(semantic_map, "chair1", v.HAS_PREFERRED_REFERENCE)
@@ -214,7 +214,7 @@ def test_a_reference_of_two_is_left_to_the_other(semantic_map):
     assert len(semantic_map.abox()) == 2 * 4
 
 
-def test_one_reference_in_two_roles_keeps_the_other_role(semantic_map):
+def test_a_label_that_is_also_an_alias_stays_an_alias(semantic_map):
     added(semantic_map, ref="seat")
     (node,) = nodes_of(semantic_map, "chair1", v.HAS_PREFERRED_REFERENCE)
     semantic_map.commit(transaction(1, [(v.entity_iri("chair1"), v.HAS_ALTERNATIVE_REFERENCE, node)]))
@@ -232,7 +232,7 @@ def test_several_sizes_become_one(semantic_map):
     assert len(semantic_map.abox()) == 1 + 5
 
 
-def test_a_class_takes_the_place_of_the_one_before(semantic_map):
+def test_a_new_class_replaces_the_previous_one(semantic_map):
     added(semantic_map)
     edited(semantic_map, class_iri=v.bare(v.dm("Seat")))
     assert semantic_map.entity("chair1").class_ == "Seat"
@@ -247,7 +247,7 @@ def test_an_entity_without_an_asserted_class_gets_one(semantic_map):
     assert semantic_map.entity("chair1").class_ == "Chair"
 
 
-def test_a_conflict_comes_and_goes(semantic_map):
+def test_a_conflict_is_set_and_cleared(semantic_map):
     added(semantic_map)
     edited(semantic_map, conflict="it is a table")
     assert semantic_map.entity("chair1").conflict == "it is a table"
@@ -256,7 +256,7 @@ def test_a_conflict_comes_and_goes(semantic_map):
     assert edited(semantic_map, conflict="") is None
 
 
-def test_what_leaves_is_gone_and_its_names_are_free(semantic_map):
+def test_names_of_removed_entities_can_be_used_again(semantic_map):
     added(semantic_map, **WHOLE)
     added(semantic_map, "chair2")
     semantic_map.commit(transaction(1, turtle(":chair2 dm:touches :chair1 .")))
@@ -275,7 +275,7 @@ def test_what_leaves_is_gone_and_its_names_are_free(semantic_map):
     assert semantic_map.abox() == []
 
 
-def test_a_removal_of_what_is_not_there_takes_nothing(semantic_map):
+def test_removing_an_unknown_entity_is_rejected(semantic_map):
     added(semantic_map)
     with pytest.raises(errors.UnknownName, match="chair9"):
         removed(semantic_map, "chair1", "chair9")

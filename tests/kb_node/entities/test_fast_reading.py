@@ -1,4 +1,4 @@
-"""What is read at sight is what is read piece by piece."""
+"""Fast reading gives the same entities as reading them one by one."""
 
 from itertools import count
 
@@ -35,7 +35,7 @@ FAULTY = st.sampled_from(["1.0", "INF", "NaN", "1e30", "-1.0", "0.0"])
 
 @st.composite
 def pieces(draw):
-    """Which triples an entity of a shape has, as a function of its name and its numbers."""
+    """Triples of an entity by shape, as a function of its name and numbers."""
     coordinates = draw(st.sampled_from([0, 2, 3, 3, 3]))
     orientation = draw(st.sampled_from([0, 0, 1, 4]))
     size = draw(st.sampled_from([0, 3, 3]))
@@ -84,14 +84,14 @@ ALIKE = {"shape": pieces(), "numbers": st.lists(st.tuples(NUMBER, NUMBER, FAULTY
 
 @settings(max_examples=25, deadline=None, derandomize=True)
 @given(**ALIKE)
-def test_stars_of_one_shape_are_read_as_each_by_itself(tmp_path_factory, shape, numbers):
+def test_runs_of_one_shape_are_read_like_single_entities(tmp_path_factory, shape, numbers):
     check_alike(tmp_path_factory, shape, numbers)
 
 
 @pytest.mark.long
 @settings(max_examples=400, deadline=None)
 @given(**ALIKE)
-def test_many_stars_of_one_shape_are_read_as_each_by_itself(tmp_path_factory, shape, numbers):
+def test_many_runs_of_one_shape_are_read_like_single_entities(tmp_path_factory, shape, numbers):
     check_alike(tmp_path_factory, shape, numbers)
 
 
@@ -110,21 +110,21 @@ def check_alike(tmp_path_factory, shape, numbers):
 def _each_by_itself(semantic_map):
     reasoner, classes = semantic_map.reasoner, semantic_map.classes
     for iri in sorted(reasoner.instances(v.dm("Chair"))):
-        known = semantic_map.known(iri)
+        known = semantic_map.find_by_iri(iri)
         yield entity_reading.read_entity(
             reasoner, classes, iri, known.provenance if known else entity_reading._OF_THE_TBOX
         )
 
 
 def _said(read):
-    """The entities, or what is wrong with them."""
+    """Return the entities, or the error."""
     try:
         return list(read())
     except errors.BadRequest as error:
         return error.text
 
 
-def test_the_usual_star_is_read_at_sight(semantic_map, monkeypatch):
+def test_the_usual_run_is_regular(semantic_map, monkeypatch):
     numbers = count()
 
     def usual(name):
@@ -142,7 +142,7 @@ def test_the_usual_star_is_read_at_sight(semantic_map, monkeypatch):
     assert entity.class_ == "Chair"
 
 
-def test_a_known_shape_with_a_bad_name_is_refused(semantic_map):
+def test_a_known_shape_with_an_invalid_name_is_rejected(semantic_map):
     for name in ("e0", "e1"):
         semantic_map.commit(transaction(name, star(name)))
     with pytest.raises(errors.BadRequest, match="needs an IRI that ends in a valid name"):

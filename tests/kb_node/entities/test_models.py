@@ -1,4 +1,4 @@
-"""The model of an entity: stated, or chosen by its class, its name and its size."""
+"""The model of an entity is stated, or chosen by class, name and size."""
 
 import pytest
 
@@ -15,7 +15,7 @@ HERE = Pose(position_m=(1.0, 2.0, 0.0))
 
 @pytest.fixture
 def household(tmp_path):
-    """An empty map over the TBox that comes with semmap."""
+    """An empty map with the shipped TBox."""
     made = SemanticMap(home.new_household_journal(tmp_path))
     yield made
     home.close(made)
@@ -45,7 +45,7 @@ def test_names_and_sizes_choose_among_the_models_of_a_class(household):
     assert put(household, "chair1", "Chair", (0.2, 0.2, 0.2)).model == "chair"
 
 
-def test_what_is_stated_counts_until_it_is_taken_back(household):
+def test_a_stated_model_is_used_until_it_is_unset(household):
     put(household, "bottle1", "Bottle")
     stated = said(household, "bottle1", "spray_bottle")
     assert stated.model == "spray_bottle"
@@ -58,7 +58,7 @@ def test_what_is_stated_counts_until_it_is_taken_back(household):
     assert taken.shape_provenance.commit == household.seq
 
 
-def test_a_new_size_is_another_model_and_a_move_is_not(household):
+def test_a_new_size_may_change_the_model_and_a_move_does_not(household):
     before = put(household, "cup1", "Cup", (0.08, 0.11, 0.095))
     assert before.model == "cup"
     resized = edit(household, "cup1", size=(0.055, 0.075, 0.05))
@@ -68,7 +68,7 @@ def test_a_new_size_is_another_model_and_a_move_is_not(household):
     assert moved.pose.position_m == (3.0, 1.0, 0.5)
 
 
-def test_a_move_keeps_a_stated_model_and_so_does_a_restart(household):
+def test_a_stated_model_survives_a_move_and_a_restart(household):
     put(household, "cup1", "Cup")
     said(household, "cup1", "tumbler")
     assert edit(household, "cup1", at=(3.0, 1.0, 0.5)).model == "tumbler"
@@ -78,7 +78,7 @@ def test_a_move_keeps_a_stated_model_and_so_does_a_restart(household):
 
 
 @pytest.mark.parametrize("model", ["spary_bottle", "", "no such model"])
-def test_a_model_that_there_is_not_is_refused_and_nothing_changes(household, model):
+def test_an_unknown_model_is_rejected(household, model):
     put(household, "bottle1", "Bottle")
     seq = household.seq
     with pytest.raises(errors.BadRequest, match="unknown model"):
@@ -86,26 +86,26 @@ def test_a_model_that_there_is_not_is_refused_and_nothing_changes(household, mod
     assert household.seq == seq
 
 
-def test_one_model_at_most_is_stated(household):
+def test_at_most_one_model_can_be_stated(household):
     put(household, "cup1", "Cup")
     with pytest.raises(errors.BadRequest, match="one value at most"):
         edit(household, "cup1", set=(Statement(property="model", values=("tumbler", "cup")),))
 
 
-def test_it_is_among_the_properties_that_may_be_stated(household):
-    (row,) = (row for row in household.classes.stated.rows() if row.name == "model")
+def test_the_model_is_a_property_that_can_be_set(household):
+    (row,) = (row for row in household.classes.property_table.rows() if row.name == "model")
     assert (row.kind, row.functional, row.range) == ("data", True, ("string",))
 
 
-def test_a_tbox_that_does_not_know_models_has_no_such_property(semantic_map):
-    assert "model" not in {row.name for row in semantic_map.classes.stated.rows()}
+def test_a_tbox_without_models_has_no_such_property(semantic_map):
+    assert "model" not in {row.name for row in semantic_map.classes.property_table.rows()}
 
 
 def on(name, other):
     return (v.entity_iri(name), v.dm("isOn"), v.entity_iri(other))
 
 
-def test_what_stands_on_a_thing_is_measured_by_the_model_that_it_comes_to_have(household):
+def test_objects_are_measured_against_the_new_model_of_their_support(household):
     put(household, "can1", "Can")
     star = stars.star("apple1", v.dm("Apple"), pose=Pose(position_m=(1.0, 2.0, 0.12)))
     household.commit(home.transaction("apple", star))
@@ -116,7 +116,7 @@ def test_what_stands_on_a_thing_is_measured_by_the_model_that_it_comes_to_have(h
     assert household.reasoner.holds(on("apple1", "can1"))
 
 
-def test_a_new_entity_is_stated_to_have_a_model(household):
+def test_a_new_entity_may_have_a_stated_model(household):
     new = NewEntity(
         name="cup1",
         class_iri=v.bare(v.dm("Cup")),

@@ -1,8 +1,8 @@
-"""Values as people write them, and as JSON has them."""
+"""Property values as text and as JSON."""
 
 import pytest
 
-from semmap.nodes.kb_node.entities.property_values import literal, plain, same
+from semmap.nodes.kb_node.entities.property_values import is_same_value, literal, to_json_value
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 
@@ -41,8 +41,8 @@ ANY_TEXT = v.iri(f"{v.RDFS}Literal")
 )
 def test_text_is_typed_by_the_range(ranges, text, term, shown):
     assert literal("p", frozenset(ranges), text) == term
-    assert plain(term) == shown
-    assert type(plain(term)) is type(shown)
+    assert to_json_value(term) == shown
+    assert type(to_json_value(term)) is type(shown)
 
 
 @pytest.mark.parametrize(
@@ -60,17 +60,17 @@ def test_text_is_typed_by_the_range(ranges, text, term, shown):
         (BYTE, '"x"', """p takes a literal of xsd:byte, not "x\""""),
     ],
 )
-def test_what_is_outside_the_range_is_refused(datatype, text, said):
+def test_a_value_outside_the_range_is_rejected(datatype, text, said):
     with pytest.raises(errors.BadRequest) as caught:
         literal("p", frozenset((datatype,)), text)
     assert caught.value.text == said
 
 
-def test_values_are_compared_and_not_their_spelling():
-    assert same(v.literal("01", INTEGER), v.literal("1.0", DECIMAL))
-    assert not same(v.literal("1", INTEGER), v.literal("1"))
-    assert not same(v.literal("x", INTEGER), v.literal("y", INTEGER))
-    assert same(v.dm("a"), v.dm("a"))
-    assert not same(v.dm("a"), v.literal("a"))
-    assert plain(v.dm("color_red")) == "color_red"
-    assert plain('"x"^^<http://www.w3.org/2001/XMLSchema#integer>') == "x"
+def test_values_are_compared_by_value():
+    assert is_same_value(v.literal("01", INTEGER), v.literal("1.0", DECIMAL))
+    assert not is_same_value(v.literal("1", INTEGER), v.literal("1"))
+    assert not is_same_value(v.literal("x", INTEGER), v.literal("y", INTEGER))
+    assert is_same_value(v.dm("a"), v.dm("a"))
+    assert not is_same_value(v.dm("a"), v.literal("a"))
+    assert to_json_value(v.dm("color_red")) == "color_red"
+    assert to_json_value('"x"^^<http://www.w3.org/2001/XMLSchema#integer>') == "x"

@@ -1,10 +1,10 @@
-"""Loading documents, without the wire."""
+"""Loading of documents, without the wire."""
 
 from contextlib import nullcontext
 
 from semmap.nodes.kb_node.documents import rdf
-from semmap.nodes.kb_node.handlers.changing import Changing
-from semmap.nodes.kb_node.handlers.loading import Loading
+from semmap.nodes.kb_node.handlers.changes import ChangeHandlers
+from semmap.nodes.kb_node.handlers.loading import LoadHandlers
 from semmap.ontology import stars
 from semmap.ontology import vocabulary as v
 from semmap.schemas.bridge import LoadDocument
@@ -12,30 +12,35 @@ from semmap.schemas.entities import Pose
 
 
 class NoSparql:
-    def foresee(self, *document, packed):
-        """Nothing."""
+    def prefetch(self, *document, packed):
+        """Do nothing."""
 
-    def forget(self):
-        """Nothing."""
+    def discard_prepared(self):
+        """Do nothing."""
 
 
 def loading(semantic_map, said):
-    def telling_of(work):
+    def reporting_progress(work):
         return nullcontext(lambda text: said.append(f"{work}: {text}"))
 
-    changing = Changing(
+    changing = ChangeHandlers(
         semantic_map,
         semantic_map._journal,
-        spread=lambda commit, **how: None,
+        publish=lambda commit, **how: None,
         not_written=said.append,
-        telling_of=telling_of,
+        reporting_progress=reporting_progress,
     )
-    return Loading(
-        semantic_map, semantic_map._journal, changing, NoSparql(), telling_of=telling_of, notes=lambda: ()
+    return LoadHandlers(
+        semantic_map,
+        semantic_map._journal,
+        changing,
+        NoSparql(),
+        reporting_progress=reporting_progress,
+        notes=lambda: (),
     )
 
 
-def test_a_load_counts_what_it_describes_and_not_what_follows_of_others(flat):
+def test_a_load_counts_described_entities_and_not_those_with_changed_inferences(flat):
     said = []
     star = stars.star("apple9", v.dm("Apple"), pose=Pose(position_m=(9.81, 0.34, 0.1)))
     document = LoadDocument(
@@ -50,6 +55,6 @@ def test_a_load_counts_what_it_describes_and_not_what_follows_of_others(flat):
     assert {entity.name for entity in loaded.commit.changed} == {
         "apple9",
         "bin1",
-    }  # which is a Filled_Thing now
+    }  # it is a Filled_Thing now
     assert loaded.names == ("apple9",)
     assert said[-1] == f"loading apple.nt: {len(star)} triples to check and write"

@@ -1,4 +1,4 @@
-"""The node's ends of the lanes, with this test in the place of readers and of the process that forks them."""
+"""The node's ends of the lanes; the test acts as the readers and the process that forks them."""
 
 import signal
 
@@ -6,8 +6,14 @@ import pytest
 from msgspec import Raw, msgpack
 
 from semmap.nodes.kb_node.sparql import lanes
-from semmap.nodes.kb_node.sparql.lanes import AT_LENGTH, LANES, Lanes
-from semmap.nodes.kb_node.sparql.protocol import Dismiss, Hire, Left, Outcome, questions
+from semmap.nodes.kb_node.sparql.lanes import LANES, LONG_RUNNING, Lanes
+from semmap.nodes.kb_node.sparql.protocol import (
+    QueryOutcome,
+    ReaderExited,
+    StartReader,
+    StopReader,
+    questions,
+)
 from semmap.schemas import errors
 from semmap.schemas.commands import Sparql
 from semmap.schemas.sparql import SparqlResult
@@ -17,7 +23,7 @@ WAIT_S = 30.0
 
 
 class Readers:
-    """What is sent to the process, and the readers' ends."""
+    """The messages to the process, and the readers' ends."""
 
     def __init__(self):
         self.sent = []
@@ -33,82 +39,82 @@ class Readers:
         return self.lanes.ask(Sparql(query=query, timeout=1.5), 7)
 
     def asked(self):
-        """The lanes in which a question waits for a reader."""
-        return [number for number, lane in enumerate(self.lanes.others) if lane.poll(0)]
+        """Return the lanes in which a query waits for a reader."""
+        return [number for number, lane in enumerate(self.lanes.remote_ends) if lane.poll(0)]
 
     def take(self, lane):
-        assert self.lanes.others[lane].poll(WAIT_S)
-        return questions.decode(self.lanes.others[lane].recv_bytes())
+        assert self.lanes.remote_ends[lane].poll(WAIT_S)
+        return questions.decode(self.lanes.remote_ends[lane].recv_bytes())
 
     def answer(self, lane, question, **outcome):
         result = Raw(msgpack.encode(SparqlResult(kind="ask", seq=7, verdict=True)))
-        message = Outcome(number=question.number, **({"result": result} | outcome))
-        self.lanes.others[lane].send_bytes(msgpack.encode(message))
+        message = QueryOutcome(number=question.number, **({"result": result} | outcome))
+        self.lanes.remote_ends[lane].send_bytes(msgpack.encode(message))
 
 
 @pytest.fixture
 def readers():
     made = Readers()
     yield made
-    for connection in made.lanes.others:
+    for connection in made.lanes.remote_ends:
         connection.close()
 
 
-def test_each_question_has_a_lane_and_the_warm_one_comes_first(readers):
+def test_each_query_has_a_lane_and_lanes_with_readers_come_first(readers):
     first = readers.ask("a")
     second = readers.ask("b")
-    assert readers.sent == [Hire(lane=0), Hire(lane=1)]
+    assert readers.sent == [StartReader(lane=0), StartReader(lane=1)]
     readers.answer(1, readers.take(1))
     assert second.result(WAIT_S).verdict
     third = readers.ask("c")
     assert readers.take(1).query == "c"
-    assert readers.sent == [Hire(lane=0), Hire(lane=1)]
+    assert readers.sent == [StartReader(lane=0), StartReader(lane=1)]
     assert not first.done()
     assert not third.done()
 
 
-def test_what_finds_no_lane_waits_for_the_next(readers):
+def test_a_query_without_a_lane_waits(readers):
     futures = [readers.ask(str(number)) for number in range(LANES + 1)]
     taken = [readers.take(lane) for lane in range(LANES)]
-    assert not readers.lanes.others[2].poll(0)
+    assert not readers.lanes.remote_ends[2].poll(0)
     readers.answer(2, taken[2])
     assert futures[2].result(WAIT_S).verdict
     assert readers.take(2).query == str(LANES)
 
 
-def test_a_reader_that_dies_of_its_query_takes_the_answer_with_it(readers):
+def test_a_query_that_kills_its_reader_fails(readers):
     future = readers.ask("endless")
     late = readers.take(0)
-    readers.lanes.leave(Left(lane=0, signal=signal.SIGALRM))
+    readers.lanes.on_reader_exit(ReaderExited(lane=0, signal=signal.SIGALRM))
     with pytest.raises(errors.Refused, match=r"cancelled after 1.5 s"):
         future.result(WAIT_S)
     following = readers.ask("next")
-    assert readers.sent == [Hire(lane=0), Hire(lane=0)]
-    readers.answer(0, late)  # nobody waits for it
+    assert readers.sent == [StartReader(lane=0), StartReader(lane=0)]
+    readers.answer(0, late)  # no client waits for it
     readers.answer(0, readers.take(0))
     assert following.result(WAIT_S).verdict
 
 
-def test_a_reader_that_goes_leaves_the_question_to_the_next(readers):
+def test_the_query_of_a_reader_that_exits_goes_to_the_next_one(readers):
     future = readers.ask("unread")
-    readers.lanes.leave(Left(lane=0, signal=0))
-    assert readers.sent == [Hire(lane=0), Hire(lane=0)]
+    readers.lanes.on_reader_exit(ReaderExited(lane=0, signal=0))
+    assert readers.sent == [StartReader(lane=0), StartReader(lane=0)]
     given_back = readers.take(0)
     readers.answer(0, given_back, old=True)
-    readers.lanes.leave(Left(lane=0, signal=0))
+    readers.lanes.on_reader_exit(ReaderExited(lane=0, signal=0))
     again = readers.take(0)
     assert again == given_back
     readers.answer(0, again)
     assert future.result(WAIT_S).verdict
 
 
-def test_a_long_question_is_sent_by_another_thread_and_in_one_piece(readers):
+def test_a_long_query_is_sent_by_another_thread_in_one_piece(readers):
     future = readers.ask("x" * 100_000)
     readers.answer(0, readers.take(0))
     assert future.result(WAIT_S).verdict
 
 
-def test_in_the_end_nobody_waits(readers):
+def test_closing_fails_all_queries(readers):
     futures = [readers.ask("x") for _ in range(LANES + 2)]
     readers.lanes.close(errors.Refused("over"))
     for future in futures:
@@ -117,42 +123,42 @@ def test_in_the_end_nobody_waits(readers):
 
 
 def begun(readers, count, name="long"):
-    """So many queries, each with a lane."""
+    """Start so many queries, each with a lane."""
     futures = [readers.ask(f"{name} {number}") for number in range(count)]
     return futures, [readers.take(lane) for lane in range(count)]
 
 
-def test_where_all_lanes_take_long_one_is_set_aside_for_who_waits_and_begun_anew(readers, monkeypatch):
+def test_a_long_running_query_is_preempted_and_started_again_if_others_wait(readers, monkeypatch):
     monkeypatch.setattr(lanes, "LONG_S", 0.05)
     futures, taken = begun(readers, LANES)
     quick = readers.ask("quick")
-    until(lambda: Dismiss(lane=AT_LENGTH) in readers.sent, "one is set aside")
-    readers.lanes.leave(Left(lane=AT_LENGTH, signal=0))
-    assert readers.sent[-1] == Hire(lane=AT_LENGTH)
-    question = readers.take(AT_LENGTH)
+    until(lambda: StopReader(lane=LONG_RUNNING) in readers.sent, "one is set aside")
+    readers.lanes.on_reader_exit(ReaderExited(lane=LONG_RUNNING, signal=0))
+    assert readers.sent[-1] == StartReader(lane=LONG_RUNNING)
+    question = readers.take(LONG_RUNNING)
     assert question.query == "quick"
-    readers.answer(AT_LENGTH, question)
+    readers.answer(LONG_RUNNING, question)
     assert quick.result(WAIT_S).verdict
-    assert readers.asked() == []  # still enough others take long
+    assert readers.asked() == []  # enough other queries are long-running
     readers.answer(0, taken[0])
-    for lane in range(AT_LENGTH + 1, LANES):
+    for lane in range(LONG_RUNNING + 1, LANES):
         readers.answer(lane, taken[lane])
-    (again,) = until(readers.asked, "it is begun anew")
+    (again,) = until(readers.asked, "it is started again")
     question = readers.take(again)
-    assert question == taken[AT_LENGTH]
+    assert question == taken[LONG_RUNNING]
     readers.answer(again, question)
-    assert futures[AT_LENGTH].result(WAIT_S).verdict
+    assert futures[LONG_RUNNING].result(WAIT_S).verdict
 
 
-def test_nothing_is_set_aside_while_nobody_waits(readers, monkeypatch):
+def test_no_query_is_preempted_if_none_waits(readers, monkeypatch):
     monkeypatch.setattr(lanes, "LONG_S", 0.0)
     begun(readers, LANES)
-    readers.lanes._make_room()
-    assert all(isinstance(sent, Hire) for sent in readers.sent)
+    readers.lanes._preempt()
+    assert all(isinstance(sent, StartReader) for sent in readers.sent)
     assert readers.lanes._timer is None
 
 
-def test_askers_take_turns(readers):
+def test_clients_take_turns(readers):
     _, taken = begun(readers, LANES)
     for number in range(5):
         readers.lanes.ask(Sparql(query=f"a{number}"), 7, asker="a")
@@ -165,9 +171,9 @@ def test_askers_take_turns(readers):
     assert order == ["a0", "b0", "a1", "a2", "a3", "a4"]
 
 
-def test_too_many_are_refused(readers):
+def test_too_many_queries_are_rejected(readers):
     begun(readers, LANES)
     for _ in range(64):
         readers.ask("x")
-    with pytest.raises(errors.Busy, match="64 SPARQL queries wait already"):
+    with pytest.raises(errors.Busy, match="64 SPARQL queries are waiting"):
         readers.ask("x")

@@ -1,4 +1,4 @@
-"""Relations that are measured on demand, as queries and standing queries see them: those of the moment."""
+"""Relations measured on demand, in queries and standing queries."""
 
 import queue
 import random
@@ -7,7 +7,7 @@ import pytest
 
 from semmap.nodes.kb_node.relations.facts.pair_facts import measure_pair
 from semmap.nodes.kb_node.relations.relation_reports import explain_relation
-from semmap.nodes.kb_node.sparql.protocol import Surrounded
+from semmap.nodes.kb_node.sparql.protocol import Placements
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.ontology import vocabulary as v
 from semmap.schemas.commands import Sparql, Watch
@@ -28,15 +28,15 @@ def service(flat, news):
     made = SparqlService(
         lambda: flat.reasoner.asserted(),
         news.put,
-        believed=flat.all_believed,
-        surrounded=lambda: Surrounded(placed=flat.placed(), limits=flat.classes.limits),
+        derived_changes=flat.all_derived,
+        placements=lambda: Placements(placed=flat.placed(), limits=flat.classes.limits),
     )
     yield made
     made.close()
 
 
 def told(flat, wanted):
-    """The pairs of entities' IRIs of which `semmap relations` tells it, and those of which it follows."""
+    """Return the pairs of IRIs with the relation by `semmap relations`, and those inferred from it."""
     space, found = flat.places.space(), set()
     iris = {entity.name: v.iri(entity.iri) for entity in flat.entities()}
     things = [solid for solid in space.solids.values() if not solid.is_place]
@@ -61,7 +61,7 @@ def mirrored(flat, wanted):
 
 def ask(service, flat, query):
     rows = service.ask(Sparql(query=query, inferred=True), flat.seq).result(WAIT_S).rows
-    assert len(set(rows)) == len(rows)  # nothing is told by two graphs
+    assert len(set(rows)) == len(rows)  # no triple is in two graphs
     return set(rows)
 
 
@@ -70,7 +70,7 @@ def stir(flat, service, dice, number, things, spots):
     at = (x + dice.choice([0.0, 0.0, 0.02, 0.3]), y, z)
     commit = flat.commit(Transaction(id=f"c{number}", source="operator", edit=(Edit(name=name, at=at),)))
     if commit is not None:
-        service.follow(commit, flat.believed_of(commit))
+        service.follow(commit, flat.take_derived_changes(commit))
 
 
 def movable(flat):
@@ -79,16 +79,16 @@ def movable(flat):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_query_sees_what_relations_tells(flat, service, name):
+def test_a_query_has_the_rows_of_relations(flat, service, name):
     rows = ask(service, flat, ALL.format(name))
     assert rows == mirrored(flat, name) != set()
     space, by_iri = flat.places.space(), {v.iri(entity.iri): entity.name for entity in flat.entities()}
     for s, o in list(rows)[:20]:
-        if name != "touches":  # what is on another touches it, too, and may be told with a gap
+        if name != "touches":  # an object on another touches it, too, possibly with a gap
             assert explain_relation(space, by_iri[s], name, by_iri[o]).holds
 
 
-def test_it_is_the_truth_of_each_commit(flat, service):
+def test_measurements_are_up_to_date_after_each_commit(flat, service):
     dice, (things, spots) = random.Random(3), movable(flat)
     for number in range(8):
         stir(flat, service, dice, number, things, spots)
@@ -97,7 +97,7 @@ def test_it_is_the_truth_of_each_commit(flat, service):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_of_one_thing_no_more_is_measured(flat, service, name):
+def test_for_one_object_no_others_are_measured(flat, service, name):
     about = v.entity_iri("counter1")
     for number in range(3):
         there = {(s,) for s, o in mirrored(flat, name) if o == about}
@@ -105,7 +105,7 @@ def test_of_one_thing_no_more_is_measured(flat, service, name):
         stir(flat, service, random.Random(number), number, *movable(flat))
 
 
-def test_a_variable_predicate_sees_them(flat, service):
+def test_a_variable_predicate_includes_measured_relations(flat, service):
     rows = ask(service, flat, "SELECT DISTINCT ?p ?o { :milk1 ?p ?o }")
     assert (
         {o for p, o in rows if p == v.dm("isNear")}
@@ -114,43 +114,43 @@ def test_a_variable_predicate_sees_them(flat, service):
     )
 
 
-def test_without_inferred_nobody_sees_them(flat, service):
+def test_without_inferred_there_are_no_measured_relations(flat, service):
     assert ask(service, flat, ALL.format("isNear"))
     asserted = service.ask(Sparql(query=ALL.format("isNear")), flat.seq).result(WAIT_S)
     assert asserted.rows == ()
 
 
-def test_another_query_does_not_see_them(flat, service):
+def test_another_query_does_not_include_them(flat, service):
     counted = "SELECT ?x { ?x a dm:Cup }"
     before = ask(service, flat, counted)
     ask(service, flat, ALL.format("isNear"))
     assert ask(service, flat, counted) == before
 
 
-def test_nothing_is_measured_for_a_query_that_does_not_name_them(flat, service):
+def test_nothing_is_measured_for_queries_that_do_not_need_it(flat, service):
     ask(service, flat, "SELECT ?x ?y { ?x dm:isOn ?y . ?y a dm:Table }")
     assert not service._measures
 
 
-def test_what_somebody_says_is_told_once(flat, service):
+def test_an_asserted_relation_occurs_once(flat, service):
     near = next(iter(sorted(told(flat, "isNear"))))
     ask(service, flat, ALL.format("isNear"))
     triple = (near[0], v.dm("isNear"), near[1])
     for change in ({"insert": (triple,)}, {"retract": (triple,)}):
         commit = flat.commit(Transaction(id=str(change), source="operator", **change))
-        service.follow(commit, flat.believed_of(commit))
+        service.follow(commit, flat.take_derived_changes(commit))
         assert near in ask(service, flat, ALL.format("isNear"))
 
 
-def test_an_entity_that_goes_is_near_nobody(flat, service):
+def test_a_removed_entity_has_no_relations(flat, service):
     ask(service, flat, ALL.format("isNear"))
     commit = flat.commit(Transaction(id="r", source="operator", remove=("milk1",)))
-    service.follow(commit, flat.believed_of(commit))
+    service.follow(commit, flat.take_derived_changes(commit))
     assert ask(service, flat, ALL.format("isNear")) == told(flat, "isNear")
 
 
 @pytest.mark.parametrize("commits", [8, pytest.param(100, marks=pytest.mark.long)])
-def test_standing_queries_have_the_rows_that_there_are(flat, service, news, commits):
+def test_standing_queries_have_the_correct_rows(flat, service, news, commits):
     dice, (things, spots) = random.Random(15), movable(flat)
     rows, truth = {}, {}
     for name in NAMES:
@@ -160,7 +160,7 @@ def test_standing_queries_have_the_rows_that_there_are(flat, service, news, comm
     for number in range(commits):
         stir(flat, service, dice, number, things, spots)
         truth[flat.seq] = {name: mirrored(flat, name) for name in NAMES}
-    service.ask(Watch(query="SELECT ?x { ?x a dm:Cup }"), flat.seq).result(WAIT_S)  # all looks are done
+    service.ask(Watch(query="SELECT ?x { ?x a dm:Cup }"), flat.seq).result(WAIT_S)  # all evaluations are done
     changes = 0
     while not news.empty():
         change = news.get().rows

@@ -1,4 +1,4 @@
-"""Standing queries over computed facts: after each of 300 commits they have the rows that there are."""
+"""Standing queries over computed facts have the right rows after each of 300 commits."""
 
 import queue
 import random
@@ -32,13 +32,13 @@ QUERIES = {
     "SELECT DISTINCT ?x { ?x dm:isLocatedIn :kitchen1 . ?x a dm:Graspable_Thing }": in_kitchen,
     "SELECT DISTINCT ?x { ?x a dm:Laden_Thing }": laden,
 }
-"""Each with what the map's own reasoner says to it."""
+"""Each with the same question to the map's own reasoner."""
 
 
 @pytest.mark.long
-def test_they_have_the_rows_that_there_are(flat):
+def test_standing_queries_have_the_correct_rows(flat):
     dice, news = random.Random(15), queue.SimpleQueue()
-    service = SparqlService(lambda: flat.reasoner.asserted(), news.put, believed=flat.all_believed)
+    service = SparqlService(lambda: flat.reasoner.asserted(), news.put, derived_changes=flat.all_derived)
     rows, truth = {}, {}
     for query, evaluate in QUERIES.items():
         begun = service.ask(Watch(query=query, inferred=True, lease=600.0), flat.seq).result(WAIT_S)
@@ -51,12 +51,12 @@ def test_they_have_the_rows_that_there_are(flat):
         at = (x + dice.choice([0.0, 0.0, 0.02]), y, z)
         commit = flat.commit(Transaction(id=f"c{number}", source="operator", edit=(Edit(name=name, at=at),)))
         if commit is not None:
-            service.follow(commit, flat.believed_of(commit))
+            service.follow(commit, flat.take_derived_changes(commit))
         truth[flat.seq] = {evaluate: evaluate(flat.reasoner) for evaluate in QUERIES.values()}
     for query, evaluate in QUERIES.items():
         asked = service.ask(Sparql(query=query, inferred=True), flat.seq).result(WAIT_S)
         assert set(asked.rows) == truth[flat.seq][evaluate]
-    service.ask(Watch(query="SELECT ?x { ?x a dm:Cup }"), flat.seq).result(WAIT_S)  # all looks are done
+    service.ask(Watch(query="SELECT ?x { ?x a dm:Cup }"), flat.seq).result(WAIT_S)  # all evaluations are done
     told = 0
     while not news.empty():
         change = news.get().rows

@@ -1,4 +1,4 @@
-"""The SPARQL process from the outside: asked, fed with commits, starved, killed."""
+"""The SPARQL process from outside: queries, commits, memory limits and kills."""
 
 import os
 import queue
@@ -10,7 +10,7 @@ import pyoxigraph as ox
 import pytest
 from msgspec import structs
 
-from semmap.nodes.kb_node.beliefs import Beliefs
+from semmap.nodes.kb_node.derived_facts import DerivedFacts
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
 from semmap.nodes.kb_node.sparql import readers
@@ -32,23 +32,23 @@ GREEDY = "SELECT DISTINCT * { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i } ORDER BY ?c ?f"
 
 
 class Home:
-    """A map without a node: a reasoner as the truth, and the service that follows it."""
+    """A map without a node: a reasoner as reference, and the service that follows it."""
 
     def __init__(self, triples):
         self.reasoner = Reasoner(triples)
         self.seq = 0
         self.news = queue.SimpleQueue()
         self.there = {}
-        self.beliefs = Beliefs(self.reasoner)
+        self.derived_facts = DerivedFacts(self.reasoner)
         self.service = SparqlService(
-            lambda: self.reasoner.asserted(), self.news.put, believed=lambda: self.beliefs.all()
+            lambda: self.reasoner.asserted(), self.news.put, derived_changes=lambda: self.derived_facts.all()
         )
 
     def commit(self, insert=(), retract=(), changed=(), removed=()):
         insert, retract = tuple(insert), tuple(retract)
-        self.beliefs.begin()
-        self.beliefs.change(retract, insert)
-        self.beliefs.follow(changed, removed, self.there.get, retract, insert)
+        self.derived_facts.begin()
+        self.derived_facts.change(retract, insert)
+        self.derived_facts.follow(changed, removed, self.there.get, retract, insert)
         self.seq += 1
         self.there.update((entity.name, entity) for entity in changed)
         for name in removed:
@@ -63,12 +63,12 @@ class Home:
             changed=tuple(changed),
             removed=tuple(Departed(name=name, types=()) for name in removed),
         )
-        self.service.follow(commit, self.beliefs.believed)
+        self.service.follow(commit, self.derived_facts.derived_changes)
 
     def replace(self, triples):
-        """Another TBox."""
+        """Replace the TBox."""
         self.reasoner = Reasoner(triples)
-        self.beliefs = Beliefs(self.reasoner)
+        self.derived_facts = DerivedFacts(self.reasoner)
         self.seq += 1
         self.service.follow(Commit(seq=self.seq, stamp_ns=0, id="", source="operator", tbox=True))
 
@@ -78,7 +78,7 @@ class Home:
     def watch(self, query, **fields):
         return self.service.ask(Watch(query=query, **fields), self.seq).result(WAIT_S)
 
-    def renew(self, watch, **fields):
+    def merge_log(self, watch, **fields):
         return self.service.ask(Renew(watch=watch, **fields), self.seq).result(WAIT_S)
 
     def hear(self):
@@ -94,7 +94,7 @@ def at_home():
 
 @pytest.fixture(scope="module")
 def flat():
-    """One for all tests: whatever was cancelled, it goes on."""
+    """One service for all tests; it survives cancelled queries."""
     files = (HOUSEHOLD_TTL, FLAT_TTL)
     made = Home(
         [t for file in files for t in rdf.parse(file.read_bytes(), file.name, label_prefix=file.stem)]
@@ -115,7 +115,7 @@ CHAIRS = "SELECT ?c { ?c a dm:Chair } ORDER BY ?c"
 SEATS = "SELECT ?c { ?c a dm:Seat } ORDER BY ?c"
 
 
-def test_every_commit_before_the_question_is_seen(at_home):
+def test_a_query_sees_every_earlier_commit(at_home):
     for number in range(20):
         at_home.commit(chair(f"c{number:02}"))
         result = at_home.ask(CHAIRS)
@@ -127,8 +127,8 @@ def test_every_commit_before_the_question_is_seen(at_home):
     assert len(at_home.ask(SEATS, inferred=True).rows) == len(at_home.ask(CHAIRS).rows) == 19
 
 
-def test_what_the_map_does_not_know_is_told_by_readers_that_open_no_files(flat):
-    note = "nothing in the map is called dm:isOnn; did you mean dm:isOn"
+def test_readers_without_open_files_note_unknown_terms(flat):
+    note = "unknown term dm:isOnn; did you mean dm:isOn"
     for with_inferred in (False, True):
         found = flat.ask("SELECT ?x { ?x dm:isOnn :table1 }", inferred=with_inferred)
         assert [text.partition(",")[0].removesuffix("?") for text in found.notes] == [note]
@@ -150,7 +150,7 @@ QUERIES = [
 ]
 
 
-def test_with_what_follows_it_is_the_query_over_the_full_materialisation(flat):
+def test_with_inferred_it_equals_a_query_over_the_full_materialisation(flat):
     dice = random.Random(7)
     names = [name for name in ("kitchen1", "fridge1", "table1", "chair1", "chair2") if _is_there(flat, name)]
     own = []
@@ -182,7 +182,7 @@ def _is_there(flat, name):
     return any(True for _ in flat.reasoner.asserted(iri(name), None, None))
 
 
-def test_what_runs_for_ever_is_cancelled_and_others_are_answered_meanwhile(flat):
+def test_an_endless_query_is_cancelled_and_others_are_answered(flat):
     flat.ask(CHAIRS)
     endless = flat.service.ask(Sparql(query=FOR_EVER, timeout=2.0), 0)
     answered = 0
@@ -195,7 +195,7 @@ def test_what_runs_for_ever_is_cancelled_and_others_are_answered_meanwhile(flat)
     assert flat.ask(CHAIRS).rows
 
 
-def test_more_questions_than_readers_are_answered_in_turn(flat):
+def test_more_queries_than_readers_are_answered_in_turn(flat):
     asked = [flat.service.ask(Sparql(query=FOR_EVER, timeout=0.3), 0) for _ in range(6)]
     last = flat.service.ask(Sparql(query=CHAIRS), 0)
     for future in asked:
@@ -204,13 +204,13 @@ def test_more_questions_than_readers_are_answered_in_turn(flat):
     assert last.result(WAIT_S).rows
 
 
-def test_what_needs_all_memory_is_cancelled(flat):
+def test_a_query_that_needs_too_much_memory_is_cancelled(flat):
     with pytest.raises(errors.Refused, match=r"cancelled: it needs more than 1024 MB|cancelled after"):
         flat.ask(GREEDY, timeout=30.0)
     assert flat.ask(CHAIRS).rows
 
 
-def test_an_answer_that_is_too_long_is_refused(at_home):
+def test_an_answer_that_is_too_long_is_rejected(at_home):
     at_home.commit(chair("c"))
     doubled = "".join(f"BIND(CONCAT(?s{n}, ?s{n}) AS ?s{n + 1}) " for n in range(24))
     with pytest.raises(errors.Refused, match=f"longer than {readers.ANSWER_BYTES >> 20} MB"):
@@ -218,7 +218,7 @@ def test_an_answer_that_is_too_long_is_refused(at_home):
     assert at_home.ask(CHAIRS).rows
 
 
-def test_rows_come_and_go_with_their_commits(at_home):
+def test_rows_appear_and_disappear_with_their_commits(at_home):
     at_home.commit(chair("a"))
     watching = at_home.watch(SEATS, inferred=True, watch="seats")
     assert (watching.watch, watching.rows, watching.seq) == ("seats", ((iri("a"),),), 1)
@@ -234,7 +234,7 @@ def test_rows_come_and_go_with_their_commits(at_home):
         at_home.renew("seats")
 
 
-def test_a_burst_of_commits_is_told_one_by_one(at_home):
+def test_a_burst_of_commits_is_published_one_by_one(at_home):
     at_home.watch(CHAIRS)
     for number in range(50):
         at_home.commit(chair(f"c{number}"))
@@ -252,7 +252,7 @@ def test_the_lease_of_a_standing_query_ends(at_home):
     at_home.watch(CHAIRS, watch="w")
 
 
-def test_a_standing_query_that_takes_too_long_is_refused(flat):
+def test_a_standing_query_that_takes_too_long_is_rejected(flat):
     with pytest.raises(errors.Refused, match="cancelled after 2 s"):
         flat.watch(FOR_EVER)
     assert flat.watch(CHAIRS).rows
@@ -267,18 +267,18 @@ def test_a_standing_query_that_gets_too_many_rows_ends_with_the_reason(at_home):
     assert "more than 10000 rows" in news.rows.error
 
 
-def test_after_its_process_was_killed_a_new_one_answers(at_home):
+def test_a_new_process_answers_after_a_kill(at_home):
     at_home.commit(chair("a"))
     at_home.ask(CHAIRS)
     endless = at_home.service.ask(Sparql(query=FOR_EVER, timeout=60.0), 1)
     os.kill(at_home.service._worker._process.pid, signal.SIGKILL)
-    with pytest.raises(errors.Refused, match="ask again"):
+    with pytest.raises(errors.Refused, match="repeat the query"):
         endless.result(WAIT_S)
     at_home.commit(chair("b"))
     assert len(at_home.ask(CHAIRS).rows) == 2
 
 
-def test_another_tbox_is_followed(at_home):
+def test_a_replaced_tbox_is_used(at_home):
     at_home.commit(chair("a"))
     at_home.watch(SEATS, inferred=True)
     no_seat = (v.dm("Chair"), v.RDFS_SUB_CLASS_OF, v.dm("Seat"))
@@ -290,7 +290,7 @@ def test_another_tbox_is_followed(at_home):
 
 
 @pytest.mark.parametrize("inferred", [False, True])
-def test_what_is_committed_around_another_tbox_is_told_one_by_one(at_home, inferred):
+def test_commits_around_a_replaced_tbox_are_published_one_by_one(at_home, inferred):
     at_home.watch(CHAIRS, inferred=inferred)
     for number in range(30):
         at_home.commit(chair(f"before{number}"))
@@ -304,7 +304,7 @@ def test_what_is_committed_around_another_tbox_is_told_one_by_one(at_home, infer
     ]
 
 
-def test_what_falls_behind_two_other_tboxes_is_told_in_one_step(at_home):
+def test_a_backlog_of_two_replaced_tboxes_is_published_in_one_step(at_home):
     at_home.watch(CHAIRS)
     for _ in range(4):
         at_home.commit(chair(f"c{at_home.seq}"))
@@ -315,7 +315,7 @@ def test_what_falls_behind_two_other_tboxes_is_told_in_one_step(at_home):
     assert appeared == [(iri(f"c{n}"),) for n in (0, 2, 4, 6)]
 
 
-def test_nothing_is_started_before_the_first_question(at_home):
+def test_the_first_query_starts_the_process(at_home):
     at_home.commit(chair("a"))
     with pytest.raises(errors.UnknownName):
         at_home.renew("w")
@@ -330,8 +330,8 @@ def _there(entity):
     return structs.replace(entity, iri=v.bare(iri(entity.name)))
 
 
-def test_what_is_computed_is_told_as_what_a_question_finds(at_home):
-    """Standing queries over where things are, over random moves: their rows are those of a new question."""
+def test_computed_facts_are_published_as_a_new_query_finds_them(at_home):
+    """Standing location queries over random moves have the rows of a new query."""
     at_home.replace(rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household.ttl", label_prefix="h"))
     dice = random.Random(5)
     room, table = _there(ROOM), _there(structs.replace(TABLE, name="oak1"))
@@ -363,7 +363,7 @@ def test_what_is_computed_is_told_as_what_a_question_finds(at_home):
     assert on_oak > 2
 
 
-def test_what_was_said_is_left_out_of_what_is_so(at_home):
+def test_suppressed_assertions_are_not_in_the_result(at_home):
     at_home.replace(rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household.ttl", label_prefix="h"))
     said = (iri("cup1"), v.dm("isOn"), iri("table1"))
     on_it = "SELECT ?x { ?x dm:isOn :table1 }"

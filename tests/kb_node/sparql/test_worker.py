@@ -1,4 +1,4 @@
-"""The SPARQL process's core in this process, with readers of its own, and lanes that this test asks on."""
+"""The SPARQL worker in this process, with its own readers, and lanes that the test uses."""
 
 from multiprocessing.connection import Pipe, wait
 
@@ -6,7 +6,14 @@ import pytest
 from msgspec import msgpack
 
 from semmap.nodes.kb_node.sparql import worker
-from semmap.nodes.kb_node.sparql.protocol import Committed, Hire, Left, Load, Question, outcomes
+from semmap.nodes.kb_node.sparql.protocol import (
+    Committed,
+    Load,
+    QueryRequest,
+    ReaderExited,
+    StartReader,
+    outcomes,
+)
 from semmap.nodes.kb_node.sparql.triples.dataset import Delta
 from semmap.ontology import vocabulary as v
 from semmap.schemas.sparql import SparqlResult
@@ -19,7 +26,7 @@ CHAIRS = "SELECT ?c { ?c a dm:Chair }"
 
 
 class Process:
-    """A worker, the other ends of its lanes, and what it has sent."""
+    """A worker, the remote ends of its lanes, and the messages that it sent."""
 
     def __init__(self, *, infers):
         self.sent = []
@@ -29,13 +36,13 @@ class Process:
         self.seq = 0
 
     def commit(self):
-        """One more chair."""
+        """Add a chair."""
         self.seq += 1
         chair = (v.entity_iri(f"c{self.seq}"), v.RDF_TYPE, v.dm("Chair"))
         self.worker.take(Committed(delta=Delta(seq=self.seq, inserted=(chair,))))
 
     def ask(self, lane, query, *, seq=None, inferred=False):
-        question = Question(
+        question = QueryRequest(
             number=1,
             seq=self.seq if seq is None else seq,
             query=query,
@@ -46,11 +53,11 @@ class Process:
         self.lanes[lane].send_bytes(msgpack.encode(question))
 
     def await_taken(self, lane):
-        """Wait until a reader has taken the question that was asked."""
+        """Wait until a reader has taken the query."""
         until(lambda: not self._theirs[lane].poll(0), "a reader has taken the question")
 
     def hire(self, lane):
-        self.worker.take(Hire(lane=lane))
+        self.worker.take(StartReader(lane=lane))
 
     def hear(self, lane):
         assert self.lanes[lane].poll(WAIT_S)
@@ -60,7 +67,7 @@ class Process:
         return len(msgpack.decode(self.hear(lane).result, type=SparqlResult).rows)
 
     def bury_one(self):
-        """Notice the end of a reader."""
+        """Wait for the exit of a reader."""
         self.worker.done(wait(list(self.worker.connections), WAIT_S)[0])
         return self.sent.pop()
 
@@ -81,7 +88,7 @@ def inferring(monkeypatch):
     made.worker.end()
 
 
-def test_a_reader_is_up_to_date_when_it_is_asked(process):
+def test_a_reader_is_up_to_date_when_it_is_queried(process):
     process.commit()
     process.hire(0)
     for number in range(1, 6):
@@ -90,7 +97,7 @@ def test_a_reader_is_up_to_date_when_it_is_asked(process):
         process.commit()
 
 
-def test_a_question_that_came_before_its_commit_waits_for_it(process):
+def test_a_query_waits_for_its_commit(process):
     process.hire(0)
     process.ask(0, CHAIRS, seq=2)
     process.await_taken(0)
@@ -99,7 +106,7 @@ def test_a_question_that_came_before_its_commit_waits_for_it(process):
     assert process.rows(0) == 2
 
 
-def test_what_follows_is_read_on_too(inferring):
+def test_readers_read_inferences_of_later_commits(inferring):
     inferring.hire(0)
     for number in range(1, 4):
         inferring.commit()
@@ -107,26 +114,26 @@ def test_what_follows_is_read_on_too(inferring):
         assert inferring.rows(0) == number
 
 
-def test_a_reader_that_cannot_follow_goes_and_leaves_the_question(process):
+def test_a_reader_that_is_too_old_exits_and_leaves_the_query(process):
     process.hire(0)
     for _ in range(11):
         process.commit()
-    assert process.bury_one() == Left(lane=0, signal=0)
+    assert process.bury_one() == ReaderExited(lane=0, signal=0)
     process.ask(0, CHAIRS)
     process.hire(0)
     assert process.rows(0) == 11
 
 
-def test_one_that_has_taken_the_question_gives_it_back(process):
+def test_a_reader_that_has_taken_the_query_returns_it(process):
     process.hire(0)
-    process.ask(0, SEATS, inferred=True)  # which its triples cannot answer
+    process.ask(0, SEATS, inferred=True)  # its triples are too old for it
     process.await_taken(0)
     process.worker.take(Load(seq=0, asserted=tuple(home.TBOX), infers=True))
     assert process.hear(0).old
-    assert process.bury_one() == Left(lane=0, signal=0)
+    assert process.bury_one() == ReaderExited(lane=0, signal=0)
 
 
-def test_lanes_have_readers_of_their_own(process):
+def test_lanes_have_different_readers(process):
     process.commit()
     process.hire(0)
     process.hire(1)

@@ -1,1 +1,1 @@
-"""OWL's own syntaxes, and its axioms as RDF."""
+"""The OWL syntaxes, and OWL axioms as RDF."""

@@ -1,7 +1,7 @@
-"""OWL axioms as RDF triples, as the W3C's mapping of OWL 2 to RDF graphs has it.
+"""Converts OWL axioms to RDF triples by the W3C mapping of OWL 2 to RDF graphs.
 
-`py-horned-owl` reads axioms; its own way to RDF forgets which anonymous individuals are the same. SWRL rules
-become what RDF/XML has for them.
+`py-horned-owl` parses axioms, but its RDF output loses the identity of anonymous individuals. SWRL rules are
+converted as in RDF/XML.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ _ATOMS: dict[type, tuple[str, Term]] = {
 
 
 def triples_of(components: Iterable[m.AnnotatedComponent]) -> list[Triple]:
-    """The triples of an ontology, in an order and with blank nodes that depend on nothing but its axioms."""
+    """Return the triples of an ontology; their order and blank nodes depend only on its axioms."""
     components = list(components)
     ontology = _ontology(components)
     parts = sorted({tuple(_Part(ontology).of(c).triples) for c in components})
@@ -91,39 +91,39 @@ def _ontology(components: Iterable[m.AnnotatedComponent]) -> Term:
 
 
 def _numbered(term: Term, part: int) -> Term:
-    """Blank nodes of the mapping's own, which begin with a digit, are others in each part."""
+    """Return a term with the part in the label of the mapping's own blank nodes, which begin with a digit."""
     return f"_:p{part}n{term[2:]}" if term.startswith("_:") and term[2].isdigit() else term
 
 
 class _Part(Expressions):
-    """What one axiom says, in triples."""
+    """The triples of one axiom."""
 
     def __init__(self, ontology: Term) -> None:
         super().__init__()
         self._ontology = ontology
 
     def of(self, annotated: m.AnnotatedComponent) -> _Part:
-        """Take in an axiom with its annotations."""
+        """Add an axiom with its annotations."""
         axiom: Any = annotated.component
-        about = self._mapped(axiom)
+        about = self._map_axiom(axiom)
         for said in about:
             self._annotate(said, annotated.ann, _AXIOM)
         return self
 
-    def _mapped(self, axiom: Any) -> Sequence[Triple | Term]:
-        """Say it; what its annotations are about: triples, or the blank node that stands for the axiom."""
+    def _map_axiom(self, axiom: Any) -> Sequence[Triple | Term]:
+        """Add an axiom. Return what its annotations are about: triples, or the blank node of the axiom."""
         kind = type(axiom)
         if kind in _DECLARATIONS:
-            return self.say(self.term(axiom.first), v.RDF_TYPE, _DECLARATIONS[kind])
+            return self.add(self.term(axiom.first), v.RDF_TYPE, _DECLARATIONS[kind])
         if kind in _CHARACTERISTICS:
-            return self.say(self.term(axiom.first), v.RDF_TYPE, _CHARACTERISTICS[kind])
+            return self.add(self.term(axiom.first), v.RDF_TYPE, _CHARACTERISTICS[kind])
         if kind in _OF_TWO:
             subject, predicate, value = _OF_TWO[kind]
-            return self.say(self.term(getattr(axiom, subject)), predicate, self.term(getattr(axiom, value)))
+            return self.add(self.term(getattr(axiom, subject)), predicate, self.term(getattr(axiom, value)))
         if kind in _CHAINED:
             terms = list(map(self.term, axiom.first))
             pairs = itertools.pairwise(terms)
-            return [t for a, b in pairs for t in self.say(a, _CHAINED[kind], b)]
+            return [t for a, b in pairs for t in self.add(a, _CHAINED[kind], b)]
         if kind in _APART:
             return self._apart(axiom.first, *_APART[kind])
         return _OTHERS.get(kind, _Part._nothing)(self, axiom)
@@ -131,15 +131,15 @@ class _Part(Expressions):
     def _apart(self, members: Sequence[Any], predicate: Term, kind: Term) -> Sequence[Triple | Term]:
         terms = list(map(self.term, members))
         if len(terms) == 2:
-            return self.say(terms[0], predicate, terms[1])
-        node = self.blank(kind)
-        self.say(node, owl("members"), self.list_of(terms))
+            return self.add(terms[0], predicate, terms[1])
+        node = self.new_blank_node(kind)
+        self.add(node, owl("members"), self.list_of(terms))
         return [node]
 
     def _annotate(
         self, about: Triple | Term, annotations: Iterable[m.Annotation], kind: Term = _ANNOTATION
     ) -> None:
-        """Say the annotations of a node, or of a triple that is of a `kind`; and theirs."""
+        """Add the annotations of a node, or of a triple of a `kind`, and their own annotations."""
         said = sorted(
             (((self.term(a.ap), self.term(a.av)), a.ann) for a in annotations), key=lambda pair: pair[0]
         )
@@ -147,87 +147,87 @@ class _Part(Expressions):
             return
         node = about if isinstance(about, str) else self._reified(about, kind)
         for (predicate, value), own in said:
-            self._annotate(self.say(node, predicate, value)[0], own)
+            self._annotate(self.add(node, predicate, value)[0], own)
 
     def _reified(self, triple: Triple, kind: Term) -> Term:
-        node = self.blank(kind)
+        node = self.new_blank_node(kind)
         for name, term in zip(("Source", "Property", "Target"), triple, strict=True):
-            self.say(node, owl(f"annotated{name}"), term)
+            self.add(node, owl(f"annotated{name}"), term)
         return node
 
-    # The axioms that are like no other
+    # Axioms with a mapping of their own
 
     def _nothing(self, _: Any) -> list[Triple]:
         return []
 
     def _identity(self, axiom: m.OntologyID) -> list[Triple]:
         if axiom.viri is not None:
-            self.say(self._ontology, owl("versionIRI"), self.term(axiom.viri))
-        return self.say(self._ontology, v.RDF_TYPE, v.OWL_ONTOLOGY)
+            self.add(self._ontology, owl("versionIRI"), self.term(axiom.viri))
+        return self.add(self._ontology, v.RDF_TYPE, v.OWL_ONTOLOGY)
 
     def _import(self, axiom: m.Import) -> list[Triple]:
-        return self.say(self._ontology, v.OWL_IMPORTS, self.term(axiom.first))
+        return self.add(self._ontology, v.OWL_IMPORTS, self.term(axiom.first))
 
     def _ontology_annotation(self, axiom: m.OntologyAnnotation) -> list[Triple]:
         self._annotate(self._ontology, [axiom.first])
         return []
 
     def _annotation_assertion(self, axiom: m.AnnotationAssertion) -> list[Triple]:
-        said = self.say(self.term(axiom.subject), self.term(axiom.ann.ap), self.term(axiom.ann.av))
+        said = self.add(self.term(axiom.subject), self.term(axiom.ann.ap), self.term(axiom.ann.av))
         self._annotate(said[0], axiom.ann.ann, _AXIOM)
         return said
 
     def _sub_object_property(self, axiom: m.SubObjectPropertyOf) -> list[Triple]:
         wider = self.term(axiom.sup)
         if isinstance(axiom.sub, list):
-            return self.say(wider, owl("propertyChainAxiom"), self.list_of(map(self.term, axiom.sub)))
-        return self.say(self.term(axiom.sub), v.RDFS_SUB_PROPERTY_OF, wider)
+            return self.add(wider, owl("propertyChainAxiom"), self.list_of(map(self.term, axiom.sub)))
+        return self.add(self.term(axiom.sub), v.RDFS_SUB_PROPERTY_OF, wider)
 
     def _disjoint_union(self, axiom: m.DisjointUnion) -> list[Triple]:
         whole = self.term(axiom.first)
-        return self.say(whole, owl("disjointUnionOf"), self.list_of(map(self.term, axiom.second)))
+        return self.add(whole, owl("disjointUnionOf"), self.list_of(map(self.term, axiom.second)))
 
     def _key(self, axiom: m.HasKey) -> list[Triple]:
-        return self.say(self.term(axiom.ce), owl("hasKey"), self.list_of(map(self.term, axiom.vpe)))
+        return self.add(self.term(axiom.ce), owl("hasKey"), self.list_of(map(self.term, axiom.vpe)))
 
     def _property_assertion(self, axiom: m.ObjectPropertyAssertion | m.DataPropertyAssertion) -> list[Triple]:
         p: Any = axiom.ope if isinstance(axiom, m.ObjectPropertyAssertion) else axiom.dp
         s, o = self.term(axiom.source), self.term(axiom.target)
         if isinstance(p, m.InverseObjectProperty):
-            return self.say(o, self.term(p.first), s)
-        return self.say(s, self.term(p), o)
+            return self.add(o, self.term(p.first), s)
+        return self.add(s, self.term(p), o)
 
     def _negative(
         self, axiom: m.NegativeObjectPropertyAssertion | m.NegativeDataPropertyAssertion
     ) -> list[Term]:
         of_objects = isinstance(axiom, m.NegativeObjectPropertyAssertion)
         p: Any = axiom.ope if isinstance(axiom, m.NegativeObjectPropertyAssertion) else axiom.dp
-        node = self.blank(owl("NegativePropertyAssertion"))
-        self.say(node, owl("sourceIndividual"), self.term(axiom.source))
-        self.say(node, owl("assertionProperty"), self.term(p))
-        self.say(node, owl("targetIndividual" if of_objects else "targetValue"), self.term(axiom.target))
+        node = self.new_blank_node(owl("NegativePropertyAssertion"))
+        self.add(node, owl("sourceIndividual"), self.term(axiom.source))
+        self.add(node, owl("assertionProperty"), self.term(p))
+        self.add(node, owl("targetIndividual" if of_objects else "targetValue"), self.term(axiom.target))
         return [node]
 
     def _rule(self, axiom: m.Rule) -> list[Term]:
-        node = self.blank(swrl("Imp"))
+        node = self.new_blank_node(swrl("Imp"))
         for name, atoms in (("body", axiom.body), ("head", axiom.head)):
-            self.say(node, swrl(name), self.list_of(map(self._atom, atoms), swrl("AtomList")))
+            self.add(node, swrl(name), self.list_of(map(self._atom, atoms), swrl("AtomList")))
         return [node]
 
     def _atom(self, atom: Any) -> Term:
         kind, predicate = _ATOMS[type(atom)]
-        node = self.blank(swrl(kind))
+        node = self.new_blank_node(swrl(kind))
         if isinstance(atom, (m.SameIndividualAtom, m.DifferentIndividualsAtom)):
             arguments = [atom.first, atom.second]
         else:
-            self.say(node, predicate, self.term(atom.pred))
+            self.add(node, predicate, self.term(atom.pred))
             arguments = atom.args if hasattr(atom, "args") else [atom.arg]
         terms = list(map(self.term, arguments))
         if isinstance(atom, m.BuiltInAtom):
-            self.say(node, swrl("arguments"), self.list_of(terms))
+            self.add(node, swrl("arguments"), self.list_of(terms))
         else:
             for number, term in enumerate(terms, start=1):
-                self.say(node, swrl(f"argument{number}"), term)
+                self.add(node, swrl(f"argument{number}"), term)
         return node
 
 

@@ -1,4 +1,4 @@
-"""Expressions, properties and literals of OWL as RDF terms, and the triples that describe them."""
+"""Converts OWL expressions, properties and literals to RDF terms and triples."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ _PLAIN_LITERAL = f"{v.RDF}PlainLiteral"
 
 
 def owl(name: str) -> Term:
-    """A term of OWL's vocabulary."""
+    """Return a term of the OWL vocabulary."""
     return v.iri(v.OWL + name)
 
 
 def swrl(name: str) -> Term:
-    """A term of SWRL's vocabulary."""
+    """Return a term of the SWRL vocabulary."""
     return v.iri(_SWRL + name)
 
 
@@ -59,26 +59,26 @@ _CARDINALITIES: dict[type, tuple[str, str, Term, str]] = {
 
 
 class Expressions:
-    """Triples in the making; blank nodes are `_:0`, `_:1` and so on."""
+    """Collects triples. Blank nodes are `_:0`, `_:1` and so on."""
 
     def __init__(self) -> None:
         self.triples: list[Triple] = []
         self._blanks = 0
 
-    def say(self, s: Term, p: Term, o: Term) -> list[Triple]:
-        """Add a triple; a list of just that."""
+    def add(self, s: Term, p: Term, o: Term) -> list[Triple]:
+        """Add a triple and return it in a list."""
         self.triples.append((s, p, o))
         return [(s, p, o)]
 
     def term(self, x: Any) -> Term:
-        """The term that stands for an entity, a literal or an expression, which is said where it is blank."""
+        """Return the term of an entity, a literal or an expression; add the triples of an expression."""
         kind = type(x)
         if kind in _COMBINED:
             meta, predicate = _COMBINED[kind]
-            return self._described(meta, (predicate, self.list_of(map(self.term, x.first))))
+            return self._describe(meta, (predicate, self.list_of(map(self.term, x.first))))
         if kind in _COMPLEMENTS:
             meta, predicate = _COMPLEMENTS[kind]
-            return self._described(meta, (predicate, self.term(x.first)))
+            return self._describe(meta, (predicate, self.term(x.first)))
         if kind in _VALUES:
             on, predicate, value = _VALUES[kind]
             return self._restriction(getattr(x, on), (predicate, self.term(getattr(x, value))))
@@ -87,22 +87,25 @@ class Expressions:
         if isinstance(x, m.ObjectHasSelf):
             return self._restriction(x.first, (owl("hasSelf"), v.literal("true", v.XSD_BOOLEAN)))
         if isinstance(x, m.DatatypeRestriction):
-            facets = self.list_of([self._described(None, self._facet(f)) for f in x.second])
+            facets = self.list_of([self._describe(None, self._facet(f)) for f in x.second])
             base = self.term(x.first)
-            return self._described(DATATYPE, (owl("onDatatype"), base), (owl("withRestrictions"), facets))
+            return self._describe(DATATYPE, (owl("onDatatype"), base), (owl("withRestrictions"), facets))
         if isinstance(x, m.InverseObjectProperty):
-            return self._described(None, (owl("inverseOf"), self.term(x.first)))
+            return self._describe(None, (owl("inverseOf"), self.term(x.first)))
         if isinstance(x, m.Variable):
             variable = self.term(x.first)
-            self.say(variable, v.RDF_TYPE, swrl("Variable"))
+            self.add(variable, v.RDF_TYPE, swrl("Variable"))
             return variable
         return _atomic(x)
 
     def _restriction(self, on: Any, *said: tuple[Term, Term]) -> Term:
-        return self._described(_RESTRICTION, (owl("onProperty"), self.term(on)), *said)
+        return self._describe(_RESTRICTION, (owl("onProperty"), self.term(on)), *said)
 
     def _cardinality(self, x: Any, on: str, bound: str, of: Term, filler: str) -> Term:
-        """Those of whatever there is are unqualified, as in the RDF of other tools."""
+        """Return a cardinality restriction.
+
+        With `owl:Thing` it is unqualified, as in the RDF of other tools.
+        """
         number = v.literal(str(x.n), v.iri(f"{v.XSD}nonNegativeInteger"))
         kind = self.term(getattr(x, filler))
         if kind in _DISTINGUISHED:
@@ -116,32 +119,32 @@ class Expressions:
         space = v.RDF if name == "LangRange" else v.XSD
         return v.iri(space + name[0].lower() + name[1:]), self.term(restriction.l)
 
-    def _described(self, kind: Term | None, *said: tuple[Term, Term]) -> Term:
-        node = self.blank(kind)
+    def _describe(self, kind: Term | None, *said: tuple[Term, Term]) -> Term:
+        node = self.new_blank_node(kind)
         for predicate, value in said:
-            self.say(node, predicate, value)
+            self.add(node, predicate, value)
         return node
 
-    def blank(self, kind: Term | None) -> Term:
-        """A new blank node, of a class if that is said."""
+    def new_blank_node(self, kind: Term | None) -> Term:
+        """Return a new blank node, with a class if one is given."""
         node = f"_:{self._blanks}"
         self._blanks += 1
         if kind is not None:
-            self.say(node, v.RDF_TYPE, kind)
+            self.add(node, v.RDF_TYPE, kind)
         return node
 
     def list_of(self, members: Iterable[Term], kind: Term | None = None) -> Term:
-        """An RDF list."""
+        """Add an RDF list."""
         rest = v.RDF_NIL
         for member in reversed(list(members)):
-            rest = self._described(kind, (v.RDF_FIRST, member), (v.RDF_REST, rest))
+            rest = self._describe(kind, (v.RDF_FIRST, member), (v.RDF_REST, rest))
         return rest
 
 
 def _atomic(x: Any) -> Term:
-    """The term of an entity, an IRI, an anonymous individual or a literal."""
+    """Return the term of an entity, an IRI, an anonymous individual or a literal."""
     if isinstance(x, m.AnonymousIndividual):
-        label = x.first.removeprefix("_:").encode().hex()  # a label of another syntax may be none of ours
+        label = x.first.removeprefix("_:").encode().hex()  # the label may be invalid in RDF
         return f"_:a{label}"
     if isinstance(x, m.SimpleLiteral):
         return v.literal(x.literal)
@@ -157,5 +160,5 @@ def _typed(text: str, datatype: str) -> Term:
         text, _, language = text.rpartition("@")
         return v.literal(text, lang=language or None)
     if datatype == f"{v.XSD}float" and text[-1:] in "fF":
-        text = text[:-1]  # the Manchester syntax ends floats so, and RDF does not
+        text = text[:-1]  # in the Manchester syntax floats end so, but not in RDF
     return v.literal(text, v.iri(datatype))

@@ -1,4 +1,4 @@
-"""Functional and Manchester syntax and OWL/XML, as py-horned-owl reads them; a fault comes with its line."""
+"""Functional and Manchester syntax and OWL/XML, read by py-horned-owl. Errors include the line."""
 
 from __future__ import annotations
 
@@ -49,12 +49,12 @@ _DOCTYPE = re.compile(r"<!DOCTYPE[^\[>]*(\[.*?\]\s*)?>", re.DOTALL)
 
 
 def prefixes(text: str, syntax: OwlSyntax) -> dict[str, str]:
-    """Prefix to namespace, as a document declares them."""
+    """Return the declared prefixes with their namespaces."""
     return {match[1]: match[2] for match in _PREFIXES[syntax].finditer(text)}
 
 
 def owl_syntax_of(content: bytes) -> OwlSyntax | None:
-    """The syntax of OWL's own that `content` begins like, if it does."""
+    """Return the OWL syntax that `content` begins like, or None."""
     if _FUNCTIONAL.match(content):
         return "functional"
     if _MANCHESTER.match(content):
@@ -63,7 +63,7 @@ def owl_syntax_of(content: bytes) -> OwlSyntax | None:
 
 
 def is_owl_xml(content: bytes) -> bool:
-    """Is it OWL/XML? RDF/XML may begin with an ontology, too, but then has an attribute of RDF's there."""
+    """Return whether it is OWL/XML. RDF/XML may begin with an ontology, too, but with an RDF attribute."""
     root: list[str] = []
 
     def note(name: str, attributes: dict[str, str]) -> None:
@@ -81,12 +81,12 @@ def is_owl_xml(content: bytes) -> bool:
 
 
 def parse(text: str, syntax: OwlSyntax) -> list[Triple]:
-    """The triples of an ontology. Raises ValueError with the line of the fault."""
+    """Return the triples of an ontology. Raises ValueError with the line of the error."""
     prepared = _prepared_xml(text) if syntax == "owlxml" else _with_prefixes(text, syntax)
     try:
         ontology = pyhornedowl.open_ontology_from_string(prepared, serialization=_HORNED[syntax])
     except ValueError as error:
-        raise ValueError(_spoken(str(error), text, prepared)) from None
+        raise ValueError(_describe_error(str(error), text, prepared)) from None
     triples = triples_of(ontology.get_components())
     for term in {term for triple in triples for term in triple}:
         if term.startswith("<") and not _IRI.fullmatch(term):
@@ -97,7 +97,7 @@ def parse(text: str, syntax: OwlSyntax) -> list[Triple]:
 
 
 def _with_prefixes(text: str, syntax: OwlSyntax) -> str:
-    """Every document may use the four standard prefixes undeclared. What is added is no line."""
+    """Return the text with declarations of the four standard prefixes, without adding a line."""
     if syntax == "manchester":
         text = _THAT.sub(lambda found: found[1] or "and", text)
     missing = [name for name in _STANDARD if not re.search(_DECLARED[syntax].format(name), text)]
@@ -105,7 +105,7 @@ def _with_prefixes(text: str, syntax: OwlSyntax) -> str:
 
 
 def _prepared_xml(text: str) -> str:
-    """OWL/XML with its entities written out, on the same lines. Raises ValueError for an unknown prefix."""
+    """Return OWL/XML with expanded entities, on the same lines. Raises ValueError for an unknown prefix."""
     entities: dict[str, str] = {}
     prefixes = set(_STANDARD)
     parser = expat.ParserCreate(namespace_separator=" ")
@@ -133,8 +133,8 @@ def _prepared_xml(text: str) -> str:
     return _REFERENCE.sub(written_out, body)
 
 
-def _spoken(fault: str, text: str, prepared: str) -> str:
-    """The complaint about a text, as it was prepared on the same lines, for people and with the line."""
+def _describe_error(fault: str, text: str, prepared: str) -> str:
+    """Return a readable error with its line. `prepared` has the same lines as `text`."""
     if place := _LINE.search(fault):
         line, shown = int(place[1]), text.splitlines()[int(place[1]) - 1 :][:1]
         expected = _EXPECTED.search(fault)
@@ -151,7 +151,7 @@ def _spoken(fault: str, text: str, prepared: str) -> str:
 
 
 def _hint(kinds: list[str]) -> str:
-    """What could stand there, where that is one or two things."""
+    """Return what is expected at the position, if that is one to three things."""
     if not 0 < len(kinds) <= 3 or "EOI" in kinds:
         return ""
     words = dict.fromkeys("absolute IRI" if kind.startswith("RFC3987") else _in_words(kind) for kind in kinds)

@@ -1,1 +1,1 @@
-"""TBoxes as documents: what they declare, whether they may hold, and what is to be known of them."""
+"""TBoxes as documents: their declarations, validation and notes."""

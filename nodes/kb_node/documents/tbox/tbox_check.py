@@ -1,4 +1,4 @@
-"""What is in an ontology, what of it is inert or wrong, and how quick changes will be with it."""
+"""Report on an ontology: its contents, ineffective or wrong axioms, and the time of changes with it."""
 
 from __future__ import annotations
 
@@ -27,20 +27,22 @@ from semmap.schemas.tbox_report import Quickness, TBoxReport, Unsatisfiable
 
 _CLASSES = (v.OWL_CLASS, v.RDFS_CLASS)
 _PATIENCE_S = 60.0
-"""How long classes are tried; all of them are, unless nothing is incremental."""
+"""Time limit for testing classes, which is reached only if the reasoner is not incremental."""
 _ADDS, _WARM_UP = 200, 20
 _SEED = 13
 _ADDING_S = 4.0
-"""How long individuals are added at most."""
+"""Time limit for adding individuals."""
 
 
 def check(named: Sequence[Path], imports: Mapping[str, Path], spatial_root: Sequence[str] = ()) -> TBoxReport:
-    """The report on ontologies in files, with what they import.
+    """Return the report on ontology files with their imports.
 
-    `spatial_root` are classes of things in space. Raises BadFile for what cannot be read, UnknownClass.
+    `spatial_root` are the roots of spatial classes. Raises BadFile for an unreadable file, UnknownClass.
     """
     gathered = ontology_files.gather(named, imports)
-    tbox = tbox_declarations.declared(gathered.triples, of_file=gathered.prefixes, spatial_root=spatial_root)
+    tbox = tbox_declarations.with_declarations(
+        gathered.triples, of_file=gathered.prefixes, spatial_root=spatial_root
+    )
     began_s = time.process_time()
     try:
         reasoner = Reasoner(tbox)
@@ -48,7 +50,7 @@ def check(named: Sequence[Path], imports: Mapping[str, Path], spatial_root: Sequ
         return _report(gathered, tbox, inconsistent=error.explanation.text)
     load_s = time.process_time() - began_s
     classes = _classes(gathered.triples)
-    spatial_classes = _spatial(reasoner)  # first: it tells apart what sentences name
+    spatial_classes = _spatial(reasoner)  # before the explanations, because it makes class names unambiguous
     unsatisfiable = list(_unsatisfiable(reasoner, classes))
     allowed = [class_ for class_, why in unsatisfiable if not why]
     for empty in empty_classes(reasoner, allowed, _PATIENCE_S):
@@ -136,9 +138,9 @@ def _spatial(reasoner: Reasoner) -> int | None:
 
 
 def _unsatisfiable(reasoner: Reasoner, classes: Iterable[Term]) -> Iterator[tuple[Term, str]]:
-    """Each class that was tried, with why nothing can be of it by the rules, or an empty text.
+    """Yield each tested class with why it is unsatisfiable by the rules, or "".
 
-    An individual of the class is added, and taken back.
+    An individual of the class is added and removed again.
     """
     began_s = time.monotonic()
     for class_, triple in ((c, (v.entity_iri("x"), v.RDF_TYPE, c)) for c in classes):
@@ -154,10 +156,10 @@ def _unsatisfiable(reasoner: Reasoner, classes: Iterable[Term]) -> Iterator[tupl
 
 
 def _add_p50_ms(reasoner: Reasoner, classes: Sequence[Term]) -> float | None:
-    """The median time to add an individual with a position and a name and to check what follows.
+    """Return the median time to add an individual with a position and a label, and to check what follows.
 
-    They are of classes from all over the ontology and stay, as they would in a map. Where changes are slow,
-    fewer are added.
+    The individuals are of classes from the whole ontology and stay, as in a map. If changes are slow, fewer
+    are added.
     """
     classes = random.Random(_SEED).sample(classes, len(classes))
     took_s: list[float] = []

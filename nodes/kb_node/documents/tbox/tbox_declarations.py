@@ -1,6 +1,6 @@
-"""What a TBox is told besides its own triples, and keeps: prefixes of its file, and what is in space.
+"""Declarations that are added to a TBox: the prefixes of its file, and the roots of spatial classes.
 
-Both become triples of the TBox, so they hold over restarts, are in its history and go with it.
+They become triples of the TBox, so they survive restarts and are part of its history.
 """
 
 from __future__ import annotations
@@ -20,19 +20,18 @@ from semmap.schemas.explanations import Term, Triple
 _TRUE = v.literal("true", v.XSD_BOOLEAN)
 
 
-def declared(
+def with_declarations(
     tbox: Iterable[Triple],
     *,
     of_file: Prefixes = MappingProxyType({}),
     spatial_root: Sequence[str] = (),
 ) -> list[Triple]:
-    """`tbox` with the prefixes of its file, and with the classes that are roots of what is in space.
+    """Return `tbox` with the prefixes of its file and with declared spatial roots.
 
-    What its alignments set aside is left out, and that is said of whatever it was about.
-
-    Each word of `spatial_root` is an IRI or a class's name. Raises UnknownClass.
+    Statements that its alignments ignore are left out, with a note on their subjects. Each word of
+    `spatial_root` is an IRI or a class name. Raises UnknownClass.
     """
-    triples = _without_what_is_set_aside(list(tbox))
+    triples = _without_ignored_statements(list(tbox))
     triples += prefixes.declarations(of_file, triples)
     if spatial_root:
         find = _ClassFinder(triples)
@@ -40,10 +39,10 @@ def declared(
     return list(dict.fromkeys(triples))
 
 
-def _without_what_is_set_aside(triples: list[Triple]) -> list[Triple]:
+def _without_ignored_statements(triples: list[Triple]) -> list[Triple]:
     there = set(triples)
     namespaces = {prefixes.split(c)[0] for c in _classes(triples)}
-    for aside in (aside for known in alignments.of_namespaces(namespaces) for aside in known.set_aside):
+    for aside in (aside for known in alignments.find_for_namespaces(namespaces) for aside in known.set_aside):
         if aside.triple in there:
             there.remove(aside.triple)
             subject, predicate, _ = aside.triple
@@ -54,8 +53,8 @@ def _without_what_is_set_aside(triples: list[Triple]) -> list[Triple]:
     return triples
 
 
-def keeping_roots(tbox: Sequence[Triple], before: ClassTable) -> list[Triple]:
-    """A TBox that declares no spatial roots itself, with those of the one before, as far as it has these."""
+def with_spatial_roots_of(tbox: Sequence[Triple], before: ClassTable) -> list[Triple]:
+    """Return a TBox with the spatial roots of the previous one, unless it declares its own."""
     if any(p == v.SPATIAL for _, p, _ in tbox):
         return list(tbox)
     classes = _classes(tbox)
@@ -69,7 +68,7 @@ def _classes(triples: Iterable[Triple]) -> set[Term]:
 
 
 class _ClassFinder:
-    """Finds a class by what somebody calls it, among those that triples declare or put others below."""
+    """Finds a class by name or label among those that triples declare or use as superclasses."""
 
     def __init__(self, triples: Sequence[Triple]) -> None:
         above = {o for _, p, o in triples if p == v.RDFS_SUB_CLASS_OF and o.startswith("<")}
@@ -87,7 +86,7 @@ class _ClassFinder:
         self._by_name = {name: c for c, name in names.items()}
 
     def __call__(self, word: str) -> Term:
-        """The class. Raises UnknownClass."""
+        """Return the class. Raises UnknownClass."""
         try:
             name = self._index.find(word)
         except Ambiguous as error:

@@ -1,4 +1,4 @@
-"""What whoever runs a system should know of its TBox; it is told once."""
+"""Notes on a TBox for the operator. They are shown once."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ _SOMETHING = ("<urn:semmap:something>", v.RDF_TYPE, v.OWL_THING)
 
 
 def notes(tbox: Iterable[Triple], reasoner: Reasoner, classes: ClassTable) -> tuple[str, ...]:
-    """One sentence each on what is missing, on what has no effect, and on what makes changes slow.
+    """Return notes on what is missing, ineffective or slow.
 
-    What has no effect in the shipped TBox is not told each time.
+    Ineffective axioms of the shipped TBox are not reported.
     """
     tbox = list(tbox)
     said = (
@@ -42,14 +42,14 @@ def notes(tbox: Iterable[Triple], reasoner: Reasoner, classes: ClassTable) -> tu
 
 
 def _known(tbox: Iterable[Triple]) -> Counter[str]:
-    """What goes beyond OWL 2 RL in the shipped TBox, if this is that or what somebody made of it."""
+    """Return the axioms beyond OWL 2 RL of the shipped TBox, if this TBox is based on it."""
     if v.TBOX_ONTOLOGY not in ontology_files.header(tbox).ontologies:
         return Counter()
     return outside_rl(filter(is_schema, rdf.parse(HOUSEHOLD_TTL.read_bytes(), HOUSEHOLD_TTL.name)))
 
 
 def missing(imports: tuple[str, ...]) -> str:
-    """Of the imports that are missing."""
+    """Return a note on missing imports, or ""."""
     if not imports:
         return ""
     few = " and ".join(filter(None, (", ".join(imports[:_FEW]), _more(len(imports) - _FEW))))
@@ -57,35 +57,34 @@ def missing(imports: tuple[str, ...]) -> str:
 
 
 def without_places(reasoner: Reasoner, classes: ClassTable) -> str:
-    """That nothing is computed of where things are, for want of properties."""
+    """Return a note if no spatial facts are computed because the TBox lacks the properties, or ""."""
     if not classes.spatial or any(any(reasoner.asserted(p, v.RDF_TYPE, None)) for p in COMPUTED):
         return ""
     few = ", ".join(sorted(COMPUTED.values()))
-    return f"the TBox has none of {few}, so where things are is measured when asked for, and not a fact"
+    return f"the TBox has none of {few}, so spatial relations are measured on request and are not facts"
 
 
 def not_in_space(classes: ClassTable) -> str:
-    """What follows from the TBox having no spatial class."""
+    """Return a note if the TBox has no spatial class, or ""."""
     if classes.spatial:
         return ""
     return (
-        "the TBox does not say which of its classes are of things in space, so nothing can be placed;"
-        " load it again with --spatial-root CLASS"
+        "the TBox has no spatial class, so entities cannot be added; load it again with --spatial-root CLASS"
     )
 
 
 def set_aside(tbox: Iterable[Triple]) -> str:
-    """What of the TBox does not count, and why."""
+    """Return a note on statements of the TBox that are ignored, or ""."""
     reasons: dict[str, list[str]] = {}
     for s, text in sorted((v.local_name(s), v.lexical(o)) for s, p, o in tbox if p == v.SET_ASIDE):
         what, _, why = text.partition(": ")
         reasons.setdefault(why, []).append(f"{s} {what}")
     said = "; ".join(f"{', '.join(what)} ({why})" for why, what in reasons.items())
-    return said and f"ignored, because no map could be kept with it: {said}"
+    return said and f"ignored, because every map would be inconsistent with it: {said}"
 
 
 def beyond(kinds: Counter[str]) -> str:
-    """How many axioms say more than the reasoner draws from them, and which kinds."""
+    """Return a note on the axioms that the reasoner does not use fully, by kind, or ""."""
     if not kinds:
         return ""
     most = sorted(kinds.items(), key=lambda kind: (-kind[1], kind[0]))[:_FEW]
@@ -93,19 +92,19 @@ def beyond(kinds: Counter[str]) -> str:
     if others := kinds.total() - sum(count for _, count in most):
         few += f", {others} of other kinds"
     axioms = "1 axiom goes" if kinds.total() == 1 else f"{kinds.total()} axioms go"
-    return f"{axioms} beyond OWL 2 RL; that part is inert, which does no harm ({few})"
+    return f"{axioms} beyond OWL 2 RL; that part has no effect ({few})"
 
 
 def described(names: list[str]) -> str:
-    """Which entities are no command's to change."""
+    """Return a note on entities that no command can change, or ""."""
     if not names:
         return ""
     are = f"{wording.entities(len(names))} {'is' if len(names) == 1 else 'are'}"
-    return f"{are} described by the TBox itself, so no command changes them: {wording.few(names, 4)}"
+    return f"{are} described by the TBox itself, so commands cannot change them: {wording.few(names, 4)}"
 
 
 def slow(reasoner: Reasoner) -> str:
-    """What keeps changes from being worked out one by one, and how long one takes."""
+    """Return a note on why the reasoner is not incremental, and the time of a change, or ""."""
     if (why := reasoner.not_incremental) is None:
         return ""
     began_s = time.perf_counter()

@@ -1,4 +1,4 @@
-"""What a TBox must be to hold, and whether a map fits it."""
+"""Validation of a TBox, and of a map against it."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ from semmap.schemas.explanations import Triple
 
 
 class DoesNotFit(errors.Refused):
-    """The map says what a TBox has no room for."""
+    """The map contains something that the TBox does not support."""
 
 
-def compiled(tbox: Iterable[Triple], name: str = "") -> Reasoner:
-    """A reasoner with no more than the TBox. Raises Inconsistent, BadFile for what is no TBox."""
+def compile_tbox(tbox: Iterable[Triple], name: str = "") -> Reasoner:
+    """Return a reasoner with only the TBox. Raises Inconsistent; BadFile if it is not a TBox."""
     what = f"the TBox {name}".strip()
     try:
         reasoner = Reasoner(tbox)
     except Inconsistent as error:
-        raise proofs.refusal(error, of=what) from None
+        raise proofs.to_error(error, of=what) from None
     if not ClassTable(reasoner).names:
         raise errors.BadFile(f"{name or what} has no class: is it a TBox (an OWL ontology with classes)?")
     return reasoner
 
 
 def require_fit(abox: Iterable[Triple], before: ClassTable, after: ClassTable) -> None:
-    """Raises DoesNotFit when the ABox has classes that the TBox has not, or things in space would be none."""
+    """Raise DoesNotFit if the TBox lacks classes of the ABox, or entities would lose their spatial class."""
     abox = list(abox)
     try:
-        abox_document.sort_out(abox, after, skip_unknown=False)
+        abox_document.filter_document(abox, after, skip_unknown=False)
     except errors.UnknownClass as error:
         raise DoesNotFit(f"the map does not fit the TBox: {error.text.partition('; --')[0]}") from None
     types = [(s, o) for s, p, o in abox if p == v.RDF_TYPE]
@@ -47,7 +47,7 @@ def require_fit(abox: Iterable[Triple], before: ClassTable, after: ClassTable) -
 
 
 def has_individuals(tbox: Iterable[Triple]) -> bool:
-    """Does it say anything of individuals, so that it may have entities?"""
+    """Return whether it describes individuals, so that it may have entities."""
     tbox = list(tbox)
     kinds = (v.OWL_OBJECT_PROPERTY, v.OWL_DATATYPE_PROPERTY)
     properties = {s for s, p, o in tbox if p == v.RDF_TYPE and o in kinds}
@@ -55,11 +55,11 @@ def has_individuals(tbox: Iterable[Triple]) -> bool:
 
 
 def described_by(tbox: Iterable[Triple], classes: ClassTable) -> list[str]:
-    """The names of the entities that a TBox itself describes: no command can change what a TBox says."""
+    """Return the names of the entities that a TBox describes, which no command can change."""
     return sorted({v.entity_name(s) for s, p, o in tbox if p == v.RDF_TYPE and o in classes.spatial})
 
 
-def imports(tbox: Iterable[Triple]) -> list[Triple]:
-    """`owl:imports` of the TBox, for the ABox: it is resolved to the loaded file, never to the network."""
+def import_triples(tbox: Iterable[Triple]) -> list[Triple]:
+    """Return `owl:imports` triples for the ABox. They refer to the loaded file, never to the network."""
     ontologies = [term for term in ontology_files.header(tbox).ontologies if term.startswith("<")]
     return [(v.ABOX_ONTOLOGY, v.OWL_IMPORTS, iri) for iri in ontologies]

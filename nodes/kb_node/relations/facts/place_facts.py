@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 from typing import NamedTuple
 
-from semmap.nodes.kb_node.progress import parts
+from semmap.nodes.kb_node.progress import split_batches
 from semmap.nodes.kb_node.relations.facts.precomputation import Precomputation
 from semmap.nodes.kb_node.relations.facts.precompute_messages import FactsByName
 from semmap.nodes.kb_node.relations.facts.rules import RULES, About, Rule
@@ -119,10 +119,10 @@ class Facts:
 
     def compute_steps(self) -> Iterator[None]:
         """Compute the facts. Updates between these steps first compute the facts that they affect."""
-        for some in parts(sort_by_place(list(self._waiting.values())), _STEP, _nothing):
+        for some in split_batches(sort_by_place(list(self._waiting.values())), _STEP, _nothing):
             self._compute_waiting(solid for solid in some if self._waiting.get(solid.name) is solid)
             yield
-        for solids in parts(tuple(self.space.solids.values()), _STEP, _nothing):
+        for solids in split_batches(tuple(self.space.solids.values()), _STEP, _nothing):
             for solid in solids:
                 solid.clear_cache()
             if len(solids) == _STEP:
@@ -164,7 +164,7 @@ class Facts:
     ) -> Iterator[None]:
         """Compute the facts of many solids, `step` at a time, and add differences to `gone` and `come`."""
         space = self.space
-        for some in parts(sort_by_place(solids) if len(solids) > step else solids, step, _nothing):
+        for some in split_batches(sort_by_place(solids) if len(solids) > step else solids, step, _nothing):
             survey = Survey(space, some) if len(some) >= MANY else None
             with space.caching():
                 for kept in self._kept:

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Final, NamedTuple
 
-from semmap.nodes.kb_node.progress import parts
+from semmap.nodes.kb_node.progress import split_batches
 from semmap.nodes.kb_node.relations.geometry.columns import solids_of
 from semmap.nodes.kb_node.relations.geometry.forms import Bounds
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity, holder_in
@@ -55,7 +55,7 @@ class Space:
 
     def put_all(self, entities: Iterable[Entity | PlacedEntity]) -> Iterator[list[Solid]]:
         """Add or replace many entities in steps, and yield the solids of each step."""
-        for some in parts(entities, _STEP, _nothing):
+        for some in split_batches(entities, _STEP, _nothing):
             if len(some) < MANY:
                 yield [solid for entity in some if (solid := self.put(entity)) is not None]
                 continue

@@ -1,1 +1,1 @@
-"""What is asked: which queries are allowed, which commits may touch their rows, and how they are answered."""
+"""Queries: which are allowed, which commits may change their rows, and their evaluation."""

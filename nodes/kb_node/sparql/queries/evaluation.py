@@ -1,4 +1,4 @@
-"""One query on one store: its answer, or why there is none, in one sentence."""
+"""Evaluation of one query on one store."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Final
 import pyoxigraph as ox
 
 from semmap.nodes.kb_node.sparql.queries.text import query_prefixes, syntax_error
-from semmap.nodes.kb_node.sparql.queries.unknown import unknown
+from semmap.nodes.kb_node.sparql.queries.unknown_terms import unknown_term_notes
 from semmap.nodes.kb_node.sparql.triples.dataset import ASSERTED, INFERRED, MEASURED, Dataset
 from semmap.ontology import prefixes
 from semmap.ontology import vocabulary as v
@@ -21,14 +21,13 @@ _ZERO: Final = f'"0"^^<{v.XSD}integer>'
 _SPO: Final = ("subject", "predicate", "object")
 
 
-def answer(
+def evaluate(
     query: str, dataset: Dataset, *, inferred: bool, limit: int, measured: bool = False
 ) -> SparqlResult:
-    """The answer over what is asserted or, with `inferred`, over all that is so, asserted or not.
+    """Evaluate a query over the asserted triples or, with `inferred`, over all triples that hold.
 
-    With `measured` that is also what was measured for the query.
-
-    Raises BadRequest for a query that is no SPARQL, Refused for one of more than `limit` rows.
+    `measured` adds the triples that were measured for the query. Raises BadRequest for invalid SPARQL,
+    Refused for more than `limit` rows.
     """
     known = query_prefixes(declared_in(dataset))
     graphs = dataset.asserted_graphs()
@@ -43,11 +42,11 @@ def answer(
         )
         if isinstance(found, ox.QueryBoolean):
             verdict = bool(found)
-            notes = () if verdict else tuple(unknown(query, dataset, known))
+            notes = () if verdict else tuple(unknown_term_notes(query, dataset, known))
             return SparqlResult(kind="ask", verdict=verdict, notes=notes, seq=dataset.seq)
         if isinstance(found, ox.QueryTriples):
             rows: tuple[Row, ...] = _graph(found, limit)
-            notes = () if rows else tuple(unknown(query, dataset, known))
+            notes = () if rows else tuple(unknown_term_notes(query, dataset, known))
             return SparqlResult(kind="graph", variables=_SPO, rows=rows, notes=notes, seq=dataset.seq)
         rows = tuple(tuple(map(_term, row)) for row in islice(found, limit + 1))
     except SyntaxError as error:
@@ -56,17 +55,17 @@ def answer(
         raise errors.Refused(f"the query cannot be evaluated: {' '.join(str(error).split())}") from None
     _require_few(len(rows), limit)
     variables = tuple(variable.value for variable in found.variables)
-    notes = tuple(unknown(query, dataset, known)) if _is_nothing(rows) else ()
+    notes = tuple(unknown_term_notes(query, dataset, known)) if _is_nothing(rows) else ()
     return SparqlResult(kind="select", variables=variables, rows=rows, notes=notes, seq=dataset.seq)
 
 
 def _is_nothing(rows: tuple[Row, ...]) -> bool:
-    """Whether there is no row, or one that says that there is none: a COUNT of 0."""
+    """Return whether there is no row, or only a COUNT of 0."""
     return not rows or (len(rows) == 1 and set(rows[0]) <= {None, _ZERO})
 
 
 def declared_in(dataset: Dataset) -> dict[str, str]:
-    """The prefixes of the TBox's own namespaces."""
+    """Return the prefixes of the TBox's own namespaces."""
     said = dataset.store.quads_for_pattern(None, _PREFERRED_PREFIX, None, ASSERTED)
     declared = prefixes.declared_in((str(q.subject), str(q.predicate), str(q.object)) for q in said)
     return {prefix: namespace for namespace, prefix in declared.items()}
@@ -77,7 +76,7 @@ def _term(term: object) -> Term | None:
 
 
 def _graph(triples: ox.QueryTriples, limit: int) -> tuple[Row, ...]:
-    """The triples, each once, sorted."""
+    """Return the triples, each once, sorted."""
     found: set[Row] = set()
     for triple in triples:
         found.add(tuple(map(str, triple)))

@@ -1,4 +1,4 @@
-"""Which commits may touch the rows of a query: a sound over-estimate, read off its triple patterns."""
+"""Which commits may change the rows of a query: a sound over-estimate from its triple patterns."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ Pattern = tuple[Term | None, Term | None, Term | None]
 
 
 class _Anything(Exception):
-    """Any triple may matter."""
+    """Raised if any triple may matter."""
 
 
 @dataclass(frozen=True)
 class Footprint:
-    """The predicates and classes that a query looks at; None stands for all of them."""
+    """The predicates and classes that a query reads; None stands for all of them."""
 
     predicates: frozenset[Term] | None = None
     classes: frozenset[Term] | None = None
 
     def is_touched(self, changed: Iterable[Triple]) -> bool:
-        """May rows change when these triples come or go?"""
+        """Return whether rows may change when these triples are added or removed."""
         return any(self._looks_at(p, o) for _, p, o in changed)
 
     def _looks_at(self, p: Term, o: Term) -> bool:
@@ -45,7 +45,7 @@ class Footprint:
 
 
 def footprint(query: str) -> Footprint:
-    """What a query looks at; everything, for one whose patterns cannot be told.
+    """Return what a query reads: everything, if its patterns are unknown.
 
     `owl:` and other prefixes are those of `text.PREFIXES`. A type pattern with a class counts for that class
     only. A path that may have no steps relates every term to itself, so any triple matters to it.
@@ -60,10 +60,10 @@ def footprint(query: str) -> Footprint:
 
 @lru_cache(maxsize=1000)
 def patterns_of(query: str, prefixes: tuple[tuple[str, str], ...] = ()) -> frozenset[Pattern] | None:
-    """The triple patterns of a query, None in them standing for anything; None where they cannot be told.
+    """Return the triple patterns of a query, with None for any term, or None if they are unknown.
 
-    A resource that is described counts as the subject and as the object of anything. `prefixes` are known
-    besides those of `text.PREFIXES`.
+    A described resource counts as the subject and as the object of any triple. `prefixes` are known in
+    addition to `text.PREFIXES`.
     """
     try:
         prepared = prepareQuery(query, initNs={**dict(prefixes), **PREFIXES})
@@ -71,13 +71,13 @@ def patterns_of(query: str, prefixes: tuple[tuple[str, str], ...] = ()) -> froze
         if prepared.algebra.name == "DescribeQuery":
             for described in prepared.algebra["PV"]:
                 patterns |= {(_known(described), None, None), (None, None, _known(described))}
-    except Exception:  # rdflib reads less than Oxigraph, and fails in many ways on what it does not read
+    except Exception:  # rdflib supports less than Oxigraph, and fails in many ways
         return None
     return frozenset(patterns)
 
 
 def _patterns(node: Any) -> Iterator[Pattern]:
-    """Every triple pattern below a node of the algebra."""
+    """Yield every triple pattern below a node of the algebra."""
     if isinstance(node, CompValue):
         for key, child in node.items():
             if key == "triples":

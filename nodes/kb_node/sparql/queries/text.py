@@ -1,4 +1,4 @@
-"""What may be asked: a query that reads, of this map alone; and what is wrong with one, in words."""
+"""Checks of the query text: only queries that read this map are allowed. Also explains syntax errors."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from semmap.ontology.prefixes import WELL_KNOWN, Prefixes
 from semmap.schemas import errors
 
 PREFIXES: Final = dict(WELL_KNOWN)
-"""The prefixes that a query need not declare, whatever the TBox; those of its namespaces come on top."""
+"""The prefixes that a query need not declare with any TBox. The prefixes of the TBox are added to them."""
 
 _FORMS = frozenset({"SELECT", "ASK", "CONSTRUCT", "DESCRIBE"})
 _UPDATES = frozenset({"INSERT", "DELETE", "LOAD", "CLEAR", "CREATE", "DROP", "COPY", "MOVE", "ADD", "WITH"})
@@ -37,14 +37,14 @@ _REASONS = (
 
 
 def query_prefixes(of_tbox: Prefixes) -> dict[str, str]:
-    """The prefixes that a query need not declare over a TBox with prefixes of its own."""
+    """Return the prefixes that a query need not declare with a TBox that has these prefixes."""
     return {**of_tbox, **PREFIXES}
 
 
 def require_reading(query: str) -> str:
-    """The form of a query: SELECT, ASK, CONSTRUCT or DESCRIBE.
+    """Return the form of a query: SELECT, ASK, CONSTRUCT or DESCRIBE.
 
-    Raises Refused for an update and for what would reach beyond the map, BadRequest when it is neither.
+    Raises Refused for an update and for access beyond the map, BadRequest if it is not a query.
     """
     words = list(_words(query))
     form = next((word for word in words if word in _FORMS or word in _UPDATES), None)
@@ -55,12 +55,12 @@ def require_reading(query: str) -> str:
     if form is None:
         raise errors.BadRequest("not a valid SPARQL query: it needs SELECT, ASK, CONSTRUCT or DESCRIBE")
     if beyond := next((word for word in words if word in _ELSEWHERE), None):
-        raise errors.Refused(f"{beyond} is refused: a query can access only this map, not the network")
+        raise errors.Refused(f"{beyond} is not allowed: a query can access only this map, not the network")
     return form
 
 
 def require_select(query: str) -> None:
-    """Raises BadRequest for a query that has no rows to watch; Refused as `require_reading`."""
+    """Raise BadRequest for a query without rows to watch, Refused as `require_reading` does."""
     if (form := require_reading(query)) != "SELECT":
         raise errors.BadRequest(f"only a SELECT query can be watched, and this is a query of form {form}")
 
@@ -68,7 +68,7 @@ def require_select(query: str) -> None:
 def syntax_error(
     query: str, error: SyntaxError, prefixes: Prefixes = MappingProxyType(PREFIXES)
 ) -> errors.BadRequest:
-    """What Oxigraph's parser says, without the grammar: the place and, where it can be told, the reason."""
+    """Return the error of Oxigraph's parser without its grammar: the position and, if known, the reason."""
     match = _FAULT.match(str(error))
     if match is None:
         return errors.BadRequest(f"not a valid SPARQL query: {' '.join(str(error).split())}")
@@ -82,17 +82,13 @@ def _reason(query: str, line: int, column: int, expected: str, prefixes: Prefixe
     before, after = text[: column - 1], text[column - 1 :].strip()
     if "Prefix not found" in expected and (prefix := re.search(r"([\w.-]*):[^\s:]*$", before)):
         known = ", ".join(f"{name}:" for name in prefixes)
-        return f"unknown prefix '{prefix[1]}:'; there are {known}, and PREFIX declares others"
+        return f"unknown prefix '{prefix[1]}:'; known are {known}; declare others with PREFIX"
     for sign, reason in _REASONS:
         if sign in expected:
             return reason
-    return (
-        f"'{after[:30]}' does not fit there"
-        if after
-        else "it ends too early, or something before does not fit"
-    )
+    return f"'{after[:30]}' is not expected there" if after else "unexpected end, or an error before it"
 
 
 def _words(query: str) -> Iterator[str]:
-    """The bare words of a query in capitals: its keywords, and names of functions."""
+    """Yield the bare words of a query in capitals: keywords and names of functions."""
     return (match["word"].upper() for match in _TOKEN.finditer(query) if match["word"])

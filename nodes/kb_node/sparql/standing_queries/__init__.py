@@ -1,1 +1,1 @@
-"""Queries that are watched: their rows, the looks that commits make necessary, and the news on the wire."""
+"""Standing queries: their rows, their evaluation after commits, and the publication of changes."""

@@ -1,1 +1,1 @@
-"""What is asked of: the store of what is asserted and what follows, in memory and on disk."""
+"""The stores that queries read: asserted and inferred triples, in memory and on disk."""

@@ -1,12 +1,11 @@
-"""What follows from the asserted triples, kept beside them commit by commit.
+"""Inferred triples, kept up to date with the asserted ones commit by commit.
 
-A reasoner of its own follows the commits. Those that a commit speaks of are not all whom it must be asked
-about anew: what is new about one may concern its neighbours. So the search goes on from whoever has changed,
-as far as changes reach:
+A separate reasoner follows the commits. A commit may change what follows about more individuals than it
+mentions, so the search continues from each individual that has changed:
 
-- a relation that came or went concerns the other end (inverses), and, if chains or transitive properties take
-  it further, whoever is related to this end by such properties, in as many steps as the longest chain has;
-- a class or an equality that came or went concerns all neighbours (keys, limits, values, copies).
+- A changed relation concerns the other end (inverses). If chains or transitive properties extend it, it also
+  concerns the individuals related to this end, in as many steps as the longest chain has.
+- A changed class or equality concerns all neighbours (keys, cardinalities, values, equal individuals).
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import chain
 
-from semmap.nodes.kb_node.beliefs import UNCHANGED, Believed
+from semmap.nodes.kb_node.derived_facts import UNCHANGED, DerivedChanges
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, Delta, as_stored
@@ -34,10 +33,10 @@ _FIRST, _REST = v.iri(v.RDF + "first"), v.iri(v.RDF + "rest")
 
 
 def inferred(reasoner: Reasoner, subject: Term | None = None) -> Iterator[Triple]:
-    """What follows about an individual, or about all and about classes and properties by their names.
+    """Yield the inferred triples about an individual, or about all individuals, named classes and properties.
 
-    Literals are as the dataset stores them. Left out is what RDF has no place for (literals as subjects),
-    classes without a name, and that everything is the same as itself.
+    Literals are as the dataset stores them. Left out are literals as subjects, which RDF does not allow,
+    unnamed classes, and that everything is the same as itself.
     """
     if subject is None:
         for predicate in _OF_THE_SCHEMA:
@@ -55,15 +54,17 @@ def inferred(reasoner: Reasoner, subject: Term | None = None) -> Iterator[Triple
 
 
 class Consequences:
-    """What follows in a dataset, exact after each commit; what is computed is among it."""
+    """The inferred triples of a dataset, exact after each commit. They include computed facts."""
 
-    def __init__(self, asserted: Iterable[Triple], dataset: Dataset, believed: Believed = UNCHANGED) -> None:
-        """Put into `dataset` what follows from what is asserted and computed, and not set aside."""
+    def __init__(
+        self, asserted: Iterable[Triple], dataset: Dataset, derived_changes: DerivedChanges = UNCHANGED
+    ) -> None:
+        """Add to `dataset` what follows from the asserted and computed facts that are not suppressed."""
         self._dataset = dataset
-        aside = set(believed.aside)
+        aside = set(derived_changes.aside)
         self._reasoner = Reasoner(t for t in asserted if t not in aside)
-        self._reasoner.update_computed(add=believed.come, suppress=believed.aside)
-        dataset.deny(believed.aside)
+        self._reasoner.update_computed(add=derived_changes.come, suppress=derived_changes.aside)
+        dataset.deny(derived_changes.aside)
         self._read_schema()
         dataset.infer(inferred(self._reasoner))
 
@@ -72,22 +73,24 @@ class Consequences:
         self._onward = frozenset(property for chain in chains for property in chain)
         self._steps = max(map(len, chains), default=1) - 1
 
-    def after(self, delta: Delta, believed: Believed = UNCHANGED) -> Delta:
-        """`delta`, which is about what is asserted, with what it changes of what follows; no more is done.
+    def after(self, delta: Delta, derived_changes: DerivedChanges = UNCHANGED) -> Delta:
+        """Return `delta` with the changes of inferred triples; the dataset is not changed.
 
-        `believed` is what it changes besides.
+        `derived_changes` are the changes of computed and suppressed facts.
         """
         was_compiled = self._reasoner.is_compiled
         less = self._reasoner.update_computed(
-            remove=believed.gone, suppress=believed.aside, report_implied=True
+            remove=derived_changes.gone, suppress=derived_changes.aside, report_implied=True
         )
         touched = self._reasoner.apply(delete=delta.retracted, insert=delta.inserted).touched
-        more = self._reasoner.update_computed(add=believed.come, restore=believed.back, report_implied=True)
+        more = self._reasoner.update_computed(
+            add=derived_changes.come, restore=derived_changes.back, report_implied=True
+        )
         if not (was_compiled and self._reasoner.is_compiled) or any(map(is_schema, delta.asserted)):
             gone, new = self._all_changes()
         elif less.implied is None or more.implied is None:
             touched |= less.touched | more.touched
-            gone, new = self._changes((*delta.asserted, *chain(*believed)), touched)
+            gone, new = self._changes((*delta.asserted, *chain(*derived_changes)), touched)
         else:
             gone, new = self._changes(delta.asserted, touched)
             for triple in less.implied | more.implied:
@@ -100,12 +103,12 @@ class Consequences:
             inserted=delta.inserted,
             no_longer_inferred=tuple(sorted(gone)),
             newly_inferred=tuple(sorted(new)),
-            denied=believed.aside,
-            undenied=believed.back,
+            denied=derived_changes.aside,
+            undenied=derived_changes.back,
         )
 
     def _compare(self, triple: Triple, gone: set[Triple], new: set[Triple]) -> None:
-        """Add a relation to what follows no longer, or newly."""
+        """Add a relation to the removed or the new inferred triples."""
         was, does = self._dataset.follows(triple), self._reasoner.follows(triple)
         if was != does:
             (new if does else gone).add(triple)
@@ -117,7 +120,7 @@ class Consequences:
         new |= now - before
 
     def _all_changes(self) -> tuple[set[Triple], set[Triple]]:
-        """The same for a commit that changes the schema, or a map that uses its vocabulary freely."""
+        """Return the changes after a change of the schema, or for a map that uses its vocabulary freely."""
         self._read_schema()
         before, now = self._dataset.inferred(None), set(inferred(self._reasoner))
         return before - now, now - before
@@ -125,7 +128,7 @@ class Consequences:
     def _changes(
         self, otherwise: Iterable[Triple], touched: Iterable[Term]
     ) -> tuple[set[Triple], set[Triple]]:
-        """What follows no longer, and what follows newly, when these triples came or went."""
+        """Return the removed and the new inferred triples after a change of these triples."""
         gone, new = set[Triple](), set[Triple]()
         said: dict[Term, list[Triple]] = {}
         for triple in otherwise:
@@ -146,7 +149,7 @@ class Consequences:
         return gone, new
 
     def _concerned(self, subject: Term, changed: set[Triple]) -> set[Term]:
-        """Whom it may concern that these triples about `subject` came or went."""
+        """Return the individuals that a change of these triples about `subject` may concern."""
         concerned = set[Term]()
         predicates = {p for _, p, _ in changed}
         if not predicates.isdisjoint((v.RDF_TYPE, v.OWL_SAME_AS)):
@@ -161,7 +164,7 @@ class Consequences:
         return concerned
 
     def _composed_with(self, individual: Term) -> set[Term]:
-        """Whose relations a chain that goes on from this individual may add to."""
+        """Return the individuals whose relations a chain through this individual may add to."""
         found = edge = {individual}
         for _ in range(self._steps):
             edge = {n for member in edge for n in self._neighbours(member)} - found
@@ -169,7 +172,7 @@ class Consequences:
         return found
 
     def _neighbours(self, individual: Term) -> set[Term]:
-        """Whom it is or was related to, either way; the values of its properties are none of them."""
+        """Return the individuals that it is or was related to, in either direction; no literals."""
         if individual.startswith('"'):
             return set()
         found = {o for _, p, o in self._about(individual, None) if p != v.RDF_TYPE and not o.startswith('"')}
@@ -182,7 +185,7 @@ class Consequences:
 
 
 def _chains(reasoner: Reasoner) -> Iterator[list[Term]]:
-    """The chains of properties that make others; a transitive property is a chain of itself twice."""
+    """Yield the property chains; a transitive property is a chain of itself twice."""
     for source in (reasoner.asserted, reasoner.inferred):
         yield from ([p, p] for p, _, _ in source(None, v.RDF_TYPE, _TRANSITIVE))
     for _, _, cell in reasoner.asserted(None, _CHAIN, None):

@@ -1,7 +1,6 @@
-"""The triples that queries see: an Oxigraph store with what is asserted and, beside it, what follows.
+"""The triples that queries read: an Oxigraph store with asserted and inferred triples.
 
-Oxigraph keeps numbers, dates and the like by value: `"1.0"` and `"1.00"` are one literal to it,
-spelled `"1"`.
+Oxigraph stores numbers and dates by value: `"1.0"` and `"1.00"` are the same literal, written `"1"`.
 """
 
 from __future__ import annotations
@@ -15,21 +14,21 @@ from pathlib import Path
 import pyoxigraph as ox
 from msgspec import Struct
 
-from semmap.nodes.kb_node.sparql.triples.kept import cloned
+from semmap.nodes.kb_node.sparql.triples.disk_stores import clone_store
 from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Term, Triple
 
 ASSERTED = ox.DefaultGraph()
 INFERRED = ox.NamedNode("urn:semmap:inferred")
 DENIED = ox.NamedNode("urn:semmap:denied")
-"""What is asserted of where things are and is not so."""
+"""Graph of asserted locations that are suppressed."""
 MEASURED = ox.NamedNode("urn:semmap:measured")
-"""What is measured because somebody asked for it, and is neither asserted nor follows otherwise."""
+"""Graph of relations that were measured on request and are neither asserted nor inferred."""
 _TYPE = v.bare(v.RDF_TYPE)
 
 
 class Delta(Struct, frozen=True, kw_only=True, array_like=True):
-    """How the triples differ after commit `seq` from what they were before."""
+    """The changes of the triples by commit `seq`."""
 
     seq: int
     retracted: tuple[Triple, ...] = ()
@@ -43,16 +42,16 @@ class Delta(Struct, frozen=True, kw_only=True, array_like=True):
     unmeasured: tuple[Triple, ...] = ()
     measured: tuple[Triple, ...] = ()
     demand: int = 0
-    """Of a question: what that needs is measured from here on."""
+    """The request whose measurements are complete from here on."""
 
     @property
     def asserted(self) -> tuple[Triple, ...]:
-        """What was asserted or retracted."""
+        """The triples that were asserted or retracted."""
         return self.retracted + self.inserted
 
     @property
     def everything(self) -> tuple[Triple, ...]:
-        """What was asserted, retracted, or follows, is denied or measured now or no longer."""
+        """All triples of the change."""
         return (
             self.asserted
             + self.no_longer_inferred
@@ -65,20 +64,20 @@ class Delta(Struct, frozen=True, kw_only=True, array_like=True):
 
 
 class Dataset:
-    """What is asserted, and what follows beside it, as they are after commit `seq`.
+    """The asserted and inferred triples after commit `seq`.
 
-    What is asserted but denied is in a third graph.
+    Suppressed assertions are in a third graph.
     """
 
     settled = 0
-    """Before that commit it is no map yet."""
+    """The commit before which the store is not consistent."""
     denials = 0
-    """How much is denied."""
+    """Number of suppressed assertions."""
     demand = 0
-    """The last question for which something was measured."""
+    """The last request for measurements."""
 
     def __init__(self, seq: int, asserted: Iterable[Triple], store: ox.Store | None = None) -> None:
-        """`store` may hold others already."""
+        """Add `asserted` to `store`, which may contain triples already, or to a new one."""
         self.seq = seq
         self.store = store or ox.Store()
         self._other_spellings: Counter[ox.Quad] = Counter()
@@ -87,12 +86,12 @@ class Dataset:
         if len(self.store) < len(asserted):
             self._count_spellings(asserted)
 
-    def opened(self) -> Dataset:
-        """As a reader has it, once it is forked."""
+    def open_in_reader(self) -> Dataset:
+        """Return the dataset for use in a forked reader."""
         return self
 
     def apply(self, delta: Delta) -> None:
-        """Go on to the commit after."""
+        """Apply the next commit."""
         self._shift(delta.undenied, DENIED, ASSERTED)
         self.denials -= len(delta.undenied)
         for quad in quads(delta.retracted, ASSERTED):
@@ -113,12 +112,12 @@ class Dataset:
         self.demand = max(self.demand, delta.demand)
 
     def deny(self, triples: Collection[Triple]) -> None:
-        """What is asserted is not so."""
+        """Suppress asserted triples."""
         self._shift(triples, ASSERTED, DENIED)
         self.denials += len(triples)
 
     def asserted_graphs(self) -> list[ox.NamedNode | ox.BlankNode | ox.DefaultGraph]:
-        """Where all that is asserted is: in one graph, for the queries' sake, while nothing is denied."""
+        """Return the graphs with asserted triples: only one if nothing is suppressed, which is faster."""
         return [ASSERTED, DENIED] if self.denials else [ASSERTED]
 
     def _shift(
@@ -132,14 +131,14 @@ class Dataset:
         self.store.extend(quads(triples, target))
 
     def _insert(self, quad: ox.Quad) -> None:
-        """Insert one with a literal, unless it is asserted in another spelling already."""
+        """Insert a quad with a literal, unless it is asserted in another spelling already."""
         if quad in self.store:
             self._other_spellings[_stored(quad)] += 1
         else:
             self.store.add(quad)
 
     def _retract(self, quad: ox.Quad) -> None:
-        """Remove it, unless it is still asserted in another spelling."""
+        """Remove a quad, unless it is still asserted in another spelling."""
         if self._other_spellings and (stored := _stored(quad)) in self._other_spellings:
             self._other_spellings[stored] -= 1
             self._other_spellings += Counter()
@@ -151,32 +150,32 @@ class Dataset:
         self._other_spellings.update({quad: n - 1 for quad, n in counts.items() if n > 1})
 
     def infer(self, triples: Iterable[Triple]) -> None:
-        """Take in what follows, when it is first asked for."""
+        """Add inferred triples when inference is first requested."""
         self.store.bulk_extend(quads(triples, INFERRED))
 
     def inferred(self, subject: Term | None) -> set[Triple]:
-        """What follows about a subject, or about all."""
+        """Return the inferred triples about a subject, or about all."""
         term = None if subject is None else _subject(subject)
         found = self.store.quads_for_pattern(term, None, None, INFERRED)
         return {_triple(quad) for quad in found}
 
     def follows(self, triple: Triple) -> bool:
-        """Whether a relation of two individuals is among what follows."""
+        """Return whether a relation of two individuals is inferred."""
         s, p, o = triple
         return ox.Quad(_subject(s), ox.NamedNode(p[1:-1]), _subject(o), INFERRED) in self.store
 
     def holds_unmeasured(self, triple: Triple) -> bool:
-        """Whether a relation of two individuals is asserted or follows."""
+        """Return whether a relation of two individuals is asserted or inferred."""
         s, p, o = _subject(triple[0]), ox.NamedNode(triple[1][1:-1]), _subject(triple[2])
         return any(ox.Quad(s, p, o, graph) in self.store for graph in (ASSERTED, INFERRED))
 
     def is_measured(self, triple: Triple) -> bool:
-        """Whether a relation of two individuals is among what is measured."""
+        """Return whether a relation of two individuals is measured."""
         s, p, o = triple
         return ox.Quad(_subject(s), ox.NamedNode(p[1:-1]), _subject(o), MEASURED) in self.store
 
     def neighbours(self, individual: Term) -> set[Term]:
-        """The individuals that this one is related to, either way, by anything but its class."""
+        """Return the individuals related to this one, in either direction, except by class."""
         term = _subject(individual)
         found: set[Term] = set()
         for graph in (ASSERTED, INFERRED):
@@ -189,10 +188,10 @@ class Dataset:
         return found
 
 
-class KeptDataset(Dataset):
-    """The triples in a store on disk, and the log since. Who keeps it never opens it: only readers do.
+class DiskDataset(Dataset):
+    """The triples in a store on disk, and the log since. Only readers open the store.
 
-    Oxigraph's threads for a store on disk would not live on in a fork.
+    Oxigraph's threads for a store on disk do not survive a fork.
     """
 
     def __init__(self, path: Path, seq: int, settled: int) -> None:
@@ -202,17 +201,17 @@ class KeptDataset(Dataset):
         self._first = seq
 
     def apply(self, delta: Delta) -> None:
-        """The readers do that."""
+        """Only record the commit; the readers apply it."""
         self.seq = delta.seq
 
-    def opened(self) -> Dataset:
-        """A clone, as it was before the log began."""
-        opened = Dataset(self._first, (), cloned(self.path))
+    def open_in_reader(self) -> Dataset:
+        """Return a clone of the store, without the commits of the log."""
+        opened = Dataset(self._first, (), clone_store(self.path))
         opened.settled = self.settled
         return opened
 
-    def renew(self, deltas: Iterable[Delta]) -> None:
-        """Take in the log, in a process of its own, so that another log can begin."""
+    def merge_log(self, deltas: Iterable[Delta]) -> None:
+        """Apply the log to the store in a separate process, so that another log can begin."""
         if (pid := os.fork()) == 0:
             try:
                 store = Dataset(self._first, (), ox.Store(str(self.path)))
@@ -227,7 +226,7 @@ class KeptDataset(Dataset):
 
 
 def quads(triples: Iterable[Triple], graph: ox.NamedNode | ox.DefaultGraph) -> Iterator[ox.Quad]:
-    """Triples in N-Triples terms as quads of a graph."""
+    """Yield triples in N-Triples terms as quads of a graph."""
     lines = "".join(f"{s} {p} {o} .\n" for s, p, o in triples).encode()
     for quad in ox.parse(lines, ox.RdfFormat.N_TRIPLES):
         yield ox.Quad(quad.subject, quad.predicate, quad.object, graph)
@@ -235,7 +234,7 @@ def quads(triples: Iterable[Triple], graph: ox.NamedNode | ox.DefaultGraph) -> I
 
 @lru_cache(maxsize=10_000)
 def as_stored(term: Term) -> Term:
-    """A term as Oxigraph gives it back."""
+    """Return a term as Oxigraph returns it."""
     if not term.startswith('"') or "^^" not in term:
         return term
     (quad,) = quads([("<x:s>", "<x:p>", term)], ASSERTED)
@@ -243,7 +242,7 @@ def as_stored(term: Term) -> Term:
 
 
 def _stored(quad: ox.Quad) -> ox.Quad:
-    """A quad as Oxigraph gives it back."""
+    """Return a quad as Oxigraph returns it."""
     if not isinstance(quad.object, ox.Literal):
         return quad
     store = ox.Store()

@@ -1,11 +1,11 @@
-"""The map as SPARQL needs it when it is large: read in pieces, and followed from a store that is on disk.
+"""Access to a large map for SPARQL: it is read in pieces into a store on disk.
 
-The triples go to the process that fills the store piece by piece, between the node's other work, and commits
-may come meanwhile. So the store begins as something between two states of the map; taking in all commits
-since the first piece, which say what is there and what is not, makes it the map as it is.
+The triples are passed to the loading process piece by piece, between the node's other work, and commits may
+come in between. The store therefore begins in a state between two commits. Applying all commits since the
+first piece makes it consistent, because each commit lists the added and removed triples.
 
-The store of a map that is mostly one large commit is begun when this is, and filled while it is checked; if
-the commit is what a document says, when that comes, and filled from it while it is read.
+If most of the map is one large commit, its store is filled while the commit is checked. If the commit comes
+from a document, the store is filled while the document is read.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import Final, NamedTuple
 
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.sparql.triples.dataset import Delta
-from semmap.nodes.kb_node.sparql.triples.kept import KeptStores
+from semmap.nodes.kb_node.sparql.triples.disk_stores import DiskStores
 from semmap.nodes.kb_node.sparql.triples.store_filler import StoreFiller
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.runtime.futures import settle
@@ -29,22 +29,22 @@ from semmap.schemas.commits import Commit
 from semmap.schemas.explanations import Triple
 
 LARGE: Final = 200_000
-"""Triples: a map of more has its store on disk; of fewer in memory, which is as soon made."""
+"""Triples above which the store is on disk. Smaller stores are created as fast in memory."""
 _PIECE: Final = 1000
-"""Subjects in a piece: some milliseconds of the node's thread."""
+"""Subjects in a piece, which takes the node's thread some milliseconds."""
 _FRAME: Final = 20_000
 """Triples of a commit that are sent at once."""
 _BYTES_OF_A_TRIPLE: Final = 40
-"""At least, in a document."""
+"""Lower bound for a document."""
 _OTHERWISE: Final = (b"_:", b"[", b"(", b"\xef\xbb\xbf")
-"""With these a document may say something else to the map: blank nodes have other labels there."""
+"""Content that the map may read differently from the store, because blank nodes get other labels."""
 _FAR_BEHIND: Final = 20_000
 _FAR_BEHIND_BYTES: Final = 16 << 20
-"""Commits, and their size in the journal: a store that lacks more is made anew."""
+"""Commits, and their bytes in the journal, beyond which an old store is created again."""
 
 
-class Filled(NamedTuple):
-    """A store: it has all commits up to `seq` and some of those up to `settled`."""
+class FilledStore(NamedTuple):
+    """A store with all commits up to `seq` and some of those up to `settled`."""
 
     path: Path
     seq: int
@@ -52,7 +52,7 @@ class Filled(NamedTuple):
 
 
 class LargeMap:
-    """Owned by the node's thread, on which `soon(handle)` calls `handle()` between other work."""
+    """The large map. Owned by the node's thread; `soon(handle)` calls `handle()` there between other work."""
 
     def __init__(
         self,
@@ -66,36 +66,38 @@ class LargeMap:
         self._reasoner = reasoner
         self._soon = soon
         self._large = large
-        self._stores = KeptStores(journal.path.parent)
+        self._stores = DiskStores(journal.path.parent)
         self._filler: StoreFiller | None = None
-        self._foretold: tuple[str, StoreFiller] | None = None
+        self._prepared: tuple[str, StoreFiller] | None = None
         """The id of a commit that is being checked, and the store of the map after it."""
 
     @property
     def is_large(self) -> bool:
-        """Is it worth a store on disk?"""
+        """Return whether the map needs a store on disk."""
         return len(self._reasoner()) > self._large
 
-    def is_much(self, commit: Commit) -> bool:
-        """Is a commit so large that the store is better made anew?"""
+    def is_large_change(self, commit: Commit) -> bool:
+        """Return whether a commit is so large that the store is better created again."""
         return len(commit.inserted) + len(commit.retracted) > self._large
 
-    def kept(self, seq: int) -> tuple[Filled, list[Delta]] | None:
-        """The store that was kept, and the commits since, up to `seq`; None if it does not do."""
+    def find_store(self, seq: int) -> tuple[FilledStore, list[Delta]] | None:
+        """Return the kept store and the commits since, up to `seq`, or None if it is not usable."""
         for number, digest, path in self._stores.found():
             if number > seq or self._journal.digest(number).hex() != digest:
                 continue
             count, size = self._journal.size_after(after=number)
             if count > _FAR_BEHIND or size > _FAR_BEHIND_BYTES or self._journal.tbox_changes(number):
                 continue
-            return Filled(path, number, number), [delta_of(c) for c in self._journal.commits(after=number)]
+            return FilledStore(path, number, number), [
+                delta_of(c) for c in self._journal.commits(after=number)
+            ]
         return None
 
-    def foresee(self, commit_id: str, turtle: bytes, base: str, *, packed: bytes = b"") -> None:
-        """What a document says will be inserted by a commit of that id: begin its store if that is worth it.
+    def prefetch(self, commit_id: str, turtle: bytes, base: str, *, packed: bytes = b"") -> None:
+        """Begin the store of a commit that will insert a document, if the document is large enough.
 
-        `packed` is the same as it came, if that was packed: so much is kept until the store is filled.
-        Whoever finds that it is not so, or that there will be no commit, has to `forget` it.
+        `packed` is the compressed document, which is kept until the store is filled. The caller must
+        `discard` the store if the commit differs or is not made.
         """
         is_much = len(turtle) > self._large * _BYTES_OF_A_TRIPLE and not any(
             map(turtle.__contains__, _OTHERWISE)
@@ -103,41 +105,41 @@ class LargeMap:
         if is_much and not self.is_large:
             self._begin(commit_id, (), packed or turtle, base)
 
-    def foretell(self, commit: Commit) -> Callable[[], None]:
-        """A commit will be made if it stands the check: begin its store if that is worth it.
+    def prepare(self, commit: Commit) -> Callable[[], None]:
+        """Begin the store of a commit that is being checked, if it is large enough.
 
-        What is returned gives it up again.
+        The returned function aborts that.
         """
-        if self._foretold is None or self._foretold[0] != commit.id or commit.retracted:
-            self.forget()  # what was taken back
-            if self.is_much(commit) and not (commit.retracted or self.is_large):
+        if self._prepared is None or self._prepared[0] != commit.id or commit.retracted:
+            self.discard()  # of an aborted commit
+            if self.is_large_change(commit) and not (commit.retracted or self.is_large):
                 self._begin(commit.id, commit.inserted)
-        return self.forget
+        return self.discard
 
-    def forget(self) -> None:
-        """What was foreseen or foretold does not come."""
-        if self._foretold is not None:
-            self._foretold[1].give_up()
-            self._foretold = None
+    def discard(self) -> None:
+        """Abort the store that was begun in advance."""
+        if self._prepared is not None:
+            self._prepared[1].abort()
+            self._prepared = None
 
     def _begin(self, commit_id: str, inserted: Sequence[Triple], turtle: bytes = b"", base: str = "") -> None:
-        self.forget()
-        with suppress(OSError):  # `fill` says so
+        self.discard()
+        with suppress(OSError):  # `fill` reports it
             path = self._stores.begin()
             before = list(self._reasoner().asserted())
-            self._foretold = commit_id, StoreFiller(path, _frames(before, inserted), turtle, base=base)
+            self._prepared = commit_id, StoreFiller(path, _frames(before, inserted), turtle, base=base)
 
-    def fill(self, seq: int, now: Callable[[], int], commit: Commit | None = None) -> Future[Filled]:
-        """Make the store of the map after commit `seq`, as it is; the node's thread resolves the future.
+    def fill(self, seq: int, now: Callable[[], int], commit: Commit | None = None) -> Future[FilledStore]:
+        """Create the store of the present map after commit `seq`. The node's thread resolves the future.
 
-        `commit` is that one if it was just made: its store may be there already. `now()` is the number of the
-        last commit. The future's error is Refused when the disk does not take it, or when literals differ in
-        nothing but how they are spelled.
+        `commit` is the commit just made, whose store may exist already. `now()` returns the number of the
+        last commit. The future fails with Refused if the disk is full, or if literals differ only in their
+        spelling.
         """
-        future: Future[Filled] = Future()
+        future: Future[FilledStore] = Future()
         count: int | None = None
-        if commit is not None and self._foretold is not None and self._foretold[0] == commit.id:
-            (_, filler), self._foretold = self._foretold, None
+        if commit is not None and self._prepared is not None and self._prepared[0] == commit.id:
+            (_, filler), self._prepared = self._prepared, None
             count = len(self._reasoner())
         else:
             try:
@@ -147,7 +149,7 @@ class LargeMap:
                 return future
         self._filler = filler
 
-        def finish(done: Future[tuple[int, int]]) -> Filled:
+        def finish(done: Future[tuple[int, int]]) -> FilledStore:
             sent, found = done.result()
             return self._finished(filler.path, found == (sent if count is None else count), seq, now())
 
@@ -158,7 +160,7 @@ class LargeMap:
         return future
 
     def _pieces(self) -> Iterator[Sequence[Triple]]:
-        """The asserted triples, for another thread, in pieces that the node's makes when it can."""
+        """Yield the asserted triples for another thread, in pieces that the node's thread makes."""
         subjects = self._reasoner().by_subject()
         while groups := self._on_the_node(lambda: list(islice(subjects, _PIECE))):
             yield list(chain.from_iterable(groups))
@@ -168,20 +170,20 @@ class LargeMap:
         self._soon(lambda: settle(future, take))
         return future.result()
 
-    def _finished(self, path: Path, is_whole: bool, seq: int, settled: int) -> Filled:
+    def _finished(self, path: Path, is_whole: bool, seq: int, settled: int) -> FilledStore:
         if not is_whole:
             shutil.rmtree(path, ignore_errors=True)
             raise errors.Refused("some literals differ only in spelling")
         try:
-            return Filled(self._stores.finish(path, seq, self._journal.digest(seq)), seq, settled)
+            return FilledStore(self._stores.finish(path, seq, self._journal.digest(seq)), seq, settled)
         except OSError as error:
             raise errors.Refused(f"the SPARQL store could not be kept: {error.strerror}") from None
 
     def close(self) -> None:
-        """Give up what is being made."""
-        for filler in (self._filler, self._foretold and self._foretold[1]):
+        """Abort stores that are being created."""
+        for filler in (self._filler, self._prepared and self._prepared[1]):
             if filler is not None and not filler.outcome.done():
-                filler.give_up()
+                filler.abort()
 
 
 def _frames(*groups: Sequence[Triple]) -> Iterator[Sequence[Triple]]:
@@ -191,5 +193,5 @@ def _frames(*groups: Sequence[Triple]) -> Iterator[Sequence[Triple]]:
 
 
 def delta_of(commit: Commit) -> Delta:
-    """A commit as its readers need it."""
+    """Return a commit as a delta."""
     return Delta(seq=commit.seq, retracted=commit.retracted, inserted=commit.inserted)

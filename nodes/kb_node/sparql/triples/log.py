@@ -1,4 +1,4 @@
-"""The commits since the triples were loaded, in memory that a process shares with those forked from it."""
+"""The commits since the triples were loaded, in memory shared with forked processes."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ _deltas = codec.decoder(Delta)
 
 
 class Log:
-    """One process appends; those that were forked from it each read on from where it was then."""
+    """A log to which one process appends. Each forked process reads on from its own position."""
 
     def __init__(self) -> None:
         self._file = os.memfd_create("commits")
         self._read_to = 0
         self.size = 0
-        """How many changed triples it holds."""
+        """Number of changed triples in the log."""
 
     def fileno(self) -> int:
-        """Of the memory."""
+        """Return the file descriptor of the memory."""
         return self._file
 
     def append(self, delta: Delta) -> None:
-        """The next commit."""
+        """Append the next commit."""
         body = msgpack.encode(delta)
         frame = memoryview(len(body).to_bytes(_LENGTH_BYTES, "big") + body)
         while frame:
@@ -37,13 +37,13 @@ class Log:
         self.size += len(delta.everything)
         self._read_to = os.lseek(self._file, 0, os.SEEK_CUR)
 
-    def everything(self) -> Iterator[Delta]:
-        """From the first on; they count as read."""
+    def read_all(self) -> Iterator[Delta]:
+        """Yield all commits from the first one, and mark them as read."""
         self._read_to = 0
-        return self.news()
+        return self.read_new()
 
-    def news(self) -> Iterator[Delta]:
-        """Those that came since it was last read here; each counts as read when it is given."""
+    def read_new(self) -> Iterator[Delta]:
+        """Yield the commits since the last call; each counts as read when it is yielded."""
         while len(head := os.pread(self._file, _LENGTH_BYTES, self._read_to)) == _LENGTH_BYTES:
             length = int.from_bytes(head, "big")
             body = os.pread(self._file, length, self._read_to + _LENGTH_BYTES)
@@ -53,5 +53,5 @@ class Log:
             yield _deltas.decode(body)
 
     def close(self) -> None:
-        """Here; those who were forked keep it."""
+        """Close the log in this process; forked processes keep it."""
         os.close(self._file)

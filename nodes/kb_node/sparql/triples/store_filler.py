@@ -1,4 +1,4 @@
-"""A store on disk while a process of its own fills it, and a thread feeds that."""
+"""Fills a store on disk in a separate process, which a thread supplies with triples."""
 
 from __future__ import annotations
 
@@ -11,33 +11,33 @@ from concurrent.futures import Future
 from contextlib import suppress
 from pathlib import Path
 
-from semmap.nodes.kb_node.sparql.triples.filling import END, PACKED, frame
+from semmap.nodes.kb_node.sparql.triples.bulk_load import END, PACKED, frame
 from semmap.schemas import errors
 from semmap.schemas.explanations import Triple
 from semmap.schemas.packing import is_packed
 
 
 class StoreFiller:
-    """Fills a new store at `path`; on any error nothing is left of it."""
+    """Fills a new store at `path`. After an error the store is deleted."""
 
     def __init__(
         self, path: Path, pieces: Iterable[Sequence[Triple]], turtle: bytes = b"", *, base: str = ""
     ) -> None:
-        """`pieces` are iterated over by the thread; what is said in `turtle`, of that base, comes, too.
+        """Start the thread, which iterates over `pieces` and then sends `turtle` with that base IRI.
 
-        That may be packed: then less memory is taken until the process has read it.
+        `turtle` may be compressed, which takes less memory until the process has read it.
         """
         self.path = path
         self._turtle = turtle
         self._base = base
         self.outcome: Future[tuple[int, int]] = Future()
-        """How many triples were sent in pieces, and how many the store has; its error is Refused."""
+        """The number of triples sent in pieces and the number in the store, or Refused."""
         self._process: subprocess.Popen[bytes] | None = None
         self._is_wanted = True
         threading.Thread(target=self._run, args=(pieces,), name="sparql-filling", daemon=True).start()
 
-    def give_up(self) -> None:
-        """Nobody wants it any more."""
+    def abort(self) -> None:
+        """Stop and delete the store."""
         self._is_wanted = False
         if self._process is not None:
             with suppress(OSError):
@@ -55,7 +55,13 @@ class StoreFiller:
             self.outcome.set_result(counts)
 
     def _pump(self, pieces: Iterable[Sequence[Triple]]) -> tuple[int, int]:
-        command = [sys.executable, "-P", "-m", "semmap.nodes.kb_node.sparql.triples.filling", str(self.path)]
+        command = [
+            sys.executable,
+            "-P",
+            "-m",
+            "semmap.nodes.kb_node.sparql.triples.bulk_load",
+            str(self.path),
+        ]
         if self._turtle:
             command += [self._base, PACKED] if is_packed(self._turtle) else [self._base]
         with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:

@@ -15,7 +15,7 @@ from typing import Final
 
 from msgspec import Struct, msgpack
 
-from semmap.nodes.kb_node.progress import parts
+from semmap.nodes.kb_node.progress import split_batches
 from semmap.nodes.kb_node.reasoner.abox.columns import Columns
 from semmap.nodes.kb_node.storage.encoding import body_encoding, columns_encoding
 from semmap.nodes.kb_node.storage.encoding.columns_encoding import StoredColumns
@@ -87,7 +87,7 @@ def encode(checkpoint: Checkpoint, progress: Callable[[], None] = lambda: None) 
         triples = [compressor.compress(frame) for frame in _frames_of_triples(checkpoint.triples, progress)]
         entities = [
             compressor.compress(msgpack.encode(part))
-            for part in parts(checkpoint.entities, _ENTITIES, progress)
+            for part in split_batches(checkpoint.entities, _ENTITIES, progress)
         ]
         body = _Body(
             seq=checkpoint.seq,
@@ -130,7 +130,7 @@ def decode(body: bytes, progress: Callable[[], None] = lambda: None) -> Checkpoi
 def _frames_of_triples(triples: Iterable[Triple], progress: Callable[[], None]) -> Iterator[bytes]:
     known: dict[str, int] = {}
     number = known.setdefault
-    for part in parts(triples, _TRIPLES, progress):
+    for part in split_batches(triples, _TRIPLES, progress):
         before = len(known)
         numbers = array("I", [number(term, len(known)) for term in chain.from_iterable(part)])
         new_terms = list(islice(reversed(known), len(known) - before))[::-1]

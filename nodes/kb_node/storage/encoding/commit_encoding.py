@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.progress import parts
+from semmap.nodes.kb_node.progress import split_batches
 from semmap.nodes.kb_node.storage.encoding import body_encoding
 from semmap.schemas import codec
 from semmap.schemas.commits import Commit
@@ -112,7 +112,7 @@ def _encoded(commit: Commit, names: Sequence[str]) -> Iterator[bytes]:
             yield codec.encode(value)
             continue
         yield _header(_ARRAY, len(value))
-        for piece in parts(value, _PIECE, _nothing):
+        for piece in split_batches(value, _PIECE, _nothing):
             yield codec.encode(piece)[len(_header(_ARRAY, len(piece))) :]
 
 

@@ -27,7 +27,7 @@ def adapt_commit(state: MapState, commit: Commit) -> Commit:
     """
     if commit.tbox:
         return structs.replace(commit, changed=(), removed=(), digest="")
-    inserted = tuple(t for t in commit.inserted if not state.has(t))
+    inserted = tuple(t for t in commit.inserted if not state.is_asserted(t))
     retracted = dict.fromkeys(_retracted(state, commit))
     retracted = {t: None for t in retracted if t not in set(commit.inserted)}
     _require_what_it_describes(state, commit)
@@ -43,7 +43,7 @@ def _retracted(state: MapState, commit: Commit) -> list[Triple]:
     replacing = _pairs(commit.inserted)
     found: list[Triple] = []
     for triple in commit.retracted:
-        if state.has(triple):
+        if state.is_asserted(triple):
             found.append(triple)
             continue
         pair = triple[:2]

@@ -130,7 +130,7 @@ def _first_tbox(damaged: Journal, instead: Path | None) -> bytes:
                 f" --tbox FILE, or start a new map with --fresh (the damaged file is kept)"
             ) from None
     triples = ontology_files.gather([instead], {}).triples
-    tbox_validation.compiled(triples, str(instead))
+    tbox_validation.compile_tbox(triples, str(instead))
     return rdf.serialise(triples, "ntriples")
 
 

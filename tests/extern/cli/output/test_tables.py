@@ -122,9 +122,9 @@ def test_bodies_that_could_not_be_made_are_told_below_the_list():
 
 
 def test_each_note_on_a_commit_has_a_row_of_its_own():
-    noted = structs.replace(commit(8), notes=("taken back: one", "on table1 was cup1"))
+    noted = structs.replace(commit(8), notes=("retracted: one", "on table1 was cup1"))
     lines = drawn(show_past.history_table([noted, commit(9)]), 200).splitlines()
     assert [line.strip() for line in lines if "note: " in line] == [
-        "note: taken back: one",
+        "note: retracted: one",
         "note: on table1 was cup1",
     ]

@@ -1,4 +1,4 @@
-"""Each construct of OWL in functional syntax, against the triples that the W3C's mapping has for it."""
+"""Each OWL construct in functional syntax, compared with the triples of the W3C mapping."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pyoxigraph
 import pytest
 
 from semmap.nodes.kb_node.documents import rdf
-from semmap.nodes.kb_node.documents.blank_nodes import labelled_like
+from semmap.nodes.kb_node.documents.blank_nodes import relabel_like
 from tests.data import data_folder
 
 HEAD = "Prefix(:=<urn:t:>)\nOntology(<urn:t>\n"
@@ -196,7 +196,7 @@ CONSTRUCTS = [
 def test_a_construct_becomes_the_triples_of_the_mapping(axiom, turtle):
     read = rdf.parse((HEAD + axiom + ")").encode(), "o.ofn", label_prefix="r")
     expected = rdf.parse((TURTLE + turtle).encode(), "expected.ttl", label_prefix="x")
-    assert labelled_like(read, expected) == frozenset(expected)
+    assert relabel_like(read, expected) == frozenset(expected)
     assert len(read) == len(set(read)) == len(expected)
 
 
@@ -208,14 +208,14 @@ def test_the_triples_do_not_depend_on_the_run():
     assert rdf.parse(content, "o") == rdf.parse(content, "o")
 
 
-def test_an_ontology_without_a_name_is_one():
+def test_an_ontology_may_have_no_name():
     read = rdf.parse(b"Ontology(Declaration(Class(<urn:A>)))", "o", label_prefix="r")
     assert ("_:rontology", "<http://www.w3.org/1999/02/22-rdf-syntax-ns#type>") in {t[:2] for t in read}
 
 
 @pytest.mark.parametrize("file", ["SOMA.owl", "DUL.owl"])
-def test_another_reader_finds_the_same_axioms_in_the_triples(file):
-    """The RDF reader of the library that read the axioms is the judge of their triples."""
+def test_another_parser_finds_the_same_axioms_in_the_triples(file):
+    """Compare with the library's own RDF reader."""
     path = data_folder() / "ontologies" / "soma" / file
     if not path.exists():
         pytest.skip(f"there is no {path}")

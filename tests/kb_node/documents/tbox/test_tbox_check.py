@@ -30,7 +30,7 @@ def report(tmp_path):
     return report
 
 
-def test_what_is_in_an_ontology(report, tmp_path):
+def test_the_contents_of_an_ontology_are_reported(report, tmp_path):
     found = report()
     assert found.is_sound
     assert [Path(file).name for file in found.files] == ["o.ttl", "more.ttl"]
@@ -44,8 +44,8 @@ def test_what_is_in_an_ontology(report, tmp_path):
     assert (found.inconsistent, found.unsatisfiable, found.untried) == ("", (), 0)
 
 
-def test_a_class_whose_members_would_need_what_cannot_be_is_unsatisfiable(report):
-    """As the ice cream of the Pizza ontology, which no rule of OWL 2 RL finds."""
+def test_a_class_with_impossible_members_is_unsatisfiable(report):
+    """Like the ice cream of the Pizza ontology, which no rule of OWL 2 RL finds."""
     found = report("""
 :Topping a owl:Class . :hasTopping a owl:ObjectProperty ; rdfs:domain :Cup ; rdfs:label "has topping" .
 :Ice rdfs:label "ice cream" ; a owl:Class ; rdfs:subClassOf :Plate ,
@@ -59,7 +59,7 @@ def test_a_class_whose_members_would_need_what_cannot_be_is_unsatisfiable(report
     )
 
 
-def test_how_quick_changes_are_is_measured(report):
+def test_the_time_of_changes_is_measured(report):
     quick = report().quickness
     assert quick is not None
     assert quick.add_p50_ms is not None
@@ -68,14 +68,14 @@ def test_how_quick_changes_are_is_measured(report):
     assert quick.not_incremental == ""
 
 
-def test_what_makes_changes_slow_is_named(report):
+def test_the_reason_for_slow_changes_is_reported(report):
     quick = report("owl:inverseOf rdfs:domain :Cup .").quickness
     assert quick is not None
     assert "owl:inverseOf" in quick.not_incremental or "inverseOf" in quick.not_incremental
     assert quick.add_p50_ms is not None
 
 
-def test_classes_of_which_nothing_can_be_are_found(report):
+def test_unsatisfiable_classes_are_found(report):
     found = report(
         ":Both a owl:Class ; rdfs:subClassOf :Cup , :Plate . :Deep a owl:Class ; rdfs:subClassOf :Both ."
         " :Nil a owl:Class ; owl:equivalentClass owl:Nothing ."
@@ -87,26 +87,26 @@ def test_classes_of_which_nothing_can_be_are_found(report):
     assert found.quickness is not None
 
 
-def test_an_ontology_that_contradicts_itself_is_told_why(report):
+def test_an_inconsistent_ontology_is_explained(report):
     found = report(":cup1 a :Plate .")
     assert "Cup" in found.inconsistent
     assert not found.is_sound
     assert (found.quickness, found.classes, found.missing) == (None, 4, ("urn:none",))
 
 
-def test_an_ontology_of_nothing_but_unsatisfiable_classes_has_no_quickness_to_measure(report):
+def test_an_ontology_with_only_unsatisfiable_classes_has_no_time_of_changes(report):
     found = report(text="<http://o.org/o> a owl:Ontology . :A a owl:Class ; rdfs:subClassOf owl:Nothing .")
     assert found.quickness is not None
     assert found.quickness.add_p50_ms is None
 
 
-def test_what_cannot_be_read_is_told(tmp_path):
+def test_an_unreadable_file_is_reported(tmp_path):
     (tmp_path / "bad.ttl").write_text("\n\n:a")
     with pytest.raises(errors.BadFile, match=r"bad.ttl is not valid Turtle: .*line 3"):
         check([tmp_path / "bad.ttl"], {})
 
 
-def test_the_household_is_sound():
+def test_the_household_ontology_has_no_errors():
     found = check([HOUSEHOLD_TTL], {})
     assert found.is_sound
     assert (found.missing, found.ambiguous) == ((), {})
@@ -126,7 +126,7 @@ def test_the_household_is_sound():
         ("bfo", None, ()),
     ],
 )
-def test_real_ontologies_are_read_and_quick(file, ambiguous, empty):
+def test_real_ontologies_are_read_quickly(file, ambiguous, empty):
     path = data_folder() / "ontologies" / file
     if not path.exists():
         pytest.skip(f"there is no {path}")

@@ -1,10 +1,10 @@
-"""Prefixes, spatial roots, and what is set aside: told of a TBox, kept in it."""
+"""Prefixes, spatial roots and ignored statements are declared in the TBox and kept."""
 
 import pytest
 
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.documents.tbox import tbox_notes
-from semmap.nodes.kb_node.documents.tbox.tbox_declarations import declared, keeping_roots
+from semmap.nodes.kb_node.documents.tbox.tbox_declarations import with_declarations, with_spatial_roots_of
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import vocabulary as v
@@ -29,23 +29,23 @@ def table(tbox):
 
 @pytest.mark.parametrize("word", ["Animal", "zoo:Animal", "http://zoo.org/zoo#Animal", ANIMAL, "bestia"])
 def test_a_root_is_given_by_iri_or_name(word):
-    tbox = declared(triples(), spatial_root=[word])
+    tbox = with_declarations(triples(), spatial_root=[word])
     assert table(tbox).spatial_roots == (ANIMAL,)
 
 
 def test_several_roots():
-    assert len(table(declared(triples(), spatial_root=["Cat", "Idea"])).spatial) == 2
+    assert len(table(with_declarations(triples(), spatial_root=["Cat", "Idea"])).spatial) == 2
 
 
-def test_a_root_that_there_is_not_is_refused():
+def test_an_unknown_root_is_rejected():
     with pytest.raises(errors.UnknownClass, match=r"--spatial-root Anmal: .* did you mean Animal"):
-        declared(triples(), spatial_root=["Anmal"])
+        with_declarations(triples(), spatial_root=["Anmal"])
 
 
 def test_the_prefix_of_a_file_is_kept():
-    tbox = declared(triples(), of_file=rdf.prefixes(ZOO.encode()))
+    tbox = with_declarations(triples(), of_file=rdf.prefixes(ZOO.encode()))
     assert "z" in table(tbox).prefixes
-    assert declared(tbox) == tbox
+    assert with_declarations(tbox) == tbox
 
 
 @pytest.mark.parametrize(
@@ -67,15 +67,15 @@ def test_prefixes_are_read_from_every_syntax(text, prefixes):
 
 
 def test_roots_stay_until_others_are_declared():
-    before = table(declared(triples(), spatial_root=["Animal"]))
-    assert table(keeping_roots(triples(), before)).spatial_roots == (ANIMAL,)
-    other = declared(triples(), spatial_root=["Idea"])
-    assert table(keeping_roots(other, before)).spatial_roots == ("<http://zoo.org/zoo#Idea>",)
+    before = table(with_declarations(triples(), spatial_root=["Animal"]))
+    assert table(with_spatial_roots_of(triples(), before)).spatial_roots == (ANIMAL,)
+    other = with_declarations(triples(), spatial_root=["Idea"])
+    assert table(with_spatial_roots_of(other, before)).spatial_roots == ("<http://zoo.org/zoo#Idea>",)
     without = [t for t in triples() if ANIMAL not in t]
-    assert table(keeping_roots(without, before)).spatial_roots == ()
+    assert table(with_spatial_roots_of(without, before)).spatial_roots == ()
 
 
-def test_without_roots_it_is_told_what_that_means():
+def test_without_roots_the_consequence_is_reported():
     assert "load it again with --spatial-root CLASS" in tbox_notes.not_in_space(table(triples()))
 
 
@@ -96,15 +96,15 @@ COLOR = (
 )
 
 
-def test_what_no_map_could_be_kept_with_is_set_aside_and_told():
+def test_statements_that_make_every_map_inconsistent_are_ignored_and_reported():
     region = "<http://www.ease-crc.org/ont/SOMA.owl#ColorRegion>"
-    tbox = declared(triples(SOMA))
+    tbox = with_declarations(triples(SOMA))
     assert (region, v.RDFS_SUB_CLASS_OF, REGION) in tbox
     reasoner = Reasoner(tbox)
     reasoner.apply(insert=triples(COLOR))
     note = tbox_notes.set_aside(tbox)
     assert note.startswith(
-        "ignored, because no map could be kept with it: ColorRegion subClassOf PhysicalAtt"
+        "ignored, because every map would be inconsistent with it: ColorRegion subClassOf PhysicalAtt"
     )
-    assert declared(tbox) == tbox
+    assert with_declarations(tbox) == tbox
     assert tbox_notes.set_aside(triples()) == ""

@@ -19,7 +19,7 @@ def notes_of(tbox):
     return tbox_notes.notes(tbox, reasoner, ClassTable(reasoner))
 
 
-def test_of_a_plain_tbox_nothing_is_to_be_said():
+def test_a_regular_tbox_has_no_notes():
     assert notes() == ()
 
 
@@ -34,20 +34,17 @@ def test_missing_imports_are_named():
     )
 
 
-def test_what_is_outside_owl_2_rl_is_counted():
+def test_axioms_beyond_owl_2_rl_are_counted():
     some = "[ a owl:Restriction ; owl:onProperty dm:hasSize ; owl:someValuesFrom dm:Chair ]"
     assert notes(f"dm:Chair rdfs:subClassOf {some} .") == (
-        "1 axiom goes beyond OWL 2 RL; that part is inert, which does no harm"
-        " (1 x existential restriction as a superclass)",
+        "1 axiom goes beyond OWL 2 RL; that part has no effect (1 x existential restriction as a superclass)",
     )
     (said,) = notes(f"dm:Chair rdfs:subClassOf {some} , {some} . dm:near a owl:ReflexiveProperty .")
-    assert said.startswith(
-        "3 axioms go beyond OWL 2 RL; that part is inert, which does no harm (2 x existential"
-    )
+    assert said.startswith("3 axioms go beyond OWL 2 RL; that part has no effect (2 x existential")
     assert said.endswith("1 x reflexive property)")
 
 
-def test_what_is_inert_in_the_shipped_tbox_is_not_told_but_what_is_added_is():
+def test_ineffective_axioms_of_the_shipped_tbox_are_not_reported_but_added_ones_are():
     tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes(), "household")
     more = rdf.parse(f"{v.dm('near')} a <{v.OWL}ReflexiveProperty> .".encode(), "more")
     assert notes_of(tbox) == ()
@@ -58,25 +55,26 @@ def test_what_is_inert_in_the_shipped_tbox_is_not_told_but_what_is_added_is():
 def test_entities_that_the_tbox_describes_are_counted():
     (said,) = notes(":chair1 a dm:Chair . :a a dm:Seat . :kitchen1 a dm:Kitchen . :b a dm:Seat .")
     assert said == (
-        "4 entities are described by the TBox itself, so no command changes them: a, b, chair1 and kitchen1"
+        "4 entities are described by the TBox itself, so commands cannot change them:"
+        " a, b, chair1 and kitchen1"
     )
 
 
-def test_what_keeps_changes_from_being_quick_is_told_with_how_long_one_takes():
+def test_the_reason_for_slow_changes_is_reported_with_the_time():
     (said,) = notes("owl:inverseOf rdfs:domain dm:Chair .")
     assert re.fullmatch(
         r"not incremental: the meaning of OWL's own vocabulary .*, about \d+ ms a change", said
     )
 
 
-def test_that_nothing_is_computed_of_places_is_told():
-    """Of a TBox that has some of the properties, those are facts."""
+def test_missing_spatial_properties_are_reported():
+    """If a TBox has some of the properties, facts are computed for those."""
     lab = [
         t for t in home.TBOX if v.local_name(t[0]) not in {"isOn", "isInside", "isLocatedIn", "isAttachedTo"}
     ]
     assert notes_of(lab) == (
-        "the TBox has none of isAttachedTo, isInside, isLocatedIn, isOn, so where things are is measured when"
-        " asked for, and not a fact",
+        "the TBox has none of isAttachedTo, isInside, isLocatedIn, isOn, so spatial relations are measured"
+        " on request and are not facts",
     )
     on = (v.dm("isOn"), v.RDF_TYPE, "<http://www.w3.org/2002/07/owl#ObjectProperty>")
     assert notes_of([*lab, on]) == ()

@@ -1,4 +1,4 @@
-"""Another TBox at run time."""
+"""Replacing the TBox at run time."""
 
 import pytest
 
@@ -34,7 +34,7 @@ def furnished(semantic_map):
     return semantic_map
 
 
-def test_another_tbox_is_one_commit(furnished):
+def test_replacing_the_tbox_is_one_commit(furnished):
     commit = replace(furnished, "t", NEW_CLASSES)
     assert (commit.seq, commit.tbox, furnished.seq) == (2, True, 2)
     assert [e.name for e in commit.changed] == ["chair1", "chair2"]
@@ -51,7 +51,7 @@ def test_another_tbox_is_one_commit(furnished):
     assert not set(furnished.abox()) & set(tbox(NEW_CLASSES))
 
 
-def test_a_body_s_model_changes_with_the_tbox(furnished):
+def test_the_model_of_a_body_changes_with_the_tbox(furnished):
     changed = TBOX_TURTLE.replace('dm:model "chair"', 'dm:model "throne"')
     replace(furnished, "t", changed)
     chair1 = furnished.entity("chair1")
@@ -78,7 +78,7 @@ def test_it_survives_a_restart(furnished, checkpoints):
     home.close(again)
 
 
-def test_the_next_start_need_not_work_it_out_again(furnished):
+def test_the_next_start_uses_the_cached_closure(furnished):
     assert not furnished.checkpoint_is_due(quiet=True)
     replace(furnished, "t", NEW_CLASSES)
     assert furnished.checkpoint_is_due(quiet=True)
@@ -87,7 +87,7 @@ def test_the_next_start_need_not_work_it_out_again(furnished):
     assert not furnished.checkpoint_is_due(quiet=True)
 
 
-def test_history_and_the_past_stay_right_across_it(furnished):
+def test_history_and_past_states_stay_correct(furnished):
     before = furnished.snapshot().entities
     replace(furnished, "t", NEW_CLASSES)
     past = HistoryReader(furnished._journal)
@@ -123,7 +123,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize(("text", "error", "says"), REFUSED.values(), ids=REFUSED.keys())
-def test_a_tbox_that_the_map_does_not_fit_changes_nothing(furnished, text, error, says):
+def test_a_tbox_that_does_not_fit_the_map_changes_nothing(furnished, text, error, says):
     before = (
         state(furnished),
         list(furnished.class_table()),
@@ -146,7 +146,7 @@ def test_a_tbox_that_the_map_does_not_fit_changes_nothing(furnished, text, error
     home.close(again)
 
 
-def test_a_full_disk_leaves_the_tbox(furnished):
+def test_a_full_disk_does_not_change_the_tbox(furnished):
     before = state(furnished), furnished.tbox
     text = NEW_CLASSES + f"dm:Chair rdfs:comment '{'x' * 100_000}' ."
     with full_by_page_count(furnished._journal), pytest.raises(errors.Refused, match="could not be written"):
@@ -155,7 +155,7 @@ def test_a_full_disk_leaves_the_tbox(furnished):
 
 
 def test_imports_name_the_ontology(semantic_map):
-    (said,) = tbox_validation.imports(semantic_map.tbox)
+    (said,) = tbox_validation.import_triples(semantic_map.tbox)
     assert said[:2] == (v.ABOX_ONTOLOGY, v.OWL_IMPORTS)
 
 
@@ -167,5 +167,5 @@ def test_imports_name_the_ontology(semantic_map):
         (TBOX_TURTLE + ":sink dm:isLocatedIn :kitchen .", True),
     ],
 )
-def test_a_tbox_may_speak_of_individuals(text, has):
+def test_a_tbox_may_describe_individuals(text, has):
     assert tbox_validation.has_individuals(tbox(text)) is has

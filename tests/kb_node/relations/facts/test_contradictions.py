@@ -103,7 +103,7 @@ def test_the_asserted_locations_of_the_flat_hold(tmp_path):
     by_hand = rdf.parse(FLAT_BY_HAND.read_bytes(), "by_hand.ttl", label_prefix="h")
     assert len(by_hand) == 58
     assert not flat.commit(home.transaction(2, by_hand)).notes
-    said = list(answers.said_of_place(flat))
+    said = list(answers.asserted_locations(flat))
     assert len(said) == 58
     assert not [relation.text for relation in find_contradictions(Space(flat.entities()), said)]
     home.close(flat)

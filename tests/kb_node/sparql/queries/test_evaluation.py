@@ -1,6 +1,6 @@
 import pytest
 
-from semmap.nodes.kb_node.sparql.queries.evaluation import answer
+from semmap.nodes.kb_node.sparql.queries.evaluation import evaluate
 from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, Delta
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -17,7 +17,7 @@ def dataset():
 
 
 def ask(dataset, query, *, inferred=False, limit=100):
-    return answer(query, dataset, inferred=inferred, limit=limit)
+    return evaluate(query, dataset, inferred=inferred, limit=limit)
 
 
 def test_the_four_forms(dataset):
@@ -33,7 +33,7 @@ def test_the_four_forms(dataset):
     assert len(ask(dataset, "DESCRIBE :b").rows) == 2
 
 
-def test_what_follows_is_seen_when_it_is_asked_for(dataset):
+def test_inferences_are_included_on_request(dataset):
     for query, asserted, inferred in (
         ("SELECT ?x { ?x a dm:Seat }", 0, 2),
         ("SELECT ?x { ?x a ?c }", 3, 5),
@@ -43,24 +43,24 @@ def test_what_follows_is_seen_when_it_is_asked_for(dataset):
         assert len(ask(dataset, query, inferred=True).rows) == inferred
 
 
-def test_more_rows_than_allowed_are_refused(dataset):
+def test_too_many_rows_are_rejected(dataset):
     assert len(ask(dataset, "SELECT * { ?s a ?o }", limit=3).rows) == 3
     for query in ("SELECT * { ?s a ?o }", "CONSTRUCT { ?s a ?o } WHERE { ?s a ?o }"):
         with pytest.raises(errors.Refused, match="more than 2 rows"):
             ask(dataset, query, limit=2)
 
 
-def test_a_triple_that_is_made_twice_counts_once(dataset):
+def test_a_duplicate_triple_counts_once(dataset):
     graph = ask(dataset, "CONSTRUCT { :a a dm:Thing } WHERE { ?s ?p ?o }", limit=1)
     assert graph.rows == ((v.entity_iri("a"), v.RDF_TYPE, v.dm("Thing")),)
 
 
-def test_an_unknown_function_is_refused(dataset):
+def test_an_unknown_function_is_rejected(dataset):
     with pytest.raises(errors.Refused, match=r"custom function <http://x.org/f> is not supported"):
         ask(dataset, "SELECT (<http://x.org/f>(1) AS ?x) {}")
 
 
-def test_two_spellings_of_a_number_are_there_until_both_are_gone():
+def test_two_spellings_of_a_number_are_kept_until_both_are_removed():
     spellings = turtle(':a dm:mass "1.0"^^xsd:float , "1.00"^^xsd:float . :b dm:mass "2"^^xsd:float .')
     one, other = (t for t in spellings if t[0] == v.entity_iri("a"))
     for dataset in (Dataset(0, spellings), _by_commits(spellings)):
@@ -81,12 +81,12 @@ def _by_commits(triples):
 @pytest.mark.parametrize(
     ("query", "notes"),
     [
-        ("SELECT ?x { ?x dm:masss ?m }", ["nothing in the map is called dm:masss; did you mean dm:mass?"]),
+        ("SELECT ?x { ?x dm:masss ?m }", ["unknown term dm:masss; did you mean dm:mass?"]),
         (
             "SELECT (COUNT(*) AS ?n) { ?x a dm:Chiar }",
-            ["nothing in the map is called dm:Chiar; did you mean dm:Chair?"],
+            ["unknown term dm:Chiar; did you mean dm:Chair?"],
         ),
-        ("ASK { :nobody a dm:Chair }", ["nothing in the map is called :nobody"]),
+        ("ASK { :ghost9 a dm:Chair }", ["unknown term :ghost9"]),
         ("PREFIX my: <urn:my#> SELECT * { ?x my:x <urn:y> }", ["... my:x", "... <urn:y>"]),
         ("CONSTRUCT { ?x a dm:Chair } { ?x a <http://x.org/y> }", ["... <http://x.org/y>"]),
         ("SELECT * { ?x a dm:Chair , dm:Table }", []),  # all of these are known, and none is both
@@ -94,8 +94,8 @@ def _by_commits(triples):
         ("SELECT * { ?x a dm:Chair OPTIONAL { ?x dm:nosuch ?y } }", []),  # there are rows
     ],
 )
-def test_where_there_is_nothing_it_is_told_what_is_unknown(query, notes):
+def test_unknown_terms_are_noted_if_there_is_no_result(query, notes):
     said = ":a a dm:Chair . :b a dm:Chair ; dm:mass 4.50 . :c a dm:Table ."
     declared = " dm:Chair a owl:Class . dm:mass a owl:DatatypeProperty ."
     found = ask(Dataset(7, turtle(said + declared)), query).notes
-    assert list(found) == [note.replace("...", "nothing in the map is called") for note in notes]
+    assert list(found) == [note.replace("...", "unknown term") for note in notes]

@@ -1,10 +1,10 @@
-"""A commit that a footprint says nothing of changes no rows."""
+"""A commit outside of a query's footprint does not change its rows."""
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from semmap.nodes.kb_node.sparql.queries.evaluation import answer
+from semmap.nodes.kb_node.sparql.queries.evaluation import evaluate
 from semmap.nodes.kb_node.sparql.queries.footprint import Footprint, footprint
 from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, Delta
 from semmap.ontology import vocabulary as v
@@ -51,13 +51,13 @@ def test_rows_change_only_when_the_footprint_is_touched(changes):
 
 
 def _rows(dataset, query):
-    return sorted(map(str, answer(query, dataset, inferred=False, limit=100).rows))
+    return sorted(map(str, evaluate(query, dataset, inferred=False, limit=100).rows))
 
 
 FOOTPRINTS = {query: footprint(query) for query in QUERIES}
 
 
-def test_a_class_is_told_from_another():
+def test_classes_are_distinguished():
     looks_at = footprint("SELECT ?x { ?x a dm:Chair ; dm:isOn/rdfs:label ?y }")
     chair = v.entity_iri("a")
     assert looks_at.is_touched([(chair, v.RDF_TYPE, v.dm("Chair"))])
@@ -66,6 +66,6 @@ def test_a_class_is_told_from_another():
 
 
 @pytest.mark.parametrize("query", ["SELECT ?x { ?x ?p ?o }", "SELECT ?x { ?x dm:p* ?o }", "no SPARQL"])
-def test_what_cannot_be_told_is_everything(query):
+def test_unknown_patterns_cover_everything(query):
     assert footprint(query) == Footprint()
     assert footprint(query).is_touched([(v.entity_iri("a"), v.dm("p"), v.entity_iri("b"))])

@@ -1,4 +1,4 @@
-"""What follows, kept beside what is said: always all that a reasoner says."""
+"""Inferred triples that are maintained commit by commit always equal those of a new reasoner."""
 
 from functools import cache
 
@@ -25,7 +25,7 @@ PROPERTIES = [
 
 @pytest.fixture(autouse=True)
 def _closed_once(monkeypatch):
-    """The schema is the same in all examples: close it once."""
+    """Close the schema once, as it is the same in all examples."""
     close = cache(lambda facts: Closure(facts))
     monkeypatch.setattr(compiled, "Closure", lambda facts: close(tuple(facts)))
 
@@ -43,7 +43,7 @@ def _as_triples(dataset, graph):
 
 
 def _follow(tbox, commits):
-    """Every consistent one of the commits, each compared with all that a reasoner says."""
+    """Apply each consistent commit and compare with a new reasoner."""
     dataset = Dataset(0, tbox)
     consequences = Consequences(tbox, dataset)
     truth = Reasoner(tbox)
@@ -78,11 +78,11 @@ def test_with_every_construct_of_the_language(commits):
 
 @settings(SETTINGS, max_examples=12)
 @given(_commits(_at_home()))
-def test_at_home(commits):
+def test_in_the_household(commits):
     _follow(HOUSEHOLD, commits)
 
 
-def test_a_class_that_limits_values_makes_them_one():
+def test_a_class_that_limits_values_makes_them_equal():
     before = graphs.triples(":a :m1 :x , :y . :z :free :x .")
     dataset = _follow(TBOX, [((), before), ((), graphs.triples(":a a :Max1 ."))])
     assert graphs.triple(":z :free :y") in _as_triples(dataset, INFERRED)

@@ -1,4 +1,4 @@
-"""A large map's triples for SPARQL: in a store on disk, made beside other work, kept, cloned and followed."""
+"""The store on disk of a large map: created in the background, kept, cloned and updated."""
 
 import gzip
 import queue
@@ -11,7 +11,7 @@ from semmap.nodes.kb_node.sparql import worker
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.sparql.triples import large_map
 from semmap.nodes.kb_node.sparql.triples.dataset import Delta
-from semmap.nodes.kb_node.sparql.triples.kept import FOLDER, clone_of, cloned
+from semmap.nodes.kb_node.sparql.triples.disk_stores import FOLDER, clone_path, clone_store
 from semmap.nodes.kb_node.sparql.triples.large_map import LargeMap
 from semmap.nodes.kb_node.storage import seed
 from semmap.nodes.kb_node.storage.journal import Journal
@@ -27,7 +27,7 @@ COUNT = "SELECT (COUNT(?c) AS ?n) { ?c a dm:Chair }"
 
 
 class Node:
-    """A map with its SPARQL service; this test's thread is the node's."""
+    """A map with its SPARQL service; the test's thread acts as the node's."""
 
     def __init__(self, semantic_map, large=40):
         self.map = semantic_map
@@ -45,7 +45,7 @@ class Node:
         large_map.fill = counted
         self.large_map = large_map
         self.service = SparqlService(lambda: self.map.reasoner.asserted(), self.news.put, large_map)
-        self.map.foretell = self.service.foretell
+        self.map.prepare = self.service.prepare
 
     def commit(self, number, insert=(), retract=()):
         commit = self.map.commit(transaction(number, insert, retract))
@@ -53,7 +53,7 @@ class Node:
         return commit
 
     def until(self, future):
-        """The result of a future; meanwhile the node's thread does what it is to do."""
+        """Return the result of a future, and run the node's tasks in the meantime."""
         while not future.done():
             try:
                 self.events.get(timeout=0.05)()
@@ -87,7 +87,7 @@ def stores(node):
     return [path for path in folder.iterdir() if path.name[0].isdigit()] if folder.exists() else []
 
 
-def test_a_large_map_is_asked_on_disk_and_followed(node):
+def test_a_large_map_is_queried_on_disk_and_kept_up_to_date(node):
     assert node.count() == 3
     assert (node.made, len(stores(node))) == (1, 1)
     node.commit("more", chair("more"))
@@ -106,7 +106,7 @@ def test_a_small_map_is_in_memory(tmp_path):
         node.close()
 
 
-def test_the_store_is_kept_between_starts_and_catches_up(node, tmp_path):
+def test_the_store_survives_a_restart_and_catches_up(node, tmp_path):
     assert node.count() == 3
     node.commit("more", chair("more"))
     node.close()
@@ -134,7 +134,7 @@ def test_another_journal_has_another_store(node, tmp_path):
         again.close()
 
 
-def test_commits_while_the_store_is_made_are_in_it(node):
+def test_commits_during_the_creation_are_in_the_store(node):
     answer = node.service.ask(Sparql(query=COUNT), node.map.seq)
     assert not answer.done()
     node.commit("more", chair("more"))
@@ -145,8 +145,8 @@ def test_commits_while_the_store_is_made_are_in_it(node):
     }
 
 
-def test_no_answer_is_of_a_map_that_never_was(node):
-    """The store may hold some of a later commit; who asks before that is answered as of it."""
+def test_no_answer_mixes_two_commits(node):
+    """The store may contain parts of a later commit; earlier queries are answered as of that commit."""
     answer = node.service.ask(
         Sparql(query="SELECT ?c ?p { ?c a dm:Chair ; dm:hasPosition ?p }"), node.map.seq
     )
@@ -155,7 +155,7 @@ def test_no_answer_is_of_a_map_that_never_was(node):
     assert (result.seq, len(result.rows)) == (node.map.seq, 4)
 
 
-def test_after_a_large_commit_the_store_is_made_before_anybody_asks(tmp_path):
+def test_the_store_is_created_after_a_large_commit(tmp_path):
     node = Node(new_map(tmp_path), large=50)
     try:
         node.commit("many", [t for i in range(30) for t in chair(f"chair{i}")])
@@ -186,7 +186,7 @@ def test_the_store_is_begun_with_the_commit(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     "kind", ["it contradicts itself", "the disk does not take it", "it is one of several"]
 )
-def test_nothing_stays_of_a_store_whose_commit_was_not_made(tmp_path, monkeypatch, kind):
+def test_the_store_of_an_aborted_commit_is_deleted(tmp_path, monkeypatch, kind):
     node = Node(new_map(tmp_path), large=50)
     try:
         wrong = [(v.entity_iri("chair3"), v.RDF_TYPE, v.dm("Kitchen"))] if "contradicts" in kind else []
@@ -206,10 +206,10 @@ def test_nothing_stays_of_a_store_whose_commit_was_not_made(tmp_path, monkeypatc
         node.close()
 
 
-def test_a_store_foretold_for_a_commit_that_was_taken_back_is_not_another_ones(tmp_path):
+def test_a_store_prepared_for_an_undone_commit_is_not_used_for_another(tmp_path):
     node = Node(new_map(tmp_path), large=50)
     try:
-        node.map.commit(transaction("a", chairs(30)))  # and nobody hears of it again
+        node.map.commit(transaction("a", chairs(30)))  # and it is not reported again
         node.map.commit(transaction("b", retract=chairs(20)))
         node.commit("c", [t for i in range(30) for t in chair(f"stool{i}")])
         assert node.count() == 40
@@ -226,9 +226,9 @@ def test_the_store_is_filled_from_a_document_while_it_is_read(tmp_path, monkeypa
     node = Node(new_map(tmp_path), large=50)
     node.map.commit(transaction("one", chair("one")))
     try:
-        said = [*chairs(30), *chairs(2), *chair("one")]  # some of it twice, and some that is there already
+        said = [*chairs(30), *chairs(2), *chair("one")]  # some of it twice, and some that exists already
         packed = gzip.compress(turtle(said)) if is_packed else b""
-        node.service.foresee("many", turtle(said), v.ABOX, packed=packed)
+        node.service.prefetch("many", turtle(said), v.ABOX, packed=packed)
         monkeypatch.setattr(node.map.reasoner, "by_subject", None)  # nothing is read again
         monkeypatch.setattr(large_map, "_frames", None)
         node.commit("many", said)
@@ -239,13 +239,13 @@ def test_the_store_is_filled_from_a_document_while_it_is_read(tmp_path, monkeypa
 
 
 @pytest.mark.parametrize("why", ["another commit", "something else in it", "no commit", "it retracts, too"])
-def test_a_document_that_was_not_committed_leaves_no_store(tmp_path, why):
+def test_a_document_without_a_commit_leaves_no_store(tmp_path, why):
     node = Node(new_map(tmp_path), large=50)
     node.map.commit(transaction("one", chair("one")))
     try:
-        node.service.foresee("many", turtle(chairs(30)), v.ABOX)
+        node.service.prefetch("many", turtle(chairs(30)), v.ABOX)
         if why in ("no commit", "something else in it"):
-            node.service.forget()
+            node.service.discard_prepared()
         if why != "no commit":
             gone = chair("one") if "too" in why else ()
             node.commit("other" if "another" in why else "many", chairs(29), gone)
@@ -259,11 +259,11 @@ def test_a_document_that_was_not_committed_leaves_no_store(tmp_path, why):
 @pytest.mark.parametrize(
     "text", ["_:a :p _:b .", ":a :p [] .", ":a :p (1) .", "\ufeff:a :p 1 .", ":a :p 1 ."]
 )
-def test_what_may_say_something_else_to_the_map_is_not_foreseen_nor_a_short_document(tmp_path, text):
+def test_a_document_with_unusual_content_or_a_short_one_is_not_prefetched(tmp_path, text):
     node = Node(new_map(tmp_path), large=50)
     try:
         content = text.encode() + b"#" * (3000 if text != ":a :p 1 ." else 100)
-        node.service.foresee("many", content, v.ABOX)
+        node.service.prefetch("many", content, v.ABOX)
         assert not (tmp_path / FOLDER).exists()
     finally:
         node.close()
@@ -291,7 +291,7 @@ def test_a_large_commit_over_a_store_in_memory(tmp_path):
         node.close()
 
 
-def test_literals_that_differ_in_spelling_only_are_kept_in_memory(node):
+def test_literals_that_differ_only_in_spelling_are_kept_in_memory(node):
     chair1 = v.entity_iri("chair1")
     spelled = [(chair1, v.dm("weight"), f'"{one}"^^{v.XSD_FLOAT}') for one in ("1.0", "1.00")]
     node.commit("spelled", spelled)
@@ -302,7 +302,7 @@ def test_literals_that_differ_in_spelling_only_are_kept_in_memory(node):
     assert node.ask(weight).verdict
 
 
-def test_what_follows_is_kept_in_memory(node):
+def test_inferences_are_kept_in_memory(node):
     assert node.count() == 3
     ((found,),) = node.ask("SELECT (COUNT(?c) AS ?n) { ?c a dm:Seat }", inferred=True).rows
     assert v.lexical(found) == "3"
@@ -317,28 +317,28 @@ def test_a_standing_query_over_a_store_on_disk(node):
     assert [row[0] for row in news.rows.appeared] == [v.entity_iri("more")]
 
 
-def test_a_query_that_takes_too_long_is_cancelled_and_its_clone_goes(node, tmp_path):
+def test_a_query_that_takes_too_long_is_cancelled_and_its_clone_deleted(node, tmp_path):
     node.commit("many", [t for i in range(300) for t in chair(f"seat{i}")])
     with pytest.raises(errors.Refused, match="time limit"):
         node.ask("SELECT (COUNT(*) AS ?n) { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i FILTER(?a < ?i) }", timeout=0.5)
     assert node.count() == 303
 
 
-def test_a_long_log_is_taken_into_the_store(node, monkeypatch):
-    dataset = worker.KeptDataset
+def test_a_long_log_is_merged_into_the_store(node, monkeypatch):
+    dataset = worker.DiskDataset
     assert node.count() == 3
     (path,) = stores(node)
     kept = dataset(path, node.map.seq, node.map.seq)
     commit = node.commit("more", chair("more"))
     kept.apply(Delta(seq=commit.seq, inserted=commit.inserted))
     kept.renew([Delta(seq=commit.seq, inserted=commit.inserted)])
-    opened = kept.opened()
+    opened = kept.open_in_reader()
     assert opened.seq == commit.seq
     triple = commit.inserted[0]
     assert len(list(opened.store.quads_for_pattern(ox.NamedNode(v.bare(triple[0])), None, None))) > 0
 
 
-def test_a_clone_changes_nothing_in_the_store(tmp_path):
+def test_a_clone_does_not_change_the_store(tmp_path):
     path = tmp_path / FOLDER / "1-00"
     path.parent.mkdir()
     store = ox.Store(str(path))
@@ -346,8 +346,8 @@ def test_a_clone_changes_nothing_in_the_store(tmp_path):
     store.bulk_extend([quad])
     store.flush()
     del store
-    clone = cloned(path)
+    clone = clone_store(path)
     clone.remove(quad)
     assert len(clone) == 0
     assert len(ox.Store(str(path))) == 1
-    assert clone_of(path, 1).parent == path.parent
+    assert clone_path(path, 1).parent == path.parent

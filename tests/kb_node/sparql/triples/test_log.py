@@ -1,4 +1,4 @@
-"""The log between processes: whoever was forked reads what came since, once."""
+"""Each forked process reads the commits of the log once."""
 
 import os
 
@@ -11,7 +11,7 @@ def delta(seq):
     return Delta(seq=seq, inserted=((v.entity_iri(f"c{seq}"), v.RDF_TYPE, v.dm("Chair")),) * seq)
 
 
-def test_a_child_reads_on_from_where_it_was_forked():
+def test_a_child_reads_from_its_fork_on():
     log = Log()
     log.append(delta(1))
     inbox, outbox = os.pipe()
@@ -20,8 +20,8 @@ def test_a_child_reads_on_from_where_it_was_forked():
     if child == 0:
         try:
             os.read(proceed, 1)
-            after = list(log.news())
-            sound = after == [delta(2), delta(300)] and list(log.news()) == []
+            after = list(log.read_new())
+            sound = after == [delta(2), delta(300)] and list(log.read_new()) == []
             os.write(outbox, b"1" if sound else b"0")
         finally:
             os._exit(0)
@@ -36,14 +36,14 @@ def test_a_child_reads_on_from_where_it_was_forked():
         os.close(fd)
 
 
-def test_what_is_half_written_is_left_for_later():
+def test_an_incomplete_entry_is_read_later():
     log, half = Log(), Log()
     log.append(delta(1))
     whole = os.pread(log.fileno(), 10_000, 0)
     for end in range(len(whole)):
         os.pwrite(half.fileno(), whole[:end], 0)
-        assert list(half.news()) == []
+        assert list(half.read_new()) == []
     os.pwrite(half.fileno(), whole, 0)
-    assert list(half.news()) == [delta(1)]
+    assert list(half.read_new()) == [delta(1)]
     log.close()
     half.close()

@@ -1,0 +1,93 @@
+"""Commands in words, resolved against the current map: the command `understand`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import product
+
+from msgspec import structs
+
+from semmap.nodes.kb_node.answers.entity_search import Finding
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.language import lexicon
+from semmap.nodes.language.understanding.grounding import Scene, Thing, scene
+from semmap.nodes.language.understanding.interpretation import shipped
+from semmap.nodes.language.vocabulary import Vocabulary, vocabulary
+from semmap.nodes.language.words import split
+from semmap.schemas import errors
+from semmap.schemas.commands import Understand
+from semmap.schemas.entities import Entity
+from semmap.schemas.language import SemanticFrame, Understood
+
+_MOST_WORDS = 200  # per command: a minute of speech
+
+
+class Understanding:
+    """Parses commands and resolves them against the map. Owned by the node's thread."""
+
+    def __init__(self, semantic_map: SemanticMap, finding: Finding) -> None:
+        """Create a parser; `finding` resolves descriptions and formulates clarification questions."""
+        self._map, self._finding = semantic_map, finding
+        self._lexicon = lexicon.load()
+        self._classes: ClassTable | None = None
+        self._vocabulary: Vocabulary | None = None
+        self._scene: tuple[int, Scene] | None = None
+
+    def understand(self, query: Understand) -> Understood:
+        """Return the frames of a command and clarification questions.
+
+        Raises BadRequest for no words or too many.
+        """
+        words = split(query.text)
+        if not words:
+            raise errors.BadRequest("there are no words in the text")
+        if len(words) > _MOST_WORDS:
+            raise errors.BadRequest(f"a command has at most {_MOST_WORDS} words; these are {len(words)}")
+        found = shipped().understand(query.text, self._there(), query.language, self._finding.described)
+        open_still = dict.fromkeys(
+            argument.candidates
+            for frame in found.frames
+            for argument in frame.arguments
+            if argument.ambiguous
+        )
+        questions = (self._finding.question(names, found.language) for names in open_still)
+        doubts = dict.fromkeys(doubt for frame in found.frames for doubt in self._doubts(frame))
+        return structs.replace(found, question=" ".join(questions), doubts=tuple(doubts))
+
+    def _doubts(self, frame: SemanticFrame) -> Iterator[str]:
+        """Yield the parts of a frame that do not match the map."""
+        for argument in frame.arguments:
+            there = len(argument.candidates) or int(argument.entity is not None)
+            if argument.number is not None and there < argument.number:
+                yield f"'{argument.text}': there {'is' if there == 1 else 'are'} only {there}"
+        sources = [a.entity for a in frame.arguments if a.role == "Source" and a.entity]
+        things = [a.entity for a in frame.arguments if a.role == "Theme" and a.entity]
+        for thing, source in product(things, sources):
+            if thing != source and not self._finding.is_at(thing, source):
+                where = self._finding.where(thing)
+                yield f"{thing} is not on or in {source}" + (f"; it is {where}" if where else "")
+
+    def _there(self) -> Scene:
+        """Return the scene after the last commit."""
+        if self._classes is not self._map.classes:
+            self._classes, self._scene = self._map.classes, None
+            self._vocabulary = _named(self._map.classes, self._lexicon)
+        if self._vocabulary is None:
+            raise errors.InternalError("the vocabulary of the map was not read")
+        if self._scene is None or self._scene[0] != self._map.seq:
+            things = map(_thing, self._map.entities())
+            self._scene = (self._map.seq, scene(things, self._vocabulary, self._lexicon))
+        return self._scene[1]
+
+
+def _named(classes: ClassTable, known: lexicon.Lexicon) -> Vocabulary:
+    rows = classes.rows
+    labels = [(row.name, text) for row in rows for text in (*row.labels.values(), *row.also, row.name)]
+    return vocabulary(labels, ((row.name, above) for row in rows for above in row.parents), known)
+
+
+def _thing(entity: Entity) -> Thing:
+    references = filter(None, (entity.preferred_reference, *entity.alternative_references, entity.name))
+    at = None if entity.pose is None else entity.pose.position_m
+    return Thing(entity.name, entity.class_, tuple(references), at, entity.types)

@@ -1,0 +1,170 @@
+"""Poses, sizes and names of entities that are expressed in other vocabularies."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from semmap.nodes.kb_node.entities.alignments import Alignment, PoseMapping, SizeMapping
+from semmap.ontology import vocabulary as v
+from semmap.schemas.entities import IDENTITY, REACH_M, Pose, Quaternion, Size, Vector
+from semmap.schemas.explanations import Term, Triple
+
+About = Callable[[Term], Mapping[Term, Sequence[Term]]]
+"""A lookup of the asserted objects of a subject by predicate."""
+
+_BETWEEN = re.compile(r"[\s,;\[\]()]+")
+
+
+class AlignedPose(NamedTuple):
+    """A pose as another vocabulary expresses it."""
+
+    words: PoseMapping
+    nodes: tuple[Term, ...]
+    """The individuals on the path from the entity (first) to the one with the pose (last)."""
+    position: Vector
+    """Position of the pose's origin [m]."""
+    orientation: Quaternion
+
+
+class AlignedSize(NamedTuple):
+    """A size as another vocabulary expresses it."""
+
+    words: SizeMapping
+    nodes: tuple[Term, ...]
+    size_m: Size
+
+
+def pose(alignments: Iterable[Alignment], about: About, iri: Term, size_m: Size | None) -> Pose | None:
+    """Return the pose of an entity's bottom centre in the map frame, or None if there is none."""
+    said = find_pose(alignments, about, iri)
+    if said is None:
+        return None
+    return Pose(
+        position_m=shifted(said.position, said.orientation, -_origin_height(said.words, size_m)),
+        orientation_wxyz=said.orientation,
+    )
+
+
+def size(alignments: Iterable[Alignment], about: About, iri: Term) -> Size | None:
+    """Return the size of an entity, or None."""
+    said = find_size(alignments, about, iri)
+    return None if said is None else said.size_m
+
+
+def names(alignments: Iterable[Alignment], about: About, iri: Term) -> list[str]:
+    """Return the names of an entity, best first: those of the vocabularies, then its labels."""
+    said = about(iri)
+    properties = (*(p for known in alignments for p in known.names), v.RDFS_LABEL)
+    return [v.lexical(o) for p in properties for o in sorted(said.get(p, ())) if o.startswith('"')]
+
+
+def find_pose(alignments: Iterable[Alignment], about: About, iri: Term) -> AlignedPose | None:
+    """Return the first valid pose; poses relative to another frame are ignored."""
+    for words in (words for known in alignments for words in known.pose):
+        for nodes in _paths(about, iri, words.path):
+            there = about(nodes[-1])
+            position = _vector(there.get(words.position, ()), 3)
+            if position is None or (words.relative is not None and there.get(words.relative)):
+                continue
+            turned = _vector(there.get(words.orientation, ()), 4) if words.orientation is not None else None
+            orientation = _quaternion(turned, words) if turned is not None else IDENTITY
+            if orientation is not None:
+                return AlignedPose(words, nodes, position, orientation)  # type: ignore[arg-type]
+    return None
+
+
+def find_size(alignments: Iterable[Alignment], about: About, iri: Term) -> AlignedSize | None:
+    """Return the first size that is complete and positive."""
+    for words in (words for known in alignments for words in known.size):
+        for nodes in _paths(about, iri, words.path):
+            there = about(nodes[-1])
+            found = [_vector(there.get(p, ()), 1) for p in (words.x, words.y, words.z)]
+            extent = tuple(number[0] for number in found if number is not None and number[0] > 0)
+            if len(extent) == 3:
+                return AlignedSize(words, nodes, extent)
+    return None
+
+
+def pose_triples(
+    said: AlignedPose, pose: Pose, size_m: Size | None, about: About
+) -> tuple[list[Triple], list[Triple]]:
+    """Return the removed and the added triples for a new pose at the same individual."""
+    node, words = said.nodes[-1], said.words
+    position = shifted(pose.position_m, pose.orientation_wxyz, _origin_height(words, size_m))
+    new: list[tuple[Term, tuple[float, ...]]] = [(words.position, position)]
+    if words.orientation is not None:
+        w, x, y, z = pose.orientation_wxyz
+        new.append((words.orientation, (x, y, z, w) if words.order == "xyzw" else (w, x, y, z)))
+    return _said_anew(node, new, about)
+
+
+def size_triples(said: AlignedSize, size_m: Size, about: About) -> tuple[list[Triple], list[Triple]]:
+    """Return the removed and the added triples for a new size at the same individual."""
+    words = said.words
+    new = zip((words.x, words.y, words.z), size_m, strict=True)
+    return _said_anew(said.nodes[-1], [(p, (value,)) for p, value in new], about)
+
+
+def shifted(position: Vector, orientation_wxyz: Quaternion, height_m: float) -> Vector:
+    """Return `position` moved along the entity's z axis [m], rounded to 1e-9 m."""
+    w, x, y, z = orientation_wxyz
+    up = (2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y))
+    moved = [round(p + height_m * axis, 9) for p, axis in zip(position, up, strict=True)]
+    return (moved[0], moved[1], moved[2])
+
+
+def _origin_height(words: PoseMapping, size_m: Size | None) -> float:
+    """Return the height of the pose's origin above the bottom [m]."""
+    return size_m[2] / 2.0 if words.origin == "middle" and size_m is not None else 0.0
+
+
+def _paths(about: About, iri: Term, path: Sequence[Term]) -> Iterator[tuple[Term, ...]]:
+    """Yield the individuals along a path, the smallest ones first."""
+    if not path:
+        yield (iri,)
+        return
+    for node in sorted(about(iri).get(path[0], ())):
+        if not node.startswith('"'):
+            yield from ((iri, *way) for way in _paths(about, node, path[1:]))
+
+
+def _vector(objects: Sequence[Term], count: int) -> tuple[float, ...] | None:
+    """Return the numbers of the smallest literal with `count` numbers in the valid range."""
+    for term in sorted(objects):
+        if term.startswith('"'):
+            words = [word for word in _BETWEEN.split(v.lexical(term)) if word]
+            try:
+                numbers = tuple(map(float, words))
+            except ValueError:
+                continue
+            if len(numbers) == count and all(abs(number) <= REACH_M for number in numbers):
+                return numbers
+    return None
+
+
+def _quaternion(numbers: tuple[float, ...], words: PoseMapping) -> Quaternion | None:
+    """Return the unit quaternion `wxyz`, or None if the norm is far from one."""
+    w, x, y, z = (numbers[3], *numbers[:3]) if words.order == "xyzw" else numbers
+    norm = math.hypot(w, x, y, z)
+    if not 0.9 <= norm <= 1.1:
+        return None
+    return (w / norm, x / norm, y / norm, z / norm)
+
+
+def _said_anew(
+    node: Term, new: Iterable[tuple[Term, tuple[float, ...]]], about: About
+) -> tuple[list[Triple], list[Triple]]:
+    """Return the removed and the added literals; the datatypes stay."""
+    gone: list[Triple] = []
+    come: list[Triple] = []
+    said = about(node)
+    for predicate, numbers in new:
+        before = sorted(said.get(predicate, ()))
+        gone += [(node, predicate, o) for o in before]
+        datatype = v.datatype_of(before[0]) if before and before[0].startswith('"') else None
+        text = " ".join(repr(float(number)) for number in numbers)
+        come.append((node, predicate, v.literal(text, datatype)))
+    return gone, come

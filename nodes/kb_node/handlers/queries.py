@@ -1,0 +1,361 @@
+"""Handlers for queries on the map. Long ones run in other threads or processes."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future
+from functools import partial
+from typing import TypeVar
+
+from msgspec import structs
+
+from semmap.nodes.kb_node.answers import (
+    answers,
+    closed_containers,
+    differences,
+    entity_queries,
+    fact_intervals,
+    past_map,
+    questions,
+)
+from semmap.nodes.kb_node.answers.command_parser import Understanding
+from semmap.nodes.kb_node.answers.descriptions import Descriptions
+from semmap.nodes.kb_node.answers.entity_search import Finding
+from semmap.nodes.kb_node.answers.live_poses import LiveEntities
+from semmap.nodes.kb_node.answers.location_queries import LocationQueries
+from semmap.nodes.kb_node.answers.missing_entities import describe_missing
+from semmap.nodes.kb_node.answers.pages import Pages
+from semmap.nodes.kb_node.answers.route_planning import RoutePlanning
+from semmap.nodes.kb_node.answers.sightings import Sightings
+from semmap.nodes.kb_node.reasoner import GivenFacts
+from semmap.nodes.kb_node.reasoner.entailment.explaining import nearby
+from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.sparql.service import SparqlService
+from semmap.nodes.kb_node.storage import history
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.runtime.fair_pool import FairPool
+from semmap.schemas import errors
+from semmap.schemas.bridge import (
+    CopyQuery,
+    Entities,
+    LoadOf,
+    MapCopy,
+    PlanOf,
+    Recall,
+    SnapshotQuery,
+    StarQuery,
+    WayOf,
+)
+from semmap.schemas.calls import Handler, by_verb
+from semmap.schemas.commands import (
+    Check,
+    Classes,
+    Could,
+    Diff,
+    Explain,
+    Export,
+    Find,
+    Get,
+    History,
+    Infer,
+    LastSeen,
+    Properties,
+    Relations,
+    Renew,
+    Sparql,
+    Tell,
+    Understand,
+    WasWhen,
+    Watch,
+)
+from semmap.schemas.commits import Commit, Snapshot, Star
+from semmap.schemas.entities import ClassInfo, Entity, PropertyInfo
+from semmap.schemas.explanations import Explanation
+from semmap.schemas.happenings import Difference, Spells
+from semmap.schemas.language import Found
+from semmap.schemas.relations import Described, Relation
+from semmap.schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
+from semmap.schemas.sparql import SparqlResult, Watching
+
+R = TypeVar("R", Explanation, Possible)
+
+
+class QueryHandlers:
+    """Answers queries about the current and past map. Changes nothing."""
+
+    def __init__(
+        self,
+        semantic_map: SemanticMap,
+        journal: Journal,
+        sparql: SparqlService,
+        location_queries: LocationQueries,
+        asker: Callable[[], str] = str,
+    ) -> None:
+        """Create the handlers. The node passes each commit to `sparql` and `location_queries`.
+
+        `asker()` returns the client of the current request.
+        """
+        self._asker = asker
+        self._map = semantic_map
+        self._sparql = sparql
+        self._location_queries = location_queries
+        self._journal = journal
+        self._past = history.HistoryReader(journal)
+        self._pages = Pages(semantic_map)
+        self._now = entity_queries.CurrentState(semantic_map)
+        self.live = LiveEntities(semantic_map)
+        """Receives live poses."""
+        self._finding = Finding(semantic_map)
+        self._understanding = Understanding(semantic_map, self._finding)
+        self._then = entity_queries.PastState(semantic_map, self._past)
+        self.sightings = Sightings(self._past)
+        """Receives the observations of perception."""
+        self._descriptions = Descriptions(semantic_map, self._now, self.sightings)
+        self._aside = FairPool(2, asker)
+        self._routes = RoutePlanning(semantic_map, self._past, self._aside.submit)
+        self._second_opinions = FairPool(1, asker)
+        """For checks with owlrl, which take seconds to minutes, so that no other work waits behind them."""
+        self._is_over = threading.Event()
+
+    def handlers(self) -> dict[str, Handler]:
+        """Return the handlers by command."""
+        return by_verb(
+            SnapshotQuery.answered_by(self.on_snapshot),
+            CopyQuery.answered_by(self.on_copy),
+            Recall.answered_by(self.on_recall),
+            StarQuery.answered_by(self.on_star),
+            LoadOf.answered_by(self.on_load_of),
+            Classes.answered_by(self.on_classes),
+            Properties.answered_by(self.on_properties),
+            Entities.answered_by(self.on_list),
+            Get.answered_by(self.on_get),
+            Infer.answered_by(self.on_infer),
+            Explain.answered_by(self.on_explain),
+            Could.answered_by(self.on_could),
+            Relations.answered_by(self.on_relations),
+            Diff.answered_by(self.on_diff),
+            WasWhen.answered_by(self.on_when),
+            Understand.answered_by(self._understanding.understand),
+            Tell.answered_by(self._descriptions.describe),
+            Find.answered_by(self.on_find),
+            Export.answered_by(self.on_export),
+            PlanOf.answered_by(self._routes.plan),
+            WayOf.answered_by(self._routes.way),
+            History.answered_by(self.on_history),
+            LastSeen.answered_by(self.on_last_seen),
+            Check.answered_by(self.on_check),
+            Sparql.answered_by(self.on_sparql),
+            Watch.answered_by(self.on_watch),
+            Renew.answered_by(self.on_renew),
+        )
+
+    @property
+    def is_being_fetched(self) -> bool:
+        """Return whether the map is being fetched page by page, or is likely to be after a start."""
+        return self._pages.is_request_expected
+
+    def on_snapshot(self, query: SnapshotQuery) -> Snapshot:
+        """Return the entities as of the last commit, or a page of them."""
+        return self._pages.snapshot(query)
+
+    def on_copy(self, query: CopyQuery) -> MapCopy:
+        """Return the whole map, or only its identity."""
+        map_id, begun_ns = self._journal.origin()
+        seq = self._map.seq
+        return MapCopy(
+            map_id=map_id,
+            begun_ns=begun_ns,
+            seq=seq,
+            digest=self._map.digest,
+            stamp_ns=self._stamp_of_last(seq),
+            triples=tuple(self._map.abox()) if query.content else (),
+            entities=tuple(self._map.entities()) if query.content else (),
+        )
+
+    def _stamp_of_last(self, seq: int) -> int:
+        begins = self._journal.beginning
+        return self._journal.stamps.of(seq) if seq > begins.seq else begins.stamp_ns
+
+    def on_recall(self, query: Recall) -> Future[tuple[Commit, ...]]:
+        """Return whole commits of the history."""
+        return self._aside.submit(self._past.commits, query.seqs)
+
+    def on_star(self, query: StarQuery) -> tuple[Star, ...]:
+        """Return the triples of some entities."""
+        return self._map.stars(query.names)
+
+    def on_load_of(self, query: LoadOf) -> tuple[str, ...]:
+        """Return what an object supports."""
+        return tuple(self._map.places.supported_by(query.name, query.leave))
+
+    def on_classes(self, _: Classes) -> tuple[ClassInfo, ...]:
+        """Return the class table."""
+        return tuple(self._map.class_table())
+
+    def on_properties(self, _: Properties) -> tuple[PropertyInfo, ...]:
+        """Return the property table."""
+        return tuple(self._map.classes.property_table.rows())
+
+    def on_list(self, query: Entities) -> tuple[Entity, ...] | Future[tuple[Entity, ...]]:
+        """Return the entities of a class, or those that match `where`, now or in the past."""
+        if query.as_of is None:
+            if query.where is None:
+                return self._now.entities(query)
+            with self.live.applied():
+                return self._now.entities(query)
+        return self._aside.submit(self._then.entities, query)
+
+    def on_relations(self, query: Relations) -> tuple[Relation, ...] | Future[tuple[Relation, ...]]:
+        """Return the relations of an entity, now or in the past."""
+        if query.as_of is None:
+            with self.live.applied():
+                return self._now.relations(query)
+        return self._aside.submit(self._then.relations, query)
+
+    def on_get(self, query: Get) -> Described | Future[Described]:
+        """Return one entity, now or in the past."""
+        if query.as_of is None:
+            if not query.where:
+                return self._now.entity(query)
+            with self.live.applied():
+                return self._now.entity(query)
+        return self._aside.submit(self._then.entity, query)
+
+    def on_infer(self, query: Infer) -> Inferred | Future[Inferred]:
+        """Return the inferred facts about an entity, or about all in another thread."""
+        if query.name is not None:
+            return answers.infer(self._map, query.name)
+        return self._aside.submit(answers.infer_all, answers.inference_input(self._map))
+
+    def on_explain(self, query: Explain) -> Explanation | Future[Explanation]:
+        """Return why a statement holds or cannot hold, with measurements.
+
+        Raises Refused if it does not hold.
+        """
+        if (measured := self._now.explain_measured(query)) is not None:
+            return measured
+        asked = questions.parse_explain(self._map, query)
+        found = self._now.explain(query, asked)
+        if found is None:
+            return self._test_on_copy(questions.explain, asked)
+        if not found.measured:
+            return found.explanation
+        look_up = partial(
+            fact_intervals.look_up_starts, self._journal, self._past, limits=self._map.classes.limits
+        )
+        return self._aside.submit(found.with_dates, look_up)
+
+    def on_diff(self, query: Diff) -> Future[Difference]:
+        """Return what changed between two commits or times."""
+        limits = self._map.classes.limits
+        return self._aside.submit(differences.compute_difference, self._journal, self._past, query, limits)
+
+    def on_when(self, query: WasWhen) -> Future[Spells]:
+        """Return when one object was on, in or at another."""
+        limits = self._map.classes.limits
+        return self._aside.submit(differences.find_spells, self._journal, self._past, query, limits)
+
+    def on_could(self, query: Could) -> Possible | Future[Possible]:
+        """Return whether a statement could hold."""
+        asked = questions.parse_could(self._map, query)
+        against = self._now.describe_conflict(asked.triples[0])
+        return self._test_on_copy(partial(questions.could, against=against), asked)
+
+    def _test_on_copy(self, answer: Callable[..., R], asked: questions.StatementQuestion) -> R | Future[R]:
+        """Assume a statement in the map's reasoner, or in a copy in another thread if that takes long."""
+        reasoner, names = self._map.reasoner, self._map.classes.prefixed
+        held: GivenFacts | None = None
+        self._map.ensure_derived()
+        if questions.is_quick(reasoner, asked):
+            try:
+                return answer(reasoner, asked, recompute=False)
+            except questions.Undecided:
+                needed = nearby(reasoner, asked.terms)
+                computed = dict.fromkeys(filter(reasoner.is_computed, needed))
+                held = GivenFacts([triple for triple in needed if triple not in computed], list(computed))
+            except NotCompilable:
+                pass
+        copied = reasoner.given_facts() if held is None else held
+        return self._aside.submit(lambda: answer(questions.copy_reasoner(copied, names), asked))
+
+    def on_export(self, query: Export) -> Future[Document]:
+        """Return the map as a document, now or in the past; it is checked and written in another thread."""
+        if query.as_of is not None:
+            return self._aside.submit(past_map.export_past, self._journal, self._past, query)
+        return self._aside.submit(
+            answers.export, answers.export_snapshot(self._map, query.inferred), query.format
+        )
+
+    def on_history(self, query: History) -> Future[tuple[LoggedCommit, ...]]:
+        """Return commits of the history."""
+        return self._aside.submit(self._past.history, query)
+
+    def on_last_seen(self, query: LastSeen) -> Sighting | Future[Sighting]:
+        """Return where an entity was last seen, or where it is."""
+        entity = self._map.find(query.name)
+        if entity is not None and not self.sightings.is_missing(entity):
+            found = self.sightings.describe_present(entity)
+            closed = closed_containers.find_closed_container(self._map, entity)
+            if closed is None:
+                return found
+            return structs.replace(found, text=f"{found.text}; {closed_containers.describe(closed)}")
+        return self._aside.submit(self.sightings.describe_removed, query.name, entity)
+
+    def on_find(self, query: Find) -> Found | Future[Found]:
+        """Return the entities that a description means.
+
+        If there are none, also say when they were last there.
+        """
+        with self.live.applied():
+            sought = self._finding.find(query)
+        if sought.missing is None:
+            return sought.found
+        missing, there, limits = sought.missing, frozenset(self._map.names), self._map.classes.limits
+        return self._aside.submit(
+            lambda: sought.with_the_past(describe_missing(self._journal, self._past, missing, there, limits))
+        )
+
+    def on_check(self, query: Check) -> Future[Checked]:
+        """Check the consistency in another thread."""
+        self._map.derive_all()
+        held, denied = self._map.reasoner.given_facts(), self._now.find_denied()
+        withheld, crowds = tuple(answers.suppressed_facts(self._map)), self._map.places.crowds()
+
+        def check() -> Checked:
+            checked = answers.check(held.asserted, query.engine, self._is_over.is_set)
+            return structs.replace(checked, denied=denied, withheld=withheld, crowds=crowds)
+
+        return (self._second_opinions if query.engine == "owlrl" else self._aside).submit(check)
+
+    def on_sparql(self, query: Sparql) -> Future[SparqlResult]:
+        """Evaluate a query in another process."""
+        if query.as_of is not None:
+            return self._aside.submit(past_map.query_past, self._journal, self._past, query)
+        return self._sparql.ask(query, self._map.seq, self._asker())
+
+    def on_watch(self, query: Watch) -> Watching | Future[Watching]:
+        """Start a standing query, by SPARQL or by location."""
+        asks_where = query.where is not None or query.class_ is not None
+        if (query.query is None) != asks_where:
+            raise errors.BadRequest(
+                "watch either a SELECT query or what is on, in or near something: --on, --in, --near"
+            )
+        if not asks_where:
+            return self._sparql.ask(query, self._map.seq, self._asker())
+        if query.where is None or query.inferred:
+            raise errors.BadRequest(
+                "--class and --inferred: watch classes with --on, --in or --near, inferences with --sparql"
+            )
+        return self._location_queries.watch(query)
+
+    def on_renew(self, renewal: Renew) -> Done | Future[Done]:
+        """Renew or end a standing query."""
+        return self._location_queries.renew(renewal) or self._sparql.ask(renewal, self._map.seq)
+
+    def close(self) -> None:
+        """Stop the threads."""
+        self._is_over.set()
+        self._second_opinions.close()
+        self._aside.close()

@@ -1,0 +1,76 @@
+"""Commands in the shipped flat, with two more cups on its table."""
+
+import pytest
+
+from semmap.nodes.kb_node.answers.command_parser import Understanding
+from semmap.nodes.kb_node.answers.entity_search import Finding
+from semmap.ontology import stars
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commands import Understand
+from semmap.schemas.commits import Transaction
+from semmap.schemas.entities import Pose
+
+
+@pytest.fixture
+def understanding(flat):
+    x, y, _ = flat.entity("table1").pose.position_m
+    _, _, top = flat.entity("bowl1").pose.position_m
+    for colour, left in (("red", -0.3), ("blue", 0.3)):
+        pose = Pose(position_m=(x + left, y + 0.1, top))
+        cup = stars.star(
+            f"{colour}cup", v.dm("Cup"), pose=pose, size_m=[0.08, 0.08, 0.1], preferred=f"{colour} cup"
+        )
+        flat.commit(Transaction(id=colour, source="operator", insert=tuple(cup)))
+    return Understanding(flat, Finding(flat))
+
+
+@pytest.mark.parametrize(
+    ("text", "understood"),
+    [
+        ("take the cup from the desk", ["Taking(Theme=cup1, Source=desk1)"]),
+        ("take the cup that is on the desk", ["Taking(Theme=cup1)"]),
+        ("go to the person who is in the studio", ["Motion(Goal=person1)"]),
+        (
+            "take all the cups from the table to the kitchen",
+            ["Bringing(Theme=bluecup|redcup, Source=table1, Goal=kitchen1)"],
+        ),
+        ("open the kitchen door", ["Closure(Container_portal=door3|door7)"]),
+        ("apri la porta della cucina", ["Closure(Container_portal=door3|door7)"]),
+        ("prendi la tazza blu e quella rossa", ["Taking(Theme=bluecup, Theme=redcup)"]),
+        ("take the blue cup and the red one", ["Taking(Theme=bluecup, Theme=redcup)"]),
+        ("give me something to read", ['Giving(Recipient="me", Theme=book1|book2|book3)']),
+        ("portami qualcosa da bere", ['Bringing(Beneficiary="mi", Theme=milk1|water1)']),
+        ("portami qualcosa da leggere", ['Bringing(Beneficiary="mi", Theme=book1|book2|book3)']),
+        ("bring something to me", ['Bringing(Theme="something", Beneficiary="to me")']),
+        ("spegni le lampade", ["Change_operational_state(Device=abat_jour1|lamp1)"]),
+        ("open the fridge door", ["Closure(Containing_object=fridge1)"]),
+    ],
+)
+def test_details_of_a_description_select_the_entity(understanding, text, understood):
+    assert [frame.text for frame in understanding.understand(Understand(text=text)).frames] == understood
+
+
+def test_an_ambiguous_word_leads_to_one_clarification_question(understanding):
+    understood = understanding.understand(Understand(text="take the cup on the table and put it in the sink"))
+    assert understood.frames[1].arguments[0].candidates == ("bluecup", "redcup")
+    assert understood.question.startswith("Which one: the cup called blue cup or the one called red cup?")
+    assert understood.question.count("red cup") == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "understood", "doubts"),
+    [
+        (
+            "take the red cup from the desk",
+            "Taking(Theme=redcup, Source=desk1)",
+            ("redcup is not on or in desk1; it is on table1",),
+        ),
+        ("take the red cup from the table", "Taking(Theme=redcup, Source=table1)", ()),
+        ("take the laptop from the studio", "Taking(Theme=laptop1, Source=studio1)", ()),
+        ("take 3 plates", "Taking(Theme=3 of plate1|plate2)", ("'3 plates': there are only 2",)),
+        ("prendi due tazze", "Taking(Theme=2 of bluecup|cup1|redcup)", ()),
+    ],
+)
+def test_parts_that_do_not_match_the_map_are_reported(understanding, text, understood, doubts):
+    told = understanding.understand(Understand(text=text))
+    assert ([frame.text for frame in told.frames], told.doubts) == ([understood], doubts)

@@ -1,0 +1,198 @@
+"""Spatial queries with asserted and inferred facts."""
+
+import pytest
+
+from semmap.nodes.kb_node.answers import entity_queries, fact_intervals, questions
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.relations.measuring.phrases import PHRASES
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.history import HistoryReader
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.bridge import Entities
+from semmap.schemas.commands import Could, Explain, Get, Relations
+from semmap.schemas.commits import Edit, NewEntity, Transaction
+from semmap.schemas.entities import Pose
+from semmap.schemas.relations import Where
+from tests.kb_node import home
+
+
+def new_flat(folder, further=b""):
+    if further:
+        triples = rdf.parse(HOUSEHOLD_TTL.read_bytes() + further, "household.ttl", label_prefix="h")
+        made = home.new_map(folder, triples)
+    else:
+        made = SemanticMap(home.new_household_journal(folder))
+    made.commit(home.transaction(1, rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f")))
+    made.ensure_derived()
+    return made
+
+
+@pytest.fixture(scope="module")
+def flat(tmp_path_factory):
+    made = new_flat(tmp_path_factory.mktemp("flat"))
+    yield made
+    home.close(made)
+
+
+@pytest.fixture
+def own(tmp_path):
+    """A flat that the test may change."""
+    made = new_flat(tmp_path)
+    yield made
+    home.close(made)
+
+
+def explain_relation(semantic_map, name, predicate, value, *, negated=False):
+    query = Explain(name=name, predicate=predicate, value=value, negated=negated)
+    now = entity_queries.CurrentState(semantic_map)
+    if (measured := now.explain_measured(query)) is not None:
+        return measured
+    found = now.explain(query, questions.parse_explain(semantic_map, query))
+    return found and found.with_dates(lambda facts: began(semantic_map, facts))
+
+
+def began(semantic_map, facts):
+    journal = semantic_map._journal
+    return fact_intervals.look_up_starts(journal, HistoryReader(journal), facts, semantic_map.classes.limits)
+
+
+def refused(semantic_map, name, predicate, value):
+    with pytest.raises(errors.Refused) as caught:
+        explain_relation(semantic_map, name, predicate, value)
+    return str(caught.value)
+
+
+def test_list_with_on_agrees_with_a_property_path_in_sparql(flat):
+    listed = {e.name for e in entity_queries.CurrentState(flat).entities(Entities(where=Where(on="table1")))}
+    held = flat.reasoner
+    on, inside, table = v.dm("isOn"), v.dm("isInside"), v.iri(flat.entity("table1").iri)
+    direct = {s for s, _, _ in held.given(None, on, table)}
+    assert v.entity_name(v.iri(flat.entity("apple1").iri)) in listed
+    assert v.iri(flat.entity("apple1").iri) not in direct
+    waiting, all_on = list(direct), set(direct)
+    while waiting:
+        lower = waiting.pop()
+        above = {s for p in (on, inside) for s, _, _ in held.given(None, p, lower)} - all_on
+        all_on |= above
+        waiting += above
+    assert listed == {v.entity_name(s) for s in all_on}
+
+
+def test_the_start_is_the_commit_since_which_the_relation_holds(own):
+    def change(**what):
+        own.commit(Transaction(id=f"c{own.seq}", source="operator", **what))
+
+    def since(name, other, predicate="isOn"):
+        return explain_relation(own, name, predicate, other).text.rpartition(" (")[2]
+
+    def put(name, *at):
+        change(edit=(Edit(name=name, at=at),))
+
+    assert since("milk1", "counter1") == "since commit 1)"
+    change(
+        add=(NewEntity(name="cup9", class_iri=v.bare(v.dm("Cup")), pose=Pose(position_m=(8.2, 0.3, 0.9))),)
+    )
+    put("cup9", 8.1, 0.3, 0.9)
+    assert since("cup9", "counter1") == "since commit 2)"
+    assert since("cup9", "kitchen1", "isLocatedIn") == "since commit 2)"
+    put("cup9", 8.2, 2.2, 0.74)
+    put("cup9", 8.2, 0.3, 0.9)
+    assert since("cup9", "counter1") == "since commit 5)"
+    assert "(since commit 5)" in explain_relation(own, "counter1", "supports", "cup9").text
+
+
+def test_a_relation_may_start_when_an_object_in_between_is_removed(own):
+    def change(**what):
+        own.commit(Transaction(id=f"c{own.seq}", source="operator", **what))
+
+    def new(class_, name, size, *at):
+        iri = v.bare(v.dm(class_))
+        return NewEntity(name=name, class_iri=iri, size=size, pose=Pose(position_m=at))
+
+    change(add=(new("Book", "book9", (0.2, 0.2, 0.02), 8.2, 0.3, 0.9),))
+    change(add=(new("Cup", "cup9", (0.08, 0.08, 0.1), 8.2, 0.3, 0.92),))
+    assert explain_relation(own, "cup9", "isOn", "book9").text.endswith("(since commit 3)")
+    change(remove=("book9",))
+    assert explain_relation(own, "cup9", "isOn", "counter1").text.endswith("(since commit 4)")
+
+
+def test_a_chain_starts_with_the_latest_of_its_steps(tmp_path):
+    chain = b"dm:restsOver a owl:ObjectProperty ; owl:propertyChainAxiom ( dm:isOn dm:isOn ) ."
+    own = new_flat(tmp_path, chain)
+    for seq, (class_, name, size, z) in enumerate(
+        (("Book", "book9", (0.2, 0.2, 0.02), 0.9), ("Cup", "cup9", (0.08, 0.08, 0.1), 0.92)), start=2
+    ):
+        iri, pose = v.bare(v.dm(class_)), Pose(position_m=(8.2, 0.3, z))
+        new = NewEntity(name=name, class_iri=iri, size=size, pose=pose)
+        own.commit(Transaction(id=f"c{seq}", source="operator", add=(new,)))
+    text = explain_relation(own, "cup9", "restsOver", "counter1").text
+    assert "over it (since commit 3)" in text
+    assert "over it (since commit 2)" in text
+    assert text.endswith(". It holds since commit 3")
+    home.close(own)
+
+
+def test_a_negative_answer_explains_the_path(flat):
+    text = refused(flat, "apple1", "isOn", "table1")
+    assert text == "apple1 is not on table1: it is inside bowl1, which is on table1"
+    assert "table1 has no known hollow" in refused(flat, "apple1", "isInside", "table1")
+    assert refused(flat, "table1", "supports", "apple1") == text
+
+
+@pytest.mark.parametrize("relation", PHRASES)
+def test_each_relation_is_explained_by_a_measurement(flat, relation):
+    answers = []
+    for other in ("table1", "chair1", "bowl1"):
+        try:
+            answers.append(explain_relation(flat, "apple1", relation, other).text)
+        except errors.Refused as error:
+            answers.append(str(error))
+    assert all(answer.startswith("apple1 ") for answer in answers)
+    assert not any("nothing excludes" in answer for answer in answers)
+
+
+def test_a_denied_assertion_is_reported_as_such(flat):
+    said = (v.iri(flat.entity("milk1").iri), v.dm("isOn"), v.iri(flat.entity("table1").iri))
+    assert "asserted" not in refused(flat, "milk1", "isOn", "table1")
+    flat.commit(home.transaction(2, [said]))
+    flat.ensure_derived()
+    assert "it is asserted, but suppressed" in refused(flat, "milk1", "isOn", "table1")
+
+
+def test_could_reports_a_geometric_conflict(flat):
+    asked = questions.parse_could(flat, Could(name="water1", predicate="isOn", value="chair1"))
+    against = entity_queries.CurrentState(flat).describe_conflict(asked.triples[0])
+    text = questions.could(flat.reasoner, asked, against=against).text
+    assert text.startswith("yes: nothing excludes")
+    assert "but according to the poses, it stands" in text
+
+
+def test_a_negative_answer_explains_the_measurement(flat):
+    why_not = explain_relation(flat, "apple1", "isOn", "counter1", negated=True)
+    assert why_not.text.startswith("apple1 is not on counter1: ")
+    assert why_not.text == refused(flat, "apple1", "isOn", "counter1")
+    assert (
+        explain_relation(flat, "apple1", "isInside", "bowl1", negated=True) is None
+    )  # it does, and a rule states it
+
+
+def test_the_location_of_a_place_is_asserted_and_has_no_conflict(flat):
+    assert "as it stands" not in explain_relation(flat, "kitchen1", "isLocatedIn", "flat1").text
+
+
+def test_get_reports_the_height_of_an_unsupported_object(own):
+    def hovering(name):
+        return entity_queries.CurrentState(own).entity(Get(name=name, where=True)).on_nothing
+
+    assert hovering("milk1") == hovering("light1") == hovering("kitchen1") == ""  # lights are fixed
+    edit = Edit(name="milk1", at=(2.0, 2.0, 0.42))
+    own.commit(Transaction(id="lifted", source="operator", edit=(edit,)))
+    text = "milk1 is on nothing: its bottom is 42.0 cm above the floor of livingroom1"
+    assert hovering("milk1") == text
+    told = [
+        r.text for r in entity_queries.CurrentState(own).relations(Relations(name="milk1")) if not r.object
+    ]
+    assert told == [text]
+    assert not entity_queries.CurrentState(own).entity(Get(name="milk1")).on_nothing
