@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from msgspec import Meta, Struct
 
 Decision = Literal["waiting", "approved", "rejected"]
-Told = tuple[Annotated[str, Meta(max_length=1000)], ...]
+Consequences = tuple[Annotated[str, Meta(max_length=1000)], ...]
 
 
 class Request(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -20,7 +20,7 @@ class Request(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     number: int
     agent: str
     text: str
-    follows: Told = ()
+    follows: Consequences = ()
     reason: str = ""
     stamp_ns: int
     decision: Decision = "waiting"

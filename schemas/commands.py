@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 
 from msgspec import Meta, field, structs
 
-from semmap.schemas.approvals import Request, Told
+from semmap.schemas.approvals import Consequences, Request
 from semmap.schemas.backups import BackupPart
 from semmap.schemas.calls import DOCUMENT, MANY, Call, R
 from semmap.schemas.entities import (
@@ -32,11 +32,11 @@ from semmap.schemas.entities import (
     Word,
     composed,
 )
+from semmap.schemas.exemplars import LessonTold, ShownView
 from semmap.schemas.explanations import Explanation
 from semmap.schemas.frames import Frame, FrameName
-from semmap.schemas.happenings import Difference, KeptRelation, Spells
 from semmap.schemas.language import Account, Found, Language, Understood
-from semmap.schemas.lessons import LessonTold, ShownView
+from semmap.schemas.map_history import Difference, KeptRelation, Spells
 from semmap.schemas.moments import When
 from semmap.schemas.plans import HEIGHTS_M, RADIUS_M, Clearance, HeightRange, Plan, Way
 from semmap.schemas.relations import Described, Relation, ViewPoint, Where
@@ -564,7 +564,7 @@ class Submit(Command[Request], frozen=True, tag="submit"):
     """
 
     text: Annotated[str, Meta(min_length=1, max_length=2000)]
-    follows: Annotated[Told, Meta(max_length=200)] = ()
+    follows: Annotated[Consequences, Meta(max_length=200)] = ()
 
 
 class Approve(Command[tuple[Request, ...]], frozen=True, tag="approve"):

@@ -63,7 +63,7 @@ ACK = Topic(f"{ROOT}/ack", Ack, "lossless")
 COMMIT = Topic(f"{ROOT}/jena/commit", Commit, "lossless")
 EFFECTS = Topic(COMMIT.key, Effects, "lossless")
 """The same publication, read without its triples."""
-UNTOLD = Topic(f"{ROOT}/jena/untold", Effects, "lossless")
+COMMIT_EFFECTS = Topic(f"{ROOT}/jena/untold", Effects, "lossless")
 """The effects of the commits that no reply tells the coordinator of."""
 ENTITY = Topic(f"{ROOT}/jena/entity/*/*", Described, "lossless")
 QUERY = Topic(f"{ROOT}/jena/query/*", RowsChanged, "lossless")
@@ -87,7 +87,7 @@ HEALTH = Topic(f"{ROOT}/health/*", Health, "newest")
 TOPICS = (
     ACK,
     COMMIT,
-    UNTOLD,
+    COMMIT_EFFECTS,
     ENTITY,
     QUERY,
     POSES,

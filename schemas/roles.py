@@ -94,7 +94,7 @@ def _topic(topic: keys.Topic, *, follow: Roles = ANYBODY, publish: Roles = _NODE
 
 GRANTS: Final[tuple[Grant, ...]] = (
     *_topic(keys.COMMIT),
-    *_topic(keys.UNTOLD, follow=_NODES),
+    *_topic(keys.COMMIT_EFFECTS, follow=_NODES),
     *_topic(keys.ENTITY),
     *_topic(keys.QUERY),
     *_topic(keys.POSES, publish=frozenset(("robot",))),

@@ -45,9 +45,9 @@ if TYPE_CHECKING:
         UnknownName,
         UnknownVerb,
     )
+    from semmap.schemas.exemplars import LessonTold, ShownView
     from semmap.schemas.explanations import Explanation, Step
     from semmap.schemas.frames import Frame
-    from semmap.schemas.happenings import Difference, Related, Spell, Spells
     from semmap.schemas.joints import Joint
     from semmap.schemas.language import (
         Account,
@@ -58,7 +58,7 @@ if TYPE_CHECKING:
         SemanticFrame,
         Understood,
     )
-    from semmap.schemas.lessons import LessonTold, ShownView
+    from semmap.schemas.map_history import Difference, Related, Spell, Spells
     from semmap.schemas.plans import Outline, Plan, PlannedPlace, PlannedThing, Way
     from semmap.schemas.relations import Described, Relation
     from semmap.schemas.replies import (
@@ -213,7 +213,7 @@ _NAMES_OF: Final = {
         "Step",
     ),
     "schemas.frames": ("Frame",),
-    "schemas.happenings": (
+    "schemas.map_history": (
         "Difference",
         "Related",
         "Spell",
@@ -229,7 +229,7 @@ _NAMES_OF: Final = {
         "SemanticFrame",
         "Understood",
     ),
-    "schemas.lessons": (
+    "schemas.exemplars": (
         "ShownView",
         "LessonTold",
     ),

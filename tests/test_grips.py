@@ -9,8 +9,8 @@ import pytest
 
 from semmap.nodes import bus
 from semmap.schemas import errors, keys
+from semmap.schemas.attachments import grip_of, holder_of
 from semmap.schemas.entities import compose, distance_m
-from semmap.schemas.grips import grip_of, holder_of
 from semmap.schemas.scenes import Grip, GripOrder, Gripped, Scene, SceneQuery
 from tests.conftest import running, until
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import Pose, Size
 from semmap.schemas.explanations import Term
@@ -59,7 +59,7 @@ def write_turtle(path: Path, count: int) -> None:
     with path.open("w") as file:
         file.writelines(f"@prefix {prefix}: <{iri}> .\n" for prefix, iri in _PREFIXES.items())
         for name, class_name, pose, size_m, ref in things(count):
-            star = stars.star(name, v.dm(class_name), pose=pose, size_m=size_m, preferred=ref)
+            star = entity_triples.describe(name, v.dm(class_name), pose=pose, size_m=size_m, preferred=ref)
             file.writelines(f"{_short(s)} {_short(p)} {_short(o)} .\n" for s, p, o in star)
 
 

@@ -17,7 +17,7 @@ import rdflib
 from benchmarks.kb.made import Figures, each, entities, pose, tbox, timed
 from semmap.nodes.kb_node.documents import ontology_files
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Term, Triple
 
@@ -94,7 +94,7 @@ def _artefacts(
     wanted: int, random_: random.Random, classes: Sequence[Term], prefix: str
 ) -> Iterator[list[Triple]]:
     for i in range(wanted):
-        yield stars.star(
+        yield entity_triples.describe(
             f"{prefix}{i}",
             classes[i % len(classes)],
             pose=pose(random_),
@@ -137,7 +137,7 @@ def _position(star: list[Triple], random_: random.Random) -> tuple[list[Triple],
     """What goes and what comes when the entity of a star moves."""
     coordinates = next(o for _, p, o in star if p == v.HAS_POSITION)
     old = [t for t in star if t[0] == coordinates and t[1] in v.COORDINATE_XYZ]
-    new = stars.position(star[0][0], coordinates, pose(random_))
+    new = entity_triples.position(star[0][0], coordinates, pose(random_))
     return old, [t for t in new if t[1] in v.COORDINATE_XYZ]
 
 

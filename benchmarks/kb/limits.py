@@ -18,7 +18,7 @@ import pyoxigraph
 from benchmarks.kb import big_files
 from benchmarks.kb.made import timed
 from semmap.nodes.kb_node.storage.encoding import dense
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import codec, scene_files
 from semmap.schemas.commits import NewEntity, Snapshot, Transaction
@@ -84,7 +84,7 @@ def _parts(items: Iterator[T]) -> Iterator[tuple[T, ...]]:
 
 
 def _star(thing: big_files.Thing) -> list[Triple]:
-    return stars.star(
+    return entity_triples.describe(
         thing.name, v.dm(thing.class_name), pose=thing.pose, size_m=thing.size_m, preferred=thing.ref
     )
 

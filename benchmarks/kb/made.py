@@ -10,7 +10,7 @@ from time import perf_counter, process_time, thread_time
 from typing import Any, NamedTuple
 
 from semmap.nodes.kb_node.documents import rdf
-from semmap.ontology import HOUSEHOLD_TTL, stars
+from semmap.ontology import HOUSEHOLD_TTL, entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import Pose
 from semmap.schemas.explanations import Triple
@@ -33,7 +33,7 @@ def pose(random_: random.Random) -> Pose:
 
 def star(name: str, class_name: str, random_: random.Random) -> list[Triple]:
     """One entity with position, size, a preferred and an alternative reference."""
-    return stars.star(
+    return entity_triples.describe(
         name,
         v.dm(class_name),
         pose=pose(random_),

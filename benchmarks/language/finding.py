@@ -18,7 +18,7 @@ from semmap.nodes.kb_node.answers.finding import Finding
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
-from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL, stars
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL, entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commands import Find
@@ -143,7 +143,7 @@ def _star(
     """The triples of an entity of a room. suffix: of its name; by: where the room is [m]."""
     x, y, z = entity["at"]
     name = entity["name"] + suffix
-    yield from stars.star(
+    yield from entity_triples.describe(
         name, v.dm(entity["class"]),
         pose=Pose(
             position_m=(float(x) + by[0], float(y) + by[1], float(z)),

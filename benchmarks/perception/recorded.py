@@ -109,7 +109,7 @@ def measure(folder: Path, piles: int) -> list[Row]:
         *(Row(f"the same, {group} left out", strange[group].f1) for group in groups),
         Row("the same, learnt from renderings alone", rendered["all"].f1),
     ]
-    for what, segments in (("plane and DBSCAN", clustered), ("chance: patches merged by lot", by_lot)):
+    for what, segments in (("plane and DBSCAN", clustered), ("chance: patches merged by lot", random_labels)):
         rows.append(Row(f"real scenes: F1, {what}", by_group(scenes, segments)["all"].f1))
     return rows + times(scenes)
 
@@ -140,7 +140,7 @@ def _segmented(scene: Scene, judge: Judge) -> Labels:
     return segment(scene.cloud, judge).labels
 
 
-def by_lot(scene: Scene) -> Labels:
+def random_labels(scene: Scene) -> Labels:
     """Our patches, merged by tossing a coin."""
     rng = np.random.default_rng(0)
     return _segmented(scene, lambda known, a, b: rng.random(len(a), dtype=np.float32))

@@ -21,7 +21,7 @@ from semmap.nodes.kb_node.relations.facts.rules import COMPUTED
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 from semmap.nodes.runtime import gc_pause
-from semmap.ontology import HOUSEHOLD_TTL, stars
+from semmap.ontology import HOUSEHOLD_TTL, entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas.commits import Transaction
 from semmap.schemas.entities import Vector
@@ -74,7 +74,7 @@ def _load(folder: Path, size: int, tbox: list[Triple]) -> Cost:
     triples = [
         triple
         for e in rooms(size)
-        for triple in stars.star(
+        for triple in entity_triples.describe(
             e.name, v.dm(_CLASSES[e.model]), pose=e.pose, size_m=e.size_m, preferred=e.name
         )
     ]

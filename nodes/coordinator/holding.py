@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 
 from semmap.schemas import errors, wording
+from semmap.schemas.attachments import carriers, grip_of, holder_of
 from semmap.schemas.entities import Entity, Pose, compose, orientation_from_yaw, relative
-from semmap.schemas.grips import bearers, grip_of, holder_of
 from semmap.schemas.scenes import Body
 
 Where = Callable[[str], Pose | None]
@@ -29,7 +29,7 @@ def require_graspable(
             raise errors.Refused(f"{entity.name} is a place, which neither holds anything nor is held")
     if name == to:
         raise errors.Refused(f"{name} cannot hold itself")
-    if name in (above := bearers(to, entities)):
+    if name in (above := carriers(to, entities)):
         how = "is held by" if holder_of(holder) == name else "is part of" if len(above) == 1 else "goes with"
         raise errors.Refused(f"{to} {how} {name}, so it cannot hold {name}")
     by = holder_of(held)
@@ -50,7 +50,7 @@ def load(
 
     Raises Refused where it bears what is to hold it.
     """
-    above = {holder.name, *bearers(holder.name, entities)}
+    above = {holder.name, *carriers(holder.name, entities)}
     for name in borne:
         if name in above:
             who = holder.name if name == holder.name else f"{name}, which {holder.name} goes with,"

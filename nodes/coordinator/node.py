@@ -147,7 +147,7 @@ class Coordinator:
                 c.Approve.answered_by(approvals.approve),
             ),
         }
-        Follower(node, door.map, keys.UNTOLD, heard=lambda commit, known: None, begun=self._on_map)
+        Follower(node, door.map, keys.COMMIT_EFFECTS, heard=lambda commit, known: None, begun=self._on_map)
         node.follow_newest(keys.POSES, self._on_poses)
         node.follow(keys.HEALTH, self._on_health)
         left = self._is_left_to_the_map

@@ -27,7 +27,7 @@ class Announcer:
         self._session = session
         self._described = described
         self._commits = bus.publisher(session, keys.COMMIT)
-        self._untold = bus.publisher(session, keys.UNTOLD)
+        self._untold = bus.publisher(session, keys.COMMIT_EFFECTS)
         self._entities_are_watched = bus.watched(session, keys.ENTITY)
         self._types = {entity.name: entity.types for entity in entities}
 

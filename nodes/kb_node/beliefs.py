@@ -21,7 +21,7 @@ from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.facts.rules import COMPUTED
 from semmap.nodes.kb_node.relations.facts.said import PROPERTIES, fact_of
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Term, Triple
@@ -34,7 +34,7 @@ PART = 20_000
 
 FEW_ASIDE = 100
 """What is set aside: so much is looked at for whatever is asserted, some hundredths of a second."""
-_MEASURES = frozenset((*stars.COORDINATE_PROPERTIES, *v.SIZE_XYZ, v.LEXICAL_REFERENCE))
+_MEASURES = frozenset((*entity_triples.COORDINATE_PROPERTIES, *v.SIZE_XYZ, v.LEXICAL_REFERENCE))
 """What is asserted by these joins no individuals."""
 
 

@@ -23,7 +23,7 @@ from semmap.nodes.kb_node.relations.facts.sayings import Sayings, of_places
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.relations.surroundings import Surroundings
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors, wording
 from semmap.schemas.commits import Commit, Edit
@@ -38,7 +38,7 @@ _MANY = 1000
 """Of those that leave, so many are looked at for what they leave behind."""
 _OPENING = frozenset((v.IS_OPEN, v.OPENNESS, v.JOINT_POSITIONS))
 _GEOMETRY = _OPENING.union(
-    stars.COORDINATE_PROPERTIES, v.SIZE_XYZ, (v.HAS_POSITION, v.HAS_SIZE, v.HAS_EXTENT, v.MODEL)
+    entity_triples.COORDINATE_PROPERTIES, v.SIZE_XYZ, (v.HAS_POSITION, v.HAS_SIZE, v.HAS_EXTENT, v.MODEL)
 )
 _SHAPING: Final = (EXTENT, *OPENING)
 """Properties that its shape depends on."""

@@ -20,7 +20,7 @@ from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKN
 from semmap.nodes.perception_node.showing import View
 from semmap.schemas.entities import Size
 from semmap.schemas.errors import BadFile, BadRequest, Refused, did_you_mean
-from semmap.schemas.lessons import LessonTold
+from semmap.schemas.exemplars import LessonTold
 
 FILENAME = "lessons.npz"
 _MOST = 500

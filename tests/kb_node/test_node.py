@@ -13,7 +13,7 @@ from semmap.nodes import bus
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.storage.seed import seed
 from semmap.nodes.supervisor.settings import Settings
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import codec, errors, keys
 from semmap.schemas.bridge import (
@@ -135,7 +135,7 @@ def test_a_commit_is_replied_and_published(session):
 
 
 def test_the_coordinator_is_not_told_again_of_what_a_reply_tells_it(session):
-    untold, subscriber = followed(session, keys.UNTOLD)
+    untold, subscriber = followed(session, keys.COMMIT_EFFECTS)
     commits, other = followed(session, keys.COMMIT)
     told = ask(session, "commit", structs.replace(transaction("t1", chair("t1")), told=True))
     several = Transactions(
@@ -219,7 +219,7 @@ def test_questions_are_answered(session):
 
 
 def test_what_was_said_of_a_place_is_compared_with_what_is_seen(session):
-    kitchen = stars.star(
+    kitchen = entity_triples.describe(
         "k9", v.dm("Kitchen"), pose=Pose(position_m=(50.0, 0.0, 0.0)), size_m=(4.0, 4.0, 2.5)
     )
     said = (v.entity_iri("sat"), v.dm("isLocatedIn"), v.entity_iri("k9"))

@@ -8,10 +8,10 @@ from semmap.nodes.coordinator.door.committing import changed, commit, once
 from semmap.nodes.coordinator.door.known_map import KnownMap
 from semmap.nodes.coordinator.plausibility import require_carrying
 from semmap.schemas import errors, wording
+from semmap.schemas.attachments import holder_of
 from semmap.schemas.bridge import LoadOf
 from semmap.schemas.commands import Attach, Detach
 from semmap.schemas.entities import Entity, Pose, rounded
-from semmap.schemas.grips import holder_of
 from semmap.schemas.replies import Changed
 
 

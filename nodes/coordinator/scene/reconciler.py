@@ -37,10 +37,10 @@ from semmap.nodes.coordinator.scene.settled import Settled, statements
 from semmap.nodes.coordinator.scene.spawn_batches import batches
 from semmap.nodes.runtime.futures import OwnFuture, settle, then
 from semmap.schemas import errors, wording
+from semmap.schemas.attachments import holder_of
 from semmap.schemas.calls import Call
 from semmap.schemas.commands import Add
 from semmap.schemas.entities import BodyState, Entity, rounded
-from semmap.schemas.grips import holder_of
 from semmap.schemas.joints import is_on, openness
 from semmap.schemas.replies import Changed
 from semmap.schemas.scenes import (

@@ -12,8 +12,8 @@ from semmap.ontology import vocabulary as v
 from semmap.schemas import changes
 from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Term
-from semmap.schemas.happenings import Difference
 from semmap.schemas.language import Candidate
+from semmap.schemas.map_history import Difference
 from semmap.schemas.relations import Described, Relation
 from semmap.schemas.replies import LoggedCommit
 from semmap.schemas.sparql import Row

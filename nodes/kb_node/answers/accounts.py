@@ -12,9 +12,9 @@ from semmap.nodes.kb_node.answers.whereabouts import Now
 from semmap.nodes.kb_node.relations.selection import only_meant
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.language import nouns
-from semmap.nodes.language.telling import account
-from semmap.nodes.language.telling.account import Account
-from semmap.nodes.language.telling.inventory import Inventory
+from semmap.nodes.language.generation import summary
+from semmap.nodes.language.generation.inventory import Inventory
+from semmap.nodes.language.generation.summary import Summary
 from semmap.nodes.language.vocabulary import spoken
 from semmap.ontology.model_shapes import own_size_m
 from semmap.schemas import language
@@ -45,19 +45,19 @@ class Accounts:
             text=" ".join(words), words=len(words), left_out=told.left_out, commit=self._map.seq
         )
 
-    def _told(self, name: str | None, most_words: int) -> Account:
+    def _told(self, name: str | None, most_words: int) -> Summary:
         if name is None:
             is_large = len(self._map) > LARGEST
             inventory = self._inventories.numbers() if is_large else self._inventories.whole()
-            tell = account.of_large_map if is_large else account.of_map
+            tell = summary.summarize_large_map if is_large else summary.summarize_map
             return tell(inventory, list(self._troubles(None)), most_words)
         entity = self._map.entity(name)
         inventory = self._inventories.around(entity)
         if entity.place:
             inside = {thing.name for part in inventory.parts_of(name) for thing in inventory.in_place(part)}
-            return account.of_place(inventory, name, list(self._troubles({*inside, name})), most_words)
+            return summary.summarize_place(inventory, name, list(self._troubles({*inside, name})), most_words)
         first, last = self._of_thing(entity, inventory), self._at_last(entity)
-        return account.of_thing(inventory, name, first, last, most_words)
+        return summary.summarize_thing(inventory, name, first, last, most_words)
 
     def _troubles(self, about: Set[str] | None) -> Iterator[str]:
         """What is not as it should be, of these or of all, a clause each."""

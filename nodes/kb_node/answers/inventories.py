@@ -13,7 +13,7 @@ from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.language import nouns
-from semmap.nodes.language.telling.inventory import How, Inventory, Place, Thing
+from semmap.nodes.language.generation.inventory import How, Inventory, Place, Thing
 from semmap.nodes.language.vocabulary import spoken
 from semmap.ontology.model_shapes import own_size_m
 from semmap.schemas.entities import Entity

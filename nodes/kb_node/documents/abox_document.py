@@ -10,7 +10,7 @@ from typing import NamedTuple
 from semmap.nodes.kb_node.by_property import by_property
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.explanations import Term, Triple
@@ -199,6 +199,6 @@ def is_built_in(term: Term) -> bool:
 
 def _without(gone: set[Term], triples: list[Triple]) -> list[Triple]:
     """`triples` without those about `gone`, and about what is in no other star."""
-    edges = [(s, o) for s, p, o in triples if p in stars.STAR_PROPERTIES]
+    edges = [(s, o) for s, p, o in triples if p in entity_triples.DESCRIPTION_PROPERTIES]
     gone = gone.union({o for s, o in edges if s in gone} - {o for s, o in edges if s not in gone})
     return [(s, p, o) for s, p, o in triples if s not in gone and o not in gone]

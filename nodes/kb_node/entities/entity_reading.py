@@ -12,14 +12,14 @@ from msgspec import structs
 from semmap.nodes.kb_node.entities import aligned
 from semmap.nodes.kb_node.entities.class_table import ClassTable, Kind
 from semmap.nodes.kb_node.reasoner import Reasoner
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.ontology.model_choice import chosen
 from semmap.schemas import errors, polygons
+from semmap.schemas.attachments import GRASPING
 from semmap.schemas.commits import Star
 from semmap.schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance, Size, Stated, Tracked
 from semmap.schemas.explanations import Term, Triple
-from semmap.schemas.grips import GRASPING
 from semmap.schemas.joints import OPENING, SWITCHING
 
 _NAME = re.compile(NAME_PATTERN)
@@ -311,7 +311,7 @@ def star_of(
     own = list(reasoner.asserted(iri))
     if not tbox.isdisjoint(own):
         raise errors.Refused(f"{v.local_name(iri)} is part of the TBox, which no command changes")
-    nodes = {o for _, p, o in own if p in stars.STAR_PROPERTIES} - leaving
+    nodes = {o for _, p, o in own if p in entity_triples.DESCRIPTION_PROPERTIES} - leaving
     for node in sorted(nodes):
         if all(user in leaving for user in users(reasoner, node)):
             own += [t for t in reasoner.asserted(node) if t not in tbox]
@@ -341,8 +341,8 @@ def users(reasoner: Reasoner, node: Term) -> Iterable[Term]:
     """The individuals in whose star `node` is; one that uses it twice comes twice."""
     incoming = list(islice(reasoner.asserted(None, None, node), _FEW))
     if len(incoming) < _FEW:  # one look at all of them is quicker than one for each property
-        return [s for s, p, _ in incoming if p in stars.STAR_PROPERTIES]
-    return (s for p in stars.STAR_PROPERTIES for s, _, _ in reasoner.asserted(None, p, node))
+        return [s for s, p, _ in incoming if p in entity_triples.DESCRIPTION_PROPERTIES]
+    return (s for p in entity_triples.DESCRIPTION_PROPERTIES for s, _, _ in reasoner.asserted(None, p, node))
 
 
 def _pose(about: About, iri: Term, nodes: Sequence[Term]) -> Pose | None:

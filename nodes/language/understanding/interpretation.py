@@ -10,7 +10,7 @@ from typing import Final
 
 import pycrfsuite
 
-from semmap.nodes.language import languages, lexicon
+from semmap.nodes.language import language_detection, lexicon
 from semmap.nodes.language.understanding import (
     conjuncts,
     grounding,
@@ -67,7 +67,7 @@ class Interpreter:
         whoever sees the whole map; with it things that are listed are an argument each, and what is said of a
         thing (*that is on the desk*) is no frame of its own. Without, all is as the corpus has it.
         """
-        if (language or languages.language_of(text)) == "english":
+        if (language or language_detection.detect_language(text)) == "english":
             return self.read(split(text), scene, resolve=resolve)
         told = italian.gloss(text, scene)
         return told.told_back(self.read(told.texts, scene, told.kinds, resolve, told), "italian")

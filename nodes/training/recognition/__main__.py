@@ -23,11 +23,11 @@ from semmap.nodes.training.recognition.gathering import Gathered, gather
 from semmap.nodes.training.recognition.gradient_descent import Recipe
 from semmap.nodes.training.recognition.learn_familiar import learn_familiar
 from semmap.nodes.training.recognition.learn_joining import learn_joining
-from semmap.nodes.training.recognition.learn_novelty import Told, learn_novelty
+from semmap.nodes.training.recognition.learn_open_set import LabelledSamples, learn_novelty
 from semmap.nodes.training.recognition.natural_colours import unnatural
 from semmap.nodes.training.recognition.samples import NOTHING, Samples
 from semmap.nodes.training.scenes.families.table import FAMILIES
-from semmap.nodes.training.scenes.simulated_scenes import STRANGE, foreign_class
+from semmap.nodes.training.scenes.simulated_scenes import DISTRACTOR, foreign_class
 from semmap.nodes.training.segmentation.fit import trees_of
 from semmap.nodes.training.taxonomy import class_of_models, hierarchy
 
@@ -70,8 +70,8 @@ def learn(gathered: Gathered, *, without: Collection[str] = (), unseen: Collecti
         for seed, (f, recipe) in enumerate(zip(shown_to_voters(features), _RECIPES, strict=True))
     )
     weights = _calibrated(voters, [f[held] for f in features], target[held])
-    told = Told(features, target, strangers(samples.kind), held, classes, ancestors)
-    novelty = learn_novelty(told, _RECIPES, weights)
+    labelled = LabelledSamples(features, target, strangers(samples.kind), held, classes, ancestors)
+    novelty = learn_novelty(labelled, _RECIPES, weights)
     familiar = _familiar(things[things.scene % _HELD_OUT != 0], own, class_of, classes)
     sizes = _typical_sizes(samples, target, len(classes))
     expected = expected_sizes(vote(voters, weights, features), sizes)
@@ -105,7 +105,7 @@ def _familiar(
 
 def classes_of(gathered: Gathered) -> dict[str, str]:
     """The class of each kind of things in the samples and pairs."""
-    class_of = class_of_models(MODELS) | {STRANGE: UNKNOWN, NOTHING: CLUTTER}
+    class_of = class_of_models(MODELS) | {DISTRACTOR: UNKNOWN, NOTHING: CLUTTER}
     for kind in {*gathered.things.kind.tolist(), *gathered.pairs.kinds.ravel().tolist()}:
         if (foreign := foreign_class(kind)) is not None:
             class_of[kind] = foreign[1] or UNKNOWN

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from semmap.nodes.perception_node.recognition.perceptron import Perceptron
 from semmap.nodes.training.recognition.fitting import Numbers, classifier
 from semmap.nodes.training.recognition.gradient_descent import Recipe
-from semmap.nodes.training.recognition.learn_novelty import far_off
+from semmap.nodes.training.recognition.learn_open_set import far_off
 
 _FAR = 0.05
 """How many things such as there are none come to all that there are: they are none of our models."""

@@ -8,7 +8,7 @@ from scipy.spatial import KDTree
 
 from semmap.nodes.perception_node.recognition.features import MEAN_COLOUR
 from semmap.nodes.training.recognition.samples import Samples
-from semmap.nodes.training.scenes.drawing_lots import COLOURED
+from semmap.nodes.training.scenes.sampling import COLOURED
 
 _NEAR = 0.03
 """How far its shares of red, green and blue may be from those of any of its like, as they are."""

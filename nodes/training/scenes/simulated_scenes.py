@@ -25,7 +25,7 @@ from semmap.nodes.training.scenes.varieties import Form
 from semmap.schemas.entities import Pose, orientation_from_yaw
 from semmap.schemas.scenes import Body, BodyOrder
 
-STRANGE = "strange"
+DISTRACTOR = "strange"
 _FOREIGN = "@"
 _MASS_KG = 0.4
 

@@ -56,12 +56,12 @@ def test_another_tbox_is_imported_instead(semantic_map):
     assert made.insert == ((v.ABOX_ONTOLOGY, v.OWL_IMPORTS, "<urn:other>"),)
 
 
-STRANGE = ":a a dm:Chair ; dm:isLocatedIn :kitchn . :kitchn dm:isLocatedIn :b . :b a dm:Kitchen ."
+DISTRACTOR = ":a a dm:Chair ; dm:isLocatedIn :kitchn . :kitchn dm:isLocatedIn :b . :b a dm:Kitchen ."
 
 
 def test_what_nobody_describes_is_noted(semantic_map):
-    made, sorted_out = document_change.of_document(semantic_map, document(), turtle(STRANGE))
-    assert set(made.insert) == set(turtle(STRANGE))
+    made, sorted_out = document_change.of_document(semantic_map, document(), turtle(DISTRACTOR))
+    assert set(made.insert) == set(turtle(DISTRACTOR))
     assert sorted_out.notes == [
         "referenced but not described: kitchn (a isLocatedIn kitchn); --strict refuses such files"
     ]

@@ -5,7 +5,7 @@ from contextlib import nullcontext
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.handlers.changing import Changing
 from semmap.nodes.kb_node.handlers.loading import Loading
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas.bridge import LoadDocument
 from semmap.schemas.entities import Pose
@@ -37,7 +37,7 @@ def loading(semantic_map, said):
 
 def test_a_load_counts_what_it_describes_and_not_what_follows_of_others(flat):
     said = []
-    star = stars.star("apple9", v.dm("Apple"), pose=Pose(position_m=(9.81, 0.34, 0.1)))
+    star = entity_triples.describe("apple9", v.dm("Apple"), pose=Pose(position_m=(9.81, 0.34, 0.1)))
     document = LoadDocument(
         id="1",
         source="file",

@@ -3,8 +3,8 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from semmap.nodes.language.language_detection import detect_language
 
-from semmap.nodes.language.languages import language_of
 from semmap.nodes.language.lexicon.italian import italian as lexicon
 from semmap.nodes.language.lexicon.italian import singulars
 from semmap.nodes.language.understanding import italian
@@ -101,13 +101,13 @@ def test_an_unknown_verb_is_said_to_be_unknown():
 
 @pytest.mark.parametrize("text", ["guarda daniel", "prendi", "portamela", "la tazza è sul tavolo", "vacci"])
 def test_italian_is_told_by_its_words(text):
-    assert language_of(text) == "italian"
+    assert detect_language(text) == "italian"
 
 
 def test_english_commands_are_english():
     for example in made.examples(1, household()):
-        assert language_of(" ".join(example.words)) == "english", example.words
-    assert language_of("") == language_of("xyzzy") == "english"
+        assert detect_language(" ".join(example.words)) == "english", example.words
+    assert detect_language("") == detect_language("xyzzy") == "english"
 
 
 def test_a_language_may_be_said():

@@ -23,7 +23,7 @@ from semmap.nodes.extern.cli.output.printable import say
 from semmap.nodes.extern.cli.output.tables import table
 from semmap.nodes.runtime import extras
 from semmap.schemas import errors
-from semmap.schemas.lessons import LessonTold
+from semmap.schemas.exemplars import LessonTold
 from semmap.schemas.wording import counted
 
 if TYPE_CHECKING:

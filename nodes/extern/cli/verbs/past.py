@@ -12,7 +12,7 @@ from semmap.nodes.extern.cli.calling import TIME, print_json, print_lines, talks
 from semmap.nodes.extern.cli.completing import entity_names
 from semmap.nodes.extern.cli.output import lines
 from semmap.schemas import errors
-from semmap.schemas.happenings import KeptRelation
+from semmap.schemas.map_history import KeptRelation
 
 if TYPE_CHECKING:
     from semmap.nodes.extern.client import Client

@@ -1,0 +1,173 @@
+"""The question to ask back where several things may be meant: what tells them apart, the shortest way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import combinations
+from typing import Final
+
+from semmap.nodes.language.reference_resolution.map_index import Item
+from semmap.nodes.language.reference_resolution.resolver import Resolver
+
+_MOST: Final = 5
+"""Candidates that a question names."""
+_Tail = tuple[str, bool]
+_Told = _Tail | None
+"""What is said of a thing, and whether it comes before the noun."""
+
+
+def clarifying_question(names: Sequence[str], resolver: Resolver) -> str:
+    """`Which one: the cup on the table or the one in the sink?`, in the language that was used."""
+    describing = resolver.known.nouns[resolver.language].describing
+    wording = describing.wording
+    items = [resolver.known.items[name] for name in names[: _MOST + 1]]
+    choices: list[str] = []
+    first = ""
+    for item, (tail, is_before) in zip(items, _telling_apart(items, resolver), strict=True):
+        noun = resolver.known.label(item.class_name, resolver.language)
+        if tail == noun:
+            choices.append(describing.the(noun))
+        else:
+            is_like = noun == first and noun not in describing.pluralia
+            form = ("other" if is_like else "first") + ("_before" if is_before else "")
+            choices.append(
+                wording[form].format(
+                    noun=noun, the=describing.the(noun), that=describing.that(noun), tail=tail
+                )
+            )
+        first = first or noun
+    if len(choices) > _MOST:
+        choices = [*choices[:_MOST], wording["another"]]
+    listed = ", ".join(choices[:-1]) + wording["either"] + choices[-1]
+    return describing.contracted(wording["question"].format(listed))
+
+
+def _telling_apart(items: Sequence[Item], resolver: Resolver) -> list[_Tail]:
+    """Of each what no other has: one feature if that is enough, else two, else its name."""
+    features = [[feature(item, resolver) for item in items] for feature in _FEATURES]
+    features.append(_across(items, resolver))
+    for told in features:
+        if (apart := _apart(told)) is not None:
+            return apart
+    for first, second in combinations(features, 2):
+        if (apart := _apart([_joined(a, b) for a, b in zip(first, second, strict=True)])) is not None:
+            return apart
+    called = resolver.known.nouns[resolver.language].describing.wording["called"]
+    return [(called.format(item.name), False) for item in items]
+
+
+def _joined(one: _Told, other: _Told) -> _Told:
+    if one is None or other is None or one[1] or other[1]:
+        return None
+    return f"{one[0]} {other[0]}", False
+
+
+def _apart(told: Sequence[_Told]) -> list[_Tail] | None:
+    """What is said of each, if it is said of all and of each something else."""
+    tails = [tail for tail in told if tail is not None]
+    return tails if len(tails) == len(told) == len(set(tails)) else None
+
+
+def _called(item: Item, resolver: Resolver) -> _Told:
+    """What it is called by itself."""
+    describing = resolver.known.nouns[resolver.language].describing
+    is_plain = resolver.known.nouns[resolver.language].is_plain
+    reference = next(filter(is_plain, item.references), "")
+    return (describing.wording["called"].format(reference), False) if reference else None
+
+
+def _kind(item: Item, resolver: Resolver) -> _Told:
+    return resolver.known.label(item.class_name, resolver.language), False
+
+
+def _color(item: Item, resolver: Resolver) -> _Told:
+    found = _quality(item, "Color", resolver)
+    describing = resolver.known.nouns[resolver.language].describing
+    noun = resolver.known.label(item.class_name, resolver.language)
+    return (describing.agreeing(found, noun), True) if found else None
+
+
+def _material(item: Item, resolver: Resolver) -> _Told:
+    found = _quality(item, "Material", resolver)
+    wording = resolver.known.nouns[resolver.language].describing.wording
+    return (wording["material"].format(found), False) if found else None
+
+
+def _quality(item: Item, of: str, resolver: Resolver) -> str:
+    """The label of its colour or material, if that is said."""
+    values = (value for name, said in sorted(item.values.items()) if name.endswith(of) for value in said)
+    return next((resolver.known.label(str(value), resolver.language) for value in values), "")
+
+
+def _where(*relations: str) -> Callable[[Item, Resolver], _Told]:
+    def told(item: Item, resolver: Resolver) -> _Told:
+        describing = resolver.known.nouns[resolver.language].describing
+        for relation, other in resolver.around.whereabouts(item.name):
+            if relation in relations and other in resolver.known.items:
+                called = resolver.known.spoken(resolver.known.items[other], resolver.language)
+                return describing.wording[relation].format(describing.the(called)), False
+        return None
+
+    return told
+
+
+def _owner(item: Item, resolver: Resolver) -> _Told:
+    describing = resolver.known.nouns[resolver.language].describing
+    for owner in sorted(map(str, item.values.get("isOwnedBy", ()))):
+        if owner in resolver.known.items:
+            called = resolver.known.spoken(resolver.known.items[owner], resolver.language)
+            return describing.wording["own"].format(describing.the(called)), False
+    return None
+
+
+def _state(property_name: str) -> Callable[[Item, Resolver], _Told]:
+    def told(item: Item, resolver: Resolver) -> _Told:
+        wording = resolver.known.nouns[resolver.language].describing.wording
+        values = item.values.get(property_name, frozenset())
+        return next(((wording[f"{str(v).lower()} {property_name}"], False) for v in values), None)
+
+    return told
+
+
+def _across(items: Sequence[Item], resolver: Resolver) -> list[_Told]:
+    """Which one from the left, where somebody looks."""
+    if not resolver.around.has_viewer:
+        return [None] * len(items)
+    wording = resolver.known.nouns[resolver.language].describing.wording
+    order = sorted(items, key=lambda item: -resolver.around.bearing(item.name))
+    return [(wording["across"].format(order.index(item) + 1), False) for item in items]
+
+
+def _next_to(item: Item, resolver: Resolver) -> _Told:
+    """Next to what there is only one of."""
+    describing = resolver.known.nouns[resolver.language].describing
+    for name, other in _single(resolver):
+        if name != item.name and resolver.around.related("isNextTo", item.name, name):
+            return describing.wording["isNextTo"].format(describing.the(other)), False
+    return None
+
+
+def _single(resolver: Resolver) -> Iterator[tuple[str, str]]:
+    """Things whose reference no other has."""
+    known = resolver.known
+    if len(known.items) > 200:
+        return
+    spoken = {
+        name: known.spoken(item, resolver.language) for name, item in known.items.items() if not item.is_place
+    }
+    called = list(spoken.values())
+    yield from ((name, text) for name, text in sorted(spoken.items()) if called.count(text) == 1)
+
+
+_FEATURES: Final[tuple[Callable[[Item, Resolver], _Told], ...]] = (
+    _where("isInside", "isOn"),
+    _color,
+    _where("isLocatedIn"),
+    _owner,
+    _kind,
+    _called,
+    _material,
+    _state("isOpen"),
+    _state("isSwitchedOn"),
+    _next_to,
+)

@@ -1,0 +1,140 @@
+"""Learn when the votes are not to be believed, by leaving out classes and things that are known."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from sklearn.discriminant_analysis import LinearDiscriminantAnalysis
+from sklearn.linear_model import LogisticRegression
+
+from semmap.nodes.perception_node.recognition.novelty import Novelty, signs
+from semmap.nodes.perception_node.recognition.shipped_votes import CLUTTER, UNKNOWN
+from semmap.nodes.perception_node.recognition.vote import answer, ballots, pool, shown_to_voters
+from semmap.nodes.training.recognition.fitting import Numbers, classifier
+from semmap.nodes.training.recognition.gradient_descent import Recipe
+
+_FOLDS = 4
+_LEFT_OUT = 0.12
+_ROUNDS = 6
+_ENOUGH = 0.25
+"""The share of the samples that the voters of a fold learn from: signs need no more."""
+
+_AXES = 30
+_SURE, _CLEAR = 0.42, 2.0 / 3.0
+"""From when on a name counts as said: somewhat sooner than perception says it, to have more wrong ones."""
+_NEW_CLASS, _NEW_THING, _FAR = 0.1, 0.4, 0.03
+"""How many of the things that are met are of no class that was learnt, how many of one but of another make,
+and how many like nothing at all; nobody knows, so these are guesses."""
+_FAR_OFF = (3.0, 40.0)
+"""How far from the mean those are in each feature, in deviations."""
+
+
+@dataclass(frozen=True)
+class LabelledSamples:
+    """N samples and what is true of them.
+
+    `features`: of each sort (N, its own number). `target`: (N,) numbers of `classes`. `stranger`: (N,) which
+    foreign thing each is, -1 for our own. `held`: (N,) what voters have not learnt from.
+    """
+
+    features: Sequence[Numbers]
+    target: NDArray[np.int64]
+    stranger: NDArray[np.int64]
+    held: NDArray[np.bool_]
+    classes: Sequence[str]
+    ancestors: Mapping[str, Sequence[str]]
+
+    def of(self, rows: NDArray[np.bool_]) -> list[Numbers]:
+        """The features of some."""
+        return [values[rows] for values in self.features]
+
+
+def space(features: Sequence[Numbers], target: NDArray[np.int64], classes: int) -> Novelty:
+    """The space alone, without the regression: axes that tell classes apart, scaled by how they scatter."""
+    together = np.concatenate(features, axis=1)
+    mean = together.mean(axis=0)
+    found = LinearDiscriminantAnalysis(solver="eigen", shrinkage=0.05, n_components=_AXES)
+    several = np.bincount(target)[target] > 1  # one alone does not scatter
+    found.fit((together - mean)[several], target[several])
+    axes = found.scalings_[:, :_AXES]
+    centres = np.full((classes, _AXES), 1e3)
+    for k in np.unique(target):
+        centres[k] = (together[target == k] - mean).mean(axis=0) @ axes
+    return Novelty(mean, axes, centres, np.zeros(1))
+
+
+def learn_novelty(labelled: LabelledSamples, recipes: Sequence[Recipe], weights: Numbers) -> Novelty:
+    """Some classes and some foreign things are left out at a time.
+
+    The regression tells where the votes, which never saw them, name them wrongly; what is far from all that
+    there is would always be. `weights`: how much each vote counts.
+    """
+    things = np.flatnonzero([name not in (UNKNOWN, CLUTTER) for name in labelled.classes])
+    rng = np.random.default_rng(0)
+    order = rng.permutation(things)
+    size = max(1, round(_LEFT_OUT * len(order)))
+    rows, wrong, worth = [], [], []
+    for fold in range(_FOLDS):
+        new_class = np.isin(labelled.target, order[fold * size : (fold + 1) * size]) & (labelled.stranger < 0)
+        new_thing = (labelled.stranger >= 0) & (labelled.stranger % _FOLDS == fold)
+        drawn = rng.random(len(labelled.target)) < _ENOUGH
+        known = ~labelled.held & ~new_class & ~new_thing & drawn
+        voters = [
+            classifier(
+                f, labelled.target[known], len(labelled.classes), replace(recipe, rounds=_ROUNDS), seed=seed
+            )
+            for seed, (f, recipe) in enumerate(zip(shown_to_voters(labelled.of(known)), recipes, strict=True))
+        ]
+        judged = drawn & (
+            (labelled.held & np.isin(labelled.target, things) & (labelled.stranger < 0)) | new_thing
+        )
+        far = far_off(labelled.of(known), judged.sum() // 20, rng)
+        seen = [np.concatenate(both) for both in zip(labelled.of(judged), far, strict=True)]
+        votes = ballots(voters, seen)
+        pooled = pool(votes, weights)
+        place = space(labelled.of(known), labelled.target[known], len(labelled.classes))
+        rows.append(signs(place, seen, votes, pooled))
+        is_far = np.arange(len(pooled)) >= judged.sum()
+        wrong.append(np.append(_misnamed(pooled[~is_far], labelled, judged), is_far[is_far]))
+        worth.append(_worth(new_class[judged], new_thing[judged], len(far[0])))
+    seen_in_folds = np.concatenate(rows)
+    scale = seen_in_folds.std(axis=0)
+    regression = LogisticRegression(max_iter=1000)
+    regression.fit(seen_in_folds / scale, np.concatenate(wrong), np.concatenate(worth))
+    whole = space(labelled.of(~labelled.held), labelled.target[~labelled.held], len(labelled.classes))
+    fitted = np.append(regression.coef_[0] / scale, regression.intercept_)
+    return Novelty(whole.mean, whole.axes, whole.centres, fitted)
+
+
+def far_off(features: Sequence[Numbers], count: int, rng: np.random.Generator) -> list[Numbers]:
+    """Features of so many things such as there are none, of each sort; any share of them is too large."""
+    near, far = np.log(_FAR_OFF)
+    away, above = np.exp(rng.uniform(near, far, (count, 1))), rng.random((count, 1))
+    return [
+        values.mean(axis=0)
+        + values.std(axis=0) * np.where(rng.random((count, values.shape[1])) < above, away, -away)
+        for values in features
+    ]
+
+
+def _worth(new_class: NDArray[np.bool_], new_thing: NDArray[np.bool_], far: int) -> Numbers:
+    """(N + far,) how much each counts, so that the shares are what they are guessed to be."""
+    sorts = (new_class, new_thing & ~new_class, ~new_class & ~new_thing)
+    worth = np.zeros(len(new_class))
+    for sort, share in zip(sorts, (_NEW_CLASS, _NEW_THING, 1.0 - _NEW_CLASS - _NEW_THING), strict=True):
+        worth[sort] = share * len(new_class) / max(1, sort.sum())
+    return np.append(worth, np.full(far, _FAR * len(new_class) / max(1, far)))
+
+
+def _misnamed(pooled: Numbers, labelled: LabelledSamples, judged: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """(N,) whether the votes' answer is neither a thing's class nor above it."""
+    found = []
+    for chances, target in zip(np.exp(pooled), labelled.target[judged], strict=True):
+        by_leaf = dict(zip(labelled.classes, chances.tolist(), strict=True))
+        said, _ = answer(by_leaf, labelled.ancestors, _SURE, _CLEAR)
+        true = labelled.classes[target]
+        found.append(said != true and said not in labelled.ancestors.get(true, ()))
+    return np.array(found)
