@@ -1,4 +1,4 @@
-"""Which language a text is in, by its words."""
+"""Language detection by the words of the lexicons."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from semmap.schemas.language import Language
 
 
 def detect_language(text: str) -> Language:
-    """The language whose lexicon knows more of a text's words; English if neither knows more."""
+    """Return the language whose lexicon has more of a text's words, English if they are equal."""
     return "italian" if italian.share(text) > _english(text) else "english"
 
 
 def _english(text: str) -> int:
-    """How many words of a text are of the English lexicon."""
+    """Return the number of words of a text that are in the English lexicon."""
     known = lexicon.load()
     return sum(
         word in _listed() or lemma(word, known) in _listed() or is_verb(word, known) for word in split(text)

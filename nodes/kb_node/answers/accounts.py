@@ -88,7 +88,7 @@ class Accounts:
         if called and called != [thing.noun]:
             yield f"It is called {' or '.join(f'“{text}”' for text in called)}."
         if troubles := list(self._troubles({entity.name})):
-            yield f"Not as it should be: {'; '.join(troubles).removeprefix(f'{entity.name}, ')}."
+            yield f"Problems: {'; '.join(troubles).removeprefix(f'{entity.name}, ')}."
         wrong = {(r.subject, r.relation, r.object) for r in self._now.denied()}
         known = {row.name: row for row in self._map.classes.stated.rows()}
         for property_, stated in entity.properties.items():

@@ -1,1 +1,1 @@
-"""Saying what a map holds in paragraphs that a person would write."""
+"""Natural language generation: paragraphs about the contents of a map."""

@@ -1,4 +1,4 @@
-"""What is there as a tree of groups: things of one noun that are in one spot, with what these bear.
+"""The contents of the map as a tree of groups: similar things in one spot, with what is on and in them.
 
 kitchen: 4 chairs | a table [on it: 2 plates, a bowl [in it: an apple]] | a fridge [in it: milk]
 """
@@ -15,33 +15,33 @@ from semmap.nodes.language import nouns
 from semmap.schemas import errors
 
 How = Literal["on", "in", "round"]
-"""How a thing is at another that bears or holds it, or that it stands round."""
+"""The relation of a thing to its support or container, or to the thing that it stands round."""
 
 HOWS: Final[tuple[How, ...]] = ("round", "on", "in")
 _MOST_LEVELS: Final = 50
-"""Of things on things on things: more are a slip of some measurement."""
+"""The maximum depth of a stack; a deeper one is a measurement error."""
 
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """A thing as it is spoken of. `noun` is singular, without article; `state` an adjective, or ""."""
+    """A thing in a text. `noun` is singular, without article; `state` is an adjective or ""."""
 
     name: str
     noun: str
     state: str = ""
     place: str | None = None
-    """The smallest place that it is in."""
+    """The innermost place that contains it."""
     at: tuple[How, str] | None = None
-    """What it is on, in or round, by name."""
+    """The name of the thing that it is on, in or round."""
     volume_m3: float = 0.0
     fixed: bool = False
     kind: str = ""
-    """What its class is called, where it is itself called something else."""
+    """The label of its class, if the noun is another label."""
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A place as it is spoken of; `within` is the smallest that it is a part of, by name."""
+    """A place in a text; `within` is the name of the innermost place that it is a part of."""
 
     name: str
     noun: str
@@ -50,7 +50,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Group:
-    """Things that are spoken of together, the most telling groups of what they bear first."""
+    """Similar things that a text names together; in `load`, the most important groups come first."""
 
     noun: str
     state: str
@@ -59,15 +59,15 @@ class Group:
 
     @cached_property
     def all(self) -> int:
-        """How many things these are, with those that they bear."""
+        """The number of things, including those on and in them."""
         return len(self.things) + sum(group.all for groups in self.load.values() for group in groups)
 
     @property
     def phrase(self) -> str:
         """`4 chairs`, `a door that is open`."""
-        said = nouns.counted(len(self.things), self.noun)
+        phrase = nouns.counted(len(self.things), self.noun)
         verb = "are" if self.is_plural else "is"
-        return f"{said} that {verb} {self.state}" if self.state else said
+        return f"{phrase} that {verb} {self.state}" if self.state else phrase
 
     @property
     def definite(self) -> str:
@@ -83,7 +83,7 @@ class Group:
 
 
 class Inventory:
-    """The things of a map by place, each on or in what bears it."""
+    """The things of a map by place, each with its support or container."""
 
     def __init__(self, things: Iterable[Thing], places: Iterable[Place] = ()) -> None:
         self.places = {place.name: place for place in places}
@@ -96,15 +96,15 @@ class Inventory:
         self._above: dict[str, list[Thing]] = {}
         self._standing: dict[str | None, list[Thing]] = {}
         for thing in self.things.values():
-            if thing.at is not None and self._is_borne(thing):
+            if thing.at is not None and self._is_supported(thing):
                 self._above.setdefault(thing.at[1], []).append(thing)
             else:
                 self._standing.setdefault(thing.place if thing.place in self.places else None, []).append(
                     thing
                 )
 
-    def _is_borne(self, thing: Thing) -> bool:
-        """Whether what it is said to be on or in is there, and not in the end the thing itself."""
+    def _is_supported(self, thing: Thing) -> bool:
+        """Return whether the chain of supports exists and does not lead back to the thing itself."""
         lower: Thing | None = thing
         for _ in range(_MOST_LEVELS):
             if lower is None or lower.at is None:
@@ -113,15 +113,15 @@ class Inventory:
         return False
 
     def standing_in(self, place: str | None) -> tuple[Group, ...]:
-        """What stands in a place itself, not in a part of it; None for what is in no place."""
+        """Return the groups in a place, excluding its parts; None stands for outside all places."""
         return self._groups(self._standing.get(place, ()))
 
     def in_place(self, place: str) -> list[Thing]:
-        """The things in a place, also those on and in others, but not those in a part of it."""
+        """Return the things in a place, including those on and in others, excluding its parts."""
         return [thing for thing in self.things.values() if thing.place == place]
 
     def in_sum(self, things: Iterable[Thing]) -> tuple[Group, ...]:
-        """Things by kind, wherever they are: the most first."""
+        """Return things grouped by kind, wherever they are, the largest group first."""
         together: dict[str, list[Thing]] = {}
         for thing in things:
             together.setdefault(thing.kind or thing.noun, []).append(thing)
@@ -129,16 +129,16 @@ class Inventory:
         return tuple(sorted(groups, key=lambda group: (-len(group.things), group.noun)))
 
     def at(self, name: str) -> Mapping[How, tuple[Group, ...]]:
-        """What is on, in and round a thing."""
+        """Return the groups on, in and round a thing."""
         return self._load((name,))
 
     def the(self, place: str | None) -> str:
-        """`the kitchen`; where several places are called so, with its name."""
+        """Return `the kitchen`, with the name of the place if the noun is ambiguous."""
         noun = self.places[place or ""].noun
         return f"the {noun}" if self._called[noun] == 1 else f"the {noun} {place}"
 
     def parts_of(self, place: str) -> list[str]:
-        """The place and those that are a part of it, directly or not, by name: each before its parts."""
+        """Return the names of a place and of its direct and indirect parts, each before its parts."""
         found, waiting = dict[str, None](), [place]
         while waiting:
             name = waiting.pop()
@@ -148,7 +148,7 @@ class Inventory:
         return list(found)
 
     def places_in_order(self) -> list[str]:
-        """All of them: each followed by its parts, but what is a part of nothing comes after its own."""
+        """Return all places: each is followed by its parts, but outermost places come after theirs."""
         found = dict[str, None]()
         for name, place in self.places.items():
             if place.within not in self.places:
@@ -157,7 +157,7 @@ class Inventory:
         return list(found | dict.fromkeys(self.places))
 
     def _groups(self, things: Iterable[Thing]) -> tuple[Group, ...]:
-        """What bears something comes first, then what is large; what is part of the building last."""
+        """Group things: those with a load first, then large ones, and parts of the building last."""
         together: dict[tuple[str, str], list[Thing]] = {}
         for thing in things:
             together.setdefault((thing.noun, thing.state), []).append(thing)
@@ -172,7 +172,7 @@ class Inventory:
         for name in names:
             for thing in self._above.get(name, ()):
                 if thing.at is None:
-                    raise errors.InternalError(f"{thing.name} is on another thing, and has no place")
+                    raise errors.InternalError(f"{thing.name} has a support but no relation to it")
                 by_how.setdefault(thing.at[0], []).append(thing)
         return {how: self._groups(by_how[how]) for how in HOWS if how in by_how}
 

@@ -1,4 +1,4 @@
-"""What is said of one place: which groups it has, and what is on, in and round these."""
+"""The sentences about one place: its groups, and what is on, in and round them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _ON_AND_IN: Final[tuple[How, How]] = ("on", "in")
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A group that may be named, with the one that has to be named before; lower `position`s come first."""
+    """A group that can be named, with the one that must be named before it; lower `position`s come first."""
 
     group: Group
     above: Piece | None = None
@@ -24,16 +24,16 @@ class Piece:
 
     @property
     def speaks_of(self) -> int:
-        """How many things its phrase speaks of."""
-        return spoken_of(self.group) if self.how in _ON_AND_IN else len(self.group.things)
+        """The number of things that its phrase mentions."""
+        return count_mentioned(self.group) if self.how in _ON_AND_IN else len(self.group.things)
 
 
 @dataclass(eq=False)
 class Paragraph:
-    """The sentences about one place, or about what is in none."""
+    """The sentences about one place, or about the things outside all places."""
 
     heading: str
-    """`The kitchen has`, or with a verb that agrees with what follows: `In no place {be}`."""
+    """`The kitchen has`, or with a verb that agrees with what follows: `Outside all places {be}`."""
     groups: tuple[Group, ...]
     pieces: list[Piece] = field(default_factory=list)
 
@@ -42,16 +42,16 @@ class Paragraph:
             above = Piece(group, position=index)
             self.pieces.append(above)
             for how, load in group.load.items():
-                later = index + (how in _ON_AND_IN)  # what stands round a thing is told in the same breath
+                later = index + (how in _ON_AND_IN)  # things round it are in the same phrase
                 self.pieces += (Piece(one, above, how, later + nth) for nth, one in enumerate(load))
 
     @property
     def all(self) -> int:
-        """How many things it is about."""
+        """The number of things in the place."""
         return sum(group.all for group in self.groups)
 
     def text(self, named: AbstractSet[Piece]) -> tuple[str, int]:
-        """The sentences that name these pieces, and how many things they leave out."""
+        """Return the sentences that name these pieces, and the number of things that they leave out."""
         here = [piece for piece in self.pieces if piece in named]
         above = [piece for piece in here if piece.above is None]
         below: dict[Piece, list[Piece]] = {}
@@ -62,34 +62,34 @@ class Paragraph:
         phrases: list[str] = []
         sentences: list[str] = []
         for piece in above:
-            told = below.get(piece, [])
-            round_it = [one.group for one in told if one.how == "round"]
+            loads = below.get(piece, [])
+            round_it = [one.group for one in loads if one.how == "round"]
             phrases.append(piece.group.phrase + _round(piece.group, round_it))
-            said = len(piece.group.things) + sum(len(group.things) for group in round_it)
+            mentioned = len(piece.group.things) + sum(len(group.things) for group in round_it)
             for how in _ON_AND_IN:
-                if load := [one.group for one in told if one.how == how]:
+                if load := [one.group for one in loads if one.how == how]:
                     all_ = sum(group.all for group in piece.group.load[how])
                     where = f"{how.capitalize()} {piece.group.definite}"
-                    sentences.append(there_are(where, load, all_ - sum(map(spoken_of, load))))
-                    said += all_
-            others += piece.group.all - said
+                    sentences.append(there_are(where, load, all_ - sum(map(count_mentioned, load))))
+                    mentioned += all_
+            others += piece.group.all - mentioned
         unnamed = self.all - sum(piece.speaks_of for piece in here)
         return " ".join([self._first(above, phrases, others), *sentences]), unnamed
 
     def _first(self, named: Sequence[Piece], phrases: Sequence[str], others: int) -> str:
-        """`The kitchen has a fridge and 12 other things.`, or without a name `The kitchen has 13 things.`."""
-        said = [*phrases, *_others(others)] if phrases else [nouns.number(others, "thing")]
-        is_plural = len(said) > 1 or (named[0].group.is_plural if named else others > 1)
-        return f"{self.heading.replace('{be}', 'are' if is_plural else 'is')} {nouns.listed(said)}."
+        """Return `The kitchen has a fridge and 12 other things.` or `The kitchen has 13 things.`."""
+        parts = [*phrases, *_others(others)] if phrases else [nouns.number(others, "thing")]
+        is_plural = len(parts) > 1 or (named[0].group.is_plural if named else others > 1)
+        return f"{self.heading.replace('{be}', 'are' if is_plural else 'is')} {nouns.listed(parts)}."
 
 
-def spoken_of(group: Group) -> int:
-    """How many things are spoken of where a group is told with what is on and in it."""
+def count_mentioned(group: Group) -> int:
+    """Return the number of things that a phrase about a group and its load mentions."""
     return len(group.things) + sum(len(one.things) for how in _ON_AND_IN for one in group.load.get(how, ()))
 
 
 def there_are(where: str, groups: Sequence[Group], others: int) -> str:
-    """What is on or in something: `On the table are 2 plates and a glass.`."""
+    """Return a sentence about the load of something: `On the table are 2 plates and a glass.`."""
     phrases = [_with_load(group) for group in groups] + _others(others)
     is_one = len(phrases) == 1 and not groups[0].is_plural
     return f"{where} {'is' if is_one else 'are'} {nouns.listed(phrases)}."

@@ -1,1 +1,1 @@
-"""Finding what a noun phrase describes: parsing it, resolving it against a map, and asking back."""
+"""Reference resolution: parse a noun phrase, resolve it against the map, and ask for clarification."""

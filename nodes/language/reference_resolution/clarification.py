@@ -1,4 +1,4 @@
-"""The question to ask back where several things may be meant: what tells them apart, the shortest way."""
+"""Clarification questions that distinguish several candidates by as few properties as possible."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from semmap.nodes.language.reference_resolution.map_index import Item
 from semmap.nodes.language.reference_resolution.resolver import Resolver
 
 _MOST: Final = 5
-"""Candidates that a question names."""
+"""The maximum number of candidates that a question lists."""
 _Tail = tuple[str, bool]
-_Told = _Tail | None
-"""What is said of a thing, and whether it comes before the noun."""
+"""A distinguishing phrase, and whether it precedes the noun."""
+_Feature = _Tail | None
 
 
 def clarifying_question(names: Sequence[str], resolver: Resolver) -> str:
-    """`Which one: the cup on the table or the one in the sink?`, in the language that was used."""
+    """Return `Which one: the cup on the table or the one in the sink?`, in the language of the request."""
     describing = resolver.known.nouns[resolver.language].describing
     wording = describing.wording
     items = [resolver.known.items[name] for name in names[: _MOST + 1]]
     choices: list[str] = []
     first = ""
-    for item, (tail, is_before) in zip(items, _telling_apart(items, resolver), strict=True):
+    for item, (tail, is_before) in zip(items, _distinguish(items, resolver), strict=True):
         noun = resolver.known.label(item.class_name, resolver.language)
         if tail == noun:
             choices.append(describing.the(noun))
@@ -42,12 +42,12 @@ def clarifying_question(names: Sequence[str], resolver: Resolver) -> str:
     return describing.contracted(wording["question"].format(listed))
 
 
-def _telling_apart(items: Sequence[Item], resolver: Resolver) -> list[_Tail]:
-    """Of each what no other has: one feature if that is enough, else two, else its name."""
+def _distinguish(items: Sequence[Item], resolver: Resolver) -> list[_Tail]:
+    """Return a unique phrase for each item: one feature if that is enough, else two, else the name."""
     features = [[feature(item, resolver) for item in items] for feature in _FEATURES]
     features.append(_across(items, resolver))
-    for told in features:
-        if (apart := _apart(told)) is not None:
+    for candidates in features:
+        if (apart := _apart(candidates)) is not None:
             return apart
     for first, second in combinations(features, 2):
         if (apart := _apart([_joined(a, b) for a, b in zip(first, second, strict=True)])) is not None:
@@ -56,51 +56,51 @@ def _telling_apart(items: Sequence[Item], resolver: Resolver) -> list[_Tail]:
     return [(called.format(item.name), False) for item in items]
 
 
-def _joined(one: _Told, other: _Told) -> _Told:
+def _joined(one: _Feature, other: _Feature) -> _Feature:
     if one is None or other is None or one[1] or other[1]:
         return None
     return f"{one[0]} {other[0]}", False
 
 
-def _apart(told: Sequence[_Told]) -> list[_Tail] | None:
-    """What is said of each, if it is said of all and of each something else."""
-    tails = [tail for tail in told if tail is not None]
-    return tails if len(tails) == len(told) == len(set(tails)) else None
+def _apart(candidates: Sequence[_Feature]) -> list[_Tail] | None:
+    """Return the phrases if every item has one and all of them differ, else None."""
+    tails = [tail for tail in candidates if tail is not None]
+    return tails if len(tails) == len(candidates) == len(set(tails)) else None
 
 
-def _called(item: Item, resolver: Resolver) -> _Told:
-    """What it is called by itself."""
+def _label(item: Item, resolver: Resolver) -> _Feature:
+    """Return the first label of the item itself."""
     describing = resolver.known.nouns[resolver.language].describing
     is_plain = resolver.known.nouns[resolver.language].is_plain
     reference = next(filter(is_plain, item.references), "")
     return (describing.wording["called"].format(reference), False) if reference else None
 
 
-def _kind(item: Item, resolver: Resolver) -> _Told:
+def _kind(item: Item, resolver: Resolver) -> _Feature:
     return resolver.known.label(item.class_name, resolver.language), False
 
 
-def _color(item: Item, resolver: Resolver) -> _Told:
+def _color(item: Item, resolver: Resolver) -> _Feature:
     found = _quality(item, "Color", resolver)
     describing = resolver.known.nouns[resolver.language].describing
     noun = resolver.known.label(item.class_name, resolver.language)
     return (describing.agreeing(found, noun), True) if found else None
 
 
-def _material(item: Item, resolver: Resolver) -> _Told:
+def _material(item: Item, resolver: Resolver) -> _Feature:
     found = _quality(item, "Material", resolver)
     wording = resolver.known.nouns[resolver.language].describing.wording
     return (wording["material"].format(found), False) if found else None
 
 
 def _quality(item: Item, of: str, resolver: Resolver) -> str:
-    """The label of its colour or material, if that is said."""
-    values = (value for name, said in sorted(item.values.items()) if name.endswith(of) for value in said)
+    """Return the label of the item's colour or material, or an empty string."""
+    values = (value for name, all_ in sorted(item.values.items()) if name.endswith(of) for value in all_)
     return next((resolver.known.label(str(value), resolver.language) for value in values), "")
 
 
-def _where(*relations: str) -> Callable[[Item, Resolver], _Told]:
-    def told(item: Item, resolver: Resolver) -> _Told:
+def _where(*relations: str) -> Callable[[Item, Resolver], _Feature]:
+    def describe(item: Item, resolver: Resolver) -> _Feature:
         describing = resolver.known.nouns[resolver.language].describing
         for relation, other in resolver.around.whereabouts(item.name):
             if relation in relations and other in resolver.known.items:
@@ -108,10 +108,10 @@ def _where(*relations: str) -> Callable[[Item, Resolver], _Told]:
                 return describing.wording[relation].format(describing.the(called)), False
         return None
 
-    return told
+    return describe
 
 
-def _owner(item: Item, resolver: Resolver) -> _Told:
+def _owner(item: Item, resolver: Resolver) -> _Feature:
     describing = resolver.known.nouns[resolver.language].describing
     for owner in sorted(map(str, item.values.get("isOwnedBy", ()))):
         if owner in resolver.known.items:
@@ -120,17 +120,17 @@ def _owner(item: Item, resolver: Resolver) -> _Told:
     return None
 
 
-def _state(property_name: str) -> Callable[[Item, Resolver], _Told]:
-    def told(item: Item, resolver: Resolver) -> _Told:
+def _state(property_name: str) -> Callable[[Item, Resolver], _Feature]:
+    def describe(item: Item, resolver: Resolver) -> _Feature:
         wording = resolver.known.nouns[resolver.language].describing.wording
         values = item.values.get(property_name, frozenset())
         return next(((wording[f"{str(v).lower()} {property_name}"], False) for v in values), None)
 
-    return told
+    return describe
 
 
-def _across(items: Sequence[Item], resolver: Resolver) -> list[_Told]:
-    """Which one from the left, where somebody looks."""
+def _across(items: Sequence[Item], resolver: Resolver) -> list[_Feature]:
+    """Return each item's position from the left, if there is a viewer."""
     if not resolver.around.has_viewer:
         return [None] * len(items)
     wording = resolver.known.nouns[resolver.language].describing.wording
@@ -138,8 +138,8 @@ def _across(items: Sequence[Item], resolver: Resolver) -> list[_Told]:
     return [(wording["across"].format(order.index(item) + 1), False) for item in items]
 
 
-def _next_to(item: Item, resolver: Resolver) -> _Told:
-    """Next to what there is only one of."""
+def _next_to(item: Item, resolver: Resolver) -> _Feature:
+    """Return the unique object that the item stands next to."""
     describing = resolver.known.nouns[resolver.language].describing
     for name, other in _single(resolver):
         if name != item.name and resolver.around.related("isNextTo", item.name, name):
@@ -148,7 +148,7 @@ def _next_to(item: Item, resolver: Resolver) -> _Told:
 
 
 def _single(resolver: Resolver) -> Iterator[tuple[str, str]]:
-    """Things whose reference no other has."""
+    """Yield name and label of the objects whose label is unique in the map."""
     known = resolver.known
     if len(known.items) > 200:
         return
@@ -159,13 +159,13 @@ def _single(resolver: Resolver) -> Iterator[tuple[str, str]]:
     yield from ((name, text) for name, text in sorted(spoken.items()) if called.count(text) == 1)
 
 
-_FEATURES: Final[tuple[Callable[[Item, Resolver], _Told], ...]] = (
+_FEATURES: Final[tuple[Callable[[Item, Resolver], _Feature], ...]] = (
     _where("isInside", "isOn"),
     _color,
     _where("isLocatedIn"),
     _owner,
     _kind,
-    _called,
+    _label,
     _material,
     _state("isOpen"),
     _state("isSwitchedOn"),

@@ -1,4 +1,4 @@
-"""What a noun phrase says of the thing that it means."""
+"""The parsed form of a noun phrase."""
 
 from __future__ import annotations
 
@@ -8,110 +8,110 @@ from typing import Literal
 from semmap.schemas.relations import RelationName
 
 Axis = Literal["across", "height", "volume", "tallness", "length", "distance", ""]
-"""What an order goes by: from left to right, the height it is at, its size, how far it is."""
+"""The quantity to sort by: position from left to right, height, size or distance."""
 
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """A value of one of its properties, by the names of the individuals that the word may stand for."""
+    """A property value, such as a colour; `values` are the individuals that the word may denote."""
 
-    said: str
+    text: str
     values: frozenset[str]
 
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """A boolean property: open, switched on. Of `holding`: whether anything is in or on it."""
+    """A boolean property, such as open or switched on; `holding` means that something is in or on it."""
 
-    said: str
+    text: str
     property: str
     value: bool | str
 
 
 @dataclass(frozen=True, slots=True)
 class Sized:
-    """Big or small beside its like; sign: -1 for much."""
+    """Big or small compared with other objects of its kind; `sign` is -1 for big."""
 
-    said: str
+    text: str
     axis: Axis
     sign: int
 
 
 @dataclass(frozen=True, slots=True)
 class Related:
-    """On, in, near ... one of those that a description means; *between* two of them."""
+    """A spatial relation (on, in, near ...) to a described object; *between* has two."""
 
-    said: str
+    text: str
     relation: RelationName
     others: tuple[Description, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Has:
-    """With something on or in it."""
+    """The object has another one on or in it."""
 
-    said: str
+    text: str
     other: Description
 
 
 @dataclass(frozen=True, slots=True)
 class Of:
-    """Of a place, an owner, a whole, or with such content; as a noun before another, too: kitchen table."""
+    """Belongs to a place, an owner or a whole, or has this content; also for compounds: kitchen table."""
 
-    said: str
+    text: str
     other: Description
     is_content: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Among:
-    """One of those that another description means: *except the black one*."""
+    """One of the objects that another description denotes: *except the black one*."""
 
-    said: str
+    text: str
     other: Description
 
 
 @dataclass(frozen=True, slots=True)
 class Owned:
-    """Somebody's; without `by` it is the asker's."""
+    """Owned by `by`, or by the asker if `by` is None."""
 
-    said: str
+    text: str
     by: Description | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Affords:
-    """Something can be done with it."""
+    """The object has one of these affordances."""
 
-    said: str
+    text: str
     affordances: frozenset[str]
 
 
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """A word that is not known: nothing fits it."""
+    """An unknown word, which no object matches."""
 
-    said: str
+    text: str
 
 
 @dataclass(frozen=True, slots=True)
 class Not:
-    """What fits does not count."""
+    """The negation of a restriction."""
 
-    said: str
+    text: str
     restriction: Restriction
 
 
 @dataclass(frozen=True, slots=True)
 class AnyOf:
-    """One of them fits."""
+    """At least one of the restrictions holds."""
 
     restrictions: tuple[Restriction, ...]
 
     @property
-    def said(self) -> str:
-        """As it was said."""
-        return " or ".join(dict.fromkeys(restriction.said for restriction in self.restrictions))
+    def text(self) -> str:
+        """The text of all alternatives."""
+        return " or ".join(dict.fromkeys(restriction.text for restriction in self.restrictions))
 
 
 Restriction = Quality | State | Sized | Related | Has | Of | Among | Owned | Affords | Unknown | Not | AnyOf
@@ -119,13 +119,13 @@ Restriction = Quality | State | Sized | Related | Has | Of | Among | Owned | Aff
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """The one that comes first, second, last by something.
+    """A rank (first, second, last) along an axis.
 
-    sign: -1 counts from the other end, 0 means the middle; place: counted from 1, or -1 for the last;
-    count: how many from there on; to: what a distance is from, without it the viewer.
+    `sign` is -1 to count from the other end, and 0 for the middle. `place` starts at 1; -1 is the last.
+    `count` objects are selected from there on. Distances are measured from `to`, or else from the viewer.
     """
 
-    said: str
+    text: str
     axis: Axis
     sign: int = 1
     place: int = 1
@@ -138,13 +138,13 @@ Head = Literal["noun", "anything", "one", "it"]
 
 @dataclass(frozen=True, slots=True)
 class Description:
-    """A noun phrase. noun: as it was said, key: in base form; number: how many there are to be.
+    """A noun phrase: `noun` as written, `key` its base form, `number` the required number of objects.
 
-    Of the heads *anything* stands for all things, *one* for the noun said before, *it* for the thing.
-    is_alternative: it is joined to the one before by *or*.
+    The head *anything* stands for all objects, *one* for the previous noun, *it* for the previous object.
+    `is_alternative` marks a phrase that *or* joins to the previous one.
     """
 
-    said: str
+    text: str
     head: Head
     key: str = ""
     noun: str = ""

@@ -1,4 +1,4 @@
-"""What is measured of a map, as it is asked for while a description is resolved."""
+"""The geometric queries that resolving a description needs."""
 
 from __future__ import annotations
 
@@ -8,41 +8,41 @@ from semmap.schemas.relations import RelationName
 
 
 class MapGeometry(Protocol):
-    """Where things are; all by name. Lengths are metres."""
+    """Positions and spatial relations of entities, by name. Lengths are in metres."""
 
     @property
     def has_viewer(self) -> bool:
-        """Whether somebody looks, so that there is a left and a right."""
+        """Whether there is a viewer, so that left and right are defined."""
 
     def related(self, relation: RelationName, name: str, other: str) -> bool:
-        """Whether the one is on, in, near, left of ... the other.
+        """Return whether `name` is on, in, near, left of ... `other`.
 
-        Left, right, in front and behind raise BadRequest where there is no viewer.
+        Raises BadRequest for left, right, in front and behind without a viewer.
         """
 
     def between(self, one: str, other: str) -> frozenset[str]:
-        """What is between two things."""
+        """Return the objects between two objects."""
 
     def position(self, name: str) -> tuple[float, float, float] | None:
-        """Its bottom centre."""
+        """Return the bottom centre."""
 
     def size(self, name: str) -> tuple[float, float, float] | None:
-        """Its extent along its own axes."""
+        """Return the extent along the object's own axes."""
 
     def distance(self, name: str, other: str) -> float:
-        """How far two things are from one another, infinite where that is not known."""
+        """Return the distance of two objects, infinite if it is unknown."""
 
     def distance_from_viewer(self, name: str) -> float:
-        """How far a thing is from who looks. Raises BadRequest where there is no viewer."""
+        """Return the distance from the viewer. Raises BadRequest without a viewer."""
 
     def bearing(self, name: str) -> float:
-        """By how much a thing is to the left of where the viewer looks [rad]; BadRequest without a viewer."""
+        """Return the angle to the left of the viewing direction [rad]. Raises BadRequest without a viewer."""
 
     def holds_anything(self, name: str) -> bool:
-        """Whether anything is in or on it."""
+        """Return whether any object is in or on it."""
 
     def is_on_floor(self, name: str) -> bool:
-        """Whether a thing stands on the floor of its place, and in or on nothing else."""
+        """Return whether an object stands on the floor of its place, and not in or on another object."""
 
     def whereabouts(self, name: str) -> tuple[tuple[RelationName, str], ...]:
-        """What a thing is inside, what it is on, and in which place, those that it has."""
+        """Return what the object is inside, what it is on, and its place, as far as they exist."""

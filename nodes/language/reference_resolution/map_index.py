@@ -1,4 +1,4 @@
-"""What there is to be described, by what it is called: kept up to date entity by entity."""
+"""An index of the map's entities and the TBox's classes by their labels, updated entity by entity."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from semmap.nodes.language.lexicon.describing import LANGUAGES, TAGS, Describing
 from semmap.nodes.language.vocabulary import spoken
 
 _PURPOSE: Final = ("da", "of", "di")
-"""An Italian noun keeps its name before it says what it is for; before *of* comes what it is in both."""
+"""The head of a compound precedes these words (Italian *da*, and *of* or *di* in both languages)."""
 _ARTICLES: Final = ("definite", "indefinite", "mine", "he")
 _PLAIN: Final = re.compile(r"[^\W\d_]+(?:[ -][^\W\d_]+){0,3}")
 MOST_WORDS: Final = 5
-"""Of a noun."""
+"""The maximum length of a noun."""
 
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """An entity as one speaks of it. values: what its properties say, names of individuals, or booleans."""
+    """An entity with its labels; `values` are its properties' values: individuals' names or booleans."""
 
     name: str
     class_name: str
@@ -33,16 +33,16 @@ class Item:
 
     @property
     def all_values(self) -> frozenset[object]:
-        """Those of all of its properties."""
+        """The values of all properties."""
         return frozenset[object]().union(*self.values.values())
 
 
 @dataclass(frozen=True, slots=True)
 class Terms:
-    """What a TBox has words for. Labels are of language tag, name and text; `""` is no language's.
+    """The labels of a TBox as (language tag, name, text); the tag `""` stands for no language.
 
-    classes: of its classes; qualities: of the individuals that describe things (colours, materials);
-    affordances: of those; affords: class to what its instances afford.
+    They are the labels of `classes`, of `qualities` (individuals such as colours and materials) and of
+    `affordances`. `affords` maps a class to the affordances of its instances.
     """
 
     classes: tuple[tuple[str, str, str], ...]
@@ -52,28 +52,28 @@ class Terms:
 
 
 class Nouns:
-    """The nouns of one language: classes and entities by what they are called."""
+    """The nouns of one language: classes and entities by their labels."""
 
     def __init__(self, language: Language, terms: Terms) -> None:
         self.describing: Final[Describing] = describing.load(language)
         self.classes: Final[dict[str, set[str]]] = {}
         self.entities: Final[dict[str, dict[str, None]]] = {}
         self.whole: Final[dict[str, set[str]]] = {}
-        """Classes by all of a label, not by its head alone."""
+        """Classes by the whole label, not only by its head."""
         self.exact: Final[dict[str, dict[str, None]]] = {}
-        """Entities by all of a reference, or by name."""
+        """Entities by a whole label, or by name."""
         self.heads: Final[set[str]] = set()
-        """Last words of what classes are called."""
+        """The last words of class labels."""
         self.qualities: Final[dict[str, set[str]]] = {}
         self.actions: Final[dict[str, set[str]]] = {}
         self.words: Final[dict[str, int]] = {}
-        """In base form; how many things of the map have it in what they are called."""
+        """Words in base form, with the number of entities whose labels contain them."""
         self.forms: Final[dict[str, str]] = {}
-        """Words in base form, as they are written."""
+        """Words in base form to their written form."""
         tag, known = TAGS[language], {name for _, name, _ in terms.classes}
-        # A noun of a language that nothing else is known of stands in the grammar of the first.
+        # Labels in languages without a lexicon are used as nouns of the first language.
         others = {*TAGS.values()} - {tag} if language == LANGUAGES[0] else None
-        labels = [(name, text) for said, name, text in terms.classes if _serves(said, tag, others)]
+        labels = [(name, text) for own, name, text in terms.classes if _serves(own, tag, others)]
         synonyms = [(name, word) for name, words in self.describing.synonyms.items() for word in words]
         named = [(name, tuple(self.keys(text))) for name, text in (*labels, *synonyms) if name in known]
         for name, keys in named:
@@ -84,15 +84,15 @@ class Nouns:
         whole = frozenset(self.classes)
         for name, keys in named:
             for key in keys[1:]:
-                if key not in whole:  # else the taxonomy says what is a table
+                if key not in whole:  # otherwise the taxonomy decides
                     self.classes.setdefault(key, set()).add(name)
-        for said, name, text in terms.qualities:
-            if _serves(said, tag, others):
+        for own, name, text in terms.qualities:
+            if _serves(own, tag, others):
                 for word in (text, *self.describing.qualities.get(spoken(text), ())):
                     for key in self.keys(word):
                         self.qualities.setdefault(key, set()).add(name)
-        for said, name, text in terms.affordances:
-            if _serves(said, tag, others):
+        for own, name, text in terms.affordances:
+            if _serves(own, tag, others):
                 self.actions.setdefault(_action(text), set()).add(name)
         self.verbs: Final = frozenset(action.partition(" ")[0] for action in self.actions)
         for key in (*self.classes, *self.qualities):
@@ -100,7 +100,7 @@ class Nouns:
                 self.words.setdefault(word, 0)
 
     def keys(self, text: str) -> Iterator[str]:
-        """What a thing of that label may be called: by the whole, or by its head alone."""
+        """Yield the keys for a label: the whole label, then its head alone."""
         words = self.describing.split(spoken(text))
         while len(words) > 1 and any(kind in self.describing.sense((words[0],)) for kind in _ARTICLES):
             words = words[1:]
@@ -116,8 +116,8 @@ class Nouns:
             yield self.describing.key(head)
 
     def put(self, item: Item) -> None:
-        """Index what an entity is called."""
-        for is_exact, key in self._said(item):
+        """Add an entity's labels to the index."""
+        for is_exact, key in self._keys_of(item):
             self.entities.setdefault(key, {})[item.name] = None
             if is_exact:
                 self.exact.setdefault(key, {})[item.name] = None
@@ -125,18 +125,18 @@ class Nouns:
                 self.words[word] = self.words.get(word, 0) + 1
 
     def take(self, item: Item) -> None:
-        """The entity is gone, or is called something else."""
-        for _, key in self._said(item):
+        """Remove an entity's labels from the index."""
+        for _, key in self._keys_of(item):
             for index in (self.entities, self.exact):
                 if (there := index.get(key)) is not None:
                     there.pop(item.name, None)
                     if not there:
                         del index[key]
 
-    def _said(self, item: Item) -> Iterator[tuple[bool, str]]:
-        """What an entity is called: whether by all of a reference or its name, and the key.
+    def _keys_of(self, item: Item) -> Iterator[tuple[bool, str]]:
+        """Yield the keys of an entity, each with whether it stands for a whole label or the name.
 
-        The head alone of a name is nothing that it is called by: coffee_table1 is no table1.
+        The head of a name alone is not a key: coffee_table1 is not table1.
         """
         for text in set(item.references):
             for i, key in enumerate(self.keys(text)):
@@ -144,7 +144,7 @@ class Nouns:
         yield from ((True, key) for key in islice(self.keys(item.name), 1))
 
     def is_plain(self, reference: str) -> bool:
-        """Whether a reference looks like a noun phrase, so that it may be repeated in a sentence."""
+        """Return whether a label looks like a noun phrase, so that a sentence can contain it."""
         if not _PLAIN.fullmatch(reference):
             return False
         words = self.describing.split(reference)
@@ -154,7 +154,7 @@ class Nouns:
         )
 
     def is_noun(self, key: str) -> bool:
-        """Whether anything may be called so."""
+        """Return whether a class or an entity has this key."""
         return key in self.classes or key in self.entities
 
 
@@ -170,7 +170,7 @@ class MapIndex:
         self.nouns: Final[dict[Language, Nouns]] = {name: Nouns(name, terms) for name in LANGUAGES}
 
     def update(self, changed: Iterable[Item], removed: Iterable[str] = ()) -> None:
-        """Some entities came or are otherwise now, others went."""
+        """Add or replace the `changed` entities and remove those named in `removed`."""
         for name in removed:
             self._take(name)
         for item in changed:
@@ -190,7 +190,7 @@ class MapIndex:
             nouns.take(item)
 
     def called(self, key: str, language: Language) -> dict[str, None]:
-        """The entities that a noun, in base form, may mean; in no order that means anything."""
+        """Return the entities that a noun in base form may denote, in arbitrary order."""
         nouns = self.nouns[language]
         found = dict(nouns.entities.get(key, {}))
         for class_name in nouns.classes.get(key, ()):
@@ -198,15 +198,15 @@ class MapIndex:
         return found
 
     def is_called(self, name: str, key: str, language: Language) -> bool:
-        """Whether it is its name, all of a reference, or its own class: a desk is called no table."""
+        """Return whether the key is the entity's name, a whole label or its own class (not a superclass)."""
         nouns = self.nouns[language]
         return name in nouns.exact.get(key, ()) or self.items[name].class_name in nouns.whole.get(key, ())
 
     def spoken(self, item: Item, language: Language) -> str:
-        """What an entity is called in a language: by a reference, or by its class's label.
+        """Return a noun for an entity in a language: one of its labels, or its class's label.
 
-        References are taken for English; of those that are not, the label says in which language. What
-        does not look like a noun is never repeated.
+        Labels are assumed to be English unless the TBox has them in another language. Labels that do not
+        look like a noun are not used.
         """
         nouns = self.nouns[language]
         for reference in filter(nouns.is_plain, item.references):
@@ -216,20 +216,20 @@ class MapIndex:
         return self.label(item.class_name, language)
 
     def label(self, class_name: str, language: Language) -> str:
-        """What a class is called."""
+        """Return the label of a class in a language."""
         return self._labels.get((TAGS[language], class_name), spoken(class_name))
 
     def affords(self, item: Item) -> frozenset[object]:
-        """What can be done with an entity, by its classes and by what is said of it."""
+        """Return the affordances of an entity: asserted ones and those of its classes."""
         own = item.values.get("hasAffordance", frozenset())
         return own.union(*(self.terms.affords.get(name, frozenset()) for name in item.types))
 
 
-def _serves(said: str, tag: str, others: set[str] | None) -> bool:
-    """Whether a label of that language tag is read in a grammar: its own, or any but those of others."""
-    return said in (tag, "") or (others is not None and said not in others)
+def _serves(own: str, tag: str, others: set[str] | None) -> bool:
+    """Return whether labels with the tag `own` are nouns of the language `tag`."""
+    return own in (tag, "") or (others is not None and own not in others)
 
 
 def _action(label: str) -> str:
-    """What is done, without *it*: `drinking it` is `drinking`, `drinking from it` is `drinking from`."""
+    """Return an affordance's label without *it*: `drinking from it` becomes `drinking from`."""
     return " ".join(word for word in spoken(label).split() if word != "it")

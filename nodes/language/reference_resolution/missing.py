@@ -1,4 +1,4 @@
-"""What was described and is not there, to be looked for in the past."""
+"""Descriptions that no current entity matches, to be searched for in the map's history."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from semmap.nodes.language.reference_resolution.resolver import Resolved, Resolv
 from semmap.schemas.map_history import KeptRelation
 
 _MOST: Final = 3
-"""Things of a kind, and others of each, whose pairs are looked for."""
+"""The maximum number of subjects, and of related objects for each, that are searched for."""
 
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """A noun with its qualities that nothing fits now, and relations that held, perhaps, once.
+    """A noun with its qualities that no entity matches now, and relations that may have held earlier.
 
-    pairs: a thing that is there, a relation, and what it is not in that relation to.
+    `pairs` are existing entities with a relation that does not hold between them now.
     """
 
     nouns: Nouns
@@ -29,7 +29,7 @@ class Missing:
     pairs: tuple[tuple[str, KeptRelation, str], ...] = ()
 
     def is_such(self, item: Item) -> bool:
-        """Whether an entity that was there, as it was then, is one of those that were described."""
+        """Return whether an entity, in its earlier state, matches the description."""
         names = self.nouns.classes.get(self.key, set())
         if names.isdisjoint(item.types) and not any(
             self.key in self.nouns.keys(reference) for reference in item.references
@@ -39,25 +39,25 @@ class Missing:
 
 
 def missing(answer: Answer) -> Missing | None:
-    """What to look for in the past where nothing fits; None where that is nothing by name."""
+    """Return what to search for in the history if nothing matches; None if the description has no noun."""
     if answer.outcome != "none":
         return None
     part = next((part for part in answer.parts if not part.names), None)
     if part is None or part.description.head != "noun":
         return None
     nouns = answer.resolver.known.nouns[answer.resolver.language]
-    said = part.description
-    qualities = tuple(r for r in said.restrictions if isinstance(r, Quality))
-    return Missing(nouns, said.key, qualities, tuple(_pairs(part, answer.resolver)))
+    description = part.description
+    qualities = tuple(r for r in description.restrictions if isinstance(r, Quality))
+    return Missing(nouns, description.key, qualities, tuple(_pairs(part, answer.resolver)))
 
 
 def _pairs(part: Resolved, resolver: Resolver) -> Iterator[tuple[str, KeptRelation, str]]:
-    """Of what is there and not where it was said to be: those and where that is."""
+    """Yield the entities of the described kind with each relation that the description requires."""
     for restriction in part.description.restrictions:
         if isinstance(restriction, Related) and restriction.relation in ("isOn", "isInside"):
-            borne: KeptRelation = "isOn" if restriction.relation == "isOn" else "isInside"
+            support: KeptRelation = "isOn" if restriction.relation == "isOn" else "isInside"
             others = resolver.resolve(restriction.others[0]).names[:_MOST]
             for name in part.kind[:_MOST]:
                 for other in others:
                     is_place = resolver.known.items[other].is_place
-                    yield name, "isLocatedIn" if is_place else borne, other
+                    yield name, "isLocatedIn" if is_place else support, other

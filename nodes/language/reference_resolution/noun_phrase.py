@@ -1,4 +1,4 @@
-"""The words around a noun: its determiners, its head, and what stands beside it."""
+"""Reads the words around a noun: determiners, head and modifiers."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _BOUNDS: Final = (
     *("relations", "relative", "where", "be", "have", "lack", "not", "except", "no", "and", "or", "of"),
     *("possessive", "afford", "from"),
 )
-"""Kinds of words that end the words around a noun."""
+"""Kinds of words that end the noun group."""
 _BEFORE_A_NOUN: Final = (
     *("quality", "states", "sizes", "sides", "ordinals"),
     *("numbers", "mine", "he", "filler", "every"),
@@ -38,7 +38,7 @@ _DETERMINERS: Final = (
 
 @dataclass(slots=True)
 class Draft:
-    """A description as it is being read."""
+    """A description that is being built."""
 
     first: int
     head: Head = "one"
@@ -51,7 +51,7 @@ class Draft:
     restrictions: list[Restriction] = field(default_factory=list)
     place: int | None = None
     axis: tuple[Axis, int] | None = None
-    said_order: str = ""
+    order_text: str = ""
     to: Description | None = None
 
 
@@ -62,7 +62,7 @@ class NounPhraseReader:
         self._r = reading
         self._words = reading.words
 
-    # What stands where
+    # Look-up by position
 
     def _sense(self, kind: str, i: int) -> tuple[int, Any] | None:
         return self._r.senses[i].get(kind) if i < len(self._words) else None
@@ -71,7 +71,7 @@ class NounPhraseReader:
         found = self._sense(kind, i)
         return 0 if found is None else found[0]
 
-    def _said(self, first: int, end: int) -> str:
+    def _text(self, first: int, end: int) -> str:
         return " ".join(self._words[first:end])
 
     # Before the noun
@@ -91,9 +91,9 @@ class NounPhraseReader:
             if best == "indefinite":
                 draft.is_definite = False
             elif best == "mine":
-                draft.restrictions.append(Owned(self._said(i, i + length)))
+                draft.restrictions.append(Owned(self._text(i, i + length)))
             elif best == "he":
-                draft.restrictions.append(Owned(self._said(i, i + length), Description("it", "it")))
+                draft.restrictions.append(Owned(self._text(i, i + length), Description("it", "it")))
             elif best == "bounds":
                 draft.is_definite, draft.beyond = False, int(value or 0)
             elif best == "numbers" and value:
@@ -107,7 +107,7 @@ class NounPhraseReader:
         draft.is_plural = draft.number > 1
 
     def _run_end(self, i: int) -> int:
-        """Behind the words around a noun that begin at i."""
+        """Return the index after the noun group that begins at i."""
         seen_noun = False
         while i < len(self._words):
             noun = self._length("noun", i)
@@ -129,7 +129,7 @@ class NounPhraseReader:
         return i
 
     def _joins_qualities(self, i: int) -> bool:
-        """Whether an *and* or *or* is between two adjectives before a noun."""
+        """Return whether the *and* or *or* at i joins two adjectives before a noun."""
         if not (self._length("and", i) or self._length("or", i)):
             return False
         adjectives = ("quality", "states", "sizes")
@@ -152,7 +152,7 @@ class NounPhraseReader:
         return end
 
     def _head(self, draft: Draft, first: int, end: int) -> tuple[int, int] | None:
-        """Where the noun is; the last one, or the first, as the language has it."""
+        """Return the span of the head noun: the last or the first one, depending on the language."""
         is_last = self._r.nouns.describing.head_is_last
         spans = [
             (i, i + length)
@@ -169,7 +169,7 @@ class NounPhraseReader:
             sense = self._sense(f"noun{stop - start}", start)
             if sense is None:
                 raise errors.InternalError("a word that was recognised has no meaning")
-            draft.head, draft.key, draft.noun = "noun", sense[1], self._said(start, stop)
+            draft.head, draft.key, draft.noun = "noun", sense[1], self._text(start, stop)
             self._say_number(draft, stop - 1 if is_last else start)
             return start, stop
         for kind in ("anything", "one"):
@@ -195,7 +195,7 @@ class NounPhraseReader:
             draft.is_plural = True
 
     def _only_agrees(self, draft: Draft) -> bool:
-        """Whether it is plural in its article alone: le chiavi."""
+        """Return whether only the article is plural: le chiavi."""
         return not any(self._length("every", i) for i in range(draft.first, len(self._words)))
 
     def _modifiers(self, draft: Draft, i: int, end: int) -> None:
@@ -213,13 +213,13 @@ class NounPhraseReader:
             draft.restrictions.append(either)
 
     def _modifier(self, draft: Draft, i: int, end: int) -> int:
-        """One word, or several, beside the noun; where the next one is."""
+        """Read one modifier beside the noun. Returns the index of the next word."""
         kinds = [kind for kind in _BEFORE_A_NOUN if 0 < self._length(kind, i) <= end - i]
         noun = self._sense("noun", i)
         best = max(kinds, key=lambda kind: self._length(kind, i), default="")
         if noun is not None and noun[0] <= end - i and noun[0] > (self._length(best, i) if best else 0):
-            said = self._said(i, i + noun[0])
-            draft.restrictions.append(Of(said, Description(said, "noun", noun[1], said, is_definite=False)))
+            text = self._text(i, i + noun[0])
+            draft.restrictions.append(Of(text, Description(text, "noun", noun[1], text, is_definite=False)))
             return i + noun[0]
         if not best:
             if any(
@@ -233,25 +233,25 @@ class NounPhraseReader:
         if sense is None:
             raise errors.InternalError("a word that was recognised has no meaning")
         length, value = sense
-        said = self._said(i, i + length)
+        text = self._text(i, i + length)
         match best:
             case "quality" | "states" | "sizes":
-                draft.restrictions.append(self._adjective(best, said, value))
+                draft.restrictions.append(self._adjective(best, text, value))
             case "sides":
-                draft.axis, draft.said_order = value, f"{draft.said_order} {said}".strip()
+                draft.axis, draft.order_text = value, f"{draft.order_text} {text}".strip()
             case "ordinals":
-                draft.place, draft.said_order = value, f"{draft.said_order} {said}".strip()
+                draft.place, draft.order_text = value, f"{draft.order_text} {text}".strip()
             case "numbers" if value:
                 self._number(draft, value)
             case "mine":
-                draft.restrictions.append(Owned(said))
+                draft.restrictions.append(Owned(text))
             case "every":
                 draft.is_plural = True
         return i + length
 
-    def _adjective(self, kind: str, said: str, value: Any) -> Restriction:
+    def _adjective(self, kind: str, text: str, value: Any) -> Restriction:
         if kind == "quality":
-            return Quality(said, value)
+            return Quality(text, value)
         if kind == "sizes":
-            return Sized(said, value[0], value[1])
-        return State(said, value[0], value[1])
+            return Sized(text, value[0], value[1])
+        return State(text, value[0], value[1])

@@ -1,4 +1,4 @@
-"""The words of a text with what each may be; an unknown one is taken for the nearest that is known."""
+"""Lexical analysis: the words of a text with their possible senses, and spelling correction."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from semmap.nodes.language.lexicon.describing import LANGUAGES
 from semmap.nodes.language.reference_resolution.map_index import MOST_WORDS, Nouns
 
 _UNKNOWN: Final = 3.0
-"""What a word costs that nobody knows; one that is mended costs as much as it was changed."""
+"""The cost of an unknown word; a corrected one costs less."""
 _VOICED: Final = {
     "wh": "w",
     "ph": "f",
@@ -30,43 +30,43 @@ _VOICED: Final = {
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """The words of a text in one language. senses: of each position, kind of word to length and value."""
+    """The words of a text in one language; `senses` maps kinds of words to length and value per position."""
 
     nouns: Nouns
     words: tuple[str, ...]
     senses: tuple[Mapping[str, tuple[int, Any]], ...]
-    mended: tuple[tuple[str, str], ...]  # what was said, and what it was taken for
-    cost: float  # the less, the rather it is in this language
+    corrections: tuple[tuple[str, str], ...]  # pairs of a word and its correction
+    cost: float  # lower means that this language is more likely
 
 
 def read(text: str, nouns: Nouns) -> Reading:
-    """A text as words of one language, as they were said."""
+    """Read a text as words of one language, without corrections."""
     words = nouns.describing.split(text)
     senses = _senses(words, nouns)
     unknown = _unknown(words, senses)
     return Reading(nouns, tuple(words), senses, (), _UNKNOWN * len(unknown))
 
 
-def mended(said: Reading) -> Reading:
-    """The same with each unknown word taken for the nearest that is known, if any is near."""
-    words, taken_for, cost = list(said.words), dict[str, str](), 0.0
-    for i in _unknown(words, said.senses):
-        better = nearest(words[i], said.nouns)
+def correct_spelling(reading: Reading) -> Reading:
+    """Return the reading with each unknown word replaced by a similar known one, if there is one."""
+    words, taken_for, cost = list(reading.words), dict[str, str](), 0.0
+    for i in _unknown(words, reading.senses):
+        better = nearest(words[i], reading.nouns)
         cost += _UNKNOWN if better is None else 1.0
         if better is not None:
             taken_for[words[i]] = words[i] = better
-    for i in _unknown(words, _senses(words, said.nouns)) if taken_for else ():
-        if taken_for.pop(said.words[i], None) is not None:  # a part of a name that by itself names nothing
-            words[i] = said.words[i]
+    for i in _unknown(words, _senses(words, reading.nouns)) if taken_for else ():
+        if taken_for.pop(reading.words[i], None) is not None:  # a part of a longer name only
+            words[i] = reading.words[i]
             cost += _UNKNOWN - 1.0
     if not taken_for:
-        return said
+        return reading
     pairs = tuple(taken_for.items())
-    return Reading(said.nouns, tuple(words), _senses(words, said.nouns), pairs, cost)
+    return Reading(reading.nouns, tuple(words), _senses(words, reading.nouns), pairs, cost)
 
 
 def _unknown(words: Sequence[str], senses: Sequence[Mapping[str, tuple[int, Any]]]) -> list[int]:
-    """Which words are part of nothing that is known."""
+    """Return the indices of the words that are in no known expression."""
     known = [word.isdigit() for word in words]
     for i, here in enumerate(senses):
         for length, _ in here.values():
@@ -96,7 +96,7 @@ def _senses(words: list[str], nouns: Nouns) -> tuple[Mapping[str, tuple[int, Any
             )
             for form in (key, "".join(bases[i : i + length])) if is_apart else (key,):
                 if senses.get("anything", (0,))[0] == length:
-                    break  # a thing is no place
+                    break  # "thing" does not stand for a place
                 if (length <= MOST_WORDS or length == left) and nouns.is_noun(form):
                     senses["noun"] = (length, form)
                     senses[f"noun{length}"] = (length, form)
@@ -108,9 +108,9 @@ def _senses(words: list[str], nouns: Nouns) -> tuple[Mapping[str, tuple[int, Any
 
 
 def nearest(word: str, nouns: Nouns) -> str | None:
-    """The known word that was meant by one that is not: a letter or two off, or one that sounds alike.
+    """Return the known word nearest to an unknown one: one or two letters off, or similar in sound.
 
-    Words that things of the map are called by come before those of the TBox alone.
+    Words in the labels of entities take precedence over those of the TBox alone.
     """
     if len(word) < 3 or not word.isalpha() or any(describing.load(name).has(word) for name in LANGUAGES):
         return None
@@ -130,18 +130,18 @@ def nearest(word: str, nouns: Nouns) -> str | None:
 
 
 def _as_many(word: str, known: str, nouns: Nouns) -> str:
-    """The known word in the plural if the other one is: bottels are bottles."""
+    """Return the known word, in the plural if the misspelt one is plural (bottels, bottles)."""
     is_plural = nouns.describing.head_is_last and word.endswith("s") and nouns.describing.base(word) != word
     return f"{known}s" if is_plural else known
 
 
 def _affords(senses: Sequence[Mapping[str, tuple[int, Any]]], i: int) -> bool:
-    """Whether what is before word i says that it is something to be done: to, for, da."""
+    """Return whether the words before `i` introduce an action: to, for, da."""
     return any("afford" in before and j + before["afford"][0] == i for j, before in enumerate(senses))
 
 
 def forms(verb: str) -> Iterator[str]:
-    """What a verb may look like in the label of an affordance: itself, or with *-ing*."""
+    """Yield the forms of a verb in the label of an affordance: itself, or with *-ing*."""
     yield verb
     yield f"{verb}ing"
     yield f"{verb[:-1]}ing"

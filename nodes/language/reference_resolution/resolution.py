@@ -1,4 +1,4 @@
-"""What a text describes: read in each language, parsed in each way, taken as it fits the map."""
+"""Resolves a text to entities: tries each language and each parse, and takes the one that matches the map."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from semmap.schemas import errors
 from semmap.schemas.language import Outcome
 
 MOST_WORDS: Final = 60
-"""Of a description."""
+"""The maximum length of a description."""
 _MOST_PARSES: Final = 24
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What a text means in a map: outcome and names, with how that was come by."""
+    """The result for a text: outcome and names, with the reading and the resolver that produced them."""
 
     outcome: Outcome
     names: tuple[str, ...]
@@ -33,22 +33,23 @@ class Answer:
 
 
 def find(text: str, known: MapIndex, around: MapGeometry, asker: str | None = None) -> Answer:
-    """The entities that a text describes; `asker` is who says *my*, by name.
+    """Return the entities that a text describes; *my* refers to the entity named `asker`.
 
-    Raises BadRequest for no words, too many, what is said of the past, and left and right without a viewer.
+    Raises BadRequest if the text has no words or too many, asks about the past, or uses left and right
+    without a viewer.
     """
     read = _read(text, known)
     resolver = Resolver(known, around, read.nouns.describing.language, asker)
     best: tuple[int, Answer] | None = None
-    for _, said in zip(range(_MOST_PARSES), parses(read), strict=False):
-        made = _answered(said, read, resolver)
+    for _, descriptions in zip(range(_MOST_PARSES), parses(read), strict=False):
+        made = _resolve_all(descriptions, read, resolver)
         rank = _RANKS[made.outcome]
         if best is None or rank < best[0]:
             best = rank, made
         if rank == 0:
             break
     if best is None:
-        raise errors.InternalError("a phrase has no reading at all")
+        raise errors.InternalError("a phrase has no parse")
     return best[1]
 
 
@@ -56,22 +57,22 @@ _RANKS: Final[dict[Outcome, int]] = {"one": 0, "several": 0, "ambiguous": 1, "no
 
 
 def _read(text: str, known: MapIndex) -> Reading:
-    """A text in the language that it is in, as it seems."""
+    """Read a text in its most likely language."""
     if (number := len(text.split())) > MOST_WORDS:
-        raise errors.BadRequest(f"a description has at most {MOST_WORDS} words; these are {number}")
+        raise errors.BadRequest(f"the description has {number} words; the maximum is {MOST_WORDS}")
     readings = sorted((reading.read(text, known.nouns[name]) for name in LANGUAGES), key=_cost)
     likely = [read for read in readings if read.cost == readings[0].cost]
-    best = readings[0] if readings[0].cost == 0.0 else min(map(reading.mended, likely), key=_cost)
+    best = readings[0] if readings[0].cost == 0.0 else min(map(reading.correct_spelling, likely), key=_cost)
     if not best.words:
         raise errors.BadRequest(
-            "there are no words in the text; describe a thing, such as: the red cup on the table"
+            "the description contains no words; describe an object, for example: the red cup on the table"
         )
     for i, senses in enumerate(best.senses):
         if "past" in senses and "noun" not in senses:
-            said = " ".join(best.words[i : i + senses["past"][0]])
+            phrase = " ".join(best.words[i : i + senses["past"][0]])
             raise errors.BadRequest(
-                f"'{said}' asks about the past, and find looks at the map as it is now;"
-                " for the past see: semmap when, semmap last-seen, semmap list --as-of"
+                f"'{phrase}' asks about the past, but find searches the current map;"
+                " for the past use: semmap when, semmap last-seen, semmap list --as-of"
             )
     return best
 
@@ -80,17 +81,17 @@ def _cost(read: Reading) -> float:
     return read.cost
 
 
-def _answered(said: tuple[Description, ...], read: Reading, resolver: Resolver) -> Answer:
-    """Things that are named together: each may be spoken of by the next one as *it*, its noun as *one*."""
+def _resolve_all(descriptions: tuple[Description, ...], read: Reading, resolver: Resolver) -> Answer:
+    """Resolve a list of descriptions; each may refer to the previous one by *it* or *one*."""
     parts: list[Resolved] = []
     scope = Scope()
-    for description in said:
+    for description in descriptions:
         found = resolver.resolve(description, scope)
         parts.append(found)
         scope = Scope(found.names, found.description)
     outcomes = [_outcome(part, resolver) for part in parts]
     names = tuple(dict.fromkeys(name for part in parts for name in part.names))
-    if any(description.is_alternative for description in said):
+    if any(description.is_alternative for description in descriptions):
         return _either(parts, read, resolver)
     if "none" in outcomes or not parts:
         return Answer("none", (), tuple(parts), read, resolver)
@@ -102,7 +103,7 @@ def _answered(said: tuple[Description, ...], read: Reading, resolver: Resolver) 
 
 
 def _either(parts: list[Resolved], read: Reading, resolver: Resolver) -> Answer:
-    """Things that are named with *or*: any of those that there are is meant."""
+    """Combine descriptions that are joined by *or*: each that exists counts."""
     names = tuple(dict.fromkeys(name for part in parts for name in part.names))
     is_any = any(part.description.is_plural or not part.description.is_definite for part in parts)
     outcome: Outcome = "several" if is_any else "ambiguous"
@@ -112,19 +113,19 @@ def _either(parts: list[Resolved], read: Reading, resolver: Resolver) -> Answer:
 
 
 def _outcome(part: Resolved, resolver: Resolver) -> Outcome:
-    said, number = part.description, len(part.names)
+    description, number = part.description, len(part.names)
     if not number:
         return "none"
-    if said.order is not None:
+    if description.order is not None:
         if part.is_tied:
             return "ambiguous"
         return "one" if number == 1 else "several"
-    if said.number is not None and said.number != 1:
-        if number < said.number:
+    if description.number is not None and description.number != 1:
+        if number < description.number:
             return "none"
-        return "several" if number == said.number or not said.is_definite else "ambiguous"
+        return "several" if number == description.number or not description.is_definite else "ambiguous"
     if number == 1:
         return "one"
-    if said.head == "it" or said.is_plural or not said.is_definite:
+    if description.head == "it" or description.is_plural or not description.is_definite:
         return "several"
     return "ambiguous"

@@ -1,11 +1,11 @@
-"""Which entities fit a description."""
+"""Determines which entities match a description."""
 
 from __future__ import annotations
 
 import functools
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 from semmap.nodes.language.lexicon.describing import Language
@@ -30,13 +30,13 @@ from semmap.nodes.language.reference_resolution.map_geometry import MapGeometry
 from semmap.nodes.language.reference_resolution.map_index import Item, MapIndex
 
 _ALIKE: Final = 1.25
-"""Sizes that differ by less are no reason to call one big and the other small."""
+"""The smallest ratio of sizes at which one object counts as big and another as small."""
 _IN_VIEW_RAD: Final = math.radians(60.0)
-"""What is further to the side is not counted from the left, if enough is before the viewer."""
+"""Objects further to the side are not counted from the left, if enough are in front of the viewer."""
 _TIE_M: Final = 0.015
-"""Distances and heights that differ by less are the same."""
+"""Distances and heights that differ by less count as equal."""
 _INTO: Final = ("connects", "separates")
-"""What leads into a place is in it, as one says: the kitchen door."""
+"""An object that leads into a place also counts as in it: the kitchen door."""
 _COST: Final = {
     Unknown: 0,
     Quality: 1,
@@ -55,7 +55,7 @@ Names = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """What `it` and `one` stand for in an embedded phrase."""
+    """The referents of `it` and `one` in an embedded phrase."""
 
     it: Names = ()
     one: Description | None = None
@@ -63,10 +63,10 @@ class Scope:
 
 @dataclass(frozen=True, slots=True)
 class Resolved:
-    """What fits a description, the first by its order first.
+    """The entities that match a description, sorted by its order.
 
-    kind: all that have the noun's kind; failed: the first restriction that nothing fits; is_tied: these come
-    first alike.
+    `kind` are all entities that the noun may denote, and `failed` is the first restriction that none of them
+    meets. `is_tied` means that several are equally first.
     """
 
     description: Description
@@ -78,7 +78,7 @@ class Resolved:
 
 @dataclass(frozen=True, slots=True)
 class Resolver:
-    """Resolves descriptions in one map. asker: who says *my*, by name."""
+    """Resolves descriptions in one map; *my* refers to the entity named `asker`."""
 
     known: MapIndex
     around: MapGeometry
@@ -86,59 +86,64 @@ class Resolver:
     asker: str | None = None
     _memory: dict[tuple[Description, Scope], Resolved] = field(default_factory=dict)
 
-    def resolve(self, said: Description, scope: Scope = Scope()) -> Resolved:
-        """What fits a description."""
-        key = (said, scope if _refers(said, "it", "one") else Scope())
+    def resolve(self, description: Description, scope: Scope = Scope()) -> Resolved:
+        """Return the entities that match a description."""
+        key = (description, scope if _refers(description, "it", "one") else Scope())
         if key not in self._memory:
-            self._memory[key] = self._resolve(said, scope)
+            self._memory[key] = self._resolve(description, scope)
         return self._memory[key]
 
-    def _resolve(self, said: Description, scope: Scope) -> Resolved:
-        if said.head == "it":
-            return Resolved(said, scope.it, scope.it)
-        if said.head == "one" and scope.one is not None:
-            said = Description(
-                said.said, scope.one.head, scope.one.key, scope.one.noun, said.is_definite, said.is_plural,
-                said.number, said.restrictions, said.order,
-            )  # fmt: skip
-        kind = self._kind(said, scope)
+    def _resolve(self, description: Description, scope: Scope) -> Resolved:
+        if description.head == "it":
+            return Resolved(description, scope.it, scope.it)
+        if description.head == "one" and scope.one is not None:
+            description = replace(
+                description, head=scope.one.head, key=scope.one.key, noun=scope.one.noun, is_alternative=False
+            )
+        kind = self._kind(description, scope)
         names = kind
         failed = None
-        for restriction in sorted(said.restrictions, key=_cost):
-            fitting = tuple(name for name in names if self.fits(name, restriction, said, kind, scope))
+        for restriction in sorted(description.restrictions, key=_cost):
+            fitting = tuple(name for name in names if self.fits(name, restriction, description, kind, scope))
             if names and not fitting and failed is None:
                 failed = restriction
             names = fitting
-        if len(names) > 1 and said.is_definite and not said.is_plural:
-            names = self._smallest_of_the_small(names, said)
-            if said.head == "noun" and said.order is None:
-                so = (name for name in names if self.known.is_called(name, said.key, self.language))
-                names = tuple(so) or names
+        if len(names) > 1 and description.is_definite and not description.is_plural:
+            names = self._smallest_of_the_small(names, description)
+            if description.head == "noun" and description.order is None:
+                exact = (name for name in names if self.known.is_called(name, description.key, self.language))
+                names = tuple(exact) or names
         is_tied = False
-        if said.order is not None and names:
-            names, is_tied = self._ordered(names, said.order, said)
-        return Resolved(said, names, kind, failed, is_tied)
+        if description.order is not None and names:
+            names, is_tied = self._ordered(names, description.order, description)
+        return Resolved(description, names, kind, failed, is_tied)
 
-    def _kind(self, said: Description, scope: Scope) -> Names:
-        """All that the noun may mean, and of *a bottle of water* also the water."""
-        if said.head == "one" and not said.restrictions and said.order is None:
-            return ()  # nothing is said of it
-        if said.head != "noun":
+    def _kind(self, description: Description, scope: Scope) -> Names:
+        """Return all entities that the noun may denote; for *a bottle of water* also the water."""
+        if description.head == "one" and not description.restrictions and description.order is None:
+            return ()  # the description is empty
+        if description.head != "noun":
             return tuple(sorted(name for name, item in self.known.items.items() if not item.is_place))
-        found = self.known.called(said.key, self.language)
-        if not found and (one := self.known.nouns[self.language].describing.counted(said.key)) != said.key:
+        found = self.known.called(description.key, self.language)
+        if (
+            not found
+            and (one := self.known.nouns[self.language].describing.counted(description.key))
+            != description.key
+        ):
             found = self.known.called(one, self.language)  # glasses to drink from
-        for restriction in said.restrictions:
+        for restriction in description.restrictions:
             if isinstance(restriction, Of) and restriction.is_content:
                 content = self.resolve(restriction.other, scope)
                 if not any(self._is_of(self.known.items[name], content) for name in found):
                     found = {**found, **dict.fromkeys(content.kind)}
         return tuple(sorted(found))
 
-    def fits(self, name: str, restriction: Restriction, said: Description, kind: Names, scope: Scope) -> bool:
-        """Whether one restriction holds of an entity; kind: of which it may be big or small."""
+    def fits(
+        self, name: str, restriction: Restriction, description: Description, kind: Names, scope: Scope
+    ) -> bool:
+        """Return whether an entity meets a restriction; sizes are compared with those of `kind`."""
         item = self.known.items[name]
-        inner = Scope((name,), said)
+        inner = Scope((name,), description)
 
         def meant(other: Description) -> Resolved:
             return self.resolve(other, scope if other.head == "it" else inner)
@@ -161,19 +166,21 @@ class Resolver:
             case Has(_, other):
                 found = meant(other).names
                 says_where = _refers(other, "it")
-                bearing = (says_where or self._bears(name, borne) for borne in found)
-                return any(bearing) if other.number is None else sum(bearing) >= other.number
+                supports = (says_where or self._supports(name, load) for load in found)
+                return any(supports) if other.number is None else sum(supports) >= other.number
             case Among(_, other):
                 return name in meant(other).names
             case Of(_, other):
                 return self._is_of(item, meant(other))
             case Not(restriction=inside):
-                return self._is_denied(item, inside, scope) and not self.fits(name, inside, said, kind, scope)
+                return self._can_be_negated(item, inside, scope) and not self.fits(
+                    name, inside, description, kind, scope
+                )
             case AnyOf(restrictions=inside):
-                return any(self.fits(name, one, said, kind, scope) for one in inside)
+                return any(self.fits(name, one, description, kind, scope) for one in inside)
 
-    def _is_denied(self, item: Item, restriction: Restriction, scope: Scope) -> bool:
-        """Whether a restriction may be said not to hold: it is understood, and what it is about is known."""
+    def _can_be_negated(self, item: Item, restriction: Restriction, scope: Scope) -> bool:
+        """Return whether a restriction can be negated: its words and the property's value are known."""
         match restriction:
             case State(_, property_name, bool()) if property_name != "holding":
                 return property_name in item.values
@@ -206,21 +213,21 @@ class Resolver:
             pairs = ((a, b) for a in found[0] for b in found[-1] if a != b)
             return any(name in self.around.between(*pair) for pair in pairs)
         return any(
-            self.around.related(relation, name, other) or self._is_said(relation, name, other)  # type: ignore[arg-type]
+            self.around.related(relation, name, other) or self._is_asserted(relation, name, other)  # type: ignore[arg-type]
             for other in found[0]
         )
 
-    def _is_said(self, relation: str, name: str, other: str) -> bool:
-        """Of places, which have no gap to be measured: adjacent ones, and what leads into one."""
+    def _is_asserted(self, relation: str, name: str, other: str) -> bool:
+        """Return whether places are asserted to be adjacent, or an object to lead into a place."""
         one, two = self.known.items[name], self.known.items[other]
         if relation == "isInside":
             return two.is_place and any(other in one.values.get(name, ()) for name in _INTO)
         adjacent = one.values.get("isAdjacentTo", frozenset()), two.values.get("isAdjacentTo", frozenset())
         return relation in ("isNextTo", "isNear") and (other in adjacent[0] or name in adjacent[1])
 
-    def _bears(self, name: str, other: str) -> bool:
-        """Whether another is on or in it, or both stand side by side on the floor: a chair with a table."""
-        if self._is_said("isInside", other, name) or any(
+    def _supports(self, name: str, other: str) -> bool:
+        """Return whether `other` is on or in `name`, or both stand side by side on the floor."""
+        if self._is_asserted("isInside", other, name) or any(
             self.around.related(how, other, name) for how in ("isOn", "isInside")
         ):
             return True
@@ -230,7 +237,7 @@ class Resolver:
         return around.is_on_floor(name) and around.is_on_floor(other)
 
     def _is_of(self, item: Item, others: Resolved) -> bool:
-        """Of a place, an owner, a whole, a thing that bears it, what it holds, or what it is itself."""
+        """Return whether an item belongs to one of `others`: its place, owner, whole, support or content."""
         related = self.around.related
         for name in others.names:
             other = self.known.items[name]
@@ -258,7 +265,7 @@ class Resolver:
         return {"volume": math.prod(size), "tallness": size[2], "length": max(size[:2])}[axis]
 
     def _stands_out(self, name: str, axis: str, sign: int, kind: Names) -> bool:
-        """Whether a thing is big, or small, beside its like: of two clusters of sizes it is in that one."""
+        """Return whether an object is big (or small) among its kind: the sizes are split into two groups."""
         own = self._measure(name, axis)
         if own is None:
             return False
@@ -269,15 +276,15 @@ class Resolver:
         middle = math.sqrt(least * most)
         return own > middle if sign < 0 else own < middle
 
-    def _smallest_of_the_small(self, names: Names, said: Description) -> Names:
+    def _smallest_of_the_small(self, names: Names, description: Description) -> Names:
         """Of several small ones those that are small beside the others, if there are any."""
-        for restriction in said.restrictions:
+        for restriction in description.restrictions:
             if isinstance(restriction, Sized):
                 axis, sign = restriction.axis, restriction.sign
                 names = tuple(n for n in names if self._stands_out(n, axis, sign, names)) or names
         return names
 
-    def _ordered(self, names: Names, order: Order, said: Description) -> tuple[Names, bool]:
+    def _ordered(self, names: Names, order: Order, description: Description) -> tuple[Names, bool]:
         """Those that come first; all that tie for it, and whether they do."""
         values = self._values(names, order)
         if values is None:
@@ -293,7 +300,7 @@ class Resolver:
         start = order.place - 1 if order.place > 0 else len(known) + order.place
         if order.place < 0 and order.count > 1:
             start = len(known) - order.count
-        if said.is_plural and order.count == 1 and order.place == 1:
+        if description.is_plural and order.count == 1 and order.place == 1:
             return tuple(known), False
         chosen = known[max(start, 0) : start + order.count] if start >= 0 else []
         if not chosen or len(chosen) < order.count:
@@ -304,7 +311,7 @@ class Resolver:
         return (tuple(sorted({*chosen, *tied})), True) if tied else (tuple(chosen), False)
 
     def _values(self, names: Iterable[str], order: Order) -> dict[str, float] | None:
-        """What each is ordered by; None where nothing says by what."""
+        """Return the value of each name on the order's axis; None if the axis is undefined."""
         around, axis = self.around, order.axis
         if axis == "" and not around.has_viewer:
             return None
@@ -330,9 +337,11 @@ class Resolver:
 
 
 @functools.lru_cache(1024)
-def _refers(said: Description, *heads: str) -> bool:
-    """Whether something in it stands for what was said before, by one of these heads."""
-    return said.head in heads or any(_refers(inner, *heads) for inner in _embedded(said.restrictions))
+def _refers(description: Description, *heads: str) -> bool:
+    """Return whether a phrase in the description has one of these heads, such as *it*."""
+    return description.head in heads or any(
+        _refers(inner, *heads) for inner in _embedded(description.restrictions)
+    )
 
 
 def _embedded(restrictions: Iterable[Restriction]) -> Iterator[Description]:
@@ -351,7 +360,7 @@ def _embedded(restrictions: Iterable[Restriction]) -> Iterator[Description]:
 
 
 def _is_unknown(restriction: Restriction) -> bool:
-    """Whether a word in it is not understood."""
+    """Return whether the restriction contains an unknown word."""
     match restriction:
         case Unknown():
             return True

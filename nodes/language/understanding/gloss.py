@@ -1,6 +1,6 @@
-"""A sentence told with English words one by one, and what was understood of it told back in its own words.
+"""Word-by-word translation to English, and mapping of the result back to the original words.
 
-What was learnt of English so holds of a language of which there is nothing to learn from.
+So the models that were trained on English can be used for languages without a training corpus.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ from semmap.schemas.language import Argument, Grounded, Language, Understood
 
 @dataclass(frozen=True, slots=True)
 class Glossed:
-    """An English word that stands for words of a sentence, counted from 1; first > last: nobody says it."""
+    """An English word for words `first` to `last` of a sentence, from 1; first > last: it has no original."""
 
     text: str
     first: int
     last: int
-    head: int  # the word that it is about
-    kind: PartOfSpeech | None = None  # where it is known
-    is_plural: bool = False  # which the English word does not tell
+    head: int  # the head of these words
+    kind: PartOfSpeech | None = None  # if it is known
+    is_plural: bool = False  # the original is plural, which the English word does not show
 
 
 @dataclass(frozen=True, slots=True)
 class Gloss:
-    """A sentence and the English words for it, which may stand in another order."""
+    """A sentence and its English words, possibly in another order."""
 
     said: tuple[str, ...]
     words: tuple[Glossed, ...]
@@ -40,16 +40,16 @@ class Gloss:
 
     @property
     def kinds(self) -> tuple[PartOfSpeech | None, ...]:
-        """Their parts of speech, None where the words around are to tell."""
+        """Their parts of speech, None if the tagger has to determine them."""
         return tuple(word.kind for word in self.words)
 
     def said_by_words(self, first: int, last: int) -> str:
-        """The sentence's own words for the English ones from index `first` to `last`."""
+        """Return the original words for the English ones from index `first` to `last`."""
         tokens = self._said_by(range(first + 1, last + 2))
         return " ".join(self.said[tokens[0] - 1 : tokens[-1]]) if tokens else ""
 
     def told_back(self, understood: Understood, language: Language) -> Understood:
-        """What was understood of the English words as of the sentence's own; what nobody said is left out."""
+        """Map a result for the English words back to the original words, without inserted words."""
         frames = tuple(
             replace(
                 frame,

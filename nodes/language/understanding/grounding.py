@@ -1,4 +1,4 @@
-"""Which entities of a map the words of a sentence mean."""
+"""Grounding: the entities of the map that the words of a sentence denote."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _TELLING = ("noun", "adj", "pron", "num")
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """An entity as a listener knows it. at: metres, in the map; types: its inferred classes."""
+    """An entity with its labels, position `at` [m, map frame] and inferred classes `types`."""
 
     name: str
     class_name: str
@@ -30,16 +30,16 @@ Things = tuple[Thing, ...]
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """What there is to be spoken of, by what it is called."""
+    """The entities of the map by label and class."""
 
-    called: Mapping[str, Things]  # reference or class, as it is said and in base forms
+    called: Mapping[str, Things]  # label or class, as written and in base form
     of_class: Mapping[str, Things]  # class, its subclasses included
     only: Mapping[str, Things]  # class, without its subclasses
     vocabulary: Vocabulary
     things: Mapping[str, Thing]  # by name
 
     def kinds_of(self, name: str) -> frozenset[str]:
-        """The classes of the entity of that name, superclasses and inferred ones too; none for no entity."""
+        """Return the asserted and inferred classes of a named entity with their superclasses, or none."""
         thing = self.things.get(name)
         if thing is None:
             return frozenset()
@@ -49,7 +49,7 @@ class Scene:
 
 
 def scene(things: Iterable[Thing], known: Vocabulary, lexicon: Lexicon) -> Scene:
-    """The things of a map, to be looked up. The order in which they come and are named does not matter."""
+    """Return the index of a map's entities. The order of the entities does not matter."""
     named: dict[str, Thing] = {}
     called: dict[str, dict[Thing, None]] = {}
     of_class: dict[str, list[Thing]] = {}
@@ -74,14 +74,14 @@ def scene(things: Iterable[Thing], known: Vocabulary, lexicon: Lexicon) -> Scene
 
 
 def distance(one: Thing, other: Thing) -> float:
-    """Metres between two things over the ground, infinite where a place is not known."""
+    """Return the horizontal distance of two things [m], infinite if a position is unknown."""
     if one.at is None or other.at is None:
         return math.inf
     return math.hypot(one.at[0] - other.at[0], one.at[1] - other.at[1])
 
 
 def called(text: str, among: Scene, lexicon: Lexicon) -> Things:
-    """The things that may be called so: by reference, class, subclass or superclass."""
+    """Return the things that a text may denote: by label, class, subclass or superclass."""
     base = based(text, lexicon)
     for form in (text, base, text.replace(" ", ""), text.replace("-", "")):
         if form in among.called:
@@ -96,7 +96,7 @@ def called(text: str, among: Scene, lexicon: Lexicon) -> Things:
 
 
 def meant(phrase: Phrase, said: Sequence[Word], among: Scene, lexicon: Lexicon) -> Things:
-    """What a phrase may mean: by several of its words together, longest first, by its head, by the others."""
+    """Return what a phrase may denote: by several words (longest first), its head, or any other word."""
     words = [i for i in range(phrase.nominal, phrase.last + 1) if said[i].kind in _TELLING]
     for length in range(len(words), 1, -1):
         for start in range(len(words) - length + 1):

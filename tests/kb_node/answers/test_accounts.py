@@ -107,9 +107,9 @@ def test_the_text_is_of_the_newest_commit(accounts, room):
     room(2, edit=(Edit(name="cup1", conflict=MISSING), Edit(name="chair3", at=(1.9, 1.0, 0.0))))
     told = accounts.tell(Tell())
     assert told.commit == 2
-    assert "Not as it should be: cup1, not seen where it should stand. The kitchen has" in told.text
+    assert "Problems: cup1, not seen where it should stand. The kitchen has" in told.text
     assert "with 3 chairs round it" in told.text
-    assert "Not as it should be: not seen where it should stand." in accounts.tell(Tell(name="cup1")).text
+    assert "Problems: not seen where it should stand." in accounts.tell(Tell(name="cup1")).text
     assert "Not as" not in accounts.tell(Tell(name="cup2")).text
 
 
@@ -145,7 +145,7 @@ def test_what_was_wrongly_said_is_not_said_again(accounts, room):
     said = Statement(property="isOn", values=("table1",))
     room(2, edit=(Edit(name="chair3", set=(said,)),))
     told = accounts.tell(Tell(name="chair3")).text
-    assert "Not as it should be: chair3 was said to be on table1; it stands" in told
+    assert "Problems: chair3 was said to be on table1; it stands" in told
     assert "It is on table1" not in told
 
 

@@ -46,15 +46,15 @@ def test_the_question_tells_the_candidates_apart(text, question):
 @pytest.mark.parametrize(
     ("text", "because", "nearest"),
     [
-        ("the cat", "there is nothing that is called 'cat'", []),
-        ("the unicorn", "nothing is called 'unicorn', and the word is not known", []),
-        ("the open fridge", "the only thing called 'fridge' does not fit 'open'", ["fridge1"]),
+        ("the cat", "nothing in the map is called 'cat'", []),
+        ("the unicorn", "unknown word 'unicorn': no class or entity has this name", []),
+        ("the open fridge", "the only thing called 'fridge' does not match 'open'", ["fridge1"]),
         (
             "the blue cup in the sink",
-            "none of the 3 things called 'cup' fits 'in the sink'",
+            "none of the 3 things called 'cup' matches 'in the sink'",
             ["cup2", "cup3"],
         ),
-        ("the four cups", "there are not so many: of 'the four cups' only 3 fit", ["cup1", "cup2", "cup3"]),
+        ("the four cups", "only 3 things match 'the four cups'", ["cup1", "cup2", "cup3"]),
     ],
 )
 def test_what_nothing_fits_says_which_part_and_what_is_nearest(text, because, nearest):

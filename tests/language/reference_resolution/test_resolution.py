@@ -125,12 +125,12 @@ def test_left_and_right_take_a_viewer():
 )
 def test_typing_and_recognition_errors_mean_the_nearest_word(text, said, meant):
     made = find(text, known(), Written())
-    assert made.reading.mended == ((said, meant),)
+    assert made.reading.corrections == ((said, meant),)
 
 
 @pytest.mark.parametrize("text", ["the die", "da rote", "la terr"])
 def test_what_would_name_nothing_is_not_what_was_meant(text):
-    assert find(text, known(), Written()).reading.mended == ()
+    assert find(text, known(), Written()).reading.corrections == ()
 
 
 @pytest.mark.parametrize("text", ["", "   ", "🤖🫖", "?!"])
@@ -140,7 +140,7 @@ def test_no_words_is_refused(text):
 
 
 def test_too_many_words_and_the_past_are_refused():
-    with pytest.raises(errors.BadRequest, match="at most 60 words; these are 10000"):
+    with pytest.raises(errors.BadRequest, match="has 10000 words; the maximum is 60"):
         found("cup " * 10_000)
     for text in ("the cup that was on the table", "la tazza che era sul tavolo", "the cup from yesterday"):
         with pytest.raises(errors.BadRequest, match="asks about the past"):

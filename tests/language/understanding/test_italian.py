@@ -3,8 +3,8 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from semmap.nodes.language.language_detection import detect_language
 
+from semmap.nodes.language.language_detection import detect_language
 from semmap.nodes.language.lexicon.italian import italian as lexicon
 from semmap.nodes.language.lexicon.italian import singulars
 from semmap.nodes.language.understanding import italian
