@@ -1,4 +1,4 @@
-"""Who holds what: how a map states that one thing is held by another, and where."""
+"""Attachments: the properties of an entity that is attached to another one."""
 
 from __future__ import annotations
 
@@ -11,34 +11,34 @@ from semmap.schemas.entities import Entity, Pose, rounded
 
 IS_GRASPED_BY: Final = "isGraspedBy"
 GRASP_POSE: Final = "graspPose"
-"""The properties by which a map states it: by what, and where in the frame of that."""
+"""The properties of an attachment: the parent entity, and the pose in its frame."""
 GRASPING: Final = (IS_GRASPED_BY, GRASP_POSE)
 _PART_OF: Final = "isDirectPartOf"
 _NUMBERS = 7
 
 
 def holder_of(entity: Entity) -> str:
-    """The name of what holds a thing; "" for nothing."""
-    said = entity.properties.get(IS_GRASPED_BY, "")
-    if isinstance(said, tuple):  # a TBox of one's own may not call it functional
-        said = said[0] if said else ""
-    return said if isinstance(said, str) else ""
+    """Return the name of the entity that this one is attached to, or ""."""
+    holder = entity.properties.get(IS_GRASPED_BY, "")
+    if isinstance(holder, tuple):  # in a custom TBox, the property may not be functional
+        holder = holder[0] if holder else ""
+    return holder if isinstance(holder, str) else ""
 
 
 def grip_of(entity: Entity) -> Pose | None:
-    """Where a thing is held, in the frame of its holder; None where that is not stated, or makes no sense."""
-    said = entity.properties.get(GRASP_POSE)
-    return pose_of_text(said) if isinstance(said, str) else None
+    """Return the pose in the frame of the parent entity, or None if it is not set or invalid."""
+    text = entity.properties.get(GRASP_POSE)
+    return pose_of_text(text) if isinstance(text, str) else None
 
 
 def pose_text(grip: Pose) -> str:
-    """A pose as a map states it: `x y z qw qx qy qz`, metres and a quaternion."""
+    """Return a pose as a property value: `x y z qw qx qy qz`, metres and a quaternion."""
     pose = rounded(grip)
     return " ".join(f"{value:g}" for value in (*pose.position_m, *pose.orientation_wxyz))
 
 
 def pose_of_text(text: str) -> Pose | None:
-    """The other way round; None for what is no pose."""
+    """Parse a pose in a property value; None for an invalid text."""
     words = text.split()
     if len(words) != _NUMBERS:
         return None
@@ -50,7 +50,7 @@ def pose_of_text(text: str) -> Pose | None:
 
 
 def carriers(name: str, entities: Mapping[str, Entity]) -> list[str]:
-    """What a thing is held by or part of, and what that is, and so on, the nearest first; never twice."""
+    """Return all entities that a thing is attached to or part of, directly or indirectly, nearest first."""
     found: list[str] = []
     waiting = [name]
     while waiting:

@@ -1,4 +1,4 @@
-"""What people have shown perception, so that it knows it again."""
+"""Exemplars: objects that were shown to perception, so that it recognises them."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from semmap.schemas.entities import Size
 
 
 class ShownView(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A thing as it was seen once.
+    """One view of an object.
 
-    `features`: little-endian 32-bit floats, as many as this version of perception looks at. `size_m`: long
+    `features`: little-endian 32-bit floats; their number depends on the version of perception. `size_m`: long
     side, short side, height.
     """
 
@@ -21,9 +21,9 @@ class ShownView(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class LessonTold(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What was shown, and of which class it is; forgotten by its `number`.
+    """An exemplar and its class; `forget` removes it by its `number`.
 
-    `size_m`: long side, short side, height. `shown`: where it was seen, in words.
+    `size_m`: long side, short side, height. `shown`: a description of the origin of the views.
     """
 
     number: int

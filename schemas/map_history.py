@@ -1,4 +1,4 @@
-"""What happened to a map: what changed between two commits, and when something was where."""
+"""The history of a map: changes between two commits, and the intervals in which relations held."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ from msgspec import Struct
 from semmap.schemas.changes import Change
 
 KeptRelation = Literal["isOn", "isInside", "isLocatedIn", "isAttachedTo"]
-"""Spatial relations that are known of every commit."""
+"""The spatial relations that are known for every commit."""
 
 
 class Related(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A relation, as measured, that holds after the later commit only (`came`), or after the earlier only."""
+    """A computed relation that holds only after the later commit (`came`) or only after the earlier one."""
 
     subject: str
     relation: KeptRelation
     object: str
     came: bool
     text: str
-    """In words, without the subject: `is no longer on table1`."""
+    """A text without the subject: `is no longer on table1`."""
 
 
 class Difference(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What changed between the map after commit `first` and the map after commit `last`, ordered by name.
+    """The changes between the map after commit `first` and after commit `last`, sorted by name.
 
-    Stamps are those of the two commits, in nanoseconds since 1970.
+    The time stamps are those of the two commits, in nanoseconds since 1970.
     """
 
     first: int
@@ -38,9 +38,9 @@ class Difference(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Spell(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A time during which a relation held: from one commit until just before another, or until now.
+    """An interval in which a relation held: from one commit until just before another, or until now.
 
-    `since` is 0 where it held before the history begins. Stamps are nanoseconds since 1970.
+    `since` is 0 if it held before the history begins. Time stamps are nanoseconds since 1970.
     """
 
     since: int
@@ -50,12 +50,12 @@ class Spell(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Spells(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """When one thing was on, inside, in or attached to another, as measured: in order, without overlap."""
+    """The intervals in which an entity was on, inside, in or attached to another, in order."""
 
     subject: str
     relation: KeptRelation
     object: str
     spells: tuple[Spell, ...]
     total_s: float
-    """How long in all [s], by the stamps of the commits."""
+    """The total duration [s], by the time stamps of the commits."""
     text: str

@@ -83,7 +83,9 @@ def test_who_asks_is_answered_and_who_may_not_change_is_told(system, folder):
     ):
         for name in ("vera", "spot"):
             said = system.cli(*words, "--identity", folder / name, status=1)
-            assert said.startswith(f"semmap: your certificate ({NAMES[name]}) may not {words[0]}; ")
+            assert said.startswith(
+                f"semmap: role '{NAMES[name]}' of your certificate may not use '{words[0]}'; "
+            )
 
 
 def test_a_change_is_signed_with_the_name_that_the_certificate_proves(as_, system, folder):
@@ -332,7 +334,7 @@ def test_only_operators_have_things_held_tracked_and_driven(as_, name):
             lambda: client.drive("table1", to=((0.0, 0.0),), frame="map"),
             lambda: client.move("milk1", at=(0.0, 0.0, 0.0), frame="kitchen1"),
         ):
-            with pytest.raises(errors.Refused, match="that takes the role 'operator' or 'admin'"):
+            with pytest.raises(errors.Refused, match="required role: 'operator' or 'admin'"):
                 ask()
     with as_("bob") as bob:
         assert "table1 holds milk1" in bob.attach("milk1", to="table1").text

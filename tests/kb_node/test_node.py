@@ -280,7 +280,7 @@ def test_documents_are_loaded_whole_or_not_at_all(session):
 def test_packed_documents_are_loaded(session):
     packed = structs.replace(load("gz1", ""), content=gzip.compress((PREFIXES + ":gz a dm:Chair .").encode()))
     assert ask(session, "load", packed).names == ("gz",)
-    with pytest.raises(errors.BadFile, match="ends too early to be unpacked"):
+    with pytest.raises(errors.BadFile, match="the gzip data is truncated"):
         ask(session, "load", structs.replace(packed, id="gz2", content=packed.content[:-9]))
     text = TBOX_TURTLE + "dm:Chair rdfs:comment 'packed' ."
     tbox = LoadTBox(id="gz3", source="file", content=gzip.compress(text.encode()), filename="t.ttl.gz")

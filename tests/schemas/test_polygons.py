@@ -75,7 +75,7 @@ def test_too_many_corners():
         (math.cos(2 * math.pi * k / count) * 5, math.sin(2 * math.pi * k / count) * 5) for k in range(count)
     ]
 
-    with pytest.raises(BadRequest, match=f"at most {MOST_POINTS} corners, and this one {count}"):
+    with pytest.raises(BadRequest, match=f"has {count} corners; the maximum is {MOST_POINTS}"):
         simple([ring])
     assert len(simple([ring[1:]]).outer) == MOST_POINTS
 

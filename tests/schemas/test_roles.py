@@ -45,7 +45,7 @@ def test_who_may_change(command, allowed):
 
 def test_a_refusal_says_whose_word_it_takes():
     assert roles.refusal("viewer", Load(content=b"", tbox=True)) == (
-        "your certificate (viewer) may not load --tbox; that takes the role 'admin'"
+        "role 'viewer' of your certificate may not use 'load --tbox'; required role: 'admin'"
     )
     assert "may change the map as perception" in roles.refusal("perception", Add(class_="Cup"))
 
