@@ -1,9 +1,9 @@
-"""How an entity is said in triples: its star.
+"""The triples that describe an entity.
 
     :chair1  a dm:Chair ; dm:hasPosition :chair1_coordinates ; dm:hasSize :chair1_size ;
              dm:hasPreferredReference :chair1_preferred_reference ; ...
 
-New individuals are named after the entity, never after their text, which may hold anything.
+New individuals are named after the entity, not after their text, which can be arbitrary.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from semmap.schemas.entities import IDENTITY, Pose, Size
 from semmap.schemas.explanations import Term, Triple
 
 DESCRIPTION_PROPERTIES = (v.HAS_POSITION, v.HAS_SIZE, v.HAS_PREFERRED_REFERENCE, v.HAS_ALTERNATIVE_REFERENCE)
-"""The edges from an entity to the individuals of its star."""
+"""The properties from an entity to the individuals that describe it."""
 COORDINATE_PROPERTIES = (*v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ)
-"""The numbers that say where an entity is."""
+"""The numbers of a pose."""
 _FLOAT = f'"^^{v.XSD_FLOAT}'
 
 
@@ -31,7 +31,7 @@ def describe(
     alternatives: tuple[str, ...] = (),
     suffix: str = "",
 ) -> list[Triple]:
-    """All triples of a new entity; `suffix` ends the names of the individuals that describe it."""
+    """Return all triples of a new entity; `suffix` is appended to the names of the describing individuals."""
     entity = v.entity_iri(name)
     triples: list[Triple] = [(entity, v.RDF_TYPE, class_iri)]
     if pose is not None:
@@ -48,12 +48,12 @@ def describe(
 
 
 def position(entity: Term, node: Term, pose: Pose) -> list[Triple]:
-    """Where an entity is, by the individual `node`."""
+    """Return the triples of an entity's pose, with the individual `node`."""
     return [(entity, v.HAS_POSITION, node), (node, v.RDF_TYPE, v.COORDINATES), *coordinates(node, pose)]
 
 
 def coordinates(node: Term, pose: Pose) -> list[Triple]:
-    """The numbers of a pose: position and, unless it is the identity, orientation."""
+    """Return the numbers of a pose: position and, unless it is the identity, orientation."""
     numbers = _numbers(node, v.COORDINATE_XYZ, pose.position_m)
     if pose.orientation_wxyz != IDENTITY:
         numbers += _numbers(node, v.ORIENTATION_WXYZ, pose.orientation_wxyz)
@@ -61,17 +61,17 @@ def coordinates(node: Term, pose: Pose) -> list[Triple]:
 
 
 def size(entity: Term, node: Term, size_m: Size) -> list[Triple]:
-    """Extent along the entity's own axes."""
+    """Return the triples of an entity's size along its own axes."""
     return [(entity, v.HAS_SIZE, node), (node, v.RDF_TYPE, v.THREE_DIM_SIZE), *extent(node, size_m)]
 
 
 def extent(node: Term, size_m: Size) -> list[Triple]:
-    """The numbers of a size."""
+    """Return the numbers of a size."""
     return _numbers(node, v.SIZE_XYZ, size_m)
 
 
 def preferred_reference(entity: Term, node: Term, text: str) -> list[Triple]:
-    """What people call it."""
+    """Return the triples of an entity's label."""
     return [
         (entity, v.HAS_PREFERRED_REFERENCE, node),
         (node, v.RDF_TYPE, v.PREFERRED_REFERENCE),
@@ -80,7 +80,7 @@ def preferred_reference(entity: Term, node: Term, text: str) -> list[Triple]:
 
 
 def alternative_reference(entity: Term, node: Term, text: str) -> list[Triple]:
-    """What people call it, too."""
+    """Return the triples of an alias."""
     return [
         (entity, v.HAS_ALTERNATIVE_REFERENCE, node),
         (node, v.RDF_TYPE, v.ALTERNATIVE_REFERENCE),
@@ -90,12 +90,12 @@ def alternative_reference(entity: Term, node: Term, text: str) -> list[Triple]:
 
 @lru_cache(maxsize=1024)
 def _word(text: str) -> Term:
-    """The literal of what is said of very many things: then it is one object."""
+    """Return a literal; cached, so that frequent labels share one object."""
     return v.literal(text)
 
 
 def _numbers(node: Term, properties: tuple[Term, ...], values: tuple[float, ...]) -> list[Triple]:
     return [
-        (node, predicate, f'"{float(value)!r}{_FLOAT}')  # a number has nothing to escape
+        (node, predicate, f'"{float(value)!r}{_FLOAT}')  # a number needs no escaping
         for predicate, value in zip(properties, values, strict=True)
     ]

@@ -47,7 +47,7 @@ def test_a_refusal_says_whose_word_it_takes():
     assert roles.refusal("viewer", Load(content=b"", tbox=True)) == (
         "role 'viewer' of your certificate may not use 'load --tbox'; required role: 'admin'"
     )
-    assert "may change the map as perception" in roles.refusal("perception", Add(class_="Cup"))
+    assert "may not use the source operator; use perception" in roles.refusal("perception", Add(class_="Cup"))
 
 
 def test_what_is_not_in_the_table_is_for_nodes(monkeypatch):
