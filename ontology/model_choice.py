@@ -66,8 +66,8 @@ def _said(variety: str, words: Set[str], model: str) -> int:
     """Return the number of words of a variety in a name, excluding words of `model`."""
     own = set(model.split("_"))
     terms = [term.split() for term in (variety.replace("_", " "), *shapes()[variety].words)]
-    said = (t for t in terms if not own.issuperset(t) and (words >= set(t) or "".join(t) in words))
-    return max(map(len, said), default=0)
+    found = (t for t in terms if not own.issuperset(t) and (words >= set(t) or "".join(t) in words))
+    return max(map(len, found), default=0)
 
 
 def _nearest(candidates: tuple[str, ...], size_m: Size) -> str:

@@ -81,7 +81,7 @@ def declarations(of_file: Prefixes, triples: Collection[Triple]) -> list[Triple]
     chosen = prefixes_of(used, {**declared, **declared_in(triples)})
     own = [(prefix, namespace) for prefix, namespace in chosen.items() if WELL_KNOWN.get(prefix) != namespace]
     found = [(v.iri(namespace), PREFERRED_PREFIX, v.literal(prefix)) for prefix, namespace in own]
-    return [(PREFERRED_PREFIX, v.RDF_TYPE, v.OWL_ANNOTATION_PROPERTY), *said] if said else []
+    return [(PREFERRED_PREFIX, v.RDF_TYPE, v.OWL_ANNOTATION_PROPERTY), *found] if found else []
 
 
 def used_by(triples: Iterable[Triple], prefixes: Prefixes) -> dict[str, str]:

@@ -1,7 +1,7 @@
 """The incremental OWL 2 RL reasoner as a library: computes inferred triples and explanations.
 
-It needs no running system. Terms are N-Triples text (`<iri>`, `"1.0"^^<datatype>`, `_:label`), and a triple is
-a tuple of three.
+It needs no running system. Terms are N-Triples text (`<iri>`, `"1.0"^^<datatype>`, `_:label`), and a
+triple is a tuple of three.
 
     from semmap.reasoner import Inconsistent, Reasoner
 

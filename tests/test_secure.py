@@ -110,7 +110,7 @@ def test_perception_speaks_as_perception_only(as_, raw):
             eye.remove("fridge1")
     with (
         as_("eye", source="operator") as eye,
-        pytest.raises(errors.Refused, match="role 'perception' .* may not use the source operator"),
+        pytest.raises(errors.Refused, match="may not use the source operator"),
     ):
         eye.remove("fridge1")
     forged = commands.Remove(names=("fridge1",), source="operator")
