@@ -1,4 +1,4 @@
-"""A file of very many triples: loaded whole, told of on stderr, with the nodes alive and memory bounded."""
+"""Loads a very large file: progress on stderr, live nodes, and bounded memory."""
 
 from __future__ import annotations
 

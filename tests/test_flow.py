@@ -186,9 +186,9 @@ def test_while_the_knowledge_base_is_away_the_coordinator_says_so(flat, client):
     os.kill(flat.pid("kb_node"), signal.SIGKILL)
     for _ in range(20):
         with contextlib.suppress(errors.NoAnswer):
-            client.history()  # is passed on to nobody
+            client.history()  # has no responder
         with contextlib.suppress(errors.NoAnswer):
-            client.sparql("ASK {}")  # is nobody's to answer, until the coordinator notices
+            client.sparql("ASK {}")  # has no responder until the coordinator notices
         with flat.client() as newcomer:
             newcomer.status()
     until(lambda: client.status().in_agreement, "map and scene agree again")

@@ -1,4 +1,4 @@
-"""A knowledge base that is killed again and again while a client commits as fast as it can."""
+"""Kills the knowledge base repeatedly while a client commits as fast as possible."""
 
 from __future__ import annotations
 

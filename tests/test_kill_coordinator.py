@@ -1,4 +1,4 @@
-"""A coordinator that is killed again and again while a client adds without giving names."""
+"""Kills the coordinator repeatedly while a client adds entities without names."""
 
 from __future__ import annotations
 

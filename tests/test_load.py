@@ -1,4 +1,4 @@
-"""A whole system under more than it can do: refused or done, and nothing lost silently."""
+"""Overload of a whole system: commands are rejected or executed, and none is lost silently."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""More entities than are told of one by one: loaded, followed, listed, queried, and there after a restart."""
+"""More entities than are published one by one: load, subscribe, list, query and restart."""
 
 from __future__ import annotations
 

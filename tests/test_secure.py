@@ -1,4 +1,4 @@
-"""A whole system with `--secure`: who may what, who it was, and that nobody but the router listens."""
+"""A whole system with `--secure`: permissions, provenance, and the router as the only listener."""
 
 from __future__ import annotations
 
@@ -260,7 +260,7 @@ def test_who_is_revoked_is_shut_out_and_who_is_added_let_in(as_, folder, raw):
 
 
 def test_changes_are_done_once_while_the_router_begins_anew(as_, folder):
-    """A question that is cut off may have been executed; it is asked again, and known by its id."""
+    """An interrupted request may have been executed; it is sent again and identified by its id."""
     made = []
     with as_("bob") as bob:
         before = bob.status().commit

@@ -1,4 +1,4 @@
-"""What was stored opens: a data folder that an older version wrote is the same map in this one."""
+"""Data folders of older versions open as the same map."""
 
 from __future__ import annotations
 

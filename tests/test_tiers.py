@@ -1,4 +1,4 @@
-"""Tests that need real processes are found by their code, and no other test can start one."""
+"""Tests that need processes are detected from their code, and other tests cannot start one."""
 
 from __future__ import annotations
 

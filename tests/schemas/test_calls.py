@@ -1,4 +1,4 @@
-"""A call says what it is answered with: at run time, and to mypy."""
+"""Reply types of requests, at run time and for mypy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far open a thing is, and how a map states it."""
+"""Openness and joint positions, and their properties in a map."""
 
 import pytest
 from msgspec import structs

@@ -1,4 +1,4 @@
-"""The table of roles says of every command who may ask for it."""
+"""The table of roles covers every command."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def test_every_command_has_a_row():
 
 
 def test_every_change_takes_more_than_a_viewer():
-    """Whatever is answered with a commit, and whatever moves the scene."""
+    """Commands that return a commit or move the scene."""
     changes = {verb for verb, kind in COMMANDS.items() if reply_type(kind) is Changed}
     assert changes
     for verb in changes | {"move", "pause", "step", "reset"}:

@@ -1,4 +1,4 @@
-"""Learn when the votes are not to be believed, by leaving out classes and things that are known."""
+"""Train the open-set decision (when to reject the votes) by holding out known classes and things."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ _FOLDS = 4
 _LEFT_OUT = 0.12
 _ROUNDS = 6
 _ENOUGH = 0.25
-"""The share of the samples that the voters of a fold learn from: signs need no more."""
+"""The share of the samples on which the voters of a fold are trained."""
 
 _AXES = 30
 _SURE, _CLEAR = 0.42, 2.0 / 3.0
-"""From when on a name counts as said: somewhat sooner than perception says it, to have more wrong ones."""
+"""The confidence from which a class counts as reported; lower than in perception, to get more errors."""
 _NEW_CLASS, _NEW_THING, _FAR = 0.1, 0.4, 0.03
-"""How many of the things that are met are of no class that was learnt, how many of one but of another make,
-and how many like nothing at all; nobody knows, so these are guesses."""
+"""The assumed shares of encountered things: of an unknown class, of a known class but another make, and
+unlike anything known. These are estimates."""
 _FAR_OFF = (3.0, 40.0)
-"""How far from the mean those are in each feature, in deviations."""
+"""The distance of the latter from the mean in each feature, in standard deviations."""
 
 
 @dataclass(frozen=True)
 class LabelledSamples:
-    """N samples and what is true of them.
+    """N samples with ground truth.
 
-    `features`: of each sort (N, its own number). `target`: (N,) numbers of `classes`. `stranger`: (N,) which
-    foreign thing each is, -1 for our own. `held`: (N,) what voters have not learnt from.
+    `features`: per sort (N, its number of features). `target`: (N,) indices of `classes`. `stranger`: (N,)
+    numbers of foreign things, -1 for our own. `held`: (N,) whether a sample is held out from training.
     """
 
     features: Sequence[Numbers]
@@ -48,12 +48,12 @@ class LabelledSamples:
     ancestors: Mapping[str, Sequence[str]]
 
     def of(self, rows: NDArray[np.bool_]) -> list[Numbers]:
-        """The features of some."""
+        """Return the features of some rows."""
         return [values[rows] for values in self.features]
 
 
 def space(features: Sequence[Numbers], target: NDArray[np.int64], classes: int) -> Novelty:
-    """The space alone, without the regression: axes that tell classes apart, scaled by how they scatter."""
+    """Return the feature space without the regression: discriminant axes, scaled by the scatter."""
     together = np.concatenate(features, axis=1)
     mean = together.mean(axis=0)
     found = LinearDiscriminantAnalysis(solver="eigen", shrinkage=0.05, n_components=_AXES)
@@ -67,10 +67,10 @@ def space(features: Sequence[Numbers], target: NDArray[np.int64], classes: int) 
 
 
 def learn_novelty(labelled: LabelledSamples, recipes: Sequence[Recipe], weights: Numbers) -> Novelty:
-    """Some classes and some foreign things are left out at a time.
+    """Train with folds that leave out some classes and foreign things.
 
-    The regression tells where the votes, which never saw them, name them wrongly; what is far from all that
-    there is would always be. `weights`: how much each vote counts.
+    The regression predicts where the votes misclassify things that they were not trained on; outliers always
+    count as misclassified. `weights` are those of the votes.
     """
     things = np.flatnonzero([name not in (UNKNOWN, CLUTTER) for name in labelled.classes])
     rng = np.random.default_rng(0)
@@ -110,7 +110,7 @@ def learn_novelty(labelled: LabelledSamples, recipes: Sequence[Recipe], weights:
 
 
 def far_off(features: Sequence[Numbers], count: int, rng: np.random.Generator) -> list[Numbers]:
-    """Features of so many things such as there are none, of each sort; any share of them is too large."""
+    """Return features of `count` outliers per sort; a random share of the features is too large."""
     near, far = np.log(_FAR_OFF)
     away, above = np.exp(rng.uniform(near, far, (count, 1))), rng.random((count, 1))
     return [
@@ -121,7 +121,7 @@ def far_off(features: Sequence[Numbers], count: int, rng: np.random.Generator) -
 
 
 def _worth(new_class: NDArray[np.bool_], new_thing: NDArray[np.bool_], far: int) -> Numbers:
-    """(N + far,) how much each counts, so that the shares are what they are guessed to be."""
+    """Return (N + far,) sample weights that give the assumed shares."""
     sorts = (new_class, new_thing & ~new_class, ~new_class & ~new_thing)
     worth = np.zeros(len(new_class))
     for sort, share in zip(sorts, (_NEW_CLASS, _NEW_THING, 1.0 - _NEW_CLASS - _NEW_THING), strict=True):
@@ -130,7 +130,7 @@ def _worth(new_class: NDArray[np.bool_], new_thing: NDArray[np.bool_], far: int)
 
 
 def _misnamed(pooled: Numbers, labelled: LabelledSamples, judged: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """(N,) whether the votes' answer is neither a thing's class nor above it."""
+    """Return (N,) whether the votes' class is neither the true class nor an ancestor of it."""
     found = []
     for chances, target in zip(np.exp(pooled), labelled.target[judged], strict=True):
         by_leaf = dict(zip(labelled.classes, chances.tolist(), strict=True))

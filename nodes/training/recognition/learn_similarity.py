@@ -1,6 +1,6 @@
 """Learn a similarity of two views: `python -m semmap.nodes.training.recognition.learn_similarity`.
 
-What is shown later is none of these things, so neither are foreign ones learnt from: they measure.
+Foreign things are excluded, as exemplars are not among the training objects either; they are for evaluation.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ _TREES = 150
 _LARGEST_M = 0.6
 _VIEWS, _CUT, _DISTANCE, _STEEP = 14, 17, 15, 16  # columns of a view
 _OTHER_EYE_M, _OTHER_EYE_SIN = 0.03, 0.02
-"""Views from eyes that differ by less are taken for the same picture, cut up in two ways."""
+"""Views from closer viewpoints count as the same image with different segmentations."""
 _SAME, _SAME_PICTURE = 2, 1
 _BESIDE, _ANYWHERE, _ALIKE, _ALIKE_BESIDE = 12, 12, 6, 4
-"""With each view that is kept so many of the same thing are compared, and of others: of the same scene, of
-any, and the most alike of both."""
+"""The numbers of compared views per exemplar view: of the same thing, and of others (of the same scene, of
+any scene, and the most similar of both)."""
 _DRAWN = 160
 _REACH = 4.0
 
@@ -36,7 +36,7 @@ Indices = NDArray[np.int64]
 
 
 def learn_similarity(samples: Samples, kept: int, seed: int = 0) -> Likeness:
-    """From so many views that are kept, each compared with others of its thing and of other things."""
+    """Train on `kept` exemplar views, each compared with views of the same thing and of other things."""
     small = np.exp(samples.geometry[:, :3]).max(axis=1) < _LARGEST_M
     own = np.array([foreign_class(kind) is None for kind in samples.kind])
     samples = samples[small & own]
@@ -52,7 +52,7 @@ def learn_similarity(samples: Samples, kept: int, seed: int = 0) -> Likeness:
 def _pairs(
     samples: Samples, views: NDArray[np.float64], kept: int, rng: np.random.Generator
 ) -> Iterator[tuple[int, int, int]]:
-    """A kept view, a seen one, and 1 if they are of the same thing."""
+    """Yield an exemplar view, an observed one, and 1 if they show the same thing."""
     thing = _things(samples)
     of_thing, of_scene = defaultdict(list), defaultdict(list)
     for n, (one, scene) in enumerate(zip(thing, samples.scene, strict=True)):
@@ -85,13 +85,13 @@ def _pairs(
 
 
 def _elsewhere(views: NDArray[np.float64], a: int, others: Indices) -> NDArray[np.bool_]:
-    """(N,) whether the eye was elsewhere, as seen from the thing."""
+    """Return (N,) whether the viewpoint relative to the thing was different."""
     eye = np.abs(views[others] - views[a])
     return np.asarray((eye[:, _DISTANCE] > _OTHER_EYE_M) | (eye[:, _STEEP] > _OTHER_EYE_SIN))
 
 
 def _things(samples: Samples) -> Indices:
-    """(N,) numbers of the things: two of a scene that measure the same are one. Clutter is of none."""
+    """Return (N,) numbers of the things; things of equal size in a scene share one. Clutter has its own."""
     names = [
         f"{scene}/{kind}/{size.tolist()}" if kind != NOTHING else f"clutter {n}"
         for n, (scene, kind, size) in enumerate(zip(samples.scene, samples.kind, samples.size_m, strict=True))
@@ -100,7 +100,7 @@ def _things(samples: Samples) -> Indices:
 
 
 def main() -> None:
-    """Learn from what recognition learns from, and write what ships."""
+    """Train on the samples of recognition, and write the shipped model."""
     parser = argparse.ArgumentParser(prog="python -m semmap.nodes.training.recognition.learn_similarity")
     parser.add_argument(
         "--parts", type=Path, required=True, help="samples of semmap.nodes.training.recognition"

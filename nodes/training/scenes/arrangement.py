@@ -1,4 +1,4 @@
-"""Where things stand in a scene for training: loose, crowded, touching."""
+"""Arrangement of objects in training scenes: loose, crowded, touching."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ _DISTANCES_M = (0.8, 2.2)
 _USUAL = 0.6  # of the tables are about as high as tables are, and desks as desks
 
 CARRIERS = ("table", "table", "desk", "counter", "cabinet")
-"""What things stand on, tables more often than others."""
+"""The furniture that objects are placed on; tables are more frequent."""
 
 
 def table_scene(
     things: Sequence[Item], rng: np.random.Generator, *, crowded_share: float = 0.5
 ) -> list[Item]:
-    """A table and these things on it; those that find no room are left out."""
+    """Return a table with these things on it; things without room are left out."""
     area = (float(rng.uniform(0.7, 1.0)), float(rng.uniform(1.0, 1.5)))
     kind = str(rng.choice(CARRIERS))
     height = float(rng.uniform(0.5, 0.9))
@@ -41,13 +41,13 @@ def table_scene(
 
 
 def floor_scene(things: Sequence[Item], rng: np.random.Generator) -> list[Item]:
-    """These things on the floor."""
+    """Place things on the floor."""
     sizes = [thing.size_m for thing in things]
     return standing(things, spread(sizes, (3.5, 3.5), float(rng.uniform(0.02, 0.3)), rng), 0.0)
 
 
 def standing(things: Sequence[Item], placements: Sequence[Rectangle | None], height_m: float) -> list[Item]:
-    """Things at their placements, at one height, each with a name of its own."""
+    """Return things at their placements and one height, with unique names."""
     return [
         replace(
             thing,
@@ -63,7 +63,7 @@ def standing(things: Sequence[Item], placements: Sequence[Rectangle | None], hei
 def views(
     target_m: Vec3, distance_m: tuple[float, float], rng: np.random.Generator, *, count: int = 2
 ) -> list[View]:
-    """Cameras that look at about the same spot from different sides."""
+    """Return cameras that look at about the same spot from different sides."""
     first, found = rng.uniform(-math.pi, math.pi), []
     for n in range(count):
         azimuth = first + n * rng.uniform(0.9, 2.4)
@@ -85,7 +85,7 @@ Scene = tuple[list[Item], list[View]]
 
 
 def training_scenes(count: int, foreign: Sequence[ForeignThing], rng: np.random.Generator) -> Iterator[Scene]:
-    """Scenes in which every thing comes about equally often: small ones on tables, all on floors."""
+    """Yield scenes in which all things are about equally frequent: small ones on tables, all on floors."""
     small, large = small_things(foreign, rng), own_things(LARGE, rng)
     for number in range(count):
         if number % 5 < 4:
@@ -97,7 +97,7 @@ def training_scenes(count: int, foreign: Sequence[ForeignThing], rng: np.random.
 
 
 def own_scenes(count: int, rng: np.random.Generator) -> Iterator[Scene]:
-    """Tables of our models alone, as they are, most of them crowded: what a simulated map shows."""
+    """Yield tables with our unmodified models only, mostly crowded, as in a simulated map."""
     things = own_things(SMALL, rng, own_colours=1.0)
     for _ in range(count):
         items = table_scene([next(things) for _ in range(rng.integers(8, 19))], rng, crowded_share=_HEAPED)
@@ -105,7 +105,7 @@ def own_scenes(count: int, rng: np.random.Generator) -> Iterator[Scene]:
 
 
 def heaps(count: int, foreign: Sequence[ForeignThing], rng: np.random.Generator) -> Iterator[Scene]:
-    """Scenes of things close together, often several of a kind: whose piece is whose is hard to tell."""
+    """Yield scenes of close things, often several of a kind, which are hard to segment."""
     small = small_things(foreign, rng)
     for _ in range(count):
         few = [small() for _ in range(rng.integers(3, 12))]

@@ -1,6 +1,6 @@
-"""Things of no class: a few solids put together by lot. So perception learns to say `Object`.
+"""Distractors: random compositions of solids without a class, from which perception learns `Object`.
 
-Many are alike on both sides, as what people make mostly is.
+Many are mirror-symmetric, like most manufactured things.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ _MOST_PARTS = 5
 _MIRRORED, _LUMPS = 0.35, 0.15
 _NEARLY = 0.88
 _THINNEST = 0.25
-"""So high, in radii of its ball, is what is left when a lump is cut off below: flatter ones have no hull."""
+"""The minimum height of a truncated lump, in radii; flatter ones have no convex hull."""
 
 
 def distractor_parts(rng: np.random.Generator, colour: Colour) -> Parts:
-    """One lump, or two to five solids that touch, upon the ground, its middle below the middle of all."""
+    """Return one lump, or two to five touching solids, on the ground and centred at the origin."""
     parts = _random_parts(rng, colour)
     while _is_plain(parts):
         parts = _random_parts(rng, colour)
@@ -64,13 +64,13 @@ def _random_parts(rng: np.random.Generator, colour: Colour) -> Parts:
 
 
 def _is_plain(parts: Parts) -> bool:
-    """Whether one box, ball or rod is nearly all of it: that is a carton, a ball or a can."""
+    """Return whether one box, ball or rod makes up nearly all of it, like a carton, a ball or a can."""
     low, high = bounds(parts)
     return any(part.mesh is None and (2.0 * part.reach() > _NEARLY * (high - low)).all() for part in parts)
 
 
 def size_of(parts: Parts) -> Vec3:
-    """What they measure together [m]."""
+    """Return the extents of the bounding box of all parts [m]."""
     low, high = bounds(parts)
     return _vec3(high - low)
 
@@ -104,7 +104,7 @@ def _solid(size_m: float, at: Vec3, colour: Colour, rng: np.random.Generator) ->
 
 
 def _lump(size_m: float, at: Vec3, colour: Colour, rng: np.random.Generator) -> Part:
-    """The hull of points about a ball, squeezed and mostly cut off below: pebbles, wedges, computer mice."""
+    """Return the hull of points on a scaled ball, mostly truncated below: pebbles, wedges, computer mice."""
     points = rng.normal(size=(int(rng.integers(8, 60)), 3))
     points /= np.linalg.norm(points, axis=1)[:, None]
     points[:, 2] = np.maximum(points[:, 2], min(rng.uniform(-1.0, 0.1), points[:, 2].max() - _THINNEST))
@@ -118,7 +118,7 @@ def _lump(size_m: float, at: Vec3, colour: Colour, rng: np.random.Generator) -> 
 
 
 def _turned(size_m: float, rng: np.random.Generator) -> Solid:
-    """A knob, a torch, a bulb: any profile about an axis."""
+    """Return a solid of revolution with a random profile, like a knob, a torch or a bulb."""
     count = int(rng.integers(3, 7))
     radii = 0.5 * size_m * rng.uniform(0.15, 1.0, count) * np.exp(rng.normal(-0.3, 0.3))
     heights = np.sort(rng.uniform(-0.5, 0.5, count)) * size_m
@@ -127,7 +127,7 @@ def _turned(size_m: float, rng: np.random.Generator) -> Solid:
 
 
 def _bow(size_m: float, rng: np.random.Generator) -> Solid:
-    """A ring or a part of one: of clamps, hooks and toys."""
+    """Return a ring or a part of one, like clamps, hooks and toys."""
     around = np.linspace(0.0, float(rng.uniform(0.5, 1.9)) * math.pi, 18)
     path = (
         0.5 * size_m * np.column_stack([np.cos(around), rng.uniform(0.5, 1.0) * np.sin(around), 0.0 * around])
@@ -136,7 +136,7 @@ def _bow(size_m: float, rng: np.random.Generator) -> Solid:
 
 
 def _mirrored(part: Part) -> Part:
-    """On the other side of the plane x = 0."""
+    """Return a part mirrored at the plane x = 0."""
     x, y, z = part.centre
     if part.mesh is not None:
         vertices = (part.mesh.vertices + part.centre) * (-1.0, 1.0, 1.0)

@@ -1,4 +1,4 @@
-"""Which things a scene has: our models, other forms and sizes, families, foreign and strange things."""
+"""Random sampling of a scene's objects: our models, varieties, families, foreign things and distractors."""
 
 from __future__ import annotations
 
@@ -22,26 +22,26 @@ _HANGING = (
     " washing_line rug"
 )
 HANGING = frozenset(_HANGING.split())
-"""Models that are part of a room, or hang on its walls: no objects that stand somewhere."""
+"""Models that are part of a room or hang on its walls, and are not free-standing."""
 
 SMALL_M = 0.5
 SMALL = tuple(k for k, kind in MODELS.items() if max(kind.size_m) <= SMALL_M and k not in HANGING)
 LARGE = tuple(k for k, kind in MODELS.items() if max(kind.size_m) > SMALL_M and k not in HANGING)
 
 _SHARES = (0.44, 0.13, 0.18, 0.11, 0.14)
-"""Of the small things: our models, varieties, families, foreign, strange ones."""
+"""The shares of small things: our models, varieties, families, foreign things, distractors."""
 _FOREIGN = 3
 _OWN_COLOURS, _COLOURS_OF_A_MODEL, _OWN_TEXTURE = 0.5, 0.25, 0.5
-"""How many of our models, varieties and foreign things keep their own colours."""
+"""The shares of our models, varieties and foreign things that keep their own colours."""
 
 _COLOURED = (
     "apple banana bread carrot cheese corn egg lemon onion orange pear potato tomato toilet_paper fruit@Fruit"
 )
 COLOURED = tuple(_COLOURED.split())
-"""What has its colour by nature."""
+"""Kinds with a natural colour."""
 
 _TRUE_COLOURS = dict.fromkeys(COLOURED, 0.75)
-"""It keeps that more often."""
+"""The shares of these that keep their own colours."""
 
 _RIPE = {
     "apple": (
@@ -63,17 +63,17 @@ _RIPE = {
     ),
     "potato": ((0.72, 0.58, 0.36), (0.60, 0.28, 0.26)),
 }
-"""What has more than one colour by nature."""
+"""Kinds with several natural colours."""
 
 _FOREIGN_LARGER, _FOREIGN_STOUTER = 0.2, 0.06
-"""By which factors e^x foreign things are larger or smaller, at most, and each extent of them beside."""
+"""The exponents x of the maximum random scale e^x of foreign things, overall and per axis."""
 
 DrawItem = Callable[[], Item]
-"""The next thing, which has no place yet."""
+"""Returns the next object, without a placement."""
 
 
 def small_things(foreign: Sequence[ForeignThing], rng: np.random.Generator) -> DrawItem:
-    """Small things of all sorts; those of one sort come about equally often."""
+    """Return a sampler of small things of all sorts; things of one sort are about equally frequent."""
     shares = np.array(_SHARES)
     if not foreign:
         shares[_FOREIGN] = 0.0
@@ -90,30 +90,30 @@ def small_things(foreign: Sequence[ForeignThing], rng: np.random.Generator) -> D
 def own_things(
     kinds: Sequence[str], rng: np.random.Generator, *, own_colours: float | None = None
 ) -> Iterator[Item]:
-    """Our models, a little larger or smaller, slimmer or stouter; so many of them in their own colours."""
+    """Yield our models with small variations of size; a share `own_colours` keeps its own colours."""
     for kind in _deck(kinds, rng):
         yield of_model(kind, rng, own_colours)
 
 
 def of_model(kind: str, rng: np.random.Generator, own_colours: float | None = None) -> Item:
-    """One of our models, painted unless it keeps its own colours, by this chance or a usual one."""
+    """Return one of our models, painted unless it keeps its own colours (with the given probability)."""
     paint = any_paint(rng, _TRUE_COLOURS.get(kind, _OWN_COLOURS) if own_colours is None else own_colours)
     return _thing(kind, varied_size(kind, rng), _natural_colour(kind, rng), paint)
 
 
 def varied_size(kind: str, rng: np.random.Generator) -> Vec3:
-    """The model's own size, somewhat larger or smaller, slimmer or stouter."""
+    """Return the model's size with small random variations."""
     x, y, z = MODELS[kind].size_m * np.exp(rng.normal(0.0, 0.08) + rng.normal(0.0, 0.05, 3))
     return (float(x), float(y), float(z))
 
 
 def varied_colour(kind: str, rng: np.random.Generator) -> Colour:
-    """The model's own colour under other light."""
+    """Return the model's colour with a random variation of light."""
     return _lit(MODELS[kind].colour, rng)
 
 
 def _natural_colour(kind: str, rng: np.random.Generator) -> Colour:
-    """One of those that its like have, under other light; of what has no model, any."""
+    """Return a natural colour of the kind with a random variation of light; any colour without a model."""
     if kind in _RIPE:
         ripe = _RIPE[kind]
         return _lit(ripe[int(rng.integers(len(ripe)))], rng)
@@ -190,6 +190,6 @@ def _thing(kind: str, size_m: Vec3, colour: Colour, paint: Paint) -> Item:
 
 
 def _deck(kinds: Sequence[str], rng: np.random.Generator) -> Iterator[str]:
-    """All of them in random order, again and again."""
+    """Yield all kinds in random order, repeatedly."""
     while True:
         yield from (str(kind) for kind in rng.permutation(kinds))

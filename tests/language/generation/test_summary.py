@@ -1,4 +1,4 @@
-"""A text of what is there: grouped, counted, and never longer than its budget of words."""
+"""Summaries of the map: grouped, counted, and within the word limit."""
 
 import random
 
@@ -117,7 +117,7 @@ def test_what_is_on_itself_or_in_a_circle_is_told_once():
         Thing("a", "book", at=("on", "b")),
         Thing("b", "book", at=("on", "a")),
         Thing("c", "cup", at=("on", "c")),
-        Thing("d", "dish", at=("on", "nobody")),
+        Thing("d", "dish", at=("on", "missing")),
     ]
     assert summary.summarize_map(Inventory(things), (), 100) == (
         "The map has 4 things. There are 2 books, a cup and a dish.",
@@ -130,7 +130,7 @@ def test_what_is_on_itself_or_in_a_circle_is_told_once():
 
 
 def drawn(seed, count):
-    """A map at random: places within places, things on, in and round things."""
+    """Return a random map: places within places, things on, in and round things."""
     rng = random.Random(seed)
     places = [
         Place(f"p{n}", rng.choice(["hall", "attic"]), f"p{n - 1}" if n and rng.random() < 0.5 else None)
@@ -165,9 +165,9 @@ def drawn(seed, count):
 @given(st.integers(0, 10_000), st.integers(1, 40), st.integers(20, 400))
 def test_no_text_is_longer_than_its_budget_and_none_loses_a_thing(seed, count, words):
     inventory = drawn(seed, count)
-    told = summary.summarize_map(inventory, (), words)
-    assert len(told.text.split()) <= words
-    assert 0 <= told.left_out <= count
+    found = summary.summarize_map(inventory, (), words)
+    assert len(found.text.split()) <= words
+    assert 0 <= found.left_out <= count
     for name in inventory.places:
         assert len(summary.summarize_place(inventory, name, (), words).text.split()) <= words
     assert (

@@ -1,4 +1,4 @@
-"""A small kitchen, as a description is held against it: what is where is written down, not measured."""
+"""A small kitchen for resolving descriptions, with given instead of computed relations."""
 
 import math
 
@@ -71,7 +71,7 @@ SIZES = {"cup1": 0.1, "cup2": 0.1, "cup3": 0.2}
 
 
 class Written:
-    """MapGeometry as they are written down."""
+    """A MapGeometry with given relations."""
 
     def __init__(self, has_viewer=False):
         self.has_viewer = has_viewer
@@ -96,7 +96,7 @@ class Written:
 
     def bearing(self, name):
         if not self.has_viewer:
-            raise errors.BadRequest("nobody looks")
+            raise errors.BadRequest("there is no viewer")
         return math.atan2(AT[name][1], AT[name][0] + 3)
 
     def holds_anything(self, name):
@@ -116,6 +116,6 @@ def known():
 
 
 def found(text, asker=None, has_viewer=False):
-    """Outcome and names."""
+    """Return outcome and names."""
     answer = find(text, known(), Written(has_viewer), asker)
     return answer.outcome, set(answer.names)

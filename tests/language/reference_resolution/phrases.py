@@ -1,5 +1,5 @@
 # ruff: noqa: E501
-"""Phrases in the small kitchen: what they mean to anna, who looks, and in which words that is told."""
+"""Phrases in the small kitchen with their results, for the viewer anna."""
 
 PHRASES = [
     (

@@ -1,4 +1,4 @@
-"""Reasons, questions, and what is nearest, in words."""
+"""Explanations: reasons, clarification questions and near matches."""
 
 import pytest
 

@@ -109,7 +109,7 @@ def test_left_and_right_take_a_viewer():
     assert found("the leftmost cup", has_viewer=True) == ("one", {"cup2"})
     assert found("the cup on the left", has_viewer=True) == ("one", {"cup2"})
     assert found("la terza tazza da sinistra", has_viewer=True)[0] in ("one", "ambiguous")
-    with pytest.raises(errors.BadRequest, match="nobody looks"):
+    with pytest.raises(errors.BadRequest, match="there is no viewer"):
         found("the leftmost cup")
 
 

@@ -1,4 +1,4 @@
-"""Commands, read with what ships."""
+"""Interpretation of commands with the shipped taggers."""
 
 import random
 

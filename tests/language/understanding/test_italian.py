@@ -1,4 +1,4 @@
-"""Italian commands, told with English words."""
+"""Italian commands and their word-by-word translation."""
 
 import pytest
 from hypothesis import given

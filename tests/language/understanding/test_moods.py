@@ -1,4 +1,4 @@
-"""What sentences are said for."""
+"""Moods of sentences."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What families are drawn with: numbers, chances and colours by lot."""
+"""Random numbers, decisions and colours for sampling families."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from semmap.nodes.sim_node.models.parts import Colour
 
 
 class RandomValues:
-    """Numbers drawn by lot."""
+    """Random values."""
 
     def __init__(self, rng: np.random.Generator) -> None:
         self.rng = rng
 
     def __call__(self, low: float, high: float) -> float:
-        """Any number between the two; as likely a tenth more as a tenth less."""
+        """Return a log-uniform number between the two."""
         return float(math.exp(self.rng.uniform(math.log(low), math.log(high))))
 
     def even(self, low: float, high: float) -> float:
-        """Any number between the two."""
+        """Return a uniform number between the two."""
         return float(self.rng.uniform(low, high))
 
     def chance(self, share: float) -> bool:
-        """True so often."""
+        """Return True with the probability `share`."""
         return bool(self.rng.random() < share)
 
     def other(self, colour: Colour) -> Colour:
-        """A colour that goes with it: darker or lighter, or a grey."""
+        """Return a matching colour: darker or lighter, or a grey."""
         if self.chance(0.5):
             return shade(colour, self(0.4, 1.8))
         grey = self.even(0.05, 0.95)

@@ -44,7 +44,7 @@ class Family(NamedTuple):
 
 
 def drawn(family: Family, colour: Colour, rng: np.random.Generator) -> Parts:
-    """One of a family, upon the ground, in this colour and those that go with it."""
+    """Return a sample of a family on the ground, in this colour and matching ones."""
     return keyed(family.draw(RandomValues(rng), colour), f"{family.kind} {rng.integers(1 << 62)}")
 
 
@@ -77,4 +77,4 @@ FAMILIES: tuple[Family, ...] = (
     Family("screwdriver", screwdriver),
     Family(foreign_label("sponge", "Cleaner", new=False), sponge),
 )
-"""Those that differ most among themselves are there twice."""
+"""The families with the largest variation are listed twice."""
