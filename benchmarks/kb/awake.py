@@ -1,8 +1,7 @@
-"""Cores that do not fall asleep.
+"""Keeps cores from sleeping.
 
-On a machine that is shared with others a core that sleeps is theirs, and whoever wakes on it finds its
-caches gone. A command wakes threads some forty times, so how much of its time is the machine's is seen
-best by keeping the cores awake.
+On a shared machine, a sleeping core is given to others, and a thread that wakes on it finds cold caches. A
+command wakes threads about forty times, so keeping the cores awake shows the machine's share of its time.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from multiprocessing import get_context
 
 @contextmanager
 def awake_cores() -> Iterator[None]:
-    """A loop on each core, of the class of processes (Linux: `SCHED_IDLE`) that give way to every other."""
+    """Run a loop on each core in the idle scheduling class (Linux: `SCHED_IDLE`)."""
     cores = os.sched_getaffinity(0)
     context = get_context("spawn")
     barrier = context.Barrier(len(cores) + 1)

@@ -1,4 +1,4 @@
-"""Things that nobody here modelled, shown once each, then looked for among nineteen others.
+"""Exemplars of third-party objects: shown once each, then searched for among nineteen others.
 
 Each stands alone in one frame; perception is shown that, and nothing else. Then it is looked for on tables of
 twenty things, elsewhere, turned otherwise, from another side. The classes that are shown are new ones.
@@ -31,17 +31,17 @@ from semmap.nodes.training.scenes.placements import spread
 
 TOGETHER = 20
 _DRAWN = 26
-"""Things that are tried for a table, the largest first: some find no room."""
+"""The number of things that are tried for a table, the largest first."""
 _AREA_M, _GAP_M = (0.95, 1.35), 0.02
 _ALONE_M, _TOGETHER_M = (0.8, 1.2), (1.2, 1.8)
 _SEED = 5
 
 Frame = tuple[Cloud, NDArray[np.integer]]
-"""What the camera sees, and (H, W) whose each pixel is, 0 for none."""
+"""Return the camera's frame, and object numbers (H, W), 0 for none."""
 
 
 def measure(folder: Path, tables: int, learnt: Learnt) -> list[Row]:
-    """Show each thing, and look for all that are on each table, one after another. No rows without things."""
+    """Show each thing, then search for all things on each table. Without things, no rows."""
     things = foreign_things(folder)
     if not things:
         print(f"{folder} holds no things: the rows of what is shown are left out")
@@ -89,7 +89,7 @@ def measure(folder: Path, tables: int, learnt: Learnt) -> list[Row]:
 
 
 def _pieces(thing: NDArray[np.bool_], labels: NDArray[np.int32]) -> list[int]:
-    """The objects, from 0, more than half of which is on a thing (H, W)."""
+    """Return the objects, from 0, that are more than half on a thing (H, W)."""
     total, on = np.bincount(labels.ravel()), np.bincount(labels[thing], minlength=int(labels.max()) + 1)
     return [int(m) - 1 for m in np.flatnonzero(on > 0.5 * total) if m]
 
@@ -97,7 +97,7 @@ def _pieces(thing: NDArray[np.bool_], labels: NDArray[np.int32]) -> list[int]:
 def _lessons(
     things: Sequence[ForeignThing], learnt: Learnt, studio: Studio, rng: np.random.Generator
 ) -> dict[str, Lesson]:
-    """What one frame shows of each; nothing of what was not found there."""
+    """Return the views of each thing in one frame, none for things that were not detected."""
     found = {}
     for number, thing in enumerate(things, 1):
         x, y, yaw = rng.uniform(-0.15, 0.15), rng.uniform(-0.15, 0.15), rng.uniform(-math.pi, math.pi)

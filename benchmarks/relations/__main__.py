@@ -11,7 +11,7 @@ from benchmarks.table import Row, as_json, lines
 
 
 def rows(scenes: int, pairs: int, sizes: list[int], watched_s: float) -> list[Row]:
-    """All figures."""
+    """Return all figures."""
     on, touches, steep = rightness.against_contacts(scenes)
     inside = rightness.inside_against_samples(pairs)
     flat = rightness.flat()
@@ -70,9 +70,11 @@ def main() -> None:
     """Measure, print a table, write JSON."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.relations", description="Spatial relations.")
     parser.add_argument("--scenes", type=int, default=200, help="random settled scenes")
-    parser.add_argument("--pairs", type=int, default=2000, help="of a container and a thing")
+    parser.add_argument("--pairs", type=int, default=2000, help="pairs of a container and a thing")
     parser.add_argument("--sizes", type=int, nargs="+", default=[500, 10_000, 100_000], help="entities")
-    parser.add_argument("--watched", type=float, default=120.0, metavar="S", help="of things at rest [s]")
+    parser.add_argument(
+        "--watched", type=float, default=120.0, metavar="S", help="duration of observing things at rest [s]"
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", dest="json_file")
     words = parser.parse_args()
     found = rows(words.scenes, words.pairs, words.sizes, words.watched)

@@ -1,4 +1,4 @@
-"""What it costs to keep places as facts: the same map over the household TBox, and over it without them."""
+"""The cost of spatial relations as facts: the same map with and without them in the TBox."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _CLASSES = {"": "Kitchen", "table": "Table", "cup": "Cup"}
 
 
 class Kept(NamedTuple):
-    """With and without, over the same rooms."""
+    """Measure with and without them, on the same rooms."""
 
     load: Cost
     load_without: Cost
@@ -41,7 +41,7 @@ class Kept(NamedTuple):
 
 
 def measure(size: int, moves: int) -> Kept:
-    """Load so many entities, start anew, and move cups from table to table over Zenoh, in turn."""
+    """Load entities, restart, and move cups from table to table over Zenoh, in turn."""
     with tempfile.TemporaryDirectory() as folder:
         kept, without = Path(folder, "with"), Path(folder, "without")
         load, load_without = (
@@ -65,7 +65,7 @@ def household() -> list[Triple]:
 
 
 def without_relations(tbox: list[Triple]) -> list[Triple]:
-    """One that does not declare the properties, so that they are not computed."""
+    """Return a TBox that does not declare the properties, so that they are not computed."""
     return [triple for triple in tbox if triple[0] not in COMPUTED or triple[1] != v.RDF_TYPE]
 
 
@@ -87,7 +87,7 @@ def _load(folder: Path, size: int, tbox: list[Triple]) -> Cost:
 
 
 def _memory_kb(folder: Path) -> float:
-    """What solids and facts take, by Python's count; the reasoner's edges are not among it."""
+    """Return the memory of solids and facts by Python's count, without the reasoner's edges."""
     with _open(Journal(folder / FILENAME)) as semantic_map:
         gc.collect()
         tracemalloc.start()

@@ -1,4 +1,4 @@
-"""How often the relations are right: against contact forces, sampled points, and what a person wrote down."""
+"""Accuracy of relations compared with contact forces, sampled points and manual annotations."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from semmap.schemas.entities import Entity, Pose, Provenance
 _NOBODY = Provenance(commit=1, stamp_ns=0, source="file")
 _SAMPLES = 4000
 FLAT_BY_HAND = Path(__file__).with_name("flat_by_hand.ttl")
-"""What a person wrote down of where the things of the flat are."""
+"""The manually annotated relations of the flat."""
 _ROOM = Entity(
     name="room", class_="", iri="urn:room", types=(), pose=Pose(position_m=(2.0, 0.0, 0.0)), place=True,
     size_m=(20.0, 20.0, 3.0), provenance=_NOBODY, pose_provenance=_NOBODY, shape_provenance=_NOBODY,
@@ -37,7 +37,7 @@ _ROOM = Entity(
 
 
 class Counts(NamedTuple):
-    """Found and true, found only, true only."""
+    """Counts of true positives, false positives and false negatives."""
 
     right: int
     extra: int
@@ -50,7 +50,7 @@ class Counts(NamedTuple):
 
     @classmethod
     def of(cls, found: set[tuple[str, str]], true: set[tuple[str, str]]) -> Counts:
-        """Of two sets of pairs."""
+        """Compare two sets of pairs."""
         return cls(len(found & true), len(found - true), len(true - found))
 
     @classmethod
@@ -60,25 +60,25 @@ class Counts(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """How many of the pairs in contact were found."""
+    """Recall of the pairs in contact."""
 
     on: Counts
     touches: Counts
     steep: Counts
-    """Of what no resting contact bears: with what carries it. What is found beyond is counted with `on`."""
+    """Recall for things without a resting contact; false positives are counted with `on`."""
 
 
 def against_contacts(scenes: int) -> Contacts:
-    """`isOn` against resting contacts in random settled scenes, and `touches` against all contacts.
+    """Compare `isOn` with resting contacts in random settled scenes, and `touches` with all contacts.
 
-    What only steeper contacts carry is on what carries it, and is counted by itself.
+    Things that only steeper contacts support are counted separately.
     """
     found = [_in_scene(seed) for seed in range(scenes)]
     return Contacts(*(Counts.together(counts) for counts in zip(*found, strict=True)))
 
 
 def _in_scene(seed: int) -> Contacts:
-    """What rests on the bottom of what it is inside is inside it, not on it: that counts as found."""
+    """A thing on the bottom of its container is inside it, not on it, which counts as correct."""
     scene = settled_scene(seed)
     facts = Facts()
     facts.update([_ROOM, *scene.entities])
@@ -97,7 +97,7 @@ def _in_scene(seed: int) -> Contacts:
 
 
 def inside_against_samples(pairs: int) -> Counts:
-    """`isInside` against many random points of a thing: whether half of them are in a hollow of another."""
+    """Compare `isInside` with random points of a thing, of which half must be in an interior."""
     rng = random.Random(3)
     points = np.random.default_rng(3)
     hollow = sorted(name for name, shape in shapes().items() if shape.interiors)
@@ -130,7 +130,7 @@ def _solid(name: str, model: str | None, at: tuple[float, float, float], size: o
 
 
 class Flat(NamedTuple):
-    """What was said of the flat by hand: how much, what is not computed, and what is beyond."""
+    """Compare with the annotations of the flat: number, missing and additional relations."""
 
     said: int
     missing: list[tuple[str, str, str]]
@@ -138,9 +138,9 @@ class Flat(NamedTuple):
 
 
 def flat() -> Flat:
-    """What was said by hand against what is computed; beyond is what does not follow from the former either.
+    """Return missing and additional relations; the latter do not follow from the annotations either.
 
-    The flat's own file says only what is not computed.
+    The flat's file contains only relations that are not computed.
     """
     files = (HOUSEHOLD_TTL, FLAT_TTL, FLAT_BY_HAND)
     triples = [t for f in files for t in rdf.parse(f.read_bytes(), f.name, label_prefix=f.stem)]

@@ -1,4 +1,4 @@
-"""Do relations come and go while nothing moves? Cameras with noise, the whole of perception, and a map.
+"""Stability of relations at rest: noisy cameras, the whole of perception, and a map.
 
 Twenty things stand on a table that two cameras see from opposite corners. Perception tells a map what it
 sees, and the relations of the map are kept as after each commit.
@@ -25,25 +25,25 @@ from semmap.nodes.training.taxonomy import class_of_models
 from semmap.schemas.entities import Entity, Pose, Provenance
 
 LOOKS_A_SECOND = 2
-"""Five where the machine has nothing else to do."""
+"""Observations per second; an idle machine processes five."""
 _SETTLING = 15
-"""Looks until all is known that can be."""
+"""The number of observations until the map is complete."""
 
 
 class Watched(NamedTuple):
-    """What became of the relations of `things` that stood still on a table."""
+    """The changes of the relations of `things` at rest on a table."""
 
     things: int
     on_the_table: int
-    """How many the map has on it in the end."""
+    """The number of entities at the end."""
     changes: int
-    """How many relations came or went after the first looks."""
+    """The number of relations that appeared or disappeared after the first observations."""
     updates: int
-    """How often perception told the map something then."""
+    """The number of map updates by perception then."""
 
 
 def at_rest(seconds: float, things: int = 20, seed: int = 11) -> Watched:
-    """Watch things at rest for so long."""
+    """Observe things at rest for a duration."""
     rng, stage, learnt = np.random.default_rng(seed), Stage(), shipped()
     classes = ClassHierarchy(
         {n: frozenset(above) for n, above in learnt.ancestors.items()}, {}, learnt.usual_m

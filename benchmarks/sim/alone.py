@@ -1,4 +1,4 @@
-"""The simulator by itself, in this process."""
+"""The simulator alone, in this process."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _REACH_MS = {10: 2.0, 100: 5.0, 500: 35.0}
 
 
 def spawn_and_delete(count: int, trials: int = 40) -> list[Row]:
-    """One body more and one less, beside `count` others at rest; and for comparison a bare compilation."""
+    """Measure adding and removing a body beside `count` others at rest, compared with a bare compilation."""
     world = furnished(count)
     spawns, deletes = [], []
     for trial in range(trials):
@@ -40,7 +40,7 @@ def spawn_and_delete(count: int, trials: int = 40) -> list[Row]:
 
 
 def _growing(world: World, count: int) -> Row:
-    """One body after another, none deleted: every so often there is no berth left."""
+    """Measure adding bodies without deleting any; sometimes no prepared slot is left."""
     orders = [order(f"more{i}", "chair", -2.0 - i, -2.0) for i in range(max(10, count // 4))]
     took = [timed(partial(world.spawn, [o])) for o in orders]
     return Row(f"spawn ever more from {count} bodies, mean", 1e3 * sum(took) / len(took), "ms")
@@ -70,7 +70,7 @@ def _bare_recompile(count: int) -> float:
 
 
 def real_time_factors() -> list[Row]:
-    """A hundred bodies asleep, and a hundred that are pushed ten times a second."""
+    """Measure a hundred sleeping bodies, and a hundred that are pushed ten times a second."""
     world = furnished(100, pitch_m=1.2)
     steps = round(10.0 / world.model.opt.timestep)
     engine = 10.0 / timed(lambda: mujoco.mj_step(world.model, world.data, nstep=steps))
@@ -96,7 +96,7 @@ def _shaken_boxes(count: int) -> tuple[float, float]:
 
 
 def _shaken(data: mujoco.MjData, free: Ints, step: Callable[[float], None]) -> tuple[float, float]:
-    """Push every free body anew each 0.1 s: the medians of wall and CPU time [s] that these then take."""
+    """Push every free body each 0.1 s; return the medians of wall and CPU time for that interval [s]."""
     rng = np.random.default_rng(0)
     took, own = [], []
     for _ in range(20):
@@ -108,7 +108,7 @@ def _shaken(data: mujoco.MjData, free: Ints, step: Callable[[float], None]) -> t
 
 
 def frames() -> list[Row]:
-    """One RGB-D frame, with graphics and without."""
+    """Measure one RGB-D frame, with and without graphics."""
     world = furnished(50)
     rows = []
     for eye in (Eye(), Eye(graphics=False)):

@@ -1,4 +1,4 @@
-"""Made-up scenes, and the times of what is done in them."""
+"""Generated scenes and timing functions."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ MODELS = ("chair", "table", "can", "book", "cup", "bottle", "box", "lamp", "appl
 
 
 def order(name: str, model: str, x: float, y: float, z: float = 0.0) -> BodyOrder:
-    """A body to be made."""
+    """Return a body order."""
     return BodyOrder(name=name, class_=model.title(), model=model, pose=Pose(position_m=(x, y, z)), commit=1)
 
 
 def grid(count: int, pitch_m: float) -> Iterable[tuple[int, float, float]]:
-    """So many places in a square: number, x and y [m]."""
+    """Yield positions in a square: number, x and y [m]."""
     side = math.isqrt(count - 1) + 1
     return ((i, pitch_m * (i % side), pitch_m * (i // side)) for i in range(count))
 
 
 def furnished(count: int, pitch_m: float = 1.5) -> World:
-    """A world with `count` bodies at rest."""
+    """Return a world with `count` bodies at rest."""
     world = World()
     world.spawn([order(f"b{i}", MODELS[i % len(MODELS)], x, y) for i, x, y in grid(count, pitch_m)])
     world.step(2.0)
@@ -37,7 +37,7 @@ def furnished(count: int, pitch_m: float = 1.5) -> World:
 
 
 def timed(act: Callable[[], object]) -> float:
-    """How long it takes [s]."""
+    """Return the duration [s]."""
     started = perf_counter()
     act()
     return perf_counter() - started

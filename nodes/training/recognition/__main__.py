@@ -164,9 +164,7 @@ def main() -> None:
     """Render, train, and write the shipped model."""
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("--scenes", type=int, default=3300)
-    parser.add_argument(
-        "--heaps", type=int, default=480, help="scenes for learning which pieces are one thing"
-    )
+    parser.add_argument("--heaps", type=int, default=480, help="scenes for learning what belongs together")
     parser.add_argument("--ours", type=int, default=1200, help="scenes with our unmodified models only")
     parser.add_argument("--seed", type=int, default=101)
     parser.add_argument("--foreign", type=Path, help="a folder of foreign things for training")
