@@ -310,8 +310,8 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
     @property
     def joints_said(self) -> Provenance | None:
         """The provenance of the last change of any joint or switch position, or None."""
-        said = (self.joint_provenance, self.switch_provenance)
-        return max((p for p in said if p is not None), key=lambda p: p.commit, default=None)
+        both = (self.joint_provenance, self.switch_provenance)
+        return max((p for p in both if p is not None), key=lambda p: p.commit, default=None)
 
 
 class ClassInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -235,8 +235,10 @@ def unknown_properties(users: Mapping[str, Sequence[str]], known: Iterable[str])
 
 def _unknown(one: str, many: str, users: Mapping[str, Sequence[str]], known: Iterable[str]) -> str:
     known, few = list(known), max(1, _FEW // len(users))
-    said = [f"'{name}' (of {_some(whose, few)}{did_you_mean(name, known)})" for name, whose in users.items()]
-    return f"unknown {one if len(said) == 1 else many} {_some(said, _MANY)}"
+    described = [
+        f"'{name}' (of {_some(whose, few)}{did_you_mean(name, known)})" for name, whose in users.items()
+    ]
+    return f"unknown {one if len(described) == 1 else many} {_some(described, _MANY)}"
 
 
 def _some(names: Sequence[str], few: int) -> str:

@@ -91,14 +91,14 @@ def _plural(word: str) -> str:
     return word + "s"
 
 
-def counted(count: int, noun: str) -> str:
+def with_count(count: int, noun: str) -> str:
     """Return `a chair`, `4 chairs`, `milk` or `milk (2)`."""
     if not is_counted(noun):
         return noun if count == 1 else f"{noun} ({count})"
     return f"{article(noun)} {noun}" if count == 1 else f"{count} {plural(noun)}"
 
 
-def number(count: int, noun: str) -> str:
+def with_number_word(count: int, noun: str) -> str:
     """Return `no chairs`, `one chair` or `4 chairs`."""
     return f"{_NUMBERS[count] if count < len(_NUMBERS) else count} {noun if count == 1 else plural(noun)}"
 
@@ -108,6 +108,6 @@ def is_plural(count: int, noun: str) -> bool:
     return count != 1 or (not is_counted(noun) and noun.endswith("s"))
 
 
-def listed(parts: Sequence[str]) -> str:
+def enumerate_nouns(parts: Sequence[str]) -> str:
     """Return an enumeration: `a cup, 2 plates and a spoon`."""
     return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}" if parts else ""

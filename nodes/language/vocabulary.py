@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from semmap.nodes.language.lexicon import Lexicon
-from semmap.nodes.language.words import based
+from semmap.nodes.language.words import to_base_forms
 
 BRANCHES: Final = (
     "Robot", "Person", "Location", "Door", "Window", "Connecting_Architecture", "Vessel", "Container",
@@ -23,7 +23,7 @@ _GENERAL: Final = {
 }  # fmt: skip
 
 
-def spoken(name: str) -> str:
+def to_words(name: str) -> str:
     """Return a label or class name as words: `Dining_Room` and `DiningRoom` become `dining room`."""
     return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).replace("_", " ").lower().strip()
 
@@ -64,13 +64,13 @@ def vocabulary(
     classes: dict[str, str] = {}
     for name, label in labels:
         direct.setdefault(name, set())
-        for text in (spoken(label), spoken(name)):
+        for text in (to_words(label), to_words(name)):
             classes.setdefault(text, name)
-            classes.setdefault(based(text, lexicon), name)
+            classes.setdefault(to_base_forms(text, lexicon), name)
     for text, name in lexicon.synonyms.items():
         if name in direct:
             classes.setdefault(text, name)
-            classes.setdefault(based(text, lexicon), name)
+            classes.setdefault(to_base_forms(text, lexicon), name)
     return Vocabulary(classes, {name: frozenset(_closure(name, direct)) for name in direct})
 
 

@@ -64,7 +64,7 @@ def lemma(word: str, lexicon: Lexicon) -> str:
     return word
 
 
-def based(text: str, lexicon: Lexicon) -> str:
+def to_base_forms(text: str, lexicon: Lexicon) -> str:
     """Return a text with each word in its base form."""
     return " ".join(lemma(word, lexicon) for word in text.split())
 

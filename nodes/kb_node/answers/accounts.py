@@ -15,7 +15,7 @@ from semmap.nodes.language import nouns
 from semmap.nodes.language.generation import summary
 from semmap.nodes.language.generation.inventory import Inventory
 from semmap.nodes.language.generation.summary import Summary
-from semmap.nodes.language.vocabulary import spoken
+from semmap.nodes.language.vocabulary import to_words
 from semmap.ontology.model_shapes import own_size_m
 from semmap.schemas import language
 from semmap.schemas.commands import Tell
@@ -83,7 +83,7 @@ class Accounts:
             )
         if thing.place in inventory.places:
             where += f" in the {inventory.places[thing.place].noun} ({thing.place})"
-        yield f"{entity.name} is {nouns.counted(1, thing.noun)}{where}."
+        yield f"{entity.name} is {nouns.with_count(1, thing.noun)}{where}."
         called = [ref for ref in (entity.preferred_reference, *entity.alternative_references) if ref]
         if called and called != [thing.noun]:
             yield f"It is called {' or '.join(f'“{text}”' for text in called)}."
@@ -112,10 +112,10 @@ class Accounts:
 
 def _stated(row: PropertyInfo, stated: Stated) -> str:
     """A property as a sentence: `It is open.`, `Its main color is red.`, `Its serial number is 7.`."""
-    label = row.labels.get("en") or spoken(row.name).lower()
+    label = row.labels.get("en") or to_words(row.name).lower()
     if isinstance(stated, bool) and label.startswith("is "):
         return f"It {label}." if stated else f"It is not {label.removeprefix('is ')}."
-    values = nouns.listed(
+    values = nouns.enumerate_nouns(
         [_value(value, row) for value in (stated if isinstance(stated, tuple) else (stated,))]
     )
     if label.startswith("has "):

@@ -65,7 +65,7 @@ class Group:
     @property
     def phrase(self) -> str:
         """`4 chairs`, `a door that is open`."""
-        phrase = nouns.counted(len(self.things), self.noun)
+        phrase = nouns.with_count(len(self.things), self.noun)
         verb = "are" if self.is_plural else "is"
         return f"{phrase} that {verb} {self.state}" if self.state else phrase
 

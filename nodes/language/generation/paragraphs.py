@@ -78,9 +78,9 @@ class Paragraph:
 
     def _first(self, named: Sequence[Piece], phrases: Sequence[str], others: int) -> str:
         """Return `The kitchen has a fridge and 12 other things.` or `The kitchen has 13 things.`."""
-        parts = [*phrases, *_others(others)] if phrases else [nouns.number(others, "thing")]
+        parts = [*phrases, *_others(others)] if phrases else [nouns.with_number_word(others, "thing")]
         is_plural = len(parts) > 1 or (named[0].group.is_plural if named else others > 1)
-        return f"{self.heading.replace('{be}', 'are' if is_plural else 'is')} {nouns.listed(parts)}."
+        return f"{self.heading.replace('{be}', 'are' if is_plural else 'is')} {nouns.enumerate_nouns(parts)}."
 
 
 def count_mentioned(group: Group) -> int:
@@ -92,11 +92,11 @@ def there_are(where: str, groups: Sequence[Group], others: int) -> str:
     """Return a sentence about the load of something: `On the table are 2 plates and a glass.`."""
     phrases = [_with_load(group) for group in groups] + _others(others)
     is_one = len(phrases) == 1 and not groups[0].is_plural
-    return f"{where} {'is' if is_one else 'are'} {nouns.listed(phrases)}."
+    return f"{where} {'is' if is_one else 'are'} {nouns.enumerate_nouns(phrases)}."
 
 
 def _others(count: int) -> list[str]:
-    return [nouns.number(count, "other thing")] if count else []
+    return [nouns.with_number_word(count, "other thing")] if count else []
 
 
 def _round(group: Group, round_it: Sequence[Group]) -> str:
@@ -104,17 +104,17 @@ def _round(group: Group, round_it: Sequence[Group]) -> str:
     if not round_it:
         return ""
     word = "round" if sum(len(one.things) for one in round_it) > 1 else "at"
-    return f" with {nouns.listed([one.phrase for one in round_it])} {word} {_it(group)}"
+    return f" with {nouns.enumerate_nouns([one.phrase for one in round_it])} {word} {_it(group)}"
 
 
 def _with_load(group: Group) -> str:
     """`a bowl with an apple in it`."""
     loads = [
-        f"{nouns.listed([one.phrase for one in group.load[how]])} {how} {_it(group)}"
+        f"{nouns.enumerate_nouns([one.phrase for one in group.load[how]])} {how} {_it(group)}"
         for how in _ON_AND_IN
         if how in group.load
     ]
-    return f"{group.phrase} with {nouns.listed(loads)}" if loads else group.phrase
+    return f"{group.phrase} with {nouns.enumerate_nouns(loads)}" if loads else group.phrase
 
 
 def _it(group: Group) -> str:

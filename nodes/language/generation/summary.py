@@ -57,7 +57,7 @@ def summarize_place(inventory: Inventory, name: str, problems: Sequence[str], mo
         its_own.heading = "It has"
     if where and things and len(things) == its_own.all:
         return _fit(f"{title} is{where}.", problems, paragraphs, in_sum, most_words)
-    has = nouns.number(len(things), "thing")
+    has = nouns.with_number_word(len(things), "thing")
     return _fit(f"{title}{where} has {has}.", problems, paragraphs, in_sum, most_words)
 
 
@@ -82,7 +82,9 @@ def summarize_thing(
 def _of_all(inventory: Inventory) -> str:
     """Return `The map has 9 places and 69 things.`."""
     counts = ((len(inventory.places), "place"), (len(inventory.things), "thing"))
-    return f"The map has {nouns.listed([nouns.number(n, noun) for n, noun in counts if n])}."
+    return (
+        f"The map has {nouns.enumerate_nouns([nouns.with_number_word(n, noun) for n, noun in counts if n])}."
+    )
 
 
 def _paragraph(inventory: Inventory, name: str) -> Paragraph:
@@ -143,7 +145,7 @@ def _of_problems(problems: Sequence[str], most_words: int) -> Iterator[str]:
             return
     if problems:
         verb = "is" if len(problems) == 1 else "are"
-        yield f"There {verb} {nouns.number(len(problems), 'problem')}."
+        yield f"There {verb} {nouns.with_number_word(len(problems), 'problem')}."
 
 
 def _at_it(how: How, groups: Sequence[Group], most_words: int) -> Summary:
@@ -153,7 +155,9 @@ def _at_it(how: How, groups: Sequence[Group], most_words: int) -> Summary:
 
     def with_(shown: int) -> Summary:
         if not shown:
-            return Summary(f"{where} {'is' if count == 1 else 'are'} {nouns.number(count, 'thing')}.", count)
+            return Summary(
+                f"{where} {'is' if count == 1 else 'are'} {nouns.with_number_word(count, 'thing')}.", count
+            )
         rest = count - sum(map(count_mentioned, groups[:shown]))
         return Summary(there_are(where, groups[:shown], rest), rest)
 

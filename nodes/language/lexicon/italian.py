@@ -64,18 +64,18 @@ def italian() -> Italian:
             if infinitive in table["moving"]["verbs"]:
                 moving |= forms
     return Italian(
-        {tuple(text.split()): english for english, said in table["words"].items() for text in said},
-        {text: english for english, said in table["relative"].items() for text in said},
+        {tuple(text.split()): english for english, words in table["words"].items() for text in words},
+        {text: english for english, words in table["relative"].items() for text in words},
         verbs,
         table["clitics"],
         frozenset(moving),
         {
             form: english
-            for english, said in table["adjectives"].items()
-            for adjective in said
+            for english, words in table["adjectives"].items()
+            for adjective in words
             for form in _inflected(adjective)
         },
-        {text: name for name, said in table["synonyms"].items() for text in said},
+        {text: name for name, words in table["synonyms"].items() for text in words},
     )
 
 

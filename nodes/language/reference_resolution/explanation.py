@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Final
 
-from semmap.nodes.language.nouns import counted, is_counted, listed
+from semmap.nodes.language.nouns import enumerate_nouns, is_counted, with_count
 from semmap.nodes.language.reference_resolution import clarification
 from semmap.nodes.language.reference_resolution.description import (
     Description,
@@ -63,23 +63,23 @@ def _candidates(parts: Iterable[Resolved], names: tuple[str, ...], resolver: Res
 
 
 def _candidate(name: str, resolver: Resolver, reasons: Iterable[str]) -> Candidate:
-    item = resolver.known.items[name]
+    item = resolver.index.items[name]
     return Candidate(
-        entity=name, class_=item.class_name, called=resolver.known.spoken(item, resolver.language),
+        entity=name, class_=item.class_name, called=resolver.index.noun_for(item, resolver.language),
         reasons=tuple(filter(None, reasons)),
     )  # fmt: skip
 
 
 def _called(name: str, part: Resolved, resolver: Resolver) -> str:
-    description, item = part.description, resolver.known.items[name]
+    description, item = part.description, resolver.index.items[name]
     if description.head != "noun":
         return ""
-    nouns = resolver.known.nouns[resolver.language]
+    nouns = resolver.index.nouns[resolver.language]
     for reference in item.references:
         if description.key in nouns.keys(reference):
             return f"called {reference if nouns.is_plain(reference) else f'“{reference}”'}"
-    label = resolver.known.label(item.class_name, "english")
-    return counted(1, label) if is_counted(label) else f"some {label}"
+    label = resolver.index.label(item.class_name, "english")
+    return with_count(1, label) if is_counted(label) else f"some {label}"
 
 
 def _reasons(name: str, part: Resolved, resolver: Resolver) -> Iterator[str]:
@@ -95,23 +95,23 @@ def _ordered(name: str, order: Order, resolver: Resolver) -> Iterator[str]:
     """Yield the text of an order and the measured value for the entity."""
     names_reference = order.to is None or order.to.text in order.text
     yield order.text if names_reference or order.to is None else f"{order.text} {order.to.text}"
-    around = resolver.around
+    geometry = resolver.geometry
     if order.axis == "distance" and order.to is not None:
         others = [other for other in resolver.resolve(order.to).names if other != name]
         if others:
-            nearest = min(others, key=lambda other: around.distance(name, other))
-            yield f"{around.distance(name, nearest):.2f} m from {nearest}"
+            nearest = min(others, key=lambda other: geometry.distance(name, other))
+            yield f"{geometry.distance(name, nearest):.2f} m from {nearest}"
     elif order.axis == "distance":
-        yield f"{around.distance_from_viewer(name):.2f} m from the viewer"
-    elif order.axis == "height" and (at := around.position(name)) is not None:
+        yield f"{geometry.distance_from_viewer(name):.2f} m from the viewer"
+    elif order.axis == "height" and (at := geometry.position(name)) is not None:
         yield f"at a height of {at[2]:.2f} m"
-    elif order.axis in ("volume", "tallness", "length") and (size := around.size(name)) is not None:
+    elif order.axis in ("volume", "tallness", "length") and (size := geometry.size(name)) is not None:
         yield f"of {' x '.join(f'{extent:.2f}' for extent in size)} m"
 
 
 def _from_where(answer: Answer) -> str:
     """Return the question to ask if the direction of counting (*the first*) is undefined."""
-    if answer.resolver.around.has_viewer:
+    if answer.resolver.geometry.has_viewer:
         return ""
     wording = answer.reading.nouns.describing.wording
     orders = (part.description.order for part in answer.parts if part.is_tied)
@@ -124,10 +124,10 @@ def _reason(name: str, restriction: Restriction, description: Description, resol
         case Related(relation=relation, others=others) if relation in _SPOKEN:
             inner = Scope((name,), description)
             for other in resolver.resolve(others[0], inner).names:
-                if resolver.around.related(relation, name, other):
+                if resolver.geometry.related(relation, name, other):
                     return f"{_SPOKEN[relation]} {other}"
         case Owned():
-            owners = resolver.known.items[name].values.get("isOwnedBy", frozenset())
+            owners = resolver.index.items[name].values.get("isOwnedBy", frozenset())
             return f"of {', '.join(sorted(map(str, owners)))}" if owners else restriction.text
     return restriction.text
 
@@ -141,7 +141,7 @@ def _unknown_state(part: Resolved, resolver: Resolver) -> str | None:
     failed = part.failed.restriction if isinstance(part.failed, Not) else part.failed
     if not isinstance(failed, State) or not isinstance(failed.value, bool) or failed.property == "holding":
         return None
-    items = resolver.known.items
+    items = resolver.index.items
     others = [r for r in part.description.restrictions if r is not part.failed]
     unknown = [
         name
@@ -152,7 +152,7 @@ def _unknown_state(part: Resolved, resolver: Resolver) -> str | None:
     if not unknown or part.description.head != "noun":
         return None
     few = unknown if len(unknown) <= _NEAREST else [*unknown[:_NEAREST], f"{len(unknown) - _NEAREST} others"]
-    return f"unknown whether {listed(few)} {'is' if len(unknown) == 1 else 'are'} {failed.text}"
+    return f"unknown whether {enumerate_nouns(few)} {'is' if len(unknown) == 1 else 'are'} {failed.text}"
 
 
 def _missing(part: Resolved, resolver: Resolver) -> str:
@@ -208,5 +208,5 @@ def _nearest(part: Resolved, resolver: Resolver) -> Iterator[Candidate]:
 
 
 def _whereabouts(name: str, resolver: Resolver) -> Iterator[str]:
-    for relation, other in resolver.around.whereabouts(name)[:1]:
+    for relation, other in resolver.geometry.whereabouts(name)[:1]:
         yield f"{_SPOKEN[relation]} {other}"

@@ -10,7 +10,7 @@ from typing import Final
 
 from semmap.nodes.language.lexicon import describing
 from semmap.nodes.language.lexicon.describing import LANGUAGES, TAGS, Describing, Language
-from semmap.nodes.language.vocabulary import spoken
+from semmap.nodes.language.vocabulary import to_words
 
 _PURPOSE: Final = ("da", "of", "di")
 """The head of a compound precedes these words (Italian *da*, and *of* or *di* in both languages)."""
@@ -88,7 +88,7 @@ class Nouns:
                     self.classes.setdefault(key, set()).add(name)
         for own, name, text in terms.qualities:
             if _serves(own, tag, others):
-                for word in (text, *self.describing.qualities.get(spoken(text), ())):
+                for word in (text, *self.describing.qualities.get(to_words(text), ())):
                     for key in self.keys(word):
                         self.qualities.setdefault(key, set()).add(name)
         for own, name, text in terms.affordances:
@@ -101,7 +101,7 @@ class Nouns:
 
     def keys(self, text: str) -> Iterator[str]:
         """Yield the keys for a label: the whole label, then its head alone."""
-        words = self.describing.split(spoken(text))
+        words = self.describing.split(to_words(text))
         while len(words) > 1 and any(kind in self.describing.sense((words[0],)) for kind in _ARTICLES):
             words = words[1:]
         if not words:
@@ -115,7 +115,7 @@ class Nouns:
         if head is not None and head != words:
             yield self.describing.key(head)
 
-    def put(self, item: Item) -> None:
+    def add(self, item: Item) -> None:
         """Add an entity's labels to the index."""
         for is_exact, key in self._keys_of(item):
             self.entities.setdefault(key, {})[item.name] = None
@@ -124,7 +124,7 @@ class Nouns:
             for word in key.split():
                 self.words[word] = self.words.get(word, 0) + 1
 
-    def take(self, item: Item) -> None:
+    def remove(self, item: Item) -> None:
         """Remove an entity's labels from the index."""
         for _, key in self._keys_of(item):
             for index in (self.entities, self.exact):
@@ -172,24 +172,24 @@ class MapIndex:
     def update(self, changed: Iterable[Item], removed: Iterable[str] = ()) -> None:
         """Add or replace the `changed` entities and remove those named in `removed`."""
         for name in removed:
-            self._take(name)
+            self._remove(name)
         for item in changed:
-            self._take(item.name)
+            self._remove(item.name)
             self.items[item.name] = item
             for name in item.types:
                 self.members.setdefault(name, {})[item.name] = None
             for nouns in self.nouns.values():
-                nouns.put(item)
+                nouns.add(item)
 
-    def _take(self, name: str) -> None:
+    def _remove(self, name: str) -> None:
         if (item := self.items.pop(name, None)) is None:
             return
         for class_name in item.types:
             self.members[class_name].pop(name, None)
         for nouns in self.nouns.values():
-            nouns.take(item)
+            nouns.remove(item)
 
-    def called(self, key: str, language: Language) -> dict[str, None]:
+    def find_by_noun(self, key: str, language: Language) -> dict[str, None]:
         """Return the entities that a noun in base form may denote, in arbitrary order."""
         nouns = self.nouns[language]
         found = dict(nouns.entities.get(key, {}))
@@ -197,12 +197,12 @@ class MapIndex:
             found.update(self.members.get(class_name, {}))
         return found
 
-    def is_called(self, name: str, key: str, language: Language) -> bool:
+    def is_exact_match(self, name: str, key: str, language: Language) -> bool:
         """Return whether the key is the entity's name, a whole label or its own class (not a superclass)."""
         nouns = self.nouns[language]
         return name in nouns.exact.get(key, ()) or self.items[name].class_name in nouns.whole.get(key, ())
 
-    def spoken(self, item: Item, language: Language) -> str:
+    def noun_for(self, item: Item, language: Language) -> str:
         """Return a noun for an entity in a language: one of its labels, or its class's label.
 
         Labels are assumed to be English unless the TBox has them in another language. Labels that do not
@@ -217,7 +217,7 @@ class MapIndex:
 
     def label(self, class_name: str, language: Language) -> str:
         """Return the label of a class in a language."""
-        return self._labels.get((TAGS[language], class_name), spoken(class_name))
+        return self._labels.get((TAGS[language], class_name), to_words(class_name))
 
     def affords(self, item: Item) -> frozenset[object]:
         """Return the affordances of an entity: asserted ones and those of its classes."""
@@ -232,4 +232,4 @@ def _serves(own: str, tag: str, others: set[str] | None) -> bool:
 
 def _action(label: str) -> str:
     """Return an affordance's label without *it*: `drinking from it` becomes `drinking from`."""
-    return " ".join(word for word in spoken(label).split() if word != "it")
+    return " ".join(word for word in to_words(label).split() if word != "it")

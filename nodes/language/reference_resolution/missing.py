@@ -45,7 +45,7 @@ def missing(answer: Answer) -> Missing | None:
     part = next((part for part in answer.parts if not part.names), None)
     if part is None or part.description.head != "noun":
         return None
-    nouns = answer.resolver.known.nouns[answer.resolver.language]
+    nouns = answer.resolver.index.nouns[answer.resolver.language]
     description = part.description
     qualities = tuple(r for r in description.restrictions if isinstance(r, Quality))
     return Missing(nouns, description.key, qualities, tuple(_pairs(part, answer.resolver)))
@@ -59,5 +59,5 @@ def _pairs(part: Resolved, resolver: Resolver) -> Iterator[tuple[str, KeptRelati
             others = resolver.resolve(restriction.others[0]).names[:_MOST]
             for name in part.kind[:_MOST]:
                 for other in others:
-                    is_place = resolver.known.items[other].is_place
+                    is_place = resolver.index.items[other].is_place
                     yield name, "isLocatedIn" if is_place else support, other

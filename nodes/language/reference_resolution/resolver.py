@@ -80,8 +80,8 @@ class Resolved:
 class Resolver:
     """Resolves descriptions in one map; *my* refers to the entity named `asker`."""
 
-    known: MapIndex
-    around: MapGeometry
+    index: MapIndex
+    geometry: MapGeometry
     language: Language
     asker: str | None = None
     _memory: dict[tuple[Description, Scope], Resolved] = field(default_factory=dict)
@@ -111,7 +111,9 @@ class Resolver:
         if len(names) > 1 and description.is_definite and not description.is_plural:
             names = self._smallest_of_the_small(names, description)
             if description.head == "noun" and description.order is None:
-                exact = (name for name in names if self.known.is_called(name, description.key, self.language))
+                exact = (
+                    name for name in names if self.index.is_exact_match(name, description.key, self.language)
+                )
                 names = tuple(exact) or names
         is_tied = False
         if description.order is not None and names:
@@ -123,18 +125,18 @@ class Resolver:
         if description.head == "one" and not description.restrictions and description.order is None:
             return ()  # the description is empty
         if description.head != "noun":
-            return tuple(sorted(name for name, item in self.known.items.items() if not item.is_place))
-        found = self.known.called(description.key, self.language)
+            return tuple(sorted(name for name, item in self.index.items.items() if not item.is_place))
+        found = self.index.find_by_noun(description.key, self.language)
         if (
             not found
-            and (one := self.known.nouns[self.language].describing.counted(description.key))
+            and (one := self.index.nouns[self.language].describing.singular_of(description.key))
             != description.key
         ):
-            found = self.known.called(one, self.language)  # glasses to drink from
+            found = self.index.find_by_noun(one, self.language)  # glasses to drink from
         for restriction in description.restrictions:
             if isinstance(restriction, Of) and restriction.is_content:
                 content = self.resolve(restriction.other, scope)
-                if not any(self._is_of(self.known.items[name], content) for name in found):
+                if not any(self._is_of(self.index.items[name], content) for name in found):
                     found = {**found, **dict.fromkeys(content.kind)}
         return tuple(sorted(found))
 
@@ -142,7 +144,7 @@ class Resolver:
         self, name: str, restriction: Restriction, description: Description, kind: Names, scope: Scope
     ) -> bool:
         """Return whether an entity meets a restriction; sizes are compared with those of `kind`."""
-        item = self.known.items[name]
+        item = self.index.items[name]
         inner = Scope((name,), description)
 
         def meant(other: Description) -> Resolved:
@@ -156,7 +158,7 @@ class Resolver:
             case State(_, property_name, value):
                 return self._is_in_state(item, property_name, value)
             case Affords(_, affordances):
-                return not affordances.isdisjoint(self.known.affords(item))
+                return not affordances.isdisjoint(self.index.affords(item))
             case Owned(_, by):
                 return self._is_owned(item, by, scope)
             case Sized(_, axis, sign):
@@ -190,12 +192,12 @@ class Resolver:
 
     def _is_in_state(self, item: Item, property_name: str, value: bool | str) -> bool:
         if property_name == "holding":
-            return self.around.holds_anything(item.name) == value
+            return self.geometry.holds_anything(item.name) == value
         if property_name == "standing":
-            return not item.is_place and self.around.is_on_floor(item.name)
+            return not item.is_place and self.geometry.is_on_floor(item.name)
         if property_name == "within":
-            holders = self.known.members.get(str(value), {})
-            return any(self.around.related("isInside", item.name, holder) for holder in holders)
+            holders = self.index.members.get(str(value), {})
+            return any(self.geometry.related("isInside", item.name, holder) for holder in holders)
         return value in item.values.get(property_name, frozenset())
 
     def _is_owned(self, item: Item, by: Description | None, scope: Scope) -> bool:
@@ -207,19 +209,19 @@ class Resolver:
 
     def _is_related(self, name: str, relation: str, others: Sequence[Resolved]) -> bool:
         found = [tuple(n for n in other.names if n != name) for other in others]
-        if relation == "isUnder" and any(self.around.related("isOn", other, name) for other in found[0]):
+        if relation == "isUnder" and any(self.geometry.related("isOn", other, name) for other in found[0]):
             return True
         if relation == "isBetween":
             pairs = ((a, b) for a in found[0] for b in found[-1] if a != b)
-            return any(name in self.around.between(*pair) for pair in pairs)
+            return any(name in self.geometry.between(*pair) for pair in pairs)
         return any(
-            self.around.related(relation, name, other) or self._is_asserted(relation, name, other)  # type: ignore[arg-type]
+            self.geometry.related(relation, name, other) or self._is_asserted(relation, name, other)  # type: ignore[arg-type]
             for other in found[0]
         )
 
     def _is_asserted(self, relation: str, name: str, other: str) -> bool:
         """Return whether places are asserted to be adjacent, or an object to lead into a place."""
-        one, two = self.known.items[name], self.known.items[other]
+        one, two = self.index.items[name], self.index.items[other]
         if relation == "isInside":
             return two.is_place and any(other in one.values.get(name, ()) for name in _INTO)
         adjacent = one.values.get("isAdjacentTo", frozenset()), two.values.get("isAdjacentTo", frozenset())
@@ -228,19 +230,19 @@ class Resolver:
     def _supports(self, name: str, other: str) -> bool:
         """Return whether `other` is on or in `name`, or both stand side by side on the floor."""
         if self._is_asserted("isInside", other, name) or any(
-            self.around.related(how, other, name) for how in ("isOn", "isInside")
+            self.geometry.related(how, other, name) for how in ("isOn", "isInside")
         ):
             return True
-        items, around = self.known.items, self.around
-        if items[name].is_place or items[other].is_place or not around.related("isNextTo", name, other):
+        items, geometry = self.index.items, self.geometry
+        if items[name].is_place or items[other].is_place or not geometry.related("isNextTo", name, other):
             return False
-        return around.is_on_floor(name) and around.is_on_floor(other)
+        return geometry.is_on_floor(name) and geometry.is_on_floor(other)
 
     def _is_of(self, item: Item, others: Resolved) -> bool:
         """Return whether an item belongs to one of `others`: its place, owner, whole, support or content."""
-        related = self.around.related
+        related = self.geometry.related
         for name in others.names:
-            other = self.known.items[name]
+            other = self.index.items[name]
             if name == item.name:
                 return True
             if name in item.all_values or item.name in other.all_values:
@@ -259,7 +261,7 @@ class Resolver:
     # Big, small, first, nearest
 
     def _measure(self, name: str, axis: str) -> float | None:
-        size = self.around.size(name)
+        size = self.geometry.size(name)
         if size is None:
             return None
         return {"volume": math.prod(size), "tallness": size[2], "length": max(size[:2])}[axis]
@@ -312,11 +314,11 @@ class Resolver:
 
     def _values(self, names: Iterable[str], order: Order) -> dict[str, float] | None:
         """Return the value of each name on the order's axis; None if the axis is undefined."""
-        around, axis = self.around, order.axis
-        if axis == "" and not around.has_viewer:
+        geometry, axis = self.geometry, order.axis
+        if axis == "" and not geometry.has_viewer:
             return None
         if axis in ("across", ""):
-            bearings = {name: around.bearing(name) for name in names}
+            bearings = {name: geometry.bearing(name) for name in names}
             seen = sum(abs(bearing) <= _IN_VIEW_RAD for bearing in bearings.values())
             are_seen = seen >= max(abs(order.place), order.count)
             return {
@@ -324,13 +326,13 @@ class Resolver:
                 for name, bearing in bearings.items()
             }
         if axis == "height":
-            return {name: at[2] if (at := around.position(name)) else math.inf for name in names}
+            return {name: at[2] if (at := geometry.position(name)) else math.inf for name in names}
         if axis == "distance":
             if order.to is None:
-                return {name: around.distance_from_viewer(name) for name in names}
+                return {name: geometry.distance_from_viewer(name) for name in names}
             targets = self.resolve(order.to).names
             return {
-                name: min((around.distance(name, t) for t in targets if t != name), default=math.inf)
+                name: min((geometry.distance(name, t) for t in targets if t != name), default=math.inf)
                 for name in names
             }
         return {n: math.inf if (size := self._measure(n, axis)) is None else size for n in names}

@@ -55,7 +55,7 @@ def _purpose(s: Sentence, i: int) -> int | None:
     k = s.phrase_of[i] + 1
     if k >= len(s.phrases) or s.phrases[k].preposition not in ("to", "from"):
         return None
-    is_place = bool(s.meant[k]) and s.branches[k] in _BEARING
+    is_place = bool(s.candidates[k]) and s.branches[k] in _BEARING
     if is_place or s.words[s.phrases[k].last].kind not in ("noun", "adj"):
         return None
     return s.phrases[k].last if s.phrases[k].nominal == s.phrases[k].last else None
@@ -107,7 +107,7 @@ def _extended(s: Sentence, last: int, filled: set[int]) -> int:
         if k + 1 >= len(s.phrases) or s.words[s.phrases[k].first].text not in _AND:
             return last
         following = s.phrases[k + 1]
-        if not following.names or s.branches[k + 1] in _NOT_LISTED or not s.meant[k + 1]:
+        if not following.names or s.branches[k + 1] in _NOT_LISTED or not s.candidates[k + 1]:
             return last
         if following.kind == "pp" or filled & set(range(following.first, following.last + 1)):
             return last

@@ -30,7 +30,7 @@ class Glossed:
 class Gloss:
     """A sentence and its English words, possibly in another order."""
 
-    said: tuple[str, ...]
+    original: tuple[str, ...]
     words: tuple[Glossed, ...]
 
     @property
@@ -43,26 +43,28 @@ class Gloss:
         """Their parts of speech, None if the tagger has to determine them."""
         return tuple(word.kind for word in self.words)
 
-    def said_by_words(self, first: int, last: int) -> str:
+    def original_words(self, first: int, last: int) -> str:
         """Return the original words for the English ones from index `first` to `last`."""
-        tokens = self._said_by(range(first + 1, last + 2))
-        return " ".join(self.said[tokens[0] - 1 : tokens[-1]]) if tokens else ""
+        tokens = self._original_tokens(range(first + 1, last + 2))
+        return " ".join(self.original[tokens[0] - 1 : tokens[-1]]) if tokens else ""
 
-    def told_back(self, understood: Understood, language: Language) -> Understood:
+    def map_back(self, understood: Understood, language: Language) -> Understood:
         """Map a result for the English words back to the original words, without inserted words."""
         frames = tuple(
             replace(
                 frame,
-                verb=self._said_by(frame.verb),
-                arguments=tuple(told for a in frame.arguments if (told := self._argument(a)) is not None),
+                verb=self._original_tokens(frame.verb),
+                arguments=tuple(mapped for a in frame.arguments if (mapped := self._argument(a)) is not None),
             )
             for frame in understood.frames
         )
         groundings = {
-            token: found.entity for found in understood.groundings for token in self._said_by((found.token,))
+            token: found.entity
+            for found in understood.groundings
+            for token in self._original_tokens((found.token,))
         }
         return Understood(
-            self.said,
+            self.original,
             frames,
             tuple(Grounded(token, name) for token, name in sorted(groundings.items())),
             understood.unknown,
@@ -70,20 +72,20 @@ class Gloss:
             understood.mood,
         )
 
-    def _said_by(self, tokens: Sequence[int]) -> tuple[int, ...]:
+    def _original_tokens(self, tokens: Sequence[int]) -> tuple[int, ...]:
         words = (self.words[token - 1] for token in tokens)
         return tuple(sorted({n for word in words for n in range(word.first, word.last + 1)}))
 
     def _argument(self, argument: Argument) -> Argument | None:
-        said = self._said_by(range(argument.span[0], argument.span[1] + 1))
-        if not said:
+        tokens = self._original_tokens(range(argument.span[0], argument.span[1] + 1))
+        if not tokens:
             return None
-        first, last = said[0], said[-1]
+        first, last = tokens[0], tokens[-1]
         head = min(max(self.words[argument.head - 1].head, first), last)
         inside = self.words[argument.span[0] - 1 : argument.span[1]]
         return replace(
             argument,
-            text=" ".join(self.said[first - 1 : last]),
+            text=" ".join(self.original[first - 1 : last]),
             span=(first, last),
             head=head,
             ambiguous=argument.ambiguous and not any(word.is_plural for word in inside[:2]),

@@ -69,8 +69,8 @@ class Interpreter:
         """
         if (language or language_detection.detect_language(text)) == "english":
             return self.read(split(text), scene, resolve=resolve)
-        told = italian.gloss(text, scene)
-        return told.told_back(self.read(told.texts, scene, told.kinds, resolve, told), "italian")
+        gloss = italian.gloss(text, scene)
+        return gloss.map_back(self.read(gloss.texts, scene, gloss.kinds, resolve, gloss), "italian")
 
     def read(
         self,
@@ -78,20 +78,20 @@ class Interpreter:
         scene: Scene,
         kinds: Sequence[PartOfSpeech | None] = (),
         resolve: Resolve | None = None,
-        told: Gloss | None = None,
+        gloss: Gloss | None = None,
     ) -> Understood:
         """Interpret lower-case English words.
 
-        `kinds` are the known parts of speech. `told` is the original sentence, if the words translate one.
+        `kinds` are the known parts of speech. `gloss` is the translation that the words come from, if any.
         """
         s = sentence(texts, scene, self._lexicon, kinds)
         mood = moods.mood(s)
         calls = self._calls(s) if texts and mood == "command" else []
         verbs = [_verb(s, first, last) for first, last, _ in calls]
         frames: list[SemanticFrame] = []
-        said = _words(s) if told is None else told.said_by_words
-        plural = frozenset(i for i, word in enumerate(told.words if told else ()) if word.is_plural)
-        look_up = None if resolve is None else Referents(s, scene.things.get, resolve, said, plural)
+        original = _words(s) if gloss is None else gloss.original_words
+        plural = frozenset(i for i, word in enumerate(gloss.words if gloss else ()) if word.is_plural)
+        look_up = None if resolve is None else Referents(s, scene.things.get, resolve, original, plural)
         for (first, last, found), verb in zip(calls, verbs, strict=True):
             name, spans = self._filled(s, verb, found, [other for other in verbs if other != verb])
             if look_up is None:
@@ -212,8 +212,8 @@ def _frame(
         names = tuple(sorted(thing.name for thing in things))
         ambiguous = referents.means_one(s, k)
         if s.branches[k] == "pronoun" and not names:
-            said = s.words[head].text
-            names = pronouns.antecedent(said, s.phrases[k].preposition, name, role, before, scene)
+            pronoun = s.words[head].text
+            names = pronouns.antecedent(pronoun, s.phrases[k].preposition, name, role, before, scene)
             ambiguous = any(
                 names == a.candidates and a.ambiguous for frame in before for a in frame.arguments
             )
@@ -246,13 +246,14 @@ def _head(s: Sentence, slot: str, first: int, last: int) -> int:
 
 def _number(s: Sentence, k: int) -> int | None:
     """Return the number of things in a phrase, if it contains a numeral."""
-    phrase, counted = s.phrases[k], s.lexicon.numbers
-    if s.branches[k] in ("", "measure", "pronoun") or not s.meant[k]:
+    phrase, number_words = s.phrases[k], s.lexicon.numbers
+    if s.branches[k] in ("", "measure", "pronoun") or not s.candidates[k]:
         return None
-    said = [w.text for w in s.words[phrase.nominal : phrase.head] if w.kind == "num"]
-    if len(said) != 1:
+    numerals = [w.text for w in s.words[phrase.nominal : phrase.head] if w.kind == "num"]
+    if len(numerals) != 1:
         return None
-    return int(said[0]) if said[0].isdecimal() and len(said[0]) < 4 else counted.get(said[0])
+    (numeral,) = numerals
+    return int(numeral) if numeral.isdecimal() and len(numeral) < 4 else number_words.get(numeral)
 
 
 def _opened(s: Sentence, frame: str, span: Span, scene: Scene) -> tuple[int, Things] | None:
@@ -261,9 +262,12 @@ def _opened(s: Sentence, frame: str, span: Span, scene: Scene) -> tuple[int, Thi
     k = s.phrase_of[head]
     if frame != "Closure" or span[0] != "thing" or s.branches[k] != "Door":
         return None
-    word, things = head - 1, grounding.called(s.words[head - 1].text, scene, s.lexicon)  # "the fridge door"
+    word, things = (
+        head - 1,
+        grounding.find_by_label(s.words[head - 1].text, scene, s.lexicon),
+    )  # "the fridge door"
     if k + 1 < len(s.phrases) and s.phrases[k + 1].preposition == "of" and s.phrases[k + 1].last <= span[2]:
-        word, things = s.phrases[k + 1].head, s.meant[k + 1]
+        word, things = s.phrases[k + 1].head, s.candidates[k + 1]
     kinds = [scene.kinds_of(thing.name) for thing in things]
     opens = bool(kinds) and all("Openable_Thing" in kind and "Location" not in kind for kind in kinds)
     return (word, things) if opens else None
@@ -275,7 +279,7 @@ def _like(s: Sentence, spans: Sequence[Span], span: Span) -> str:
     alone = [word for word in s.words[first : last + 1] if word.kind not in ("det", "rel")]
     is_such = all(word.text in ("one", "ones") or s.lexicon.is_a(word.text, "adjective") for word in alone)
     before = [other for other in spans if other[0] == slot and other[2] < first]
-    if not alone or not is_such or not before or s.meant[s.phrase_of[last]]:
+    if not alone or not is_such or not before or s.candidates[s.phrase_of[last]]:
         return ""
     return s.words[_head(s, *before[-1])].text
 
@@ -294,7 +298,7 @@ def _grounded(s: Sentence, frames: Sequence[SemanticFrame]) -> tuple[Grounded, .
             for i in range(argument.span[0] - 1, argument.span[1]):
                 phrase = s.phrases[s.phrase_of[i]]
                 if i >= phrase.nominal and s.words[i].kind in ("noun", "adj", "pron"):
-                    things: tuple[Thing, ...] = s.meant[s.phrase_of[i]]
+                    things: tuple[Thing, ...] = s.candidates[s.phrase_of[i]]
                     name = heads.get(phrase.head + 1) or (things[0].name if len(things) == 1 else None)
                     if name is not None:
                         named[i + 1] = name

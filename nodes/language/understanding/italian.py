@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 from semmap.nodes.language.lexicon.italian import ARTICULATED, Italian, italian, singulars
 from semmap.nodes.language.understanding.gloss import Gloss, Glossed
 from semmap.nodes.language.understanding.grounding import Scene
-from semmap.nodes.language.vocabulary import spoken
+from semmap.nodes.language.vocabulary import to_words
 from semmap.nodes.language.words import PartOfSpeech, plain
 
 _WORD: Final = re.compile(r"[^\W\d_]+'(?=\w)|po'|\d+(?:[.,]\d+)?|[^\W_]+(?:-[^\W_]+)*")
@@ -138,13 +138,13 @@ class _Glossing:
             self._adjective(english, i)
             return 1
         for length in range(min(_LONGEST + 2, len(self._pieces) - i), 0, -1):
-            said = tuple(p.text for p in self._pieces[i : i + length])
-            if said[-1] == "di" and self._counts(i + length):  # "a sinistra di 90 gradi" is by how much
+            words = tuple(p.text for p in self._pieces[i : i + length])
+            if words[-1] == "di" and self._counts(i + length):  # "a sinistra di 90 gradi" is by how much
                 if length == 1:
                     self._say("by", i, i, "prep")
                     return 1
-            elif said in self._known.expressions:
-                return self._expression(self._known.expressions[said], i, length)
+            elif words in self._known.expressions:
+                return self._expression(self._known.expressions[words], i, length)
         if piece.text in self._known.relative:
             self._say(self._known.relative[piece.text], i, i, "rel")
         elif english:
@@ -298,9 +298,9 @@ class _Glossing:
         rest = " ".join(["", *words[1:]]).replace("' ", "'")
         for first in singulars(words[0]):
             text = first + rest
-            if text in self._scene.called:
+            if text in self._scene.by_label:
                 return text
             name = self._scene.vocabulary.class_of(text) or self._known.synonyms.get(text)
             if name is not None:
-                return spoken(name)
+                return to_words(name)
         return None

@@ -11,7 +11,7 @@ from semmap.nodes.language.understanding.sentence import Sentence
 
 Resolve = Callable[[str], tuple[str, ...]]
 """Returns the names of the entities that match a description, or none."""
-Said = Callable[[int, int], str]
+Original = Callable[[int, int], str]
 """Returns the original words from one index to another."""
 
 _NOT_DESCRIBED: Final = ("robot", "speaker", "direction", "measure")
@@ -31,7 +31,7 @@ class Referents:
         s: Sentence,
         things: Callable[[str], Thing | None],
         resolve: Resolve,
-        said: Said,
+        original: Original,
         plural: Set[int],
     ) -> None:
         """`things` returns an entity by name; `resolve` is called with original and with English words.
@@ -39,7 +39,7 @@ class Referents:
         `plural` are the indices of English words whose originals are plural.
         """
         self._plural = plural
-        self._s, self._thing, self._resolve, self._said = s, things, resolve, said
+        self._s, self._thing, self._resolve, self._original = s, things, resolve, original
 
     def of(self, first: int, last: int, head: int, source: tuple[int, str] | None, like: str) -> Things:
         """Return the entities that the words from `first` to `last` denote; `head` is their head.
@@ -48,7 +48,7 @@ class Referents:
         elliptical phrase takes from the previous one (*the blue cup and the red one*), or "".
         """
         s, k = self._s, self._s.phrase_of[head]
-        phrase, meant = s.phrases[k], s.meant[k]
+        phrase, meant = s.phrases[k], s.candidates[k]
         is_one = means_one(s, k) and self._plural.isdisjoint(range(phrase.first, phrase.last + 1))
         is_any = s.words[head].text in ANYTHING and last > phrase.last
         if not phrase.names or s.branches[k] in (_NOT_DESCRIBED if like or is_any else _NOT_LOOKED_UP):
@@ -62,7 +62,7 @@ class Referents:
                 return both
         if is_any or (len(meant) == 1 and is_one):
             return meant
-        for text in (self._said(phrase.nominal, phrase.last), self._english(phrase.nominal, phrase.last)):
+        for text in (self._original(phrase.nominal, phrase.last), self._english(phrase.nominal, phrase.last)):
             found = self._fitting(text)
             both = tuple(thing for thing in found if thing in meant)
             if found and (not meant or both):
@@ -86,7 +86,7 @@ class Referents:
             if stop > end and s.words[s.phrases[k].head].text not in ANYTHING:
                 yield f"{self._english(nominal, end)} {self._by_name(end + 1, stop)}"
             if stop > end:
-                yield self._said(nominal, stop)
+                yield self._original(nominal, stop)
                 yield self._english(nominal, stop)
 
     def _by_name(self, first: int, last: int) -> str:
@@ -94,7 +94,7 @@ class Referents:
         s = self._s
         parts = []
         for k in range(s.phrase_of[first], s.phrase_of[last] + 1):
-            phrase, meant = s.phrases[k], s.meant[k]
+            phrase, meant = s.phrases[k], s.candidates[k]
             words = self._english(phrase.first, phrase.last)
             parts.append(f"{phrase.preposition} {meant[0].name}".strip() if len(meant) == 1 else words)
         return " ".join(parts)
@@ -130,11 +130,11 @@ def is_relative(s: Sentence, verb: int) -> bool:
 
 def chosen(s: Sentence, first: int, last: int, k: int) -> Things:
     """Return what phrase k may denote by its words alone; of several, the nearest to the other phrases."""
-    things = s.meant[k]
+    things = s.candidates[k]
     beside: Sequence[Thing] = [
-        s.meant[other][0]
+        s.candidates[other][0]
         for other in range(s.phrase_of[first], s.phrase_of[last] + 1)
-        if other != k and len(s.meant[other]) == 1
+        if other != k and len(s.candidates[other]) == 1
     ]
     if len(things) < 2 or not beside:
         return things

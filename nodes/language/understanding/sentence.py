@@ -10,7 +10,7 @@ from semmap.nodes.language.lexicon import Lexicon
 from semmap.nodes.language.phrases import Phrase, phrases
 from semmap.nodes.language.understanding import grounding
 from semmap.nodes.language.understanding.grounding import Scene, Things
-from semmap.nodes.language.words import PartOfSpeech, Word, based, tag
+from semmap.nodes.language.words import PartOfSpeech, Word, tag, to_base_forms
 
 _MOST_PAIRS = 400  # pairs of things that are searched for the nearest; takes 0.1 ms
 _NEAR_M = 1.5  # people locate objects relative to others within this distance
@@ -24,12 +24,12 @@ class Sentence:
     phrases: Sequence[Phrase]
     phrase_of: Sequence[int]  # the index of each word's phrase
     branches: Sequence[str]  # the branch of the taxonomy of each phrase, or ""
-    meant: Sequence[Things]  # the candidate entities of each phrase
+    candidates: Sequence[Things]  # the candidate entities of each phrase
     lexicon: Lexicon
 
     def near(self, one: int, other: int) -> Literal["near", "far", "unknown"]:
         """Return whether the nearest entities of two phrases are close to each other on the floor."""
-        ones, others = self.meant[one], self.meant[other]
+        ones, others = self.candidates[one], self.candidates[other]
         if not 0 < len(ones) * len(others) <= _MOST_PAIRS:
             return "unknown"
         metres = min(grounding.distance(a, b) for a in ones for b in others)
@@ -66,7 +66,9 @@ def sentence(
     words = tag(texts, lexicon, kinds)
     found = phrases(words, lexicon)
     phrase_of = [k for k, phrase in enumerate(found) for _ in range(phrase.first, phrase.last + 1)]
-    meant = [grounding.meant(phrase, words, scene, lexicon) if phrase.names else () for phrase in found]
+    meant = [
+        grounding.find_candidates(phrase, words, scene, lexicon) if phrase.names else () for phrase in found
+    ]
     branches = [
         _branch(phrase, words, things, scene, lexicon) if phrase.names else ""
         for phrase, things in zip(found, meant, strict=True)
@@ -89,7 +91,7 @@ def _branch(phrase: Phrase, words: Sequence[Word], things: Things, scene: Scene,
     inside = words[phrase.nominal : phrase.last + 1]
     text = " ".join(word.text for word in inside if word.kind in ("noun", "adj"))
     known = scene.vocabulary
-    name = known.class_of(text) or known.class_of(based(text, lexicon)) or known.class_of(head.lemma)
+    name = known.class_of(text) or known.class_of(to_base_forms(text, lexicon)) or known.class_of(head.lemma)
     if name is None and things:
         name = known.class_of(things[0].class_name.lower()) or things[0].class_name
     return known.branch(name)

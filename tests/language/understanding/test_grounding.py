@@ -5,13 +5,13 @@ import random
 
 import pytest
 
-from semmap.nodes.language.understanding.grounding import Thing, called, distance
+from semmap.nodes.language.understanding.grounding import Thing, distance, find_by_label
 from semmap.nodes.language.understanding.interpretation import shipped
 from tests.language.household import LEXICON, THINGS, there
 
 
 def names(text, things=THINGS):
-    return sorted(thing.name for thing in called(text, there(things), LEXICON))
+    return sorted(thing.name for thing in find_by_label(text, there(things), LEXICON))
 
 
 @pytest.mark.parametrize(

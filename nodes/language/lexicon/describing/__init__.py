@@ -65,7 +65,7 @@ class Describing:
         word = self.lemmas.get(word, word)
         return _stem(word) if self.language == "italian" else lemma(word, lexicon.load())
 
-    def counted(self, key: str) -> str:
+    def singular_of(self, key: str) -> str:
         """Return the singular of an English plurale tantum that also is a plural: glasses, a glass."""
         return lemma(key, lexicon.load()) if key in self.pluralia and self.language == "english" else key
 
@@ -73,22 +73,22 @@ class Describing:
         """Return the key for looking up a noun: its words in base form."""
         return " ".join([self.base(word) for word in words])
 
-    def the(self, noun: str) -> str:
+    def with_article(self, noun: str) -> str:
         """Return a noun with its definite article; proper names have none."""
         if noun[:1].isupper():
             return noun
         return next(article for form, article in self.articles.items() if re.search(form, noun)) + noun
 
-    def that(self, noun: str) -> str:
+    def pronoun_for(self, noun: str) -> str:
         """Return the pronoun for a noun: the one, quello, quella."""
-        return next(said for form, said in self.those.items() if re.search(form, noun))
+        return next(pronoun for form, pronoun in self.those.items() if re.search(form, noun))
 
-    def agreeing(self, adjective: str, noun: str) -> str:
+    def inflect(self, adjective: str, noun: str) -> str:
         """Return an adjective in agreement with a noun."""
         is_feminine = adjective.endswith("o") and re.search(self.feminine, noun) is not None
         return adjective[:-1] + "a" if is_feminine else adjective
 
-    def contracted(self, text: str) -> str:
+    def contract(self, text: str) -> str:
         """Return a text with contractions: sul tavolo for su il tavolo."""
         for apart, together in self.contractions.items():
             text = text.replace(apart, together)
