@@ -3,8 +3,8 @@
     python -m benchmarks.page_scene [--bodies 500] [--entities 5000] [--seconds 15] [--json]
 
 It simulates the knowledge base and the simulator, and measures what `semmap web` takes with one tab open,
-of 640 x 480. A browser that draws in software takes fewer updates than it is offered, so what ten a second
-would take is told, too; and how quickly it draws is measured beside viser alone, with the same triangles.
+of 640 x 480. With software rendering, the browser processes fewer updates than it receives, so the
+cost of ten per second is also calculated. Its frame rate is compared with viser alone, with the same triangles.
 """
 
 from __future__ import annotations

@@ -73,7 +73,7 @@ def test_foreign_things_that_stand_still_are_each_known_once_and_left_alone(tmp_
     assert not renamed_back(change for change in reversed(since) if change.kind == "class")
 
 
-def test_a_class_that_comes_back_is_told():
+def test_a_class_that_returns_is_reported():
     def called(name: str, *classes: str) -> list[Change]:
         steps = pairwise(classes)
         return [Change(name=name, kind="class", was=was, now=now) for was, now in steps]

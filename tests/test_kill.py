@@ -51,7 +51,7 @@ def test_every_acknowledged_commit_is_there_and_no_other_one_half(empty_map, kil
     assert seqs[-1] == len(there) + 1
 
 
-def test_whoever_asks_right_after_a_kill_waits_for_the_restart(empty_map):
+def test_a_request_right_after_a_kill_waits_for_the_restart(empty_map):
     empty_map.begin_anew("none")
     with empty_map.client() as client:
         for i, ask in enumerate(

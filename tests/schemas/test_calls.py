@@ -49,7 +49,7 @@ def test_a_kind_of_a_call_is_answered_like_it():
 
 
 @pytest.mark.parametrize("kind", [Call, commands.Command])
-def test_what_is_no_particular_call_has_no_reply(kind):
+def test_base_classes_have_no_reply_type(kind):
     with pytest.raises(TypeError, match="has no reply type"):
         reply_type(kind)
 

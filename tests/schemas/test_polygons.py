@@ -64,7 +64,7 @@ def test_what_it_contains():
         ),
     ],
 )
-def test_what_is_no_simple_polygon_is_refused_with_what_is_wrong(text, said):
+def test_polygons_that_are_not_simple_are_rejected_with_the_reason(text, said):
     with pytest.raises(BadRequest, match=said):
         read_wkt(text)
 

@@ -49,7 +49,7 @@ WHOLE = (
 )
 
 
-def test_like_things_are_counted_and_told_where_they_are():
+def test_similar_things_are_counted_by_place():
     assert summary.summarize_map(kitchen(), (), 500) == (WHOLE, 0)
 
 
@@ -69,11 +69,11 @@ def test_like_things_are_counted_and_told_where_they_are():
         ),
     ],
 )
-def test_what_there_are_no_words_for_is_counted(words, text, left_out):
+def test_things_beyond_the_word_limit_are_counted(words, text, left_out):
     assert summary.summarize_map(kitchen(), (), words) == (text, left_out)
 
 
-def test_what_is_wrong_is_told_first():
+def test_problems_come_first():
     troubles = ["cup1, not seen where it should stand", "cup2, looks like a Vase"]
     text, _ = summary.summarize_map(kitchen(), troubles, 60)
     assert " things. Problems: cup1, not seen where it should stand; cup2, looks like a Vase. The" in text
@@ -112,7 +112,7 @@ def test_nothing_at_all_and_places_alone():
     )
 
 
-def test_what_is_on_itself_or_in_a_circle_is_told_once():
+def test_cycles_of_supports_are_listed_once():
     things = [
         Thing("a", "book", at=("on", "b")),
         Thing("b", "book", at=("on", "a")),

@@ -14,7 +14,7 @@ def told(text, **options):
 
 
 @pytest.mark.parametrize("row", PHRASES, ids=[row[0] for row in PHRASES])
-def test_what_is_meant_is_told_with_its_reasons(row):
+def test_matches_are_explained(row):
     text, _, names, said, reasons = row
     answer = explanation.explain(find(text, known(), Written(has_viewer=True), "anna"))
     assert (answer.question or answer.text) == said

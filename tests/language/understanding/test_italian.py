@@ -53,7 +53,7 @@ def test_clitics_are_words_of_their_own(text, words):
         ("dai la bottiglia a me", "give the bottle to me"),
     ],
 )
-def test_words_are_told_in_english(text, english):
+def test_words_are_translated_to_english(text, english):
     told = italian.gloss(text, there())
     assert " ".join(word.text for word in told.words if word.first <= word.last) == english
 
@@ -100,7 +100,7 @@ def test_an_unknown_verb_is_said_to_be_unknown():
 
 
 @pytest.mark.parametrize("text", ["guarda daniel", "prendi", "portamela", "la tazza è sul tavolo", "vacci"])
-def test_italian_is_told_by_its_words(text):
+def test_italian_is_detected_by_its_words(text):
     assert detect_language(text) == "italian"
 
 
