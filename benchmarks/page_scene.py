@@ -4,7 +4,8 @@
 
 It simulates the knowledge base and the simulator, and measures what `semmap web` takes with one tab open,
 of 640 x 480. With software rendering, the browser processes fewer updates than it receives, so the
-cost of ten per second is also calculated. Its frame rate is compared with viser alone, with the same triangles.
+cost of ten per second is also calculated. Its frame rate is compared with that of viser alone, with the same
+triangles.
 """
 
 from __future__ import annotations

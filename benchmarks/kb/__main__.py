@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from benchmarks.kb import disk, engine, in_turn, scale, table, university, wire
-from benchmarks.relations import kept
+from benchmarks.relations import fact_costs
 from benchmarks.table import Row, lines
 from semmap.nodes.kb_node.documents import rdf
 
@@ -154,7 +154,8 @@ def _in_turn(words: argparse.Namespace, report: dict[str, Any]) -> list[Row]:
         tbox = None
         if words.no_relations:
             tbox = Path(folder, "no_relations.nt")
-            tbox.write_bytes(rdf.serialise(frozenset(kept.without_relations(kept.household())), "ntriples"))
+            triples = frozenset(fact_costs.without_relations(fact_costs.household()))
+            tbox.write_bytes(rdf.serialise(triples, "ntriples"))
         wired = in_turn.wire(words.before, Path(folder), size, count, tbox)
     rows = table.of_core_in_turn(core, size) + table.of_wire_in_turn(wired, size)
     sizes = UNIVERSITY_TRIPLES[:1] if words.quick else UNIVERSITY_TRIPLES

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import psutil  # type: ignore[import-untyped]
 
-from benchmarks.kb.awake import awake_cores
+from benchmarks.kb.busy_cores import awake_cores
 from benchmarks.kb.made import CLASSES, Figures, each, pose
 from semmap.nodes import bus
 from semmap.nodes.extern.client import Client

@@ -8,7 +8,7 @@ import os
 import platform
 from pathlib import Path
 
-from benchmarks.perception import fitted, foreign, learnt, live, recorded, simulated, tracking, unknown
+from benchmarks.perception import exemplars, fitted, foreign, live, recorded, simulated, tracking, unknown
 from benchmarks.perception.table import Row, lines
 from semmap.nodes.perception_node.recognition.shipped_votes import shipped
 
@@ -50,7 +50,7 @@ def main() -> None:
     if "fitted" in parts:
         rows += fitted.measure(words.scenes, shipped())
     if "learnt" in parts:
-        rows += learnt.measure(words.things, words.scenes // 2, shipped())
+        rows += exemplars.measure(words.things, words.scenes // 2, shipped())
     if "unknown" in parts:
         rows += unknown.measure(words.scenes, words.samples, words.training_scenes)
     if "tracking" in parts:

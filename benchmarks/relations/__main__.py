@@ -6,17 +6,17 @@ import argparse
 import json
 from pathlib import Path
 
-from benchmarks.relations import kept, rightness, speed, watched
+from benchmarks.relations import accuracy, fact_costs, speed, stability
 from benchmarks.table import Row, as_json, lines
 
 
 def rows(scenes: int, pairs: int, sizes: list[int], watched_s: float) -> list[Row]:
     """Return all figures."""
-    on, touches, steep = rightness.against_contacts(scenes)
-    inside = rightness.inside_against_samples(pairs)
-    flat = rightness.flat()
-    rest = watched.at_rest(watched_s)
-    facts = kept.measure(10_000, 400)
+    on, touches, steep = accuracy.against_contacts(scenes)
+    inside = accuracy.inside_against_samples(pairs)
+    flat = accuracy.flat()
+    rest = stability.at_rest(watched_s)
+    facts = fact_costs.measure(10_000, 400)
     moves = {size: speed.move_ms(size) for size in sizes}
     return [
         Row(f"isOn against resting contacts, {scenes} settled scenes: F1", on.f1, "", 0.97, 0.99, more=True),

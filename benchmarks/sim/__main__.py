@@ -10,7 +10,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from benchmarks.sim import alone, doors, drive, endurance, live, system, worlds
+from benchmarks.sim import doors, drive, endurance, live, standalone, system, worlds
 from benchmarks.table import Row, lines
 
 
@@ -37,7 +37,9 @@ def main() -> None:
 
 def _alone(words: argparse.Namespace) -> list[Row]:
     sizes = (10, 100) if words.quick else (10, 100, 500)
-    return [row for size in sizes for row in alone.spawn_and_delete(size)] + alone.real_time_factors()
+    return [
+        row for size in sizes for row in standalone.spawn_and_delete(size)
+    ] + standalone.real_time_factors()
 
 
 def _system(words: argparse.Namespace) -> list[Row]:
@@ -75,7 +77,7 @@ def _drive(words: argparse.Namespace) -> list[Row]:
 
 PARTS: dict[str, Callable[[argparse.Namespace], list[Row]]] = {
     "alone": _alone,
-    "frames": lambda _: alone.frames(),
+    "frames": lambda _: standalone.frames(),
     "system": _system,
     "loads": _loads,
     "live": _live,

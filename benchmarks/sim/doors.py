@@ -11,7 +11,7 @@ from pathlib import Path
 from statistics import median
 from time import thread_time
 
-from benchmarks.sim.made import p50_p95_ms
+from benchmarks.sim.generated_scenes import p50_p95_ms
 from benchmarks.sim.system import Watch
 from benchmarks.table import Row
 from semmap.nodes import bus

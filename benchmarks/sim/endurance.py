@@ -8,7 +8,7 @@ from time import perf_counter
 import numpy as np
 import psutil  # type: ignore[import-untyped]
 
-from benchmarks.sim.made import MODELS, order
+from benchmarks.sim.generated_scenes import MODELS, order
 from benchmarks.table import Row
 from semmap.nodes.sim_node.world import World
 from semmap.schemas.entities import Pose

@@ -11,7 +11,7 @@ from time import perf_counter, sleep, time_ns
 from typing import Any
 
 from benchmarks.kb.wire import running
-from benchmarks.sim.made import grid, p50_p95_ms
+from benchmarks.sim.generated_scenes import grid, p50_p95_ms
 from benchmarks.table import Row
 from semmap.nodes import bus
 from semmap.nodes.extern.client import Client

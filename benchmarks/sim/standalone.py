@@ -10,7 +10,7 @@ from time import perf_counter, thread_time
 import mujoco
 import numpy as np
 
-from benchmarks.sim.made import free_dofs, furnished, order, p50_p95_ms, timed
+from benchmarks.sim.generated_scenes import free_dofs, furnished, order, p50_p95_ms, timed
 from benchmarks.table import Row
 from semmap.nodes.sim_node.bodies import Ints
 from semmap.nodes.sim_node.vision.camera import Eye

@@ -6,7 +6,7 @@ import numpy as np
 import trimesh
 from PIL import Image
 
-from benchmarks.perception.learnt import measure
+from benchmarks.perception.exemplars import measure
 from semmap.nodes.perception_node.pipeline import shipped
 
 THINGS = {"carton": ((0.12, 0.08, 0.2), (200, 30, 30)), "crate": ((0.3, 0.2, 0.12), (30, 60, 200))}
