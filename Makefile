@@ -90,7 +90,7 @@ foreign-picture: setup  ## Draw what foreign things are taken for by what learnt
 train-perception: setup  ## Learn anew what perception knows, from recorded scenes and foreign things too: an hour or two
 	$(BIN)/python -m semmap.nodes.training.segmentation --recorded $${SEMMAP_DATA:-../shared/data}/mosd
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m semmap.nodes.training.recognition --foreign $${SEMMAP_DATA:-../shared/data}/foreign --parts dist/parts
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m semmap.nodes.training.recognition.learn_likeness --parts dist/parts
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m semmap.nodes.training.recognition.learn_similarity --parts dist/parts
 
 train-language: setup  ## Learn anew what commands mean, from the HuRIC corpus: a minute
 	$(BIN)/python -m semmap.nodes.training.language $${SEMMAP_DATA:-../shared/data}/huric

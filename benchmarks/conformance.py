@@ -23,7 +23,7 @@ from semmap.schemas.explanations import Triple
 
 
 class Case(Struct, frozen=True):
-    """One conformance case; paths are relative to the manifest."""
+    """A conformance case; paths are relative to the manifest."""
 
     id: str
     type: Literal["entailment", "non-entailment", "consistency", "inconsistency"]
@@ -32,7 +32,7 @@ class Case(Struct, frozen=True):
 
 
 class Outcome(Struct, frozen=True):
-    """Whether a case passed, and if not what was found instead."""
+    """Whether a case passed, or the actual result."""
 
     id: str
     passed: bool
@@ -40,7 +40,7 @@ class Outcome(Struct, frozen=True):
 
 
 def cases(folder: Path) -> list[Case]:
-    """The cases of a folder, in the order of its manifest."""
+    """Return the cases of a folder, in the order of its manifest."""
     return decode((folder / "manifest.json").read_bytes(), type=list[Case])
 
 

@@ -1,4 +1,4 @@
-"""What a fleet costs: robots whose commits are mirrored into a real SPARQL server, and questions across them.
+"""The cost of a fleet: robots whose commits are mirrored into a SPARQL server, and queries across them.
 
 `python -m benchmarks.fleet [--robots 50] [--entities 100] [--json FILE]`
 
@@ -43,9 +43,9 @@ from semmap.schemas.commits import Edit, Transaction
 SIZES: Final = (5, 10, 25, 50)
 _STEADY_S: Final = 8.0
 _A_SECOND: Final = 1.0
-"""Commits of each robot a second, while it is steady."""
+"""Commits per second of each robot in the steady state."""
 _BURST: Final = 40
-"""Commits of each robot, one after another as fast as they are made."""
+"""Commits of each robot in a burst."""
 _BIN: Final = Path(sys.executable).parent
 QUERIES: Final = {
     "chairs of all robots within 100 m of a spot": """SELECT ?robot ?s ?x ?y {
@@ -59,7 +59,7 @@ QUERIES: Final = {
 
 
 class Robot:
-    """A map with a journal, on the wire: it publishes what it commits."""
+    """A map with a journal that publishes its commits."""
 
     def __init__(self, number: int, folder: Path, size: int, router: str) -> None:
         self.name = f"robot{number}"
@@ -71,7 +71,7 @@ class Robot:
         self._dice, self._size = random.Random(number), size
         self._lock = threading.Lock()
         self.stamps: dict[int, float] = {}
-        """When each commit was published, by its number."""
+        """The publication time of each commit, by its number."""
         triples = tuple(triple for star in entities(size, self._dice) for triple in star)
         self.map.commit(Transaction(id="load", source="file", insert=triples))
         self._stack = contextlib.ExitStack()
@@ -83,7 +83,7 @@ class Robot:
         self._token = bus.declare_presence(session, "kb_node")
 
     def commit(self, number: int) -> int:
-        """Put one of its things elsewhere; how many bytes are published for it."""
+        """Move one of its things; return the number of published bytes."""
         from semmap.schemas import codec
 
         name = f"e{self._dice.randrange(self._size)}"
@@ -118,20 +118,20 @@ class Robot:
             )
 
     def close(self) -> None:
-        """Leave the wire."""
+        """Close the session."""
         self._stack.close()
         self._journal.close()
 
 
 class Watcher:
-    """Asks the server how far each robot's copy is."""
+    """Queries the server for the last commit of each robot's copy."""
 
     def __init__(self, query_url: str, robots: list[Robot]) -> None:
         self._server, self._robots = SparqlServer(query_url), robots
         self._seen = {robot.name: robot.map.seq for robot in robots}
 
     def arrivals(self) -> list[float]:
-        """How old the commits are that came since it last looked [s], give or take the time in between."""
+        """Return the ages of the commits since the last call [s], within the polling interval."""
         known, now = self._known(), time.monotonic()
         found: list[float] = []
         for robot in self._robots:
@@ -141,7 +141,7 @@ class Watcher:
         return found
 
     def wait(self) -> None:
-        """Until every copy is where its robot is."""
+        """Wait until every copy has its robot's last commit."""
         wanted = {robot.name: robot.map.seq for robot in self._robots}
         while not wanted.items() <= self._known().items():
             time.sleep(0.05)
@@ -167,7 +167,7 @@ def _cpu_s(process: psutil.Process) -> float:
 
 
 def _steady(robots: list[Robot], watcher: Watcher, seconds: float) -> dict[str, float]:
-    """Every robot commits once a second, not all at the same time."""
+    """Let every robot commit once a second, at different times."""
     lags: list[float] = []
     began_s = time.monotonic()
     made, sent = 0, 0
@@ -199,7 +199,7 @@ def _steady(robots: list[Robot], watcher: Watcher, seconds: float) -> dict[str, 
 
 
 def measure(sizes: tuple[int, ...], size: int) -> list[dict[str, Any]]:
-    """A row for each number of robots, and one for a burst of all of them."""
+    """Return a row for each number of robots, and one for a burst of all of them."""
     rows: list[dict[str, Any]] = []
     with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
         place, router = Path(folder), free_endpoint()
@@ -263,7 +263,7 @@ def _burst(
 
 
 def _query_ms(query: str, query_url: str, server: psutil.Process, times: int = 20) -> tuple[float, float]:
-    """By the clock (median), and of the server's processor time (mean): facts before and after included."""
+    """Measure queries by wall time (median) and the server's processor time (mean)."""
     took = []
     began_cpu_s = _cpu_s(server)
     for _ in range(times):
@@ -286,7 +286,7 @@ def _await_server(url: str) -> None:
 
 
 def table(rows: list[dict[str, Any]]) -> str:
-    """The rows in Markdown."""
+    """Return the rows in Markdown."""
     *steady, burst = rows
     words = list(steady[0])
     lines = ["| " + " | ".join(words) + " |", "|" + " --- |" * len(words)]

@@ -1,4 +1,4 @@
-"""What goes over the link between two hosts, and what each further hop costs, in network namespaces.
+"""The traffic between two hosts and the cost of each further hop, in network namespaces.
 
 `unshare -rn python -m benchmarks.hosts`: a system on three hosts in a row, the knowledge base on the first.
 """
@@ -22,14 +22,14 @@ PARTS = {"lab": "kb,coordinator", "robot": "sim", "desk": "recorder"}
 
 
 class Took(NamedTuple):
-    """Milliseconds, in the middle, of a look-up and of an add."""
+    """The median duration of a look-up and of an add [ms]."""
 
     get_ms: float
     add_ms: float
 
 
 def measured(endpoint: str, count: int) -> Took:
-    """From this host: so many of each, one after the other."""
+    """Measure look-ups and adds from this host, one after another."""
     with connect(endpoint) as client:
         name = client.add("Cup", at=(0.0, 0.0, 0.0)).names[0]
         gets = [_took_ms(lambda: client.get(name)) for _ in range(count)]
@@ -38,7 +38,7 @@ def measured(endpoint: str, count: int) -> Took:
 
 
 def add(endpoint: str, count: int) -> None:
-    """Cups without breathing space."""
+    """Add cups without pauses."""
     with connect(endpoint) as client:
         for _ in range(count):
             _add(client)
@@ -55,7 +55,7 @@ def _took_ms(function: Callable[[], object]) -> float:
 
 
 def _crossed(link: Link, seconds: float) -> tuple[float, float]:
-    """Bytes a second that each end sends while nothing is asked."""
+    """Return the bytes per second that each end sends while idle."""
     before = link.sent()
     time.sleep(seconds)
     after = link.sent()
@@ -63,7 +63,7 @@ def _crossed(link: Link, seconds: float) -> tuple[float, float]:
 
 
 def _hops(hosts: list[Host], endpoint: str) -> None:
-    """In turn, so that what else the machine does is shared by all."""
+    """Measure in turn, so that other load affects all of them equally."""
     took: dict[str, list[Took]] = {host.name: [] for host in hosts}
     for _ in range(_ROUNDS):
         for host in hosts:
@@ -88,7 +88,7 @@ def _bytes(system: Host, link: Link, endpoint: str) -> None:
 
 
 def main() -> None:
-    """Print what was measured."""
+    """Print the measurements."""
     for secure in (False, True):
         print("with certificates" if secure else "without certificates")
         with Network() as network, spread_out(network, PARTS, secure=secure) as system:

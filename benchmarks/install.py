@@ -1,7 +1,7 @@
-"""What semmap takes to install and to import: `python -m benchmarks.install [--parts base,kb] [--json FILE]`.
+"""Installation and import costs: `python -m benchmarks.install [--parts base,kb] [--json FILE]`.
 
-Builds the wheel and installs it, by itself and with each extra, into environments that are empty before. The
-package registry is asked for whatever is not cached.
+Builds the wheel and installs it, alone and with each extra, into empty environments. Packages that are not
+cached are downloaded from the package registry.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _IMPORTS = 7
 
 
 def built_wheel(folder: Path) -> Path:
-    """The wheel of this checkout, in `folder`."""
+    """Build the wheel of this checkout in `folder`."""
     command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder)]
     subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
     (wheel,) = folder.glob("semmap-*.whl")
@@ -34,7 +34,7 @@ def built_wheel(folder: Path) -> Path:
 
 
 def environment(folder: Path, *requirements: str) -> Path:
-    """A new environment in `folder` with these requirements, installed from a registry; its Python."""
+    """Create an environment in `folder` with these requirements; return its Python."""
     python = folder / "bin" / "python"
     uv = shutil.which("uv") or shutil.which(str(ROOT / ".tools" / "bin" / "uv"))
     if uv is not None:
@@ -48,7 +48,7 @@ def environment(folder: Path, *requirements: str) -> Path:
 
 
 def megabytes(python: Path) -> float:
-    """What is installed beside the installer itself, compiled [MB]."""
+    """Return the size of the installed and compiled packages, without the installer [MB]."""
     (packages,) = python.parents[1].glob("lib/python*/site-packages")
     ours = (entry for entry in packages.iterdir() if entry.name.split("-")[0] not in _NOT_OURS)
     return sum(_size(entry) for entry in ours) / 1e6
@@ -60,13 +60,13 @@ def _size(entry: Path) -> int:
 
 
 def import_s(python: Path) -> float:
-    """The least that `import semmap` takes in a new process, of some tries [s]."""
+    """Return the minimum duration of `import semmap` in a new process [s]."""
     command = [str(python), "-P", "-c", _IMPORT]
     return min(float(subprocess.check_output(command, cwd="/")) for _ in range(_IMPORTS))
 
 
 def measured(parts: Iterable[str]) -> list[Row]:
-    """A row for each figure."""
+    """Return a row for each figure."""
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         wheel = built_wheel(Path(folder))

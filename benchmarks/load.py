@@ -1,6 +1,6 @@
 """Many clients at once: `python -m benchmarks.load [--parts mixed,sessions,puts] [--seconds S]`.
 
-*mixed*: clients in processes of their own add, move, remove, get, list and query a map of many entities.
+*mixed*: clients in separate processes add, move, remove, get, list and query a map of many entities.
 *sessions*: so many clients are connected at a time, and each asks. *puts*: two processes put commands as fast
 as they can, while `status` is asked twenty times a second.
 """
@@ -34,23 +34,23 @@ from semmap.schemas.replies import Ack
 _UP = ("--abox", "none", "--no-sim", "--no-record", "--world", "empty")
 _CLIENTS_A_PROCESS = 5
 _OWN = 10
-"""Entities that a client keeps in the map at most: it removes the oldest before it adds another."""
+"""The maximum number of entities of a client; it removes the oldest before it adds another."""
 _LOOK_S = 0.05
 _LOOKS = 100
 _LAST_ACK_S = 60.0
 
 Times = dict[str, list[float]]
-"""By verb [s]."""
+"""Durations by command [s]."""
 
 
 def arguments() -> argparse.Namespace:
-    """What the command line says."""
+    """Parse the command line."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.load", description="Many clients at once.")
     parser.add_argument("--parts", default="mixed,sessions,puts")
     parser.add_argument("--entities", type=int, default=10_000)
     parser.add_argument("--clients", type=int, default=20)
     parser.add_argument(
-        "--pause-ms", type=float, default=50.0, help="of a client after each reply, on average"
+        "--pause-ms", type=float, default=50.0, help="mean pause of a client after each reply"
     )
     parser.add_argument("--seconds", type=float, default=600.0)
     parser.add_argument("--sessions", type=int, default=500)
@@ -61,7 +61,7 @@ def arguments() -> argparse.Namespace:
 
 @contextmanager
 def system(entities: int) -> Iterator[str]:
-    """The endpoint of a system of its own, with so many entities."""
+    """Start a system with `entities` entities; yield its endpoint."""
     endpoint = free_endpoint()
     with tempfile.TemporaryDirectory(prefix="semmap-load-") as folder:
         scene = Path(folder, "scene.json")
@@ -78,7 +78,7 @@ def system(entities: int) -> Iterator[str]:
 
 
 def memory_mb(client: Client) -> dict[str, float]:
-    """Of each node, and of all its children, what is its alone (USS) [MB]."""
+    """Return the unique set size (USS) of each node with its children [MB]."""
     found = {}
     for node in client.status().nodes:
         process = psutil.Process(node.pid)
@@ -96,7 +96,7 @@ def _uss_mb(process: psutil.Process) -> float:
 
 
 def figures(times: Times) -> dict[str, dict[str, float]]:
-    """Count, p50, p90, p99 and the longest [ms], by verb."""
+    """Return count, p50, p90, p99 and maximum [ms], by command."""
     table = {}
     for verb, took in sorted(times.items()):
         took = sorted(took)
@@ -106,7 +106,7 @@ def figures(times: Times) -> dict[str, dict[str, float]]:
 
 
 def mixed(pool: Pool, endpoint: str, words: argparse.Namespace) -> dict[str, Any]:
-    """Clients that do what clients do, for a while."""
+    """Run clients with mixed commands."""
     shares = [
         min(_CLIENTS_A_PROCESS, words.clients - first)
         for first in range(0, words.clients, _CLIENTS_A_PROCESS)
@@ -141,7 +141,7 @@ def mixed(pool: Pool, endpoint: str, words: argparse.Namespace) -> dict[str, Any
 def _clients(
     endpoint: str, count: int, number: int, seconds: float, pause_s: float, entities: int
 ) -> tuple[Times, dict[str, int]]:
-    """In a process: some clients, one after the other by turns, each with a session of its own."""
+    """Run several clients in turn in one process, each with its own session."""
     random_, times, failed = random.Random(number), defaultdict(list), Counter[str]()
 
     def one(client: Client, me: str) -> None:
@@ -170,8 +170,8 @@ def _clients(
 
 
 def _act(client: Client, random_: random.Random, own: list[str], name: str, entities: int) -> tuple[str, Any]:
-    """What a client does next."""
-    somebody = f"cup{random_.randrange(max(1, entities))}"
+    """Return the next command of a client."""
+    cup = f"cup{random_.randrange(max(1, entities))}"
     place = (random_.uniform(-500.0, -10.0), random_.uniform(-500.0, 500.0), 0.0)
     chance = random_.random()
     if chance < 0.35 and len(own) >= _OWN:
@@ -182,14 +182,14 @@ def _act(client: Client, random_: random.Random, own: list[str], name: str, enti
         mine = random_.choice(own)
         return "update", lambda: client.update(mine, at=place)
     if chance < 0.85:
-        return "get", lambda: client.get(somebody)
+        return "get", lambda: client.get(cup)
     if chance < 0.95:
         return "list", lambda: client.list("Bowl")
     return "sparql", lambda: client.sparql("ASK { ?s a dm:Cup }")
 
 
 def sessions(endpoint: str, count: int) -> dict[str, Any]:
-    """So many at a time, each of which asks."""
+    """Measure many simultaneous sessions."""
     began_s, took, failed = time.monotonic(), [], Counter[str]()
     with ExitStack() as stack:
         clients = []
@@ -217,7 +217,7 @@ def sessions(endpoint: str, count: int) -> dict[str, Any]:
 
 
 def puts(pool: Pool, endpoint: str, count: int) -> dict[str, Any]:
-    """What became of each, and how long `status` took meanwhile, and before."""
+    """Measure the outcome of each put, and the duration of `status` during and before them."""
     with connect(endpoint) as client:
         idle = [_status_s(client) for _ in range(_LOOKS)]
         before = client.status().commit
@@ -239,7 +239,7 @@ def puts(pool: Pool, endpoint: str, count: int) -> dict[str, Any]:
 
 
 def _status_s(client: Client) -> float:
-    """How long an answer took [s]; then there is a pause."""
+    """Return the duration of a reply [s], then pause."""
     began_s = time.perf_counter()
     client.status()
     took_s = time.perf_counter() - began_s
@@ -248,7 +248,7 @@ def _status_s(client: Client) -> float:
 
 
 def _flood(endpoint: str, who: str, count: int) -> dict[str, int]:
-    """In a process: so many puts; how many were answered how. What is not was lost."""
+    """Send puts in one process; return the number of replies by outcome. The others are lost."""
     acks: dict[str, str] = {}
 
     def told(_: str, ack: Ack) -> None:
@@ -271,7 +271,7 @@ def _flood(endpoint: str, who: str, count: int) -> dict[str, int]:
 
 
 def main(words: argparse.Namespace) -> dict[str, Any]:
-    """All parts that are wanted, one after the other, on one system."""
+    """Run the selected parts, one after another, on one system."""
     parts: Sequence[str] = words.parts.split(",")
     found: dict[str, Any] = {}
     processes = max(2, -(-words.clients // _CLIENTS_A_PROCESS))

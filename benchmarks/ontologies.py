@@ -29,18 +29,18 @@ from semmap.schemas import errors
 OTHERS = ("owlrl", "reasonable")
 _PATIENCE_S = 60.0
 _LOOK_S = 0.1
-"""How often it is looked how long a process has taken."""
+"""The polling interval for the CPU time of a process."""
 _COLUMNS = ("file", "triples", "compiled", "load_s", "add_p50_ms", "memory_mb", "warnings")
 
 
 def ontologies(folder: Path) -> list[Path]:
-    """The ontologies in a folder and those below it."""
+    """Return the ontologies in a folder and its subfolders."""
     found = (path for suffix in ontology_files.SUFFIXES for path in folder.rglob(f"*{suffix}"))
     return sorted({path for path in found if path.is_file() and path.name != catalogue.FILENAME})
 
 
 def row(file: Path, imports: Mapping[str, Path]) -> dict[str, Any]:
-    """What semmap makes of an ontology, measured in this process."""
+    """Measure semmap with an ontology in this process."""
     try:
         report = tbox_check.check([file], imports)
     except errors.BadFile as error:
@@ -64,7 +64,7 @@ def row(file: Path, imports: Mapping[str, Path]) -> dict[str, Any]:
 
 
 def closure_s(engine: str, file: Path, imports: Mapping[str, Path]) -> dict[str, Any]:
-    """How long another engine takes for the closure of an ontology, measured in this process."""
+    """Measure another engine's closure of an ontology in this process."""
     from rdflib import Graph
 
     from semmap.nodes.kb_node.documents import rdf
@@ -87,7 +87,7 @@ def closure_s(engine: str, file: Path, imports: Mapping[str, Path]) -> dict[str,
 
 
 def measured(file: Path, engine: str, imports: Sequence[str], patience_s: float) -> dict[str, Any]:
-    """One engine's figures for an ontology, from a process of its own, or that it took too long or failed."""
+    """Measure one engine in a separate process; return its figures, or that it timed out or failed."""
     command = [sys.executable, "-m", "benchmarks.ontologies", str(file), "--one", engine]
     command += [word for said in imports for word in ("--import", said)]
     nothing: dict[str, Any] = {"warnings": []} if engine == "semmap" else {f"{engine}_s": None}
@@ -103,7 +103,7 @@ def measured(file: Path, engine: str, imports: Sequence[str], patience_s: float)
 
 
 def _within(process: subprocess.Popen[str], patience_s: float) -> tuple[str, str] | None:
-    """What a process printed; None, and it is ended, if it takes longer, in the processor's time."""
+    """Return the output of a process, or None if it exceeds the CPU time and is killed."""
     while True:
         try:
             return process.communicate(timeout=_LOOK_S)
@@ -115,7 +115,7 @@ def _within(process: subprocess.Popen[str], patience_s: float) -> tuple[str, str
 
 
 def rows(folder: Path, imports: Sequence[str], patience_s: float) -> Iterator[dict[str, Any]]:
-    """A row for each ontology, as soon as it is measured."""
+    """Yield a row for each ontology."""
     installed = [engine for engine in OTHERS if importlib.util.find_spec(engine)]
     for file in ontologies(folder):
         found: dict[str, Any] = {"file": str(file.relative_to(folder))}
@@ -125,7 +125,7 @@ def rows(folder: Path, imports: Sequence[str], patience_s: float) -> Iterator[di
 
 
 def line(found: Mapping[str, Any]) -> str:
-    """A row in Markdown."""
+    """Return a row in Markdown."""
     cells = [_cell(found, name) for name in _COLUMNS[:-1]]
     cells += [_cell(found, f"{engine}_s", found.get(f"{engine}_says", "")) for engine in OTHERS]
     amiss = [*found["warnings"], *filter(None, [found.get("semmap_says")])]

@@ -1,4 +1,4 @@
-"""What a person at the page waits for, and what the page costs, in a headless Chromium.
+"""Latency and cost of the web page in a headless Chromium.
 
     python -m benchmarks.page [--entities 5000] [--changes 50] [--moves 10] [--minutes 0.25] [--json]
 
@@ -63,7 +63,7 @@ _WAIT_MS = 60_000
 
 @contextlib.contextmanager
 def page_of(endpoint: str) -> Iterator[tuple[str, psutil.Process, float]]:
-    """The address of a page, its process, and how long that took to serve [s]."""
+    """Start a page; yield its address, process and start-up time [s]."""
     environment = {**os.environ, "SEMMAP_CONNECT": endpoint}
     began = time.monotonic()
     command = [_SEMMAP, "web", "--port", "0"]
@@ -78,11 +78,11 @@ def page_of(endpoint: str) -> Iterator[tuple[str, psutil.Process, float]]:
 
 
 def opened(browser: Browser, address: str, *, scene: bool = True) -> tuple[Page, float, float]:
-    """A tab, how long it took until it could be used, by its own clock, and the browser's processor time [s].
+    """Open a tab; return it with the time until it was usable (by its clock) and the browser's CPU time [s].
 
-    It can be used when the browser has painted the first rows of its table. Whoever asks from outside is told
-    later: asking waits for the scene, which is prepared then. Without the scene its frame is empty: a browser
-    without a graphics processor draws it for ever.
+    It is usable when the browser has painted the first rows of its table. A query from outside returns
+    later, because it waits until the scene is prepared. Without `scene` its frame is empty, as a browser
+    without a graphics processor would draw it permanently.
     """
     context = browser.new_context(viewport={"width": 1400, "height": 900})
     if not scene:
@@ -97,7 +97,7 @@ def opened(browser: Browser, address: str, *, scene: bool = True) -> tuple[Page,
 
 
 def _used_by_children_s() -> float:
-    """The processor time of Chromium, all its processes together [s]."""
+    """Return the CPU time of all processes of Chromium [s]."""
     used_s = 0.0
     for process in psutil.Process().children(recursive=True):
         with contextlib.suppress(psutil.Error):
@@ -108,20 +108,20 @@ def _used_by_children_s() -> float:
 
 
 class Shown:
-    """When a tab has shown which commit, told by the tab itself, by the clock of this machine."""
+    """The times at which a tab showed each commit, reported by the tab, by this machine's clock."""
 
     def __init__(self, tab: Page) -> None:
         self._tab = tab
         tab.evaluate(_WATCH)
 
     def since(self, commit: int, began_s: float) -> float:
-        """From `began_s`, the time of day, until the commit was there to be seen, or one after it [s]."""
+        """Return the time from `began_s` until this or a later commit was visible [s]."""
         self._tab.wait_for_function(_IS_SHOWN, arg=commit, polling=50, timeout=_WAIT_MS)
         return float(self._tab.evaluate(_SHOWN_AT, commit)) / 1e3 - began_s
 
 
 def effects(client: Client, shown: Shown, changes: int) -> list[float]:
-    """Of changes one by one: from when it was sent until the tab shows its commit [s]."""
+    """Measure single changes from sending until the tab shows the commit [s]."""
     taken = []
     for i in range(changes):
         began_s = time.time()
@@ -132,7 +132,7 @@ def effects(client: Client, shown: Shown, changes: int) -> list[float]:
 
 
 class Rest:
-    """When the simulator said that a body rests, and which commit of the scene's followed."""
+    """The time at which the simulator reported a body at rest, and the following commit of the scene."""
 
     def __init__(self, client: Client, name: str) -> None:
         self._name = name
@@ -146,13 +146,13 @@ class Rest:
         )
 
     def begin(self) -> None:
-        """From now on it is waited for that it has moved, and rests."""
+        """Start waiting until the body has moved and is at rest."""
         self._is_moving = False
         self._rested.clear()
         self._followed.clear()
 
     def wait(self) -> tuple[float, int]:
-        """The time of day when it rested [s], and the commit."""
+        """Return the time at which it was at rest [s], and the commit."""
         if not (self._rested.wait(_WAIT_MS / 1e3) and self._followed.wait(_WAIT_MS / 1e3)):
             raise RuntimeError(f"{self._name} has not come to rest, or the map has not followed")
         return self._rested_s, self._commit
@@ -173,7 +173,7 @@ class Rest:
 
 
 def drags(client: Client, shown: Shown, moves: int) -> list[float]:
-    """Of moves as a drag sends them: from when the body rests until the tab shows the map's commit [s]."""
+    """Measure moves like those of a drag, from the body at rest until the tab shows the commit [s]."""
     name, taken = "dragged", []
     client.add("Chair", name, at=(3.0, 2.2, 0.0), wait=True)
     rest = Rest(client, name)
@@ -188,7 +188,7 @@ def drags(client: Client, shown: Shown, moves: int) -> list[float]:
 
 
 def percentile(values: list[float], share: float) -> float:
-    """The value that this share of all does not exceed."""
+    """Return the quantile of a share."""
     return sorted(values)[math.ceil(share * len(values)) - 1]
 
 
@@ -197,7 +197,7 @@ def _used_s(times: Any) -> float:
 
 
 def cost(process: psutil.Process, seconds: float) -> tuple[float, float]:
-    """The share of a core that the page's process takes, and how much its memory grows [MB]."""
+    """Measure the page's share of a core, and the growth of its memory [MB]."""
     before, memory = process.cpu_times(), process.memory_info().rss
     time.sleep(seconds)
     after = process.cpu_times()
@@ -205,7 +205,7 @@ def cost(process: psutil.Process, seconds: float) -> tuple[float, float]:
 
 
 def of_the_flat(browser: Browser, changes: int, moves: int, minutes: float) -> list[Row]:
-    """The demo flat with its simulator, and one tab."""
+    """Measure the demo flat with its simulator and one tab."""
     endpoint = free_endpoint()
     with (
         tempfile.TemporaryDirectory() as data,
@@ -239,7 +239,7 @@ def of_the_flat(browser: Browser, changes: int, moves: int, minutes: float) -> l
 
 
 def of_many(browser: Browser, entities: int) -> list[Row]:
-    """A map of many entities, without a simulator."""
+    """Measure a map of many entities without a simulator."""
     side = math.ceil(math.sqrt(entities))
     things = [
         {"class": "Cup", "name": f"cup{i}", "at": [i % side * 0.5, i // side * 0.5, 0.0]}
@@ -270,14 +270,14 @@ def of_many(browser: Browser, entities: int) -> list[Row]:
 
 
 def main() -> None:
-    """Measure, and print."""
+    """Measure and print the figures."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--entities", type=int, default=5000, help="of the map of many; 0 leaves it out")
+    parser.add_argument("--entities", type=int, default=5000, help="size of the large map; 0 skips it")
     parser.add_argument("--changes", type=int, default=50)
     parser.add_argument("--moves", type=int, default=10)
-    parser.add_argument("--minutes", type=float, default=0.25, help="how long memory is watched")
+    parser.add_argument("--minutes", type=float, default=0.25, help="duration of the memory measurement")
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args()
     path = shutil.which("chromium") or shutil.which("chromium-browser")

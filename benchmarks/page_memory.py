@@ -1,4 +1,4 @@
-"""Whether the memory of an open page grows, in its process and in the browser, while the map changes.
+"""Measures the memory of an open page, in its process and in the browser, while the map changes.
 
     python -m benchmarks.page_memory [--minutes 60] [--every 60] [--view Check] [--rows FILE.csv]
 
@@ -35,7 +35,7 @@ _PERIOD_S = 1.0
 
 
 def change(client: Client, ended: threading.Event) -> None:
-    """A change about every second, in rounds that leave nothing behind, until `ended`."""
+    """Make a change about every second, in rounds that restore the map, until `ended`."""
     for number in itertools.count():
         name = f"passing{number}"
         steps: tuple[Callable[[], object], ...] = (
@@ -52,7 +52,7 @@ def change(client: Client, ended: threading.Event) -> None:
 
 
 def slope(rows: list[tuple[float, ...]], column: int) -> float:
-    """By how much it grows in an hour."""
+    """Return the growth per hour."""
     later = [row for row in rows if row[0] >= rows[-1][0] / 10]
     if len(later) < 2:
         return 0.0
@@ -61,7 +61,7 @@ def slope(rows: list[tuple[float, ...]], column: int) -> float:
 
 
 def measure(minutes: float, every_s: float, view: str, file: Path | None) -> list[tuple[float, ...]]:
-    """Rows of `_COLUMNS`, one as often as said; each is printed, and written to `file`, as it comes."""
+    """Yield rows of `_COLUMNS` at the given interval; each is printed and written to `file`."""
     path = shutil.which("chromium") or shutil.which("chromium-browser")
     if path is None:
         sys.exit("there is no Chromium: sudo apt-get install chromium")
@@ -107,14 +107,14 @@ def measure(minutes: float, every_s: float, view: str, file: Path | None) -> lis
 
 
 def main() -> None:
-    """Measure, and print."""
+    """Measure and print the figures."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--minutes", type=float, default=60.0)
-    parser.add_argument("--every", type=float, default=60.0, help="seconds between two looks")
-    parser.add_argument("--view", default="Check", help="the tab that is in view in place of the scene")
-    parser.add_argument("--rows", type=Path, help="a CSV file for what was seen")
+    parser.add_argument("--every", type=float, default=60.0, help="seconds between two measurements")
+    parser.add_argument("--view", default="Check", help="the tab that is shown instead of the scene")
+    parser.add_argument("--rows", type=Path, help="a CSV file for the measurements")
     options = parser.parse_args()
     print(*_COLUMNS, sep="\t")
     rows = measure(options.minutes, options.every, options.view, options.rows)

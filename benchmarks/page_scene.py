@@ -1,10 +1,11 @@
-"""What the page's scene costs its process: 500 bodies that all move, and 5 000 entities.
+"""The cost of the page's scene: 500 moving bodies, and 5 000 entities.
 
     python -m benchmarks.page_scene [--bodies 500] [--entities 5000] [--seconds 15] [--json]
 
-It plays the knowledge base and the simulator itself, and measures what `semmap web` takes with one tab open,
-of 640 x 480. A browser that draws in software takes fewer updates than it is offered, so what ten a second
-would take is told, too; and how quickly it draws is measured beside viser alone, with the same triangles.
+It simulates the knowledge base and the simulator, and measures what `semmap web` takes with one tab open,
+of 640 x 480. With software rendering, the browser processes fewer updates than it receives, so the
+cost of ten per second is also calculated. Its frame rate is compared with that of viser alone, with the same
+triangles.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ from semmap.schemas.scenes import Body, Poses, Scene, SceneQuery, Surface, Surfa
 
 _HZ = 20.0
 _BYTES_OF_A_POSE = 28
-"""Three numbers of a position and four of a quaternion, of four bytes each."""
+"""The size of a pose [bytes]: three numbers of a position and four of a quaternion."""
 _MESHES_BYTES = 20_000
 _VIEWPORT: ViewportSize = {"width": 640, "height": 480}
 _ASPECT = 640 / 480
@@ -65,13 +66,13 @@ _MODELS = ("chair", "table", "cup", "book", "bowl", "lamp", "fridge", "couch", "
 
 
 def _grid(entities: int) -> NDArray[np.float64]:
-    """(N, 3) [m]: where things stand."""
+    """Return the positions (N, 3) [m]."""
     side = math.ceil(math.sqrt(entities))
     return np.array([(i % side, i // side, 0.0) for i in range(entities)]) * 1.5
 
 
 class System:
-    """Plays the knowledge base and the simulator: things on a grid, of which the first `moving` all move."""
+    """Simulates the knowledge base and the simulator: things on a grid, of which the first `moving` move."""
 
     def __init__(self, session: bus.Session, entities: int, moving: int) -> None:
         self._node = Node("kb_node", session)
@@ -104,7 +105,7 @@ class System:
         self._thread.start()
 
     def close(self) -> None:
-        """End it."""
+        """Close the session."""
         self._node.stop()
         self._thread.join()
 
@@ -178,7 +179,7 @@ class System:
 
 
 def of_moving(bodies: int, seconds: float) -> list[Row]:
-    """What bodies that all move cost the page's process, with one tab that draws them."""
+    """Measure the cost of moving bodies for the page's process, with one tab."""
     with _page(bodies, bodies) as (page, process, _, sizes):
         page.wait_for_timeout(5000)
         before, began_s, sent = process.cpu_times(), time.monotonic(), sum(sizes)
@@ -200,7 +201,7 @@ def of_moving(bodies: int, seconds: float) -> list[Row]:
 
 
 def of_many(entities: int, seconds: float) -> list[Row]:
-    """A scene at rest, beside viser alone with the same triangles, both drawn in software."""
+    """Measure a static scene, compared with viser alone with the same triangles, in software rendering."""
     with _page(entities, 0) as (page, process, there_s, _):
         (frame,) = (frame for frame in page.frames if "/scene/" in frame.url)
         page.wait_for_timeout(3000)
@@ -222,7 +223,7 @@ def of_many(entities: int, seconds: float) -> list[Row]:
 
 @contextlib.contextmanager
 def _page(entities: int, moving: int) -> Iterator[tuple[Page, psutil.Process, float, list[int]]]:
-    """A tab with its scene, the page's process, after how long the scene came [s], and what comes [bytes]."""
+    """Open a tab; yield it, the page's process, the time until the scene is shown [s], and sizes [bytes]."""
     endpoint = free_endpoint()
     network = bus.Network(connect=(), listen=(endpoint,), mode="peer")
     with contextlib.ExitStack() as stack:
@@ -239,7 +240,7 @@ def _page(entities: int, moving: int) -> Iterator[tuple[Page, psutil.Process, fl
 
 
 def _bare(entities: int, seconds: float) -> tuple[float, float]:
-    """The server and the page of viser with the same batches: there after [s], and pictures a second."""
+    """Measure viser with the same batches: time until shown [s], and frames per second."""
     with contextlib.ExitStack() as stack:
         server = viser.ViserServer(
             host="127.0.0.1", port=int(free_endpoint().rpartition(":")[2]), verbose=False
@@ -268,7 +269,7 @@ def _bare(entities: int, seconds: float) -> tuple[float, float]:
 
 
 def _there(tab: Page, sizes: list[int], begun_s: float) -> float:
-    """How long it took until the meshes had come, and a picture was drawn after that [s]."""
+    """Return the time until the meshes have arrived and been drawn [s]."""
     while sum(sizes) < _MESHES_BYTES and time.monotonic() - begun_s < 120.0:
         tab.wait_for_timeout(100)
     tab.evaluate(_TWO_FRAMES)
@@ -276,7 +277,7 @@ def _there(tab: Page, sizes: list[int], begun_s: float) -> float:
 
 
 def _turned(tab: Page, frame: Frame, seconds: float) -> float:
-    """How many pictures a second the browser manages while somebody drags the view about."""
+    """Return the browser's frames per second while the view is dragged."""
     x, y = _VIEWPORT["width"] / 2, _VIEWPORT["height"] / 2
     frame.evaluate(_COUNT_FRAMES)
     tab.mouse.move(x, y)
@@ -310,13 +311,13 @@ def _count(socket: WebSocket, sizes: list[int], of: str = "/scene/") -> None:
 
 
 def main() -> None:
-    """Measure, and print what was found."""
+    """Measure and print the figures."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--bodies", type=int, default=500, help="bodies that all move; 0 leaves it out")
+    parser.add_argument("--bodies", type=int, default=500, help="number of moving bodies; 0 skips this part")
     parser.add_argument(
-        "--entities", type=int, default=5000, help="entities of a map at rest; 0 leaves it out"
+        "--entities", type=int, default=5000, help="entities of a static map; 0 skips this part"
     )
     parser.add_argument("--seconds", type=float, default=15.0)
     parser.add_argument("--json", action="store_true")

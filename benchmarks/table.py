@@ -1,4 +1,4 @@
-"""What was measured beside what is to be reached."""
+"""Tables of measurements and targets."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Row(NamedTuple):
 
 
 def lines(rows: Sequence[Row]) -> str:
-    """The table in Markdown."""
+    """Return the table in Markdown."""
     head = ["| what | measured | reach | aim | met |", "| --- | --- | --- | --- | --- |"]
     return "\n".join(
         head
@@ -38,7 +38,7 @@ def lines(rows: Sequence[Row]) -> str:
 
 
 def as_json(row: Row) -> dict[str, object]:
-    """A row as other programs read it."""
+    """Return a row as JSON data."""
     better = "higher" if row.more else "lower"
     return {
         "what": row.what, "value": row.value, "unit": row.unit, "reach": row.reach, "aim": row.aim,

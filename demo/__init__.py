@@ -1,1 +1,1 @@
-"""A tour through every command, run for real."""
+"""A tour through all commands on running systems."""

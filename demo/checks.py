@@ -1,4 +1,4 @@
-"""Is what the tour leaves as it should be?"""
+"""Checks of the files that the tour writes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SAID = ("name", "class", "types", "pose", "size_m", "preferred_reference", "alt
 
 
 def check_export(t: Tour) -> None:
-    """The export loads back equal: once over the map as it is, once into an empty one."""
+    """Check that loading the export gives the same map, over the present map and into an empty one."""
     from demo.tour import EXPORT
 
     before = _said(t)
@@ -32,15 +32,15 @@ def check_export(t: Tour) -> None:
 
 
 def check_recording(path: Path, commits: int, failures: list[str]) -> None:
-    """The recording holds every commit, the first and the last too."""
+    """Check that the recording contains all commits."""
     recorded = [commit.seq for commit in read_commits(path)]
     print(f"{path.name}: {len(recorded)} commits, of {commits}")
     if recorded != list(range(1, commits + 1)):
-        failures.append(f"{path} does not hold every commit: {recorded}")
+        failures.append(f"{path} does not contain all commits: {recorded}")
 
 
 def check_drive(path: Path, failures: list[str]) -> None:
-    """The recording shows the robot on its way, not only where it stopped."""
+    """Check that the recording shows the robot driving, not only its stops."""
     batches = (chunk.to_record_batch() for chunk in chunks(path) if chunk.entity_path == _ROBOT)
     columns = (batch.column(_POSITION).to_pylist() for batch in batches if _POSITION in batch.schema.names)
     positions = np.array([at for column in columns for (at,) in filter(None, column)]).reshape(-1, 3)
@@ -51,7 +51,7 @@ def check_drive(path: Path, failures: list[str]) -> None:
 
 
 def check_picture(path: Path, failures: list[str]) -> None:
-    """The picture shows something."""
+    """Check that the image is not blank."""
     pixels = np.asarray(Image.open(path).convert("L"), dtype=float)
     print(f"{path.name}: {pixels.shape[1]} x {pixels.shape[0]}, contrast {pixels.std():.0f}")
     if pixels.std() < 5.0:
@@ -59,7 +59,7 @@ def check_picture(path: Path, failures: list[str]) -> None:
 
 
 def _said(t: Tour) -> list[dict[str, Any]]:
-    """What the map says of each entity, without when and by whom it was said."""
+    """Return the asserted fields of each entity, without provenance."""
     entities = t.ask("list")
     assert isinstance(entities, list)
     return [{key: entity[key] for key in _SAID} for entity in entities]

@@ -1,4 +1,4 @@
-"""The tour's second part: a robot in the flat, what is put into the fridge, and where that is later."""
+"""The second part of the tour: a robot in the flat, and an object that is put into the fridge."""
 
 from __future__ import annotations
 
@@ -12,30 +12,30 @@ CAMERA = ("--camera-hz", "2", "--camera-size", "320", "240")
 
 
 def drive(t: Tour) -> None:
-    """Open the fridge, put the milk in, close it, drive past, and ask where the milk is."""
-    t.tell("A robot is an entity whose pose comes live; its cameras and parts are frames")
+    """Open the fridge, put the milk in, close it, drive past, and search for the milk."""
+    t.heading("A robot is a tracked entity; its cameras and parts are frames")
     t.until("map and scene agree", t.agrees)
     t.do("get", "robot1", holds="from the simulator")
     t.do("frames", "robot1_head", holds="a camera")
 
-    t.tell("Open the fridge, put the milk in, close it: what a hand does, the map follows")
+    t.heading("Open the fridge, put the milk in, close it: manual changes are committed")
     t.do("open", "fridge1", "--joint", "door", holds="door open to 100%")
     t.do("move", "milk1", "--at", "6.55", "0.3", "0.64", holds="moved milk1")
     t.do("list", "--in", "fridge1", holds="milk1")
     t.do("close", "fridge1", holds="door closed")
     t.do("explain", "milk1", "type", "Chilled_Food", holds="100% of its volume is within a hollow of fridge1")
 
-    t.tell("The robot takes the apple along; what is held is where its holder is")
+    t.heading("Attach the apple to the gripper: it moves with the robot")
     t.do("attach", "apple1", "--to", "robot1_gripper", "--at", "0.06", "0", "0", holds="holds apple1")
     t.do("drive", "robot1", "--to", "6.75", "1.2", "--yaw", "-90deg", holds="robot1 is at")
     t.do("list", "--nearest", "3", "--to", "robot1", holds="fridge1")
     t.do("get", "apple1", holds="from the attachment to robot1_gripper")
 
-    t.tell("On it drives, past the counter where the milk was, and lets the apple go")
+    t.heading("Drive past the counter where the milk was, and detach the apple")
     t.do("drive", "robot1", "--to", "8.4", "1.15", "--yaw", "0", holds="robot1 is at")
     t.do("detach", "apple1", holds="apple1 is detached")
 
-    t.tell("Where is the milk? Nobody sees it, and the map knows")
+    t.heading("Where is the milk? No camera sees it, but the map contains it")
     t.do("find", "the milk in the fridge", holds="milk1")
     t.do("relations", "milk1", "fridge1", holds="milk1 is inside fridge1")
     t.do("last-seen", "milk1", holds="not observable: fridge1 has been closed since")

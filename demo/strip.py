@@ -1,4 +1,4 @@
-"""`python -m demo.strip OUT.png`: what two cameras saw in the drive that `make demo` has recorded."""
+"""`python -m demo.strip OUT.png`: images of two cameras from the drive that `make demo` recorded."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _CAMERAS = ("kitchen", "robot1_head")
 _PICTURE, _PLACE, _TIME = "EncodedImage:blob", "Transform3D:translation", "time"
 _ROBOT = "/map/bodies/robot1"
 _AT_X_M = (7.6, 6.76, 7.6, 8.39)
-"""Four moments: before it begins, before the fridge, past the counter, and where it stops; its x then."""
+"""The robot's x at four moments: at the start, at the fridge, past the counter, and at the end."""
 _SIZE, _GAP = (480, 360), 8
 
 
@@ -35,7 +35,7 @@ def main() -> None:
 
 
 def _seen(recording: Path) -> tuple[dict[str, list[tuple[int, bytes]]], list[tuple[int, float]]]:
-    """The pictures of each camera, and the robot's x [m], each with its stamp [ns], in order of time."""
+    """Return the images of each camera and the robot's x [m], with time stamps [ns], in order of time."""
     seen: dict[str, list[tuple[int, bytes]]] = defaultdict(list)
     path: list[tuple[int, float]] = []
     for chunk in chunks(recording):
@@ -55,7 +55,7 @@ def _seen(recording: Path) -> tuple[dict[str, list[tuple[int, bytes]]], list[tup
 
 
 def _when(path: list[tuple[int, float]], moment: int) -> int:
-    """When the robot is nearest to that moment's x [ns]: on its way there, and, for the last two, back."""
+    """Return when the robot is closest to a moment's x [ns]; the last two are on the way back."""
     turned = min(range(len(path)), key=lambda i: path[i][1])
     leg = path[: turned + 1] if moment < 2 else path[turned:]
     return min(leg, key=lambda stood: abs(stood[1] - _AT_X_M[moment]))[0]

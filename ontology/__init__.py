@@ -1,4 +1,4 @@
-"""The household TBox, and a furnished flat to begin with: an ABox and the MJCF world it stands in."""
+"""The household TBox, and an example flat: an ABox and its MJCF world."""
 
 from pathlib import Path
 
@@ -13,6 +13,6 @@ FLAT_WORLD = _HERE / "flat_world.xml"
 EMPTY_WORLD = _HERE / "empty_world.xml"
 """A bare floor with a light and a camera."""
 ALIGNMENTS = _HERE / "alignments"
-"""What the vocabularies of other people's ontologies mean, a file each."""
+"""The alignments with other vocabularies, one file each."""
 MODEL_SHAPES_JSON = _HERE / "model_shapes.json"
 """The size, support surfaces and interiors of each of the simulator's models; see `model_shapes.py`."""

@@ -1,7 +1,7 @@
-"""Which of the models of a class an entity has: the one that its name says, or that its size is nearest to.
+"""Selection of an entity's model among those of its class: by its name, or else by the closest size.
 
-A class has the model that the TBox names for it, and the library's varieties of that one. The choice is a
-function of the map alone, so that every process comes to the same.
+The models of a class are the one in the TBox and the library's varieties of it. The selection depends only
+on the map, so that all processes get the same result.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from semmap.schemas.entities import Size
 
 _WORD = re.compile(r"[A-Z]?[^\W\d_A-Z]+|[A-Z]+(?![^\W\d_A-Z])")
 _DIGITS = "0123456789"
-"""They are in no word: `cup1` and `cup2` say the same."""
+"""Digits are ignored in names: `cup1` and `cup2` select the same model."""
 
 
 def chosen(model: str, name: str, size_m: Size | None) -> str:
-    """The model of an entity called `name`, of a class that has the model `model`.
+    """Return the model of the entity `name`, whose class has the model `model`.
 
-    Among several that its name says, and among all where it says none, the one that is nearest in size
-    counts; without a size (None) the one that is nearest to `model`.
+    Candidates are the models that match the name, or all if none does. The one with the closest size is
+    chosen; without a size (None), the one closest to `model`.
     """
     if not varieties_of(model):
         return model
@@ -40,11 +40,11 @@ def chosen(model: str, name: str, size_m: Size | None) -> str:
 
 
 def require_model(text: str) -> None:
-    """Raises BadRequest with the nearest names for what is neither a model's name nor that of a file."""
+    """Raise BadRequest with similar names for a text that is neither a model nor a file name."""
     if (text and text in shapes()) or "." in text:
         return
     hint = errors.did_you_mean(text, [name for name in shapes() if name])
-    files = "; a file of one's own is named with its ending, as chair.glb"
+    files = "; to use a file of your own, give its name with the extension, such as chair.glb"
     raise errors.BadRequest(f"unknown model '{text}'{hint or files}")
 
 
@@ -55,7 +55,7 @@ def _told_by_size(model: str) -> tuple[str, ...]:
 
 @lru_cache(maxsize=4096)
 def _said_by(model: str, name: str) -> tuple[str, ...]:
-    """The varieties of which the most words are in a name, as in `wine_glass2`, `WineGlass`, `wineglass`."""
+    """Return the varieties with the most words in a name, such as `wine_glass2`, `WineGlass`, `wineglass`."""
     words = {word.lower() for word in _WORD.findall(name)}
     found = {variety: _said(variety, words, model) for variety in varieties_of(model)}
     most = max(found.values(), default=0)
@@ -63,18 +63,18 @@ def _said_by(model: str, name: str) -> tuple[str, ...]:
 
 
 def _said(variety: str, words: Set[str], model: str) -> int:
-    """How many words a name has of what a variety is called; what is said of `model` as well says nothing."""
+    """Return the number of words of a variety in a name, excluding words of `model`."""
     own = set(model.split("_"))
     terms = [term.split() for term in (variety.replace("_", " "), *shapes()[variety].words)]
-    said = (t for t in terms if not own.issuperset(t) and (words >= set(t) or "".join(t) in words))
-    return max(map(len, said), default=0)
+    found = (t for t in terms if not own.issuperset(t) and (words >= set(t) or "".join(t) in words))
+    return max(map(len, found), default=0)
 
 
 def _nearest(candidates: tuple[str, ...], size_m: Size) -> str:
-    """The model that is nearest to a size.
+    """Return the model with the closest size.
 
-    How far off one is: the squared logarithms of the ratios of extents, and once more of proportions. That of
-    proportions, in which the mean is taken off each, is the former less a third of their sum squared.
+    The distance is the sum of the squared logarithms of the ratios of extents, plus the same for proportions.
+    The latter, with the mean subtracted, is the former less a third of the squared sum.
     """
     x, y, z = map(math.log, size_m)
     nearest, least = candidates[0], math.inf
@@ -93,7 +93,7 @@ def _nearest(candidates: tuple[str, ...], size_m: Size) -> str:
 
 @cache
 def _logarithms(model: str) -> tuple[tuple[float, float, float], bool] | None:
-    """Of a model's extents, and whether it may be turned; None for one that is not known."""
+    """Return the logarithms of a model's extents, and whether it can be rotated; None if it is unknown."""
     shape = shapes().get(model)
     if shape is None:
         return None

@@ -1,4 +1,4 @@
-"""How large the simulator's models are, and what they carry and hold: data read off their geometry.
+"""Sizes, support surfaces and interiors of the simulator's models, computed from their geometry.
 
 `ontology/model_shapes.json` is written by `make shapes`; a test compares it with the models.
 """
@@ -20,9 +20,9 @@ Corner = tuple[float, float, float]
 
 
 class Surface(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """A level patch that carries things: its height and the rectangle around it, in the model's frame [m].
+    """A horizontal support surface: its height and bounding rectangle, in the model's frame [m].
 
-    `fill` is the share of the rectangle that is really there (a disc has pi / 4).
+    `fill` is the share of the rectangle that it covers (pi / 4 for a disc).
     """
 
     height: float
@@ -32,10 +32,10 @@ class Surface(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class Interior(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """A hollow that holds things: its box in the model's frame [m]; `open` at the top, or closed.
+    """An interior that can contain things: its box in the model's frame [m]; `open` at the top, or closed.
 
-    `behind` names the joints whose leaves close it: it is closed while all of these are shut. `carried_by`
-    names the joint that carries it, as a drawer does; "" for a hollow of the model's frame.
+    `behind` are the joints whose leaves close it: it is closed while all of them are closed. `carried_by` is
+    the joint that it moves with, such as that of a drawer; "" for a static interior.
     """
 
     low: Corner
@@ -47,11 +47,12 @@ class Interior(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class ConvexPart(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """One convex part that collides, in the model's frame [m]: the Minkowski sum of what it names.
+    """A convex collision part in the model's frame [m]: the Minkowski sum of its components.
 
-    Segments from -v to v (`straight`), an ellipsoid or a disc with these semi-axes (`round`), and the hull of
-    some points (`points`), all around `centre`. A box is three segments, a cylinder a disc and a segment, a
-    capsule a ball and a segment. However it is turned or stretched, it is one again.
+    The components are segments from -v to v (`straight`), an ellipsoid or disc with these semi-axes
+    (`round`), and the convex hull of points (`points`), all around `centre`. A box is three segments, a
+    cylinder a disc and a segment, a capsule a ball and a segment. The form is closed under rotation and
+    scaling.
     """
 
     centre: Corner
@@ -61,11 +62,11 @@ class ConvexPart(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class LeafShape(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """What one joint of a model moves: a door, a lid, a drawer.
+    """The part of a model that one joint moves: a door, a lid, a drawer.
 
-    A hinge turns about `axis` through `anchor` [m], a slide shifts along it; all is in the model's frame, and
-    as it is drawn the joint stands at 0. `limits` are the least and the greatest position [rad, m], `closed`
-    is the one at which it is shut; None for a joint that opens nothing.
+    A hinge rotates about `axis` through `anchor` [m], a slide moves along it, in the model's frame with the
+    joint at 0. `limits` are the lowest and highest position [rad, m]. `closed` is the position at which it is
+    closed; None for a joint that opens nothing.
     """
 
     name: str
@@ -75,18 +76,18 @@ class LeafShape(Struct, frozen=True, kw_only=True, omit_defaults=True):
     limits: Flat | None = None
     closed: float | None = None
     parts: tuple[int, ...] = ()
-    """Which of the model's parts it moves."""
+    """Indices of the model's parts that it moves."""
     surfaces: tuple[int, ...] = ()
-    """Which of the model's surfaces it moves."""
+    """Indices of the model's surfaces that it moves."""
     interiors: tuple[Interior, ...] = ()
-    """The hollows that it carries, as it is drawn; while it is shut they are within those of the model."""
+    """The interiors that move with it, with the joint at 0; when closed, they are inside the model's."""
 
 
 class ModelShape(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """A model at the size `size_m`; an entity of another size has it stretched along each axis.
+    """The shape of a model at the size `size_m`; for an entity of another size it is scaled along each axis.
 
-    `turns`: one that is long where the model is wide has it turned a quarter first, as the simulator does
-    with the library's models. `leaves` are what moves; all else is as it is drawn, with every joint at 0.
+    With `turns`, the model is first rotated by 90 degrees if that matches the entity's proportions better, as
+    in the simulator. `leaves` are the moving parts; all shapes are given with the joints at 0.
     """
 
     size_m: Size
@@ -96,17 +97,17 @@ class ModelShape(Struct, frozen=True, kw_only=True, omit_defaults=True):
     leaves: tuple[LeafShape, ...] = ()
     turns: bool = True
     of: tuple[str, ...] = ()
-    """The models beside which it may be chosen for an entity (`model_choice.py`)."""
+    """The models of which it is a variety (`model_choice.py`)."""
     words: tuple[str, ...] = ()
-    """What it is called in names, beside its own name."""
+    """Further words for it in entity names."""
     only_named: bool = False
-    """Its size alone does not say it."""
+    """Whether it is chosen only by name, not by size."""
 
 
 def own_size_m(model: str) -> Size | None:
-    """Extent of a model of the library along its own axes [m]; of "" that of the box which stands in for one.
+    """Return the extent of a model along its own axes [m]; "" stands for the default box.
 
-    None for a model that is not known, as one from a file of the user's that `add_own` was not told of.
+    It is None for an unknown model, such as a user's file that was not added by `add_own`.
     """
     shape = shapes().get(model)
     return None if shape is None else shape.size_m
@@ -114,12 +115,12 @@ def own_size_m(model: str) -> Size | None:
 
 @cache
 def shapes() -> dict[str, ModelShape]:
-    """Model name to shape, for the library's models and the user's own."""
+    """Return the shapes of the library's and the user's models by name."""
     return msgspec.json.decode(MODEL_SHAPES_JSON.read_bytes(), type=dict[str, ModelShape])
 
 
 def varieties_of(model: str) -> tuple[str, ...]:
-    """The models that may be chosen instead of one that the TBox names for a class."""
+    """Return the models that can be chosen instead of the model of a class in the TBox."""
     return _varieties().get(model, ())
 
 
@@ -133,10 +134,10 @@ def _varieties() -> dict[str, tuple[str, ...]]:
 
 
 def add_own(path: Path) -> None:
-    """Take up the shapes of the user's own models, if there is such a file; before any is asked for.
+    """Add the shapes of the user's models from a file, if it exists. Must be called before any look-up.
 
-    One in the place of a library's model stands for all that this stood for, without the library's
-    varieties of it; one in the place of a variety is chosen as that was.
+    A model with the name of a library model replaces it and its varieties. A model with the name of a variety
+    replaces that variety.
     """
     if not path.is_file():
         return

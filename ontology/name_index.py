@@ -1,4 +1,4 @@
-"""What people call classes and properties, and which one they mean."""
+"""Look-up of classes and properties by name, IRI or label."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ _SEPARATORS = re.compile(r"[\s_-]+")
 
 
 class Named(NamedTuple):
-    """Something of the TBox with a name of its own."""
+    """A named term of the TBox."""
 
     name: str
-    """Unique among its kind: `Chair`, or `soma:Color` where there is another `Color`."""
+    """A unique name: `Chair`, or `soma:Color` if there is another `Color`."""
     iri: str
     """Without brackets."""
     prefixed: str = ""
-    """Its name with a prefix, which need not be said: `dm:Chair`."""
+    """Its name with the prefix: `dm:Chair`."""
     labels: tuple[str, ...] = ()
-    """What people call it, in every language."""
+    """Its labels in all languages."""
 
 
 class Ambiguous(Exception):
-    """A word that may mean several; `names` are those."""
+    """An ambiguous word; `names` are the candidates."""
 
     def __init__(self, names: list[str]) -> None:
         super().__init__(enumerated(names))
@@ -35,14 +35,14 @@ class Ambiguous(Exception):
 
 
 class NameIndex:
-    """Finds what a word means: a name or an IRI; else without regard to case and separators; else a label."""
+    """Resolves a word: by exact name or IRI, then ignoring case and separators, then by label."""
 
     def __init__(self, known: Iterable[Named]) -> None:
         self._exact: dict[str, str] = {}
         self._folded: dict[str, list[str]] = {}
         self._labelled: dict[str, list[str]] = {}
         self._hints: dict[str, str] = {}
-        """Each name and label, and how it is suggested."""
+        """Each name and label, with its text in suggestions."""
         for item in known:
             name = item.name
             for word in (name, item.iri, f"<{item.iri}>"):
@@ -58,7 +58,7 @@ class NameIndex:
             self._hints[name] = name
 
     def find(self, word: str) -> str | None:
-        """The name of what `word` means, or None. Raises Ambiguous."""
+        """Return the name of the term that `word` denotes, or None. Raises Ambiguous."""
         if word in self._exact:
             return self._exact[word]
         key = fold(word)
@@ -70,7 +70,7 @@ class NameIndex:
         return None
 
     def did_you_mean(self, word: str) -> str:
-        """`; did you mean A or B ('its label')?` with the nearest names and labels, or nothing."""
+        """Return `; did you mean A or B ('its label')?` with similar names and labels, or an empty text."""
         found = dict.fromkeys(self._hints[near] for near in nearest(word, self._hints))
         names = {hint.partition(" ('")[0] for hint in found if " ('" not in hint}
         named = [hint for hint in found if hint in names or hint.partition(" ('")[0] not in names]
@@ -78,5 +78,5 @@ class NameIndex:
 
 
 def fold(word: str) -> str:
-    """What of a word counts when it is not taken literally: neither its case nor its separators."""
+    """Return a word without case and separators, for comparison."""
     return _SEPARATORS.sub("", composed(word).casefold())

@@ -1,8 +1,8 @@
-"""Prefixes: short names of namespaces, and through them names that tell two IRIs of one local name apart.
+"""Prefixes of namespaces, which distinguish IRIs with the same local name.
 
-A namespace's prefix is the well-known one, or else the one that the ontology itself declares, or else one
-made from the namespace. So the same ontology gets the same names whichever file it came from. What its file
-declares is kept among its triples (`vann:preferredNamespacePrefix`), and thus with the map.
+A namespace's prefix is the well-known one, or else the one that the ontology declares, or else one generated
+from the namespace. So an ontology gets the same names from any file. Declared prefixes are stored in its
+triples (`vann:preferredNamespacePrefix`) and thereby in the map.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Term, Triple
 
 Prefixes = Mapping[str, str]
-"""Prefix to namespace, both without any punctuation of a syntax: `{"dm": "http://...#"}`."""
+"""Prefix to namespace, both without the punctuation of a syntax: `{"dm": "http://...#"}`."""
 
 WELL_KNOWN: Final[Prefixes] = MappingProxyType(
     {
@@ -50,7 +50,7 @@ WELL_KNOWN: Final[Prefixes] = MappingProxyType(
     }
 )
 PREFERRED_PREFIX: Final[Term] = v.iri(WELL_KNOWN["vann"] + "preferredNamespacePrefix")
-"""Annotation of a namespace's IRI: its prefix."""
+"""The annotation property for the prefix of a namespace."""
 
 _PREFIX = re.compile(r"[a-z][a-z0-9_-]*")
 _SUFFIXES = re.compile(r"\.(owl|ofn|omn|owx|rdf|rdfs|ttl|nt|xml|jsonld|json|obo)$", re.IGNORECASE)
@@ -58,34 +58,34 @@ _VERSION = re.compile(r"v?[0-9][0-9.]*$", re.IGNORECASE)
 
 
 def split(iri: Term) -> tuple[str, str]:
-    """The namespace and the local name of an IRI term, as `vocabulary.local_name` tells them apart."""
+    """Split an IRI term into namespace and local name, like `vocabulary.local_name`."""
     local = v.local_name(iri)
     text = v.bare(iri)
     return text[: len(text) - len(local)], local
 
 
 def declared_in(triples: Iterable[Triple]) -> dict[str, str]:
-    """Namespace to the prefix that an ontology's triples declare for it."""
-    said = sorted((s, o) for s, p, o in triples if p == PREFERRED_PREFIX and o.startswith('"'))
-    return {v.bare(s): v.lexical(o) for s, o in said if s.startswith("<")}
+    """Return the prefixes that an ontology's triples declare, by namespace."""
+    declared = sorted((s, o) for s, p, o in triples if p == PREFERRED_PREFIX and o.startswith('"'))
+    return {v.bare(s): v.lexical(o) for s, o in declared if s.startswith("<")}
 
 
 def declarations(of_file: Prefixes, triples: Collection[Triple]) -> list[Triple]:
-    """The triples that keep the prefixes of the namespaces in which `triples` declare classes and properties.
+    """Return triples that declare the prefixes of the namespaces in which `triples` define terms.
 
-    `of_file` are those that the file declares. Those that are well known anyhow are left out.
+    `of_file` are the prefixes in the file. Well-known prefixes are left out.
     """
     kinds = (v.OWL_CLASS, v.RDFS_CLASS, *v.PROPERTY_KINDS)
     used = {split(s)[0] for s, p, o in triples if p == v.RDF_TYPE and o in kinds and s.startswith("<")}
     declared = {namespace: prefix for prefix, namespace in sorted(of_file.items(), reverse=True)}
     chosen = prefixes_of(used, {**declared, **declared_in(triples)})
     own = [(prefix, namespace) for prefix, namespace in chosen.items() if WELL_KNOWN.get(prefix) != namespace]
-    said = [(v.iri(namespace), PREFERRED_PREFIX, v.literal(prefix)) for prefix, namespace in own]
-    return [(PREFERRED_PREFIX, v.RDF_TYPE, v.OWL_ANNOTATION_PROPERTY), *said] if said else []
+    found = [(v.iri(namespace), PREFERRED_PREFIX, v.literal(prefix)) for prefix, namespace in own]
+    return [(PREFERRED_PREFIX, v.RDF_TYPE, v.OWL_ANNOTATION_PROPERTY), *found] if found else []
 
 
 def used_by(triples: Iterable[Triple], prefixes: Prefixes) -> dict[str, str]:
-    """Those of `prefixes` that the properties and classes of `triples` need, and the map's own."""
+    """Return the prefixes that the properties and classes of `triples` need, and the map's own."""
     terms = {o if p == v.RDF_TYPE else p for _, p, o in triples}
     namespaces = {split(term)[0] for term in terms if term.startswith("<")}
     needed = {prefix: namespace for prefix, namespace in prefixes.items() if namespace in namespaces}
@@ -95,7 +95,7 @@ def used_by(triples: Iterable[Triple], prefixes: Prefixes) -> dict[str, str]:
 def prefixes_of(
     namespaces: Iterable[str], declared: Mapping[str, str] = MappingProxyType({})
 ) -> dict[str, str]:
-    """Prefix to namespace for each of `namespaces`, no two alike; `declared` is namespace to prefix.
+    """Return a unique prefix for each of `namespaces`; `declared` maps namespaces to prefixes.
 
     The result does not depend on the order of the namespaces.
     """
@@ -118,14 +118,14 @@ def prefixes_of(
 
 
 def prefixed(iri: Term, prefixes: Prefixes) -> str:
-    """`prefix:local`, or the IRI itself where its namespace has no prefix."""
+    """Return `prefix:local`, or the IRI itself if its namespace has no prefix."""
     namespace, local = split(iri)
     prefix = next((prefix for prefix, known in prefixes.items() if known == namespace), None)
     return v.bare(iri) if prefix is None else f"{prefix}:{local}"
 
 
 def names(iris: Collection[Term], prefixes: Prefixes) -> dict[Term, str]:
-    """What to call each IRI: its local name, or, where several share it, `prefix:local`.
+    """Return a name for each IRI: its local name, or `prefix:local` if several share it.
 
     No two have the same name, and an IRI that ends in no local name is called by what stands before it.
     """
@@ -144,7 +144,7 @@ def names(iris: Collection[Term], prefixes: Prefixes) -> dict[Term, str]:
 
 
 def told_apart(iris: Collection[Term], prefixes: Prefixes) -> dict[str, dict[str, Term]]:
-    """Each local name that several IRIs share, to their names with prefixes, and these to the IRIs."""
+    """Return each local name that several IRIs share, with their prefixed names and IRIs."""
     sharing: dict[str, dict[str, Term]] = {}
     for iri in sorted(iris):
         sharing.setdefault(v.local_name(iri), {})[prefixed(iri, prefixes)] = iri
@@ -152,7 +152,7 @@ def told_apart(iris: Collection[Term], prefixes: Prefixes) -> dict[str, dict[str
 
 
 def _made_from(namespace: str) -> str:
-    """A prefix from the last telling word of a namespace: `http://x.org/onto/lab.owl#` is `lab`."""
+    """Return a prefix from the last significant word of a namespace: `lab` for `http://x.org/lab.owl#`."""
     parts = urlsplit(namespace)
     words = [_SUFFIXES.sub("", unquote(word)) for word in re.split("[/:]", parts.path) if word]
     telling = [word for word in words if not _VERSION.fullmatch(word)]

@@ -1,4 +1,4 @@
-"""The IRIs that code speaks of, and RDF terms as text.
+"""The IRIs that the code uses, and RDF terms as text.
 
 A term is written as in N-Triples: `<iri>`, `_:label`, `"text"`, `"text"@en`, `"1.0"^^<datatype>`. Literals
 made here are canonical (the form that Oxigraph prints), so equal literals are equal strings.
@@ -22,34 +22,34 @@ OWL: Final = "http://www.w3.org/2002/07/owl#"
 XSD: Final = "http://www.w3.org/2001/XMLSchema#"
 
 PREFIXES: Final = {"dm": TBOX, "": ABOX, "owl": OWL, "xsd": XSD}
-"""The prefixes of what is written."""
+"""The prefixes in written documents."""
 
 TBOX_ONTOLOGY: Final[Term] = f"<{TBOX.removesuffix('#')}>"
 ABOX_ONTOLOGY: Final[Term] = f"<{ABOX.removesuffix('#')}>"
 
 
 def iri(text: str) -> Term:
-    """The IRI term of a full IRI."""
+    """Return the IRI term of a full IRI."""
     return f"<{text}>"
 
 
 def dm(local: str) -> Term:
-    """The IRI term of a class, property or individual of the TBox: `dm("Chair")`."""
+    """Return the IRI term of a class, property or individual of the TBox: `dm("Chair")`."""
     return f"<{TBOX}{local}>"
 
 
 def entity_iri(name: str) -> Term:
-    """The IRI term of the entity, place, position, size or reference with this name in the ABox."""
+    """Return the IRI term of the entity, place, position, size or label with this name in the ABox."""
     return f"<{ABOX}{name}>"
 
 
 def bare(term: Term) -> str:
-    """The IRI of an IRI term, without its brackets."""
+    """Return the IRI of an IRI term, without its brackets."""
     return term[1:-1]
 
 
 def local_name(term: Term) -> str:
-    """What follows the last `#`, or else the last `/` or `:`, of an IRI term; any other term as it is."""
+    """Return the part after the last `#`, or else `/` or `:`, of an IRI term; other terms unchanged."""
     if not term.startswith("<"):
         return term
     text = term[1:-1]
@@ -57,7 +57,7 @@ def local_name(term: Term) -> str:
 
 
 def entity_name(term: Term) -> str:
-    """The name of an individual with this IRI: its local name, composed (NFC) and without percent escapes."""
+    """Return the name of an individual: its local name, composed (NFC) and without percent escapes."""
     name = local_name(term)
     if "%" not in name and name.isascii():
         return name  # as most are
@@ -72,7 +72,7 @@ _LITERAL: Final = re.compile(r'"((?:[^"\\]|\\.)*)"(?:\^\^<([^>]*)>|@([A-Za-z0-9-
 
 
 def literal(text: str, datatype: Term | None = None, lang: str | None = None) -> Term:
-    """The literal term of a text, with a datatype (an IRI term) or a language, or a plain string.
+    """Return the literal term of a text, with a datatype (an IRI term) or a language, or a plain string.
 
     Raises:
         ValueError: both a datatype and a language are given.
@@ -86,7 +86,7 @@ def literal(text: str, datatype: Term | None = None, lang: str | None = None) ->
 
 
 def lexical(term: Term) -> str:
-    """The text of a literal term, without its datatype or language.
+    """Return the text of a literal term, without its datatype or language.
 
     Raises:
         ValueError: the term is not a literal, or has an escape that N-Triples does not know.
@@ -96,8 +96,8 @@ def lexical(term: Term) -> str:
     return _parts(term)[0]
 
 
-def spoken(triple: Triple, names: Mapping[Term, str] | None = None) -> str:
-    """A triple in local names and plain text, for people; `names` tell apart what is called alike."""
+def to_words(triple: Triple, names: Mapping[Term, str] | None = None) -> str:
+    """Return a readable triple with local names; `names` disambiguates equal ones."""
     apart = names or {}
     return " ".join(
         lexical(term) if term.startswith('"') else apart.get(term) or local_name(term) for term in triple
@@ -105,7 +105,7 @@ def spoken(triple: Triple, names: Mapping[Term, str] | None = None) -> str:
 
 
 def datatype_of(term: Term) -> Term:
-    """The datatype of a literal term as an IRI term.
+    """Return the datatype of a literal term as an IRI term.
 
     Raises:
         ValueError: the term is not a literal.
@@ -117,7 +117,7 @@ def datatype_of(term: Term) -> Term:
 
 
 def language_of(term: Term) -> str | None:
-    """The language of a literal term in lower case, or None.
+    """Return the language of a literal term in lower case, or None.
 
     Raises:
         ValueError: the term is not a literal.
@@ -152,9 +152,9 @@ def _unescape(match: re.Match[str]) -> str:
 
 ABSTRACT_THING: Final = dm("Abstract_Thing")
 PHYSICAL_THING: Final = dm("Physical_Thing")
-"""The spatial classes are this one and its subclasses."""
+"""The root of the classes of physical things."""
 LOCATION: Final = dm("Location")
-"""The places' classes are this one and its subclasses."""
+"""The root of the classes of places."""
 OBJECT: Final = dm("Object")
 PROPERTY: Final = dm("Property")
 
@@ -166,7 +166,7 @@ ALTERNATIVE_REFERENCE: Final = dm("AlternativeReference")
 HAS_POSITION: Final = dm("hasPosition")
 HAS_SIZE: Final = dm("hasSize")
 HAS_EXTENT: Final = dm("hasExtent")
-"""The polygon that a place covers, a literal of `WKT_LITERAL`."""
+"""The property for the polygon of a place, a literal of `WKT_LITERAL`."""
 HAS_PREFERRED_REFERENCE: Final = dm("hasPreferredReference")
 HAS_ALTERNATIVE_REFERENCE: Final = dm("hasAlternativeReference")
 LEXICAL_REFERENCE: Final = dm("lexicalReference")
@@ -192,27 +192,27 @@ IS_LOCATED_IN: Final = dm("isLocatedIn")
 IS_OPEN: Final = dm("isOpen")
 OPENNESS: Final = dm("openness")
 JOINT_POSITIONS: Final = dm("jointPositions")
-"""How far open a thing is and how its joints stand; each says more than the one before."""
+"""The properties for openness and joint positions, each more precise than the previous one."""
 IS_SWITCHED_ON: Final = dm("isSwitchedOn")
 SWITCH_POSITIONS: Final = dm("switchPositions")
-"""Whether it is on, and how its switches stand; the second says more."""
+"""The properties for switch states; the second is more precise."""
 
 IS_GRASPED_BY: Final = dm("isGraspedBy")
 GRASP_POSE: Final = dm("graspPose")
-"""What holds a thing, and where in the frame of that."""
+"""The properties of an attachment: the parent entity, and the pose in its frame."""
 
 CONFLICTING_OBSERVATION: Final = dm("conflictingObservation")
 TRACKED_FROM: Final = dm("trackedFrom")
-"""Annotation of an entity: what perception sees against what the map says of it."""
+"""Annotation of an entity: an observation that contradicts the map."""
 
 SPATIAL: Final = dm("spatial")
-"""Annotation of a class: true for a root of the classes of things in space."""
+"""Annotation of a class: true for a root of the classes of physical things."""
 SET_ASIDE: Final = dm("setAside")
-"""Annotation of a term of the TBox: a statement about it that does not count, and why."""
+"""Annotation of a term of the TBox: a statement about it that is ignored, and why."""
 MODEL: Final = dm("model")
 """Annotation of a class, or of an entity: the name or file of its body model."""
 FIXED: Final = dm("fixed")
-"""Annotation of a class: whether its bodies stay where they are put."""
+"""Annotation of a class: whether its bodies are fixed."""
 
 
 # ---- RDF, RDFS, OWL, XSD ----

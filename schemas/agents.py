@@ -1,7 +1,7 @@
-"""Names in commits: those that a certificate has proved, and those that were merely claimed.
+"""Agent names in commits: authenticated by a certificate, or only claimed.
 
-Between the coordinator and the knowledge base a proved name carries a mark, which nobody can claim. A commit
-has the bare name and says which of the two it is.
+Between the coordinator and the knowledge base, an authenticated name has a mark that clients cannot send. A
+commit has the name without the mark and the field `authenticated`.
 """
 
 from __future__ import annotations
@@ -12,15 +12,15 @@ _MARK: Final = "@"
 
 
 def proved(name: str) -> str:
-    """A name that a certificate has proved, marked."""
+    """Return an authenticated name with the mark."""
     return f"{_MARK}{name}"
 
 
 def is_proved(agent: str) -> bool:
-    """Is it marked?"""
+    """Return whether a name has the mark."""
     return agent.startswith(_MARK)
 
 
 def name_of(agent: str) -> str:
-    """The name without the mark."""
+    """Return the name without the mark."""
     return agent.removeprefix(_MARK)

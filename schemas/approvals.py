@@ -1,4 +1,4 @@
-"""Changes that an agent may make only when a person has approved them."""
+"""Changes by agents that require a person's approval."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ from typing import Annotated, Literal
 from msgspec import Meta, Struct
 
 Decision = Literal["waiting", "approved", "rejected"]
-Told = tuple[Annotated[str, Meta(max_length=1000)], ...]
+Consequences = tuple[Annotated[str, Meta(max_length=1000)], ...]
 
 
 class Request(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What an agent asks to be allowed to do: `text` says what, `follows` what would follow from it.
+    """An agent's request for approval: `text` describes the change and `follows` its consequences.
 
-    `agent` is who asks, `by` who decided. It is known by its `number` until it is forgotten: an hour after it
-    was asked, or when the coordinator is restarted.
+    `agent` is the requester, and `by` is who decided. The request is identified by its `number`. It expires
+    after an hour, or when the coordinator is restarted.
     """
 
     number: int
     agent: str
     text: str
-    follows: Told = ()
+    follows: Consequences = ()
     reason: str = ""
     stamp_ns: int
     decision: Decision = "waiting"

@@ -1,7 +1,7 @@
-"""The file that `semmap backup` makes: the rows of a journal, each with its digest.
+"""The file format of `semmap backup`: the rows of a journal, each with its digest.
 
-A file is `MAGIC` and a sequence of frames, each 4 bytes of length (big-endian) and a message. A row that is
-large is in several pieces, one after another.
+A file consists of `MAGIC` and a sequence of frames: a length of 4 bytes (big-endian) and a message. A large
+row is split into several consecutive pieces.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ Kind = Literal["tbox", "beginning", "snapshot", "commit", "checkpoint"]
 
 
 class Opening(Struct, frozen=True, kw_only=True, tag="opening"):
-    """Which map it is, and as of which commit."""
+    """The header of a backup: the identity of the map, and its first and last commit."""
 
     map_id: str
-    """The digest of the map's very first commit, in hexadecimal."""
+    """The digest of the map's first commit, in hexadecimal."""
     begun_ns: int
-    """When that was made."""
+    """The time of the map's first commit."""
     first: int
-    """The first commit that is there, not only in a snapshot."""
+    """The first commit that is included and not only part of a snapshot."""
     last: int
     digest: str
-    """That of all commits up to the last."""
+    """The digest of all commits up to the last."""
     stamp_ns: int
-    """When the last one was made."""
+    """The time of the last commit."""
     chain: bytes = b""
-    """The digest of what was before the first."""
+    """The digest of the history before the first commit."""
 
 
 class Piece(Struct, frozen=True, kw_only=True, tag="piece", omit_defaults=True):
@@ -56,7 +56,7 @@ class Piece(Struct, frozen=True, kw_only=True, tag="piece", omit_defaults=True):
 
 
 class End(Struct, frozen=True, kw_only=True, tag="end"):
-    """Nothing is missing."""
+    """The end of the file, which shows that it is complete."""
 
     last: int
 
@@ -70,19 +70,19 @@ class Restored(Struct, frozen=True, kw_only=True):
     """A map that a backup was restored to."""
 
     opening: Opening
-    """Which map it is, and as of which commit."""
+    """The header of the backup."""
     entities: int
     kept: str | None = None
-    """The folder that the map before it was moved to, if there was one."""
+    """The folder that the previous map was moved to, if there was one."""
 
     @property
     def text(self) -> str:
-        """What there is to say of it, in a sentence."""
+        """A summary in one sentence."""
         map_ = self.opening
-        aside = "" if self.kept is None else f"; the map before is kept in {self.kept}"
+        previous = "" if self.kept is None else f"; the previous map was moved to {self.kept}"
         return (
             f"map {map_.map_id[:12]}, begun {_at(map_.begun_ns)}, as it was after commit {map_.last}"
-            f" ({_at(map_.stamp_ns)}), {wording.entities(self.entities)}{aside}"
+            f" ({_at(map_.stamp_ns)}), {wording.entities(self.entities)}{previous}"
         )
 
 
@@ -93,38 +93,38 @@ def _at(stamp_ns: int) -> str:
 
 
 class BackupPart(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Some of the file; what comes after it is asked for by `next`, which is empty at the end."""
+    """A part of the file; `next` requests the following part, and is empty at the end."""
 
     content: bytes
     next: str = ""
 
 
 def framed(frame: Frame) -> bytes:
-    """A frame as it stands in the file."""
+    """Return a frame in the file's encoding."""
     message = _encoder.encode(frame)
     return len(message).to_bytes(_LENGTH, "big") + message
 
 
 def read(file: Path) -> Iterator[Opening | Piece]:
-    """What is in a backup: the opening, then the rows, each whole and as its digest says.
+    """Yield the header of a backup, then its rows, each complete and verified by its digest.
 
-    Raises BadFile for what is no backup, or is not whole, or damaged.
+    Raises BadFile if the file is not a backup, or is incomplete or damaged.
     """
     try:
         with file.open("rb") as opened:
             if opened.read(len(MAGIC)) != MAGIC:
-                raise BadFile(f"{file} is not a backup of a map")
+                raise BadFile(f"{file} is not a backup; create one with: semmap backup FILE")
             yield from _rows(file, opened)
     except OSError as error:
         raise BadFile(f"{file} cannot be read: {error.strerror}") from None
 
 
 def verify(file: Path) -> Opening:
-    """The opening of a backup that is whole. Raises BadFile."""
+    """Verify a whole backup and return its header. Raises BadFile."""
     rows = read(file)
     opening = next(rows)
     if not isinstance(opening, Opening):
-        raise BadFile(f"{file} does not begin with the opening of a backup")
+        raise BadFile(f"{file}: the header of the backup is missing")
     deque(rows, maxlen=0)
     return opening
 
@@ -138,7 +138,7 @@ def _rows(file: Path, opened: BinaryIO) -> Iterator[Opening | Piece]:
     parts: list[bytes] = []
     begun: tuple[str, int] | None = None
     while isinstance(frame := _frame(file, opened), Piece):
-        if begun != (frame.kind, frame.seq):  # a checkpoint that gave way to a newer one meanwhile
+        if begun != (frame.kind, frame.seq):  # a newer checkpoint replaced an incomplete one
             parts, begun = [], (frame.kind, frame.seq)
         parts.append(frame.content)
         if frame.more:
@@ -168,5 +168,5 @@ def _frame(file: Path, opened: BinaryIO) -> Frame:
 
 
 def damaged(file: Path) -> BadFile:
-    """What to raise for a backup that is not as it was written."""
-    return BadFile(f"{file} is damaged, or a part of it is missing; use another backup")
+    """Return the error for a damaged backup."""
+    return BadFile(f"{file} is damaged or incomplete; use another backup")

@@ -1,4 +1,4 @@
-"""What the coordinator asks of the knowledge base, besides `commit` (schemas/commits.py)."""
+"""Requests to the knowledge base, besides `commit` (schemas/commits.py)."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ from semmap.schemas.relations import Where
 
 
 class Outcome(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What became of one of several changes: an error, or else the commit (None when it changed nothing)."""
+    """The result of one of several transactions: an error, or the commit (None if nothing changed)."""
 
     commit: Effects | None = None
     error: ErrorMessage | None = None
 
 
 class Loaded(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The commit, the last of so many `parts`; the names of all entities that changed; what was left out."""
+    """The result of loading: the last commit of `parts` parts, the changed entities, and skipped ones."""
 
     commit: Effects | None
     parts: int = 1
@@ -57,10 +57,10 @@ class Loaded(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class SnapshotQuery(Call[Snapshot], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The entities, with the number of the commit that they are true after.
+    """Request the entities, with the number of the last commit.
 
-    With a `limit`, a page of that many at most: those whose names come after `after`, in their order. Other
-    commits may come between two pages; who follows those and takes them all in has the map in the end.
+    With a `limit`, the reply is a page of at most so many entities, sorted by name, that follow the name
+    `after`. Commits between two pages must be applied by the client to get a consistent map.
     """
 
     VERB: ClassVar[str] = "snapshot"
@@ -69,34 +69,33 @@ class SnapshotQuery(Call[Snapshot], frozen=True, kw_only=True, forbid_unknown_fi
 
 
 class MapCopy(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A map as it is after commit `seq`, for who keeps it elsewhere and follows its commits from there.
+    """A map after commit `seq`, for a mirror that applies the later commits.
 
-    Its `triples` are all that was asserted and is not the TBox's; blank nodes have the labels that commits
-    call them by.
+    `triples` are all asserted triples outside the TBox; blank nodes have the same labels as in commits.
     """
 
     map_id: str
-    """The digest of the map's very first commit: a map that is begun anew has another."""
+    """The digest of the first commit, which identifies the map."""
     begun_ns: int
-    """When that was made."""
+    """The time of the first commit."""
     seq: int
     digest: str
-    """That of all commits up to `seq`."""
+    """The digest of all commits up to `seq`."""
     stamp_ns: int
-    """When commit `seq` was made."""
+    """The time of commit `seq`."""
     triples: tuple[Triple, ...] = ()
     entities: tuple[Entity, ...] = ()
 
 
 class CopyQuery(Call[MapCopy], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The whole map; without `content` only which map it is, and as of which commit."""
+    """Request the whole map, or without `content` only its identity and last commit."""
 
     VERB: ClassVar[str] = "copy"
     content: bool = True
 
 
 class StarQuery(Call[tuple[Star, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The stars of these entities, taken together; UnknownName if one is not there."""
+    """Request the entity triples of several entities. Raises UnknownName if one does not exist."""
 
     LARGEST: ClassVar[int] = MANY
 
@@ -106,14 +105,15 @@ class StarQuery(Call[tuple[Star, ...]], frozen=True, kw_only=True, forbid_unknow
 
     @property
     def is_quick(self) -> bool:
-        """It is."""
+        """Always true."""
         return True
 
 
 class LoadOf(Call[tuple[str, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What a thing bears: all that stands on it or is inside it, what bears before what is borne.
+    """Request the names of all objects on or inside an object; supports come before what they support.
 
-    Not what `leave` names, nor what only that bears. Refused for a place, and for what has no position.
+    The objects in `leave`, and objects that only they support, are excluded. Raises Refused for a place, and
+    for an entity without a position.
     """
 
     VERB: ClassVar[str] = "load-of"
@@ -123,7 +123,7 @@ class LoadOf(Call[tuple[str, ...]], frozen=True, kw_only=True, forbid_unknown_fi
 
 
 class MadeBy(Call[tuple[Effects | None, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The commits that these commands have made already; None for a command that has made none."""
+    """Request the commits of these commands; None for a command without a commit."""
 
     LARGEST: ClassVar[int] = MANY
 
@@ -133,12 +133,12 @@ class MadeBy(Call[tuple[Effects | None, ...]], frozen=True, kw_only=True, forbid
 
     @property
     def is_quick(self) -> bool:
-        """It is."""
+        """Always true."""
         return True
 
 
 class Recall(Call[tuple[Commit, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """These commits again, for a follower that has missed them; those that there never were are left out."""
+    """Request commits by number, for a subscriber that missed them; nonexistent ones are left out."""
 
     VERB: ClassVar[str] = "recall"
 
@@ -146,12 +146,12 @@ class Recall(Call[tuple[Commit, ...]], frozen=True, kw_only=True, forbid_unknown
 
     @property
     def is_quick(self) -> bool:
-        """It is."""
+        """Always true."""
         return True
 
 
 class Transactions(Call[tuple[Outcome, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Several changes, each accepted or refused by itself in this order, and made durable together."""
+    """Several transactions, accepted or rejected one by one in this order, and made durable together."""
 
     LARGEST: ClassVar[int] = DOCUMENT
 
@@ -161,12 +161,12 @@ class Transactions(Call[tuple[Outcome, ...]], frozen=True, kw_only=True, forbid_
 
     @property
     def is_quick(self) -> bool:
-        """It is."""
+        """Always true."""
         return True
 
 
 class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Add an ABox in any RDF syntax, with `replace` instead of the present one; see `commands.Load`."""
+    """Load an ABox in any RDF syntax, or with `replace` replace the present one; see `commands.Load`."""
 
     LARGEST: ClassVar[int] = DOCUMENT
 
@@ -184,13 +184,13 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
     parts: bool = False
     dry_run: bool = False
     told: bool = False
-    """The coordinator asks for one commit, and takes it from the reply; see `Transaction.told`."""
+    """Sent by the coordinator, which takes the commit from the reply; see `Transaction.told`."""
 
 
 class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Let the TBox of a document, in any RDF syntax, take the place of the present one.
+    """Replace the TBox by that of a document in any RDF syntax.
 
-    `spatial_root` are the classes of things in space, by IRI or name, where that is not known by itself.
+    `spatial_root` are the classes of physical things, by IRI or name, if the TBox does not show it.
     """
 
     LARGEST: ClassVar[int] = DOCUMENT
@@ -208,9 +208,9 @@ class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
 
 class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The entities of a class, given by its exact name (all, without one); with `as_of` those of then.
+    """Request the entities of a class, by its exact name (or all); with `as_of`, at that time.
 
-    With `where` only those that are there; by distance if it asks for the nearest.
+    `where` restricts them by position; the nearest ones are sorted by distance.
     """
 
     VERB: ClassVar[str] = "list"
@@ -220,12 +220,12 @@ class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unkno
 
     @property
     def is_quick(self) -> bool:
-        """It is."""
+        """Always true."""
         return True
 
 
 class PlanOf(Call[Plan], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The plan of the map; `walls` are those of the simulated world, None without one."""
+    """Request the floor plan; `walls` are those of the simulated world, None without one."""
 
     LARGEST: ClassVar[int] = MANY
 
@@ -235,7 +235,7 @@ class PlanOf(Call[Plan], frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class WayOf(Call[Way], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A way through the map; see `semmap.schemas.commands.FindWay`, and `PlanOf` for the walls."""
+    """Request a path; see `semmap.schemas.commands.FindWay`, and `PlanOf` for the walls."""
 
     LARGEST: ClassVar[int] = MANY
 
@@ -249,7 +249,7 @@ class WayOf(Call[Way], frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class TakeBack(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Take back a commit by another one; see `semmap.schemas.commands.Undo`."""
+    """Undo a commit by another one; see `semmap.schemas.commands.Undo`."""
 
     VERB: ClassVar[str] = "undo"
     id: CommandId
@@ -259,7 +259,7 @@ class TakeBack(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_f
     commit: Annotated[int, Meta(ge=1, le=1 << 53)] | None = None
     dry_run: bool = False
     told: bool = False
-    """The coordinator asks; see `Transaction.told`."""
+    """Sent by the coordinator; see `Transaction.told`."""
 
 
 BRIDGE: dict[str, type[Call]] = {
@@ -285,4 +285,4 @@ BRIDGE: dict[str, type[Call]] = {
         *(Backup, Compact),
     )
 }
-"""Verb to type: what `semmap/bridge/<verb>` takes."""
+"""The request types of `semmap/bridge/<verb>`."""

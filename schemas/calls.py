@@ -1,6 +1,6 @@
-"""Calls: messages that are answered, each with the type of its answer, so that mypy checks the wire.
+"""RPC requests with their reply types, so that mypy checks both ends.
 
-`Get(name="cup1")` is a `Call[Entity]`: who sends it gets an `Entity`, and who serves it must give one.
+`Get(name="cup1")` is a `Call[Entity]`: its sender gets an `Entity`, and its handler must return one.
 """
 
 from __future__ import annotations
@@ -25,29 +25,29 @@ else:
 
 
 class Call(Struct, Generic[R], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A message whose answer is an R: `class Get(Call[Entity])`."""
+    """A request with a reply of type R: `class Get(Call[Entity])`."""
 
     VERB: ClassVar[str]
-    """The last chunk of the key at which it is asked; it is a field of the message in commands only."""
+    """The last chunk of the request's key; only commands also have it as a field of the message."""
     LARGEST: ClassVar[int] = 1 << 20
-    """Bytes that such a message may have, encoded. What takes more than that to say is said in a document."""
+    """The maximum size of the encoded message [bytes]; larger content is sent as a document."""
 
     @property
     def is_quick(self) -> bool:
-        """Is it answered in moments by one who is not busy, and does it do no more when it is asked twice?
+        """Whether the request is short and idempotent.
 
-        Such a call is asked anew when a minute has brought no answer.
+        Such a request is sent again if there is no reply for a minute.
         """
         return False
 
     @classmethod
     def answered_by(cls, function: Callable[[Self], R | Future[R] | Relay[R]]) -> Handler:
-        """Pair this type of call with the function that answers it, at once, later, or by another node."""
+        """Pair this request type with its handler, which replies directly, later or through another node."""
         return Handler(cls, function)
 
 
 class Handler(NamedTuple):
-    """A type of call, and the function that answers such calls."""
+    """A request type and the function that handles it."""
 
     kind: type[Any]
     function: Callable[[Any], Any]
@@ -55,7 +55,7 @@ class Handler(NamedTuple):
 
 @dataclass(frozen=True)
 class Relay(Generic[R]):
-    """The answer that another node gives to `call` at `prefix/<verb>`, waited for up to `timeout_s`."""
+    """A reply that another node gives to `call` at `prefix/<verb>`, within `timeout_s`."""
 
     prefix: str
     call: Call[R]
@@ -63,27 +63,27 @@ class Relay(Generic[R]):
 
 
 MANY: Final = 64 << 20
-"""Bytes: names or poses of a million things."""
+"""The maximum size of lists of names or poses [bytes]: about a million."""
 DOCUMENT: Final = (1 << 30) + (1 << 20)
-"""Bytes: a file, as large as one is read, and what goes with it."""
+"""The maximum size of a message with a file [bytes]."""
 
 
 def largest(kind: Any) -> int:
-    """How many bytes a message of this type may have, encoded."""
+    """Return the maximum size of an encoded message of this type [bytes]."""
     return getattr(kind, "LARGEST", Call.LARGEST)
 
 
 @cache
 def reply_type(kind: type[Call[R]]) -> Any:
-    """The type of the answers to calls of this type, as its definition says: `Entity` for `Get`."""
+    """Return the reply type in the definition of a request type: `Entity` for `Get`."""
     for ancestor in kind.__mro__:
         for base in vars(ancestor).get("__orig_bases__", ()):
-            said = get_args(base)
-            if said and not isinstance(said[0], TypeVar) and isinstance(get_origin(base), type):
-                return said[0]
-    raise TypeError(f"{kind.__name__} does not say what it is answered with")
+            arguments = get_args(base)
+            if arguments and not isinstance(arguments[0], TypeVar) and isinstance(get_origin(base), type):
+                return arguments[0]
+    raise TypeError(f"{kind.__name__} has no reply type")
 
 
 def by_verb(*handlers: Handler) -> dict[str, Handler]:
-    """Handlers by the verbs that they serve."""
+    """Return the handlers by the last chunk of their keys."""
     return {handler.kind.VERB: handler for handler in handlers}

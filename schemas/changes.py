@@ -1,4 +1,4 @@
-"""What is otherwise about an entity: from what it was to what it is."""
+"""Changes of an entity between two states, as data and as text."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ Kind = Literal[
 
 
 class Change(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """One thing that is otherwise about the entity `name`; None for what was not, or is no more.
+    """One change of the entity `name`; a value is None if it did not exist before or afterwards.
 
-    `added` and `removed` are the entity itself, by its class; `property` is named by `property`. Positions
-    and sizes are metres.
+    For `added` and `removed`, the value is the entity's class. For `property`, the field `property` is its
+    name. Positions and sizes are in metres.
     """
 
     name: str
@@ -40,12 +40,12 @@ class Change(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
     @property
     def text(self) -> str:
-        """It in words, without the entity's name: `moved from (8, 2.3, 0.76) to (9, 2.3, 0.76)`."""
+        """The change without the entity's name: `moved from (8, 2.3, 0.76) to (9, 2.3, 0.76)`."""
         return _WORDS[self.kind](self)
 
 
 def between(was: Entity | None, now: Entity) -> list[Change]:
-    """All that is otherwise about an entity than it was, or that it was added."""
+    """Return all changes between two states of an entity, or that it was added."""
     name = now.name
     if was is None:
         return [Change(name=name, kind="added", now=now.class_)]
@@ -66,7 +66,7 @@ def between(was: Entity | None, now: Entity) -> list[Change]:
 
 
 def of_properties(name: str, stated: Iterable[tuple[str, Stated | None, Stated | None]]) -> Iterator[Change]:
-    """Those properties of an entity, with what they were and are, that are otherwise."""
+    """Yield the changes of properties, given their previous and new values."""
     return (
         Change(name=name, kind="property", property_=p, was=was, now=now)
         for p, was, now in stated
@@ -75,12 +75,12 @@ def of_properties(name: str, stated: Iterable[tuple[str, Stated | None, Stated |
 
 
 def removed(name: str, class_name: str) -> Change:
-    """The entity is gone."""
+    """Return the change for the removal of an entity."""
     return Change(name=name, kind="removed", was=class_name)
 
 
 def in_words(changes: Iterable[Change]) -> str:
-    """Changes of one entity in one line."""
+    """Return the changes of one entity in one line."""
     return "; ".join(change.text for change in changes)
 
 
@@ -158,7 +158,7 @@ def _property(change: Change) -> str:
 
 
 def _differences(change: Change) -> tuple[list[Value], list[Value]]:
-    """The values that came, and those that are gone."""
+    """Return the added and the removed values."""
     was, now = _values(change.was), _values(change.now)
     return [value for value in now if value not in was], [value for value in was if value not in now]
 
@@ -170,7 +170,7 @@ def _values(stated: Pose | Stated | None) -> tuple[Value, ...]:
 
 
 def stated_in_words(stated: Stated) -> str:
-    """What is stated by a property: "true", "color_blue, color_red"."""
+    """Return a property's value as text: "true", "color_blue, color_red"."""
     return _shown(_values(stated))
 
 
@@ -179,7 +179,7 @@ def _shown(values: Iterable[Value]) -> str:
 
 
 def value_in_words(value: Value) -> str:
-    """A value as people write it; an empty text in quotation marks."""
+    """Return a value as text; an empty text is in quotation marks."""
     return str(value).lower() if isinstance(value, bool) else str(value) or "''"
 
 

@@ -17,38 +17,39 @@ from semmap.schemas.wording import sentence
 T = TypeVar("T")
 
 MALFORMED: Final = "malformed message: "
-"""How an error about a message that cannot be read begins."""
+"""The beginning of an error about an invalid message."""
 _JSON: Final = re.compile(rb"\s*\{")
 _LARGE: Final = 1 << 18
-"""Bytes from which no garbage is collected while a message is read: none of what that makes is garbage, and
-looking through it again and again takes twice as long as reading it."""
+"""The size from which garbage collection is disabled while a message is decoded [bytes].
+
+Decoding creates no garbage, and collections during it would triple its duration."""
 _encoder = msgspec.msgpack.Encoder()
 _decoders: dict[Any, msgspec.msgpack.Decoder[Any]] = {}
 _preparing = threading.Lock()
 
 
 def encode(message: Any) -> bytes:
-    """`message` as MessagePack.
+    """Encode a message as MessagePack.
 
-    Raises BadRequest for text that cannot be written as UTF-8, and for whole numbers of more than 64 bits.
+    Raises BadRequest for text that cannot be encoded as UTF-8, and for integers of more than 64 bits.
     """
     try:
         return _encoder.encode(message)
     except UnicodeEncodeError as error:
         raise BadRequest(f"a text is not UTF-8: {shortened(repr(error.object))}") from None
     except OverflowError:
-        raise BadRequest("a whole number is too large to be sent: it has more than 64 bits") from None
+        raise BadRequest("an integer has more than 64 bits") from None
 
 
 def encode_json(message: Any) -> bytes:
-    """`message` as JSON, indented for people; bytes become base64."""
+    """Encode a message as indented JSON; bytes become base64."""
     return msgspec.json.format(msgspec.json.encode(message), indent=2)
 
 
 def decode(payload: bytes | bytearray, kind: type[T] | Any) -> T:
-    """The message in `payload`, MessagePack or a JSON object. Raises BadRequest naming the field at fault.
+    """Decode a message from MessagePack or a JSON object. Raises BadRequest with the invalid field.
 
-    Nothing is unpacked: a message takes memory in proportion to its own size.
+    Compressed content stays compressed, so the memory is proportional to the size of the message.
     """
     pauses = len(payload) >= _LARGE and gc.isenabled()
     if pauses:
@@ -65,12 +66,11 @@ def decode(payload: bytes | bytearray, kind: type[T] | Any) -> T:
 
 
 def decoder(kind: Any) -> msgspec.msgpack.Decoder[Any]:
-    """The decoder of MessagePack for `kind`; any thread may ask for it at any time.
+    """Return the MessagePack decoder for `kind`. Thread-safe.
 
-    When msgspec (0.22.0) first meets a struct it keeps what it finds out about it with the struct, and that
-    before it has found out everything. Another thread that meets the same struct at that moment works with
-    the half, and the process ends with a segmentation fault. So only one thread at a time may let msgspec
-    meet a type: by this function, or by `prepared`.
+    When msgspec (0.22.0) first inspects a struct, it caches the result on the struct before it is complete.
+    If another thread uses the struct at that moment, the process crashes with a segmentation fault.
+    Therefore, types must be registered with msgspec by one thread at a time: by this function or `prepared`.
     """
     with _preparing:
         if (made := _decoders.get(kind)) is None:
@@ -79,16 +79,16 @@ def decoder(kind: Any) -> msgspec.msgpack.Decoder[Any]:
 
 
 def prepared(kind: T) -> T:
-    """`kind`, fit to be given to any function of msgspec's on any thread; see `decoder`."""
+    """Return `kind` after registering it, so that any thread can pass it to msgspec; see `decoder`."""
     if kind not in _decoders:
         decoder(kind)
     return kind
 
 
 def from_text(parameters: Mapping[str, str], kind: type[T]) -> T:
-    """A message from selector parameters: vectors as `1,2,0`, lists of text as `a|b`.
+    """Create a message from selector parameters: vectors as `1,2,0`, lists of text as `a|b`.
 
-    Raises BadRequest naming the parameter at fault.
+    Raises BadRequest with the invalid parameter.
     """
     fields = {field.encode_name: field.type for field in msgspec.structs.fields(kind)}  # type: ignore[arg-type]
     values = {key: _split(text, fields.get(key, str)) for key, text in parameters.items()}
@@ -96,7 +96,7 @@ def from_text(parameters: Mapping[str, str], kind: type[T]) -> T:
 
 
 def convert(values: Any, kind: type[T], *, strict: bool = True) -> T:
-    """Plain data as a message. Raises BadRequest."""
+    """Convert plain data to a message. Raises BadRequest."""
     try:
         return msgspec.convert(values, type=prepared(kind), strict=strict)
     except msgspec.MsgspecError as error:
@@ -104,13 +104,13 @@ def convert(values: Any, kind: type[T], *, strict: bool = True) -> T:
 
 
 def looks_like_json(payload: bytes | bytearray) -> bool:
-    """A JSON object begins with a brace, which no MessagePack map does."""
+    """Return whether a payload is a JSON object: it begins with a brace, unlike any MessagePack map."""
     first = payload[:1]
     return first == b"{" or (first.isspace() and _JSON.match(payload) is not None)
 
 
 def encoding_of(message: Any) -> str:
-    """The Zenoh encoding that goes with `message`, schema included."""
+    """Return the Zenoh encoding of a message, including its schema."""
     return f"application/msgpack;semmap.{type(message).__name__}.v1"
 
 
@@ -126,7 +126,7 @@ def _split(text: str, kind: Any) -> Any:
 
 
 def as_json(payload: bytes) -> str:
-    """Any payload on one line for bare eyes: MessagePack or JSON as JSON, else its size."""
+    """Return any payload as one line of text: MessagePack or JSON as JSON, otherwise its size."""
     try:
         if looks_like_json(payload):
             return msgspec.json.format(payload, indent=-1).decode()

@@ -1,8 +1,8 @@
-"""The commands: one verb, one Struct, one reply type: `class Get(Command[Entity], tag="get")`.
+"""The commands. Each is a Struct with a name and a reply type: `class Get(Command[Entity], tag="get")`.
 
-The fields are the words of the command line (`semmap add Chair --at 1 2 0`), of a selector
-(`semmap/cmd/add?class=Chair;at=1,2,0`) and of a message (`{"verb": "add", "class": "Chair", ...}`)
-alike. Positions and sizes are metres in the map frame, angles are radians.
+The fields are the same on the command line (`semmap add Chair --at 1 2 0`), in a selector
+(`semmap/cmd/add?class=Chair;at=1,2,0`) and in a message (`{"verb": "add", "class": "Chair", ...}`).
+Positions and sizes are in metres in the map frame, angles in radians.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 
 from msgspec import Meta, field, structs
 
-from semmap.schemas.approvals import Request, Told
+from semmap.schemas.approvals import Consequences, Request
 from semmap.schemas.backups import BackupPart
 from semmap.schemas.calls import DOCUMENT, MANY, Call, R
 from semmap.schemas.entities import (
@@ -32,11 +32,11 @@ from semmap.schemas.entities import (
     Word,
     composed,
 )
+from semmap.schemas.exemplars import LessonTold, ShownView
 from semmap.schemas.explanations import Explanation
 from semmap.schemas.frames import Frame, FrameName
-from semmap.schemas.happenings import Difference, KeptRelation, Spells
 from semmap.schemas.language import Account, Found, Language, Understood
-from semmap.schemas.lessons import LessonTold, ShownView
+from semmap.schemas.map_history import Difference, KeptRelation, Spells
 from semmap.schemas.moments import When
 from semmap.schemas.plans import HEIGHTS_M, RADIUS_M, Clearance, HeightRange, Plan, Way
 from semmap.schemas.relations import Described, Relation, ViewPoint, Where
@@ -60,24 +60,24 @@ RDF_FORMATS = ("rdfxml", "turtle", "ntriples", "jsonld")
 RdfFormat = Literal["rdfxml", "turtle", "ntriples", "jsonld"]
 ListFormat = Literal["json", "lu4r", "legacy"]
 ExtentText = Annotated[str, Meta(min_length=1, max_length=50_000)]
-"""What a place covers, seen from above: `POLYGON ((x y, ...))` in WKT; see `semmap.schemas.polygons`."""
+"""The area of a place, seen from above: `POLYGON ((x y, ...))` in WKT; see `semmap.schemas.polygons`."""
 ClassName = Annotated[str, Meta(min_length=1, max_length=200)]
 Since = Annotated[int, Meta(ge=0, le=1 << 53)]
-"""A commit: if one after it has changed what is to be `unchanged`, a command is refused."""
+"""A commit number: the command is rejected if a later commit changed an entity in `unchanged`."""
 
 
 _SLOW: Final = frozenset(
     {"load", "clear", "undo", "check", "infer", "export", "compact", "watch", "step", "drive"}
 )
-"""Commands that may be at work for long, or that do more when they come twice."""
+"""Commands that can take long, or that are not idempotent."""
 
 
 class Command(
     Call[R], frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="verb", omit_defaults=True
 ):
-    """What every command has; one that is answered with an R is a `Command[R]`.
+    """The base of all commands; a `Command[R]` has the reply type R.
 
-    The same `id` sent twice is executed once, and answered twice with the same result.
+    A command that is sent twice with the same `id` is executed once; both requests get the same reply.
     """
 
     id: Annotated[str, Meta(max_length=200)] = ""
@@ -87,30 +87,32 @@ class Command(
 
     @property
     def is_quick(self) -> bool:
-        """Most are, and what changes the map is done once under its id."""
+        """Whether the command is short and can safely be sent again."""
         return self.VERB not in _SLOW
 
     def __post_init__(self) -> None:
-        """Names are compared in composed form, however they were typed."""
+        """Convert the name to Unicode's composed form, in which names are compared."""
         if isinstance(name := getattr(self, "name", None), str) and not name.isascii():
             structs.force_setattr(self, "name", composed(name))
 
 
-# To change
+# Changes
 
 
 class Add(Command[Changed], frozen=True, tag="add"):
     """Add an entity to the map.
 
-    Without `name` one is made from the class; without `at` it goes to the next free place near the default
-    pose; with `default` it also gets the class's label as reference. `set` are properties, each written
-    `PROPERTY=VALUE`. With `track` it is tracked from the start (see `Track`). `wait` delays the reply until
-    its body stands in the scene. `extent` is for places: with it only the z of `at`
-    counts, the height of the floor, and the z of `size`, how high the place is. With a `frame` (see `frames`)
-    `at` and the angle are in it; without an angle only the position is.
+    Without `name`, one is generated from the class. Without `at`, the entity is placed at the next free
+    position near the default pose. With `default`, the class's label becomes its label. `set` are properties,
+    each written `PROPERTY=VALUE`. With `track` it is tracked from the start (see `Track`). `wait` delays the
+    reply until its body is in the scene.
 
-    Like every command that changes entities, it is refused with PreconditionFailed where one of those that
-    are to be `unchanged` is gone, or was changed by a commit after `since`.
+    `extent` is for places. Then only the z of `at` (the height of the floor) and the z of `size` (the height
+    of the place) are used. With a `frame` (see `frames`), `at` and the angle are in that frame; without an
+    angle, only the position is.
+
+    Like every command that changes entities, it is rejected with PreconditionFailed if an entity in
+    `unchanged` was removed, or changed by a commit after `since`.
     """
 
     class_: ClassName = field(name="class")
@@ -134,14 +136,16 @@ class Add(Command[Changed], frozen=True, tag="add"):
 
 
 class Update(Command[Changed], frozen=True, tag="update"):
-    """Change an entity; omitted fields keep their values. `alt` replaces all alternative references.
+    """Change an entity; omitted fields keep their values. `alt` replaces all aliases.
 
-    `conflict` says what is seen against the map's word on it, which stays; an empty one takes that back.
-    `set` and `unset` are properties, written `PROPERTY=VALUE`, or `PROPERTY` to unset all values; both of one
-    property replace its values. A class that would make an object a place, or a place an object, is refused
-    without `force`. With `carry`, what stands on the entity or is inside it moves with it as one rigid body,
-    in the same commit; not what `leave` names, and what stands on that. `extent` and `frame` are as for
-    `add`; who has an extent is moved by another.
+    `conflict` records an observation that contradicts the map, which stays unchanged; an empty text clears
+    it. `set` and `unset` are properties, written `PROPERTY=VALUE`, or `PROPERTY` to unset all values. Both
+    for one property replace its values. A class that would turn an object into a place, or a place into an
+    object, is rejected without `force`.
+
+    With `carry`, objects on the entity or inside it move with it as one rigid body, in the same commit. The
+    objects in `leave`, and what is on them, do not move. `extent` and `frame` are as for `add`; a place with
+    an extent is moved by setting a new one.
     """
 
     name: Word
@@ -168,12 +172,12 @@ class Update(Command[Changed], frozen=True, tag="update"):
 
 
 class Set(Command[Changed], frozen=True, tag="set"):
-    """State a data or object property of an entity, by its name or label, e.g. `set door1 isOpen false`.
+    """Set a data or object property of an entity, by its name or label, e.g. `set door1 isOpen false`.
 
-    Values are typed by the property's range: true or false, numbers, texts (`rosso@it` has a language),
-    individuals by name. The value of a functional property replaces the one before; other properties get
-    more values. With `if_is` it is refused with PreconditionFailed unless that is a value now, with
-    `if_unset` unless there is none.
+    The property's range determines the type of the values: true or false, numbers, texts (`rosso@it` has a
+    language), individuals by name. A functional property's value is replaced; other properties get an
+    additional value. The command is rejected with PreconditionFailed unless `if_is` is a current value, or
+    with `if_unset` unless the property has none.
     """
 
     name: Word
@@ -188,7 +192,7 @@ class Set(Command[Changed], frozen=True, tag="set"):
 
 
 class Unset(Command[Changed], frozen=True, tag="unset"):
-    """Take back one value of an entity's property, or all of them; `if_is` as for `set`."""
+    """Remove one value of an entity's property, or all of them; `if_is` as for `set`."""
 
     name: Word
     property: Text
@@ -200,10 +204,10 @@ class Unset(Command[Changed], frozen=True, tag="unset"):
 
 
 class Track(Command[Changed], frozen=True, tag="track"):
-    """Let an entity's pose come live: from whoever publishes it (`stream`), or from the simulator (`sim`).
+    """Track an entity's pose live: from a publisher (`stream`) or from the simulator (`sim`).
 
-    Live poses are on `semmap/live/<name>`, the newest wins, and only where the entity stops is its pose
-    committed. With `off` it is not tracked any more, and stays where it was last.
+    Live poses are published on `semmap/live/<name>`, and the newest is used. A pose is committed only when
+    the entity stops. With `off`, tracking ends, and the entity stays at its last pose.
     """
 
     name: Word
@@ -215,15 +219,15 @@ class Track(Command[Changed], frozen=True, tag="track"):
 
 
 class Attach(Command[Changed], frozen=True, tag="attach"):
-    """Have an entity held by another, such as a robot's gripper or a tray: from now on it goes with that.
+    """Attach an entity to another one, such as a robot's gripper or a tray, and move it with that.
 
-    It is held where it is just now, or `at` a position in the frame of its holder (whose origin is the bottom
-    centre [m]), turned there by `yaw` [rad]. Where it was taken is committed, and the map states
-    `isGraspedBy` and `graspPose`. Refused for places, for what is fixed, part of something or held already,
-    and for what holds the holder.
+    It is attached at its current pose, or `at` a position in the frame of `to` (whose origin is the bottom
+    centre [m]), rotated by `yaw` [rad]. The commit contains the pose and the properties `isGraspedBy` and
+    `graspPose`. The command is rejected for places, for fixed, nested and already attached entities, and for
+    an entity that `to` is attached to.
 
-    With `carry`, what stands on the entity or is inside it goes with it, each as it stands there: it is held
-    by the entity until that is detached. `leave` names what is not to, nor what only that bears.
+    With `carry`, objects on the entity or inside it are attached to it at their current poses, until it is
+    detached. Objects in `leave`, and objects that only they support, stay.
     """
 
     name: Word
@@ -238,9 +242,9 @@ class Attach(Command[Changed], frozen=True, tag="attach"):
 
 
 class Detach(Command[Changed], frozen=True, tag="detach"):
-    """Let go of what something holds: it is put where it is just now, which is committed.
+    """Detach an entity at its current pose, which is committed.
 
-    What was taken along with it (`carry`) is let go with it.
+    Objects that were attached with it (`carry`) are detached, too.
     """
 
     name: Word
@@ -250,11 +254,11 @@ class Detach(Command[Changed], frozen=True, tag="detach"):
 
 
 class Batch(Command[Changed], frozen=True, tag="batch"):
-    """Several changes of entities in one commit: all of them or, where one is refused, none.
+    """Change several entities in one commit: all changes are applied or, if one is rejected, none.
 
-    `changes` are `update`, `set` and `unset` in any order, for they happen together: an entity is updated
-    once at most, and a property of it is set or unset once. Who makes them and why, `confidence`,
-    `unchanged`, `since` and `dry_run` are said of the batch. Positions are in the map frame.
+    `changes` are `update`, `set` and `unset` in any order, as they are applied together. An entity is updated
+    at most once, and each of its properties is set or unset at most once. `source`, `agent`, `reason`,
+    `confidence`, `unchanged`, `since` and `dry_run` belong to the batch. Positions are in the map frame.
     """
 
     LARGEST: ClassVar[int] = MANY
@@ -267,7 +271,7 @@ class Batch(Command[Changed], frozen=True, tag="batch"):
 
 
 class Remove(Command[Changed], frozen=True, tag="remove"):
-    """Remove entities from the map and the scene: all of them or, if one is unknown, none."""
+    """Remove entities from the map and the scene: all of them or, if a name is unknown, none."""
 
     LARGEST: ClassVar[int] = MANY
 
@@ -277,7 +281,7 @@ class Remove(Command[Changed], frozen=True, tag="remove"):
     dry_run: bool = False
 
     def __post_init__(self) -> None:
-        """As for `name`."""
+        """Convert the names to Unicode's composed form."""
         structs.force_setattr(self, "names", tuple(map(composed, self.names)))
 
 
@@ -288,16 +292,16 @@ class Clear(Command[Changed], frozen=True, tag="clear"):
 
 
 class Load(Command[Changed], frozen=True, tag="load"):
-    """Add what a file describes: an ABox, a scene in JSON or a HuRIC map, told apart by content.
+    """Load a file: an ABox, a scene in JSON or a HuRIC map; the format is detected from the content.
 
-    `replace` takes the present entities out in the same commit. `skip_unknown` leaves out what is of a
-    class that the TBox does not have; without it, one such refuses the whole file. `strict` refuses a file
-    that relates things to what neither it nor the map describes; without it, that is noted. With `tbox` the
-    file is a TBox that replaces the present one, unless the map does not fit it; `spatial_root` are
-    classes of it whose instances are things in space, where that is not known by itself.
+    `replace` removes the present entities in the same commit. `skip_unknown` skips entities of classes that
+    the TBox lacks; otherwise one such entity causes the file to be rejected. `strict` rejects a file that
+    refers to undefined individuals; otherwise they are reported in a note. With `tbox`, the file is a TBox
+    that replaces the present one, unless the map is invalid under it. `spatial_root` are the classes whose
+    instances are physical things, if the TBox does not show it.
 
-    A file is one commit, or with `parts` as many as it takes, so that memory is bounded by a part's needs;
-    when one part is refused, those before it stay, and the error says so.
+    A file is loaded in one commit, or with `parts` in several commits, which bounds the memory. If a part is
+    rejected, the earlier parts stay, and the error reports them.
     """
 
     LARGEST: ClassVar[int] = DOCUMENT
@@ -313,18 +317,18 @@ class Load(Command[Changed], frozen=True, tag="load"):
     dry_run: bool = False
 
 
-# To ask
+# Queries
 
 
 class List(Command[tuple[Entity, ...] | dict[str, Any]], frozen=True, tag="list"):
-    """The entities of a class (all, without one), over inferred types; with `as_of` those of then.
+    """List the entities of a class (or all), using inferred types; with `as_of`, at that time.
 
-    Of these, those that stand `on` a thing (directly or on what is on it), are `in` a place or a container,
-    are `near` a thing or `within` so many metres of it, or the `nearest` so many `to` it; worked out from
-    poses, sizes and shapes. Things and places are given by name, reference or class; `near` (with `within`)
-    and `to` may be positions instead, written `2.5,1,0.8` [m]. With a `frame` such positions are in it,
-    and so are the poses that are answered. Answered with the entities, or with the document of another format
-    than `json`.
+    The list is restricted to entities that are `on` an object (directly or indirectly), `in` a place or a
+    container, `near` an object or `within` so many metres of it, or to the `nearest` ones `to` it. These
+    relations are computed from poses, sizes and shapes. Objects and places are given by name, label or class;
+    `near` (with `within`) and `to` can also be positions, written `2.5,1,0.8` [m]. With a `frame`, these
+    positions and the poses in the reply are in that frame. The reply contains the entities, or a document if
+    the format is not `json`.
     """
 
     class_: ClassName | None = field(name="class", default=None)
@@ -348,10 +352,10 @@ class List(Command[tuple[Entity, ...] | dict[str, Any]], frozen=True, tag="list"
 
 
 class Relations(Command[tuple[Relation, ...]], frozen=True, tag="relations"):
-    """Where a thing is relative to others, as measured; with `other` also what does not hold of the two.
+    """Compute the spatial relations of an entity; with `other`, also the relations that do not hold.
 
-    `name`, `other` and `viewer` are names, or references or classes that only one thing has. `viewer` or
-    `viewpoint` adds left of, right of, in front of and behind, as seen from there.
+    `name`, `other` and `viewer` are names, or labels or classes of only one entity. `viewer` or `viewpoint`
+    adds left of, right of, in front of and behind, as seen from there.
     """
 
     name: Word
@@ -362,10 +366,10 @@ class Relations(Command[tuple[Relation, ...]], frozen=True, tag="relations"):
 
 
 class Get(Command[Described], frozen=True, tag="get"):
-    """One entity; with `as_of` as it was then.
+    """Get one entity; with `as_of`, at that time.
 
-    With `where` also what it is on, inside and in, and what was said of that but does not hold (of the map as
-    it is now only). With a `frame` its pose is told in that, as both are just now.
+    With `where`, the reply also contains what it is on, inside and in, and asserted relations that do not
+    hold (only for the current map). With a `frame`, its current pose is given in that frame.
     """
 
     name: Word
@@ -375,32 +379,32 @@ class Get(Command[Described], frozen=True, tag="get"):
 
 
 class ListFrames(Command[tuple[Frame, ...]], frozen=True, tag="frames"):
-    """The tree of frames; with a `name` that frame, those above it and those below it.
+    """List the tree of frames; with a `name`, that frame with its ancestors and descendants.
 
-    There are `map`, every entity that has a position, the cameras of the simulator, and what others publish
-    on `semmap/frame/<name>`. Parents come before their children.
+    The frames are `map`, every entity with a position, the simulator's cameras, and frames published on
+    `semmap/frame/<name>`. Parents precede their children.
     """
 
     name: Word | None = None
 
 
 class Check(Command[Checked], frozen=True, tag="check"):
-    """Check whether the map is consistent, and explain why not. `owlrl` is the slow second opinion."""
+    """Check whether the map is consistent, and explain why not. `owlrl` is a slow, independent reasoner."""
 
     engine: Literal["semmap", "owlrl"] = "semmap"
 
 
 class Infer(Command[Inferred], frozen=True, tag="infer"):
-    """The inferred facts about one individual, or about all entities."""
+    """List the inferred facts about one individual, or about all entities."""
 
     name: Word | None = None
 
 
 class Explain(Command[Explanation], frozen=True, tag="explain"):
-    """Why a triple holds, or with `negated` why it cannot.
+    """Explain why a triple holds, or with `negated` why it cannot hold.
 
-    `name`, `predicate` and `value` are local names, IRIs in <> or literals. What no rule derives is decided
-    by refutation: two are different if their being the same would be a contradiction.
+    `name`, `predicate` and `value` are local names, IRIs in <> or literals. Triples that no rule derives are
+    decided by refutation: two individuals are different if identity would be a contradiction.
     """
 
     name: Word
@@ -410,10 +414,10 @@ class Explain(Command[Explanation], frozen=True, tag="explain"):
 
 
 class Could(Command[Possible], frozen=True, tag="could"):
-    """Would it be consistent with the map that a triple holds, and if not, why not? Nothing is changed.
+    """Test whether a triple would be consistent with the map, and explain why not. The map is not changed.
 
-    `name`, `predicate` and `value` are written as for `Explain`; the value of a data property is typed by the
-    property's range.
+    `name`, `predicate` and `value` are written as for `Explain`. The property's range determines the type of
+    a data property's value.
     """
 
     name: Word
@@ -422,14 +426,14 @@ class Could(Command[Possible], frozen=True, tag="could"):
 
 
 class Diff(Command[Difference], frozen=True, tag="diff"):
-    """What changed between `since` and `until` (or now): commits or times."""
+    """List what changed between `since` and `until` (or now), which are commits or times."""
 
     since: When
     until: When | None = None
 
 
 class WasWhen(Command[Spells], frozen=True, tag="when"):
-    """When a thing was on, inside, in or attached to another, as measured after each commit."""
+    """List when an entity was on, inside, in or attached to another, as computed after each commit."""
 
     name: Word
     relation: KeptRelation
@@ -437,9 +441,9 @@ class WasWhen(Command[Spells], frozen=True, tag="when"):
 
 
 class Tell(Command[Account], frozen=True, tag="tell"):
-    """What is there, in a text of at most so many `words`: in the map, in a place, or of a thing.
+    """Describe the map, a place or a thing in a text of at most `words` words.
 
-    What matters most is said first, like things are counted together, and what is left out is said to be.
+    The most important facts come first, similar things are counted together, and omissions are reported.
     """
 
     name: Word | None = None
@@ -447,9 +451,9 @@ class Tell(Command[Account], frozen=True, tag="tell"):
 
 
 class Understand(Command[Understood], frozen=True, tag="understand"):
-    """What a command in words asks for: frames, and which entities of the map fill their roles.
+    """Parse a natural-language command to semantic frames, with roles filled by entities of the map.
 
-    Without a `language` its words tell which one it is in.
+    Without a `language`, it is detected.
     """
 
     text: Text
@@ -457,10 +461,10 @@ class Understand(Command[Understood], frozen=True, tag="understand"):
 
 
 class Find(Command[Found], frozen=True, tag="find"):
-    """Which entities a noun phrase describes: "the red cup on the kitchen table".
+    """Find the entities that a noun phrase describes: "the red cup on the kitchen table".
 
-    `viewer` (a name, reference or class that only one thing has) or `viewpoint` is who sees what is left,
-    right or behind; `asker` is who says "my".
+    `viewer` (a name, or a label or class of only one entity) or `viewpoint` defines left, right and behind.
+    "My" refers to `asker`.
     """
 
     text: Text
@@ -470,20 +474,20 @@ class Find(Command[Found], frozen=True, tag="find"):
 
 
 class PlanFloor(Command[Plan], frozen=True, tag="floorplan"):
-    """Places, things and walls as outlines seen from above; with `as_of` the map as it was then.
+    """Return the outlines of places, things and walls, seen from above; with `as_of`, at that time.
 
-    The command line makes occupancy grids, SVG and GeoJSON of it.
+    The command line converts them to occupancy grids, SVG and GeoJSON.
     """
 
     as_of: When | None = None
 
 
 class FindWay(Command[Way], frozen=True, tag="route"):
-    """The shortest way for a robot of a `radius` [m], over places and through doors.
+    """Plan the shortest path for a robot of a `radius` [m] over places and through doors.
 
-    `from` and `to` are places, things, persons (by name, reference or class) or positions, written `2.5,1`
-    [m]. What has a part within `heights` [m] above the floor is in the way, and so are places that are
-    forbidden. A way through closed doors names them. Raises Refused, with the reason, where there is none.
+    `from` and `to` are places, things, persons (by name, label or class) or positions, written `2.5,1` [m].
+    Objects with a part within `heights` [m] above the floor, and forbidden places, are obstacles. If the path
+    leads through closed doors, the reply lists them. Raises Refused, with the reason, if there is no path.
     """
 
     from_: Word = field(name="from")
@@ -494,9 +498,9 @@ class FindWay(Command[Way], frozen=True, tag="route"):
 
 
 class Export(Command[Document], frozen=True, tag="export"):
-    """Export the map as a document, checked first; with `inferred` including inferred facts.
+    """Export the map as a document, after a consistency check; with `inferred`, including inferred facts.
 
-    With `as_of` the map as it was then; what followed and was measured then is worked out again.
+    With `as_of`, the map of that time is exported; its inferred and computed facts are computed again.
     """
 
     format: RdfFormat = "rdfxml"
@@ -505,27 +509,27 @@ class Export(Command[Document], frozen=True, tag="export"):
 
 
 class Classes(Command[tuple[ClassInfo, ...]], frozen=True, tag="classes"):
-    """The classes of the TBox, with the number of entities of each."""
+    """List the classes of the TBox, with the number of entities of each."""
 
 
 class Properties(Command[tuple[PropertyInfo, ...]], frozen=True, tag="properties"):
-    """The data and object properties of the TBox that may be `set`: what they take, and their labels."""
+    """List the data and object properties of the TBox that `set` accepts, with their ranges and labels."""
 
 
 class Status(Command[SystemStatus], frozen=True, tag="status"):
-    """The state of the nodes, the map and the scene, and any problems.
+    """Return the state of the nodes, the map and the scene, and any problems.
 
-    With `names`, `in_agreement`, `pending` and `displaced` concern these entities only, whatever others do.
+    With `names`, `in_agreement`, `pending` and `displaced` cover only these entities.
     """
 
     names: tuple[Word, ...] = ()
 
 
-# To ask about the past, and to take back
+# History and undo
 
 
 class History(Command[tuple[LoggedCommit, ...]], frozen=True, tag="history"):
-    """The newest commits, or those that touched an entity, in order; `since` and `until` are included."""
+    """List the newest commits, or those that changed an entity, from `since` to `until` (inclusive)."""
 
     name: Word | None = None
     since: When | None = None
@@ -534,43 +538,43 @@ class History(Command[tuple[LoggedCommit, ...]], frozen=True, tag="history"):
 
 
 class LastSeen(Command[Sighting], frozen=True, tag="last-seen"):
-    """When, where and by whom an entity was last seen or placed, even if it has been removed.
+    """Return when, where and by whom an entity was last seen or placed, even if it has been removed.
 
-    The answer tells what has merely not been seen since from what was seen to be gone.
+    The reply distinguishes entities that were observed to be absent from those not observed since.
     """
 
     name: Word
 
 
 class Undo(Command[Changed], frozen=True, tag="undo"):
-    """Undo a commit by a new one, unless later ones depend on it; the scene follows.
+    """Undo a commit by a new one, unless later ones depend on it; the scene is updated.
 
-    Without `commit`: the newest that a client asked for, with the settling that followed it. While a `move`,
-    `open`, `close` or `drive` has yet to be committed, that is stopped instead, and no commit is undone.
+    Without `commit`, the newest commit that a client requested is undone, with the settling that followed it.
+    A `move`, `open`, `close` or `drive` that is not committed yet is stopped instead of undoing a commit.
     """
 
     commit: Annotated[int, Meta(ge=1, le=1 << 53)] | None = None
     dry_run: bool = False
 
 
-# To let agents change
+# Approval of agents' changes
 
 
 class Submit(Command[Request], frozen=True, tag="submit"):
-    """Ask a person to approve a change, in words; under the same `id`, ask what became of it.
+    """Request a person's approval of a change; sent again with the same `id`, it returns the decision.
 
-    `text` says what is to be done, `follows` what would follow from it, a line each. Approval is no lock: who
-    submits a change makes it when it is approved.
+    `text` describes the change and `follows` its consequences, one per line. Approval does not lock the map:
+    the agent that submitted the change makes it after the approval.
     """
 
     text: Annotated[str, Meta(min_length=1, max_length=2000)]
-    follows: Annotated[Told, Meta(max_length=200)] = ()
+    follows: Annotated[Consequences, Meta(max_length=200)] = ()
 
 
 class Approve(Command[tuple[Request, ...]], frozen=True, tag="approve"):
-    """The requests of agents that wait; with a `number` that one is approved or, with `reject`, rejected.
+    """List the pending requests of agents; with a `number`, approve or (with `reject`) reject that one.
 
-    `reject` with `all` rejects all that wait.
+    `reject` with `all` rejects all pending requests.
     """
 
     number: Annotated[int, Meta(ge=1, le=1 << 53)] | None = None
@@ -578,30 +582,31 @@ class Approve(Command[tuple[Request, ...]], frozen=True, tag="approve"):
     all: bool = False
 
 
-# To keep
+# Storage
 
 
 class Backup(Command[BackupPart], frozen=True, tag="backup"):
-    """A part of a backup of the map with its history: the first, or the one `at` what a part names as `next`.
+    """Return a part of a backup of the map with its history: the first, or the one `at` a part's `next`.
 
-    All parts one after another, while the map goes on, are the file as of the first: `schemas/backups.py`.
+    The concatenated parts are the backup file as of the first part, even if the map changes meanwhile: see
+    `schemas/backups.py`.
     """
 
     at: str = ""
 
 
 class Compact(Command[Compacted], frozen=True, tag="compact"):
-    """Let a snapshot take the place of the commits that are older than `keep`: `12h` or `30d`.
+    """Replace the commits that are older than `keep` (`12h`, `30d`) by a snapshot.
 
-    The history begins there from then on: nothing before it can be asked about or undone. With `dry_run`
-    nothing is done; the reply says what would be.
+    The history begins there afterwards: earlier commits cannot be queried or undone. With `dry_run`, nothing
+    is changed, and the reply contains what would be removed.
     """
 
     keep: str = "30d"
     dry_run: bool = False
 
 
-# To query
+# SPARQL
 
 
 QueryText = Annotated[str, Meta(min_length=1, max_length=100_000)]
@@ -610,9 +615,10 @@ TimeLimit = Annotated[float, Meta(gt=0.0, le=60.0)]
 
 
 class Sparql(Command[SparqlResult], frozen=True, tag="sparql"):
-    """A SPARQL 1.1 query over asserted or, with `inferred`, also inferred facts; with `as_of` those of then.
+    """Run a SPARQL 1.1 query over asserted and, with `inferred`, inferred facts; with `as_of`, at that time.
 
-    It only reads. It is refused when it takes longer than `timeout` [s] or has more than `limit` rows.
+    Queries are read-only. A query that takes longer than `timeout` [s] or returns more than `limit` rows is
+    rejected.
     """
 
     query: QueryText
@@ -623,13 +629,13 @@ class Sparql(Command[SparqlResult], frozen=True, tag="sparql"):
 
 
 class Watch(Command[Watching], frozen=True, tag="watch"):
-    """A standing question: its current rows, and their changes on `semmap/jena/query/<watch>`.
+    """Start a standing query: returns its current rows; changes are published on `semmap/jena/query/<watch>`.
 
-    A SELECT; or, instead of a `query`, who is `on`, `in` or `near` something (`within` so many metres), as
-    for `List`: then a row is an entity's IRI.
+    It is a SELECT `query`, or the entities that are `on`, `in` or `near` something (`within` so many metres),
+    as for `List`; then each row is an entity's IRI.
 
-    `watch` names it (without one a name is made): whoever follows the key first misses nothing. It is
-    evaluated again when a commit may touch it, and ends `lease` seconds after the last `renew`.
+    `watch` is its name (generated if omitted); a client that subscribes to the key first misses no change.
+    The query is evaluated again when a commit may affect it, and ends `lease` seconds after the last `renew`.
     """
 
     query: QueryText | None = None
@@ -656,16 +662,15 @@ class Renew(Command[Done], frozen=True, tag="renew"):
     end: bool = False
 
 
-# To run
+# Scene and perception
 
 
 class Move(Command[Moved], frozen=True, tag="move"):
-    """Move the body of an entity by hand; the map follows when it comes to rest.
+    """Move the body of an entity; its pose is committed when the body comes to rest.
 
-    With `carry`, the bodies of what stands on it or is inside it (as the map has it) are moved with it as one
-    rigid body, and the map follows all of them in one commit; not those that `leave` names. `frame` is as for
-    `add`. `wait` delays the reply until the commit exists, or it is clear that there is none; while time is
-    paused, nothing is waited for.
+    With `carry`, the bodies of objects on it or inside it (according to the map) move with it as one rigid
+    body and are committed together, except those in `leave`. `frame` is as for `add`. `wait` delays the reply
+    until the commit exists, or until it is certain that there is none; it has no effect while time is paused.
     """
 
     name: Word
@@ -678,11 +683,11 @@ class Move(Command[Moved], frozen=True, tag="move"):
 
 
 class Open(Command[Moved], frozen=True, tag="open"):
-    """Open a thing as a hand would: its joints move `to` this share of their way; the map follows at rest.
+    """Open an object: its joints move to the share `to` of their range; the map is updated when they stop.
 
-    With a `joint`, only that one of several. Refused for what has no joints; NoAnswer without a simulator.
-    `wait` delays the reply until it stands and the map has followed, as for `move`. What is in the way stops
-    it.
+    With a `joint`, only that joint moves. Raises Refused for an object without joints and NoAnswer without a
+    simulator. `wait` delays the reply until the joints stop and the map is updated, as for `move`. Obstacles
+    stop the movement.
     """
 
     name: Word
@@ -692,7 +697,7 @@ class Open(Command[Moved], frozen=True, tag="open"):
 
 
 class Close(Command[Moved], frozen=True, tag="close"):
-    """Close a thing as a hand would; as for `open`."""
+    """Close an object; as for `open`."""
 
     name: Word
     joint: Word | None = None
@@ -700,12 +705,12 @@ class Close(Command[Moved], frozen=True, tag="close"):
 
 
 class Drive(Command[Moved], frozen=True, tag="drive"):
-    """Drive a robot of the simulator to a point, or through several, in a straight line to each.
+    """Drive a robot of the simulator through one or more points, in a straight line to each.
 
-    At the end it faces `yaw`. Points and `yaw` are in the map frame, or in `frame` as that is when the
-    command begins. It turns to where it goes first, and goes at most at `speed` [m/s]. With `stop` it stops
-    where it is. `wait` delays the reply until it is there and the map has followed, as for `move`; where it
-    gets no further, or falls, that is Refused.
+    At the end it turns to `yaw`. Points and `yaw` are in the map frame, or in `frame` at its pose when the
+    command starts. The robot first turns towards each point and drives at most at `speed` [m/s]. `stop` stops
+    it at its current position. `wait` delays the reply until it has arrived and the map is updated, as for
+    `move`. Raises Refused if the robot is blocked or falls over.
     """
 
     name: Word
@@ -718,10 +723,10 @@ class Drive(Command[Moved], frozen=True, tag="drive"):
 
 
 class Learn(Command[LessonTold], frozen=True, tag="learn"):
-    """Show perception a thing of a class: what it sees of an `entity` now, or `views` of it.
+    """Teach perception an object of a class, from the current view of an `entity` or from `views`.
 
-    It is recognised from then on; the class may be new to perception, but the TBox must have it. `shown` says
-    where the views are from.
+    Perception recognises the object from then on. The class can be new to perception, but must be in the
+    TBox. `shown` describes the origin of the views.
     """
 
     class_: ClassName = field(name="class")
@@ -731,35 +736,35 @@ class Learn(Command[LessonTold], frozen=True, tag="learn"):
 
 
 class Learned(Command[tuple[LessonTold, ...]], frozen=True, tag="learned"):
-    """What perception was shown, in order."""
+    """List the exemplars that perception was taught, in order."""
 
 
 class Forget(Command[LessonTold], frozen=True, tag="forget"):
-    """Undo a lesson of perception's."""
+    """Remove an exemplar of perception."""
 
     number: Annotated[int, Meta(ge=1)]
 
 
 class Pause(Command[Done], frozen=True, tag="pause"):
-    """Pause simulated time, or with `off` resume it."""
+    """Pause simulated time, or resume it with `off`."""
 
     off: bool = False
 
 
 class StepOnce(Command[Done], frozen=True, tag="step"):
-    """Advance paused time by `seconds`; refused while time is running."""
+    """Advance paused time by `seconds`; rejected while time is running."""
 
     seconds: Annotated[float, Meta(gt=0.0, le=60.0)] = 0.1
 
 
 class Reset(Command[Done], frozen=True, tag="reset"):
-    """Put every body where the map says it stands."""
+    """Move every body to its pose in the map."""
 
 
 class TakePicture(Command[Picture], frozen=True, tag="picture"):
-    """A picture of the scene, from one of the world's cameras or from above; or of one `place`.
+    """Render the scene, from one of the world's cameras or from above, or render one `place`.
 
-    With `labels` the names of the entities are written on it.
+    With `labels`, the image shows the names of the entities.
     """
 
     camera: Word | None = None
@@ -770,7 +775,7 @@ class TakePicture(Command[Picture], frozen=True, tag="picture"):
 
 
 COMMANDS: dict[str, type[Command]] = {str(c.__struct_config__.tag): c for c in Command.__subclasses__()}
-"""Verb to request type."""
+"""Command name to request type."""
 
-for _verb, _command in COMMANDS.items():
-    _command.VERB = _verb
+for _name, _command in COMMANDS.items():
+    _command.VERB = _name

@@ -32,14 +32,14 @@ _NAME: Final = attrgetter("name")
 
 
 class Statement(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
-    """A property, by name or label, and values of it as they are written; none stands for all."""
+    """A property, by name or label, with values as written; no values stand for all."""
 
     property: str
     values: tuple[str, ...] = ()
 
 
 class NewEntity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
-    """An entity to put into the map, under a name that must be free; positions and sizes in metres."""
+    """An entity to add, under a name that must not exist; positions and sizes are in metres."""
 
     name: Name
     class_iri: str
@@ -54,13 +54,13 @@ class NewEntity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fiel
 
 
 class Edit(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
-    """What an entity is to be from now on; omitted fields keep their values.
+    """A change of an entity; omitted fields keep their values.
 
-    `alt` replaces all alternative references. An empty `conflict` takes the present one back. `unset` goes
-    before `set`, which replaces the value of a functional property and adds those of another. All of it is
-    refused with `PreconditionFailed` unless the properties of `only_if` have one of these values now (no
-    value, where none is given). With `carry`, what stands on the entity or is inside it moves with it as one
-    rigid body, except what `leave` names. An empty `tracked` ends that.
+    `alt` replaces all aliases. An empty `conflict` clears the present one. `unset` is applied before `set`,
+    which replaces the value of a functional property and adds values to other properties. The edit is
+    rejected with `PreconditionFailed` unless the properties of `only_if` have one of the given values (or no
+    value, if none is given). With `carry`, objects on the entity or inside it move with it as one rigid body,
+    except those in `leave`. An empty `tracked` ends tracking.
     """
 
     name: str
@@ -81,14 +81,14 @@ class Edit(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=Tr
 
     @property
     def places(self) -> bool:
-        """Does it say where the entity is?"""
+        """Whether it changes the pose."""
         return not (self.at is None and self.yaw is None and self.orientation is None)
 
     def pose_after(self, before: Pose | None) -> Pose:
-        """Where the entity is to be. Raises BadRequest for a pose that is none."""
+        """Return the new pose. Raises BadRequest for an invalid pose."""
         at = self.at or (before.position_m if before is not None else None)
         if at is None:
-            raise errors.BadRequest(f"{self.name} has no position yet; give one with --at")
+            raise errors.BadRequest(f"{self.name} has no position; give one with --at")
         return pose_of(at, self.yaw, self.orientation, before)
 
 
@@ -100,7 +100,7 @@ class Departed(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_field
 
 
 class Extent(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """How many triples and entities a commit is about."""
+    """The number of triples and entities of a commit."""
 
     inserted: int
     retracted: int
@@ -109,10 +109,10 @@ class Extent(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class PlaceChanges(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
-    """How a commit changed what holds of where things are, beyond the triples that it asserts and retracts.
+    """The changes of spatial relations by a commit, besides its asserted and retracted triples.
 
-    `came` and `went` are computed facts, which nobody asserted. `denied` are asserted facts that do not hold
-    from this commit on, as things stand; `undenied` hold again, or are not asserted any more.
+    `came` and `went` are computed facts. `denied` are asserted facts that the geometry contradicts from this
+    commit on. `undenied` are facts that hold again or are no longer asserted.
     """
 
     came: tuple[Triple, ...] = ()
@@ -122,18 +122,18 @@ class PlaceChanges(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
 
 class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One atomic, checked, durable change. `changed` and `removed` are the entities that it touched.
+    """One atomic, checked, durable change. `changed` and `removed` are the affected entities.
 
-    `verb` and `undoes` are those of the transaction. `tbox`: it replaced the TBox, so the classes are others.
-    A very large commit is published `abridged`, without its triples and entities: whoever follows the map
-    takes a new snapshot then. The journal always holds all of it.
+    `verb` and `undoes` are those of the transaction. With `tbox`, it replaced the TBox and thereby the
+    classes. A very large commit is published `abridged`, without its triples and entities; subscribers then
+    fetch a new snapshot. The journal always contains the whole commit.
 
-    `digest` is that of the journal up to and with this commit, in hexadecimal: where it is the same, so is
-    all that came before. Within the journal, which keeps it beside, it is that of the commit before, so that
-    each commit can be verified by itself.
+    `digest` covers the journal up to and including this commit, in hexadecimal: equal digests mean equal
+    histories. In the journal, which stores the digest separately, the field has the digest of the previous
+    commit, so that each commit can be verified alone.
 
-    `places` is in what is published only: the journal holds what was said, and not what was worked out. It is
-    None where nothing of the kind changed, and for another TBox, with which everything is worked out anew.
+    `places` is only in published commits, as the journal does not store computed facts. It is None if no
+    spatial relation changed, and for a new TBox, for which all relations are computed again.
     """
 
     seq: int
@@ -142,7 +142,7 @@ class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     source: Source
     agent: str = ""
     authenticated: bool = False
-    """A certificate has proved the agent's name; else it is as somebody said."""
+    """Whether the agent's name was authenticated by a certificate."""
     verb: str = ""
     reason: str = ""
     confidence: Probability | None = None
@@ -156,11 +156,11 @@ class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     changed: tuple[Entity, ...] = ()
     removed: tuple[Departed, ...] = ()
     notes: tuple[str, ...] = ()
-    """What else there is to know of it, in words: what it took back, carried along or left behind."""
+    """Notes about the commit: what it undid, moved along or left in place."""
 
     @property
     def provenance(self) -> Provenance:
-        """That of what it changed."""
+        """The provenance of the changed facts."""
         return Provenance(
             commit=self.seq,
             stamp_ns=self.stamp_ns,
@@ -172,7 +172,7 @@ class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def extent(self) -> Extent:
-        """How much it is, or was before it was abridged."""
+        """The size of the commit, before it was abridged."""
         return self.abridged or Extent(
             inserted=len(self.inserted),
             retracted=len(self.retracted),
@@ -187,23 +187,23 @@ class Commit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Trial(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What a dry run would commit: how many triples, and what would follow and no longer follow.
+    """The result of a dry run: the number of triples, and the inferences gained and lost.
 
-    The latter in words, of the first entities that it touches.
+    Inferences are given as text, for the first affected entities.
     """
 
     inserted: int
     retracted: int
     changed: tuple[str, ...]
-    """The names of the entities that it would change, all of them."""
+    """The names of all entities that would change."""
     gained: tuple[str, ...]
     lost: tuple[str, ...]
 
 
 class Effects(Struct, frozen=True, kw_only=True):
-    """What became of the entities: all that a follower of the map needs of a commit.
+    """The part of a commit that subscribers to entities need.
 
-    A `Commit` can be read as its effects; its triples are skipped, unread.
+    A `Commit` can be decoded as `Effects`; its triples are skipped.
     """
 
     seq: int
@@ -216,12 +216,12 @@ class Effects(Struct, frozen=True, kw_only=True):
     removed: tuple[Departed, ...] = ()
     notes: tuple[str, ...] = ()
     trial: Trial | None = None
-    """Of a dry run: nothing was done."""
+    """The result of a dry run; nothing was changed."""
     digest: str = ""
 
     @classmethod
     def of(cls, commit: Commit) -> Effects:
-        """Those of `commit`, abridged if there are very many."""
+        """Return the effects of a commit, abridged if there are very many."""
         commit = abridged(commit)
         return cls(
             seq=commit.seq,
@@ -250,17 +250,17 @@ class Transaction(
 ):
     """One atomic change with its preconditions.
 
-    What is wanted of entities travels as intents: `remove` (names), `edit` and `add`, carried out in this
-    order. The knowledge base turns them into triples, because it knows the ones that are there; it raises
-    `UnknownName` for an entity that is not there and `NameTaken` for a new one whose name is in use.
+    Changes of entities are given as `remove` (names), `edit` and `add`, which are applied in this order. The
+    knowledge base converts them to triples. It raises `UnknownName` for an entity that does not exist and
+    `NameTaken` for a new entity whose name exists.
 
-    `retract` and `insert` are triples. The transaction is refused with `PreconditionFailed` unless every
-    triple of `require` is asserted, and the entities that are to be `unchanged` are there and no commit after
-    `since` has changed them. `id` is the command's: the same id a second time changes nothing and is
-    answered with the first commit.
+    `retract` and `insert` are triples. The transaction is rejected with `PreconditionFailed` unless every
+    triple of `require` is asserted, and the entities in `unchanged` exist and were not changed by a commit
+    after `since`. `id` is the command's: if a transaction with the same id was committed before, nothing
+    changes, and the reply is the first commit.
 
-    `verb` is that of the command which a client sent; empty for what the system does by itself (the seed,
-    settling). `undoes` are the commits that it takes back.
+    `verb` is the name of the client's command; it is empty for changes by the system itself (the seed,
+    settling). `undoes` are the commits that it undoes.
     """
 
     LARGEST: ClassVar[int] = DOCUMENT
@@ -282,23 +282,23 @@ class Transaction(
     retract: tuple[Triple, ...] = ()
     insert: tuple[Triple, ...] = ()
     dry_run: bool = False
-    """Answered with what it would do, and not done."""
+    """Only report the effects, without changing anything."""
     told: bool = False
-    """The coordinator asks: it takes the commit from the reply, and need not hear of it a second time."""
+    """Sent by the coordinator, which takes the commit from the reply and needs no publication of it."""
 
     @property
     def is_quick(self) -> bool:
-        """Where it changes few entities and triples."""
+        """Whether it changes few entities and triples."""
         return sum(map(len, (self.add, self.remove, self.edit, self.retract, self.insert))) <= _FEW
 
 
 MANY_ENTITIES = 10_000
 MANY_TRIPLES = 20 * MANY_ENTITIES
-"""A commit with more than either is abridged when it is passed on."""
+"""A commit with more than either is published abridged."""
 
 
 def abridged(commit: Commit, *, always: bool = False) -> Commit:
-    """`commit` as it is passed on: one that is very large (or `always`) without its triples and entities."""
+    """Return `commit` as it is published: without triples and entities if it is very large (or `always`)."""
     triples = len(commit.inserted) + len(commit.retracted)
     is_small = triples <= MANY_TRIPLES and len(commit.changed) + len(commit.removed) <= MANY_ENTITIES
     if is_small and not always:
@@ -309,9 +309,9 @@ def abridged(commit: Commit, *, always: bool = False) -> Commit:
 
 
 class Snapshot(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The entities as they are after commit `seq`: all, or a page of them in the order of their names.
+    """The entities after commit `seq`: all of them, or a page sorted by name.
 
-    With `more`, further pages follow. `digest` is that of commit `seq`.
+    `more` means that further pages follow. `digest` is that of commit `seq`.
     """
 
     seq: int
@@ -321,16 +321,16 @@ class Snapshot(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Star(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The triples about one entity, after commit `seq`."""
+    """The entity triples of one entity, after commit `seq`."""
 
     seq: int
     name: str
     iri: Term
     own: tuple[Triple, ...]
-    """Its own: they go when it goes. A reference that another entity uses too is not among them."""
+    """Triples that are removed with the entity, excluding a label that another entity shares."""
     incoming: tuple[Triple, ...]
-    """What other individuals say of it."""
+    """Triples of other individuals with this entity as object."""
     computed: tuple[Triple, ...] = ()
-    """Computed facts about it, as subject, which nobody asserted."""
+    """Computed facts with this entity as subject."""
     denied: tuple[Triple, ...] = ()
-    """Those of its own that do not hold, as things stand."""
+    """The triples in `own` that the geometry contradicts."""

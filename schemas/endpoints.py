@@ -1,4 +1,4 @@
-"""Where a system is reached when nothing else is said."""
+"""The default endpoint and the environment variables of a connection."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ from semmap.schemas.errors import BadRequest
 
 DEFAULT_ENDPOINT: Final = "tcp/127.0.0.1:7447"
 CONNECT_VARIABLE: Final = "SEMMAP_CONNECT"
-"""The environment variable with another endpoint."""
+"""The environment variable with the endpoint."""
 CONFIG_VARIABLE: Final = "SEMMAP_ZENOH_CONFIG"
-"""The environment variable with a Zenoh configuration file, for a system that was started with its own."""
+"""The environment variable with a Zenoh configuration file, for a system that was started with one."""
 IDENTITY_VARIABLE: Final = "SEMMAP_IDENTITY"
-"""The environment variable with who somebody is."""
+"""The environment variable with the client's identity."""
 WEB_TOKEN_VARIABLE: Final = "SEMMAP_WEB_TOKEN"
-"""The environment variable with the token that opens the page; without it one is made up."""
+"""The environment variable with the access token of the page; without it, one is generated."""
 NAMESPACE_VARIABLE: Final = "SEMMAP_NAMESPACE"
-"""The environment variable with which robot is meant, where several share a network."""
+"""The environment variable with the robot's name, if several robots share a network."""
 
 _ROBOT: Final = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,127}")
 
 
 ALL_ROBOTS: Final = "*"
-"""As a namespace: of a router that several robots share, and of nothing else."""
+"""The namespace of a router that several robots share."""
 
 
 def robot_name(name: str) -> str:
-    """`name`, if a robot may be called so; empty is a robot without a name. Raises BadRequest."""
+    """Return `name` if it is a valid robot name; empty stands for no name. Raises BadRequest."""
     if name and not _ROBOT.fullmatch(name):
-        raise BadRequest(f"'{name}' cannot name a robot; use letters, digits, '_', '.' and '-', as in robot1")
+        raise BadRequest(f"'{name}' is not a valid robot name; use letters, digits, '_', '.' and '-'")
     return name

@@ -1,7 +1,7 @@
-"""Entities of the map: poses, sizes, names, references and provenance.
+"""Entities of the map: poses, sizes, names, labels and provenance.
 
-What a map has very many of is not looked through for garbage (`gc=False`): it is frozen, so there is no cycle
-of such alone, and a collection that passes a hundred thousand of them takes longer than reading them.
+Structs that a map has very many of are excluded from garbage collection (`gc=False`). They are frozen, so
+they cannot form cycles, and scanning a hundred thousand of them takes longer than reading them.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ _MARKS = (
 """Vowel signs and the like, without which words of many scripts cannot be written; `\\w` lacks them."""
 
 NAME_PATTERN = rf"^[^\W\d][\w.\-{_MARKS}]{{0,127}}$(?!\n)"
-"""A name is the local part of an IRI, a chunk of a key and the name of a body: letters of any script, digits,
-`_`, `.` and `-`, beginning with a letter or `_`. (Alone, `$` would let a line end pass.)"""
+"""A name is the local part of an IRI, a chunk of a key and the name of a body. It has letters of any script,
+digits, `_`, `.` and `-`, and begins with a letter or `_`. (`$` alone would accept a line feed at the end.)"""
 
 REACH_M = 10_000.0
-"""Coordinates beyond this are taken for a mistake."""
+"""Larger coordinates are rejected."""
 
 CommandId = Annotated[str, Meta(min_length=1, max_length=200)]
 Name = Annotated[str, Meta(pattern=NAME_PATTERN)]
@@ -39,7 +39,7 @@ Unit = Annotated[float, Meta(ge=-1.001, le=1.001)]
 Angle = Annotated[float, Meta(ge=-1e6, le=1e6)]
 Text = Annotated[str, Meta(min_length=1, max_length=1000)]
 Word = Annotated[str, Meta(max_length=1000)]
-"""What is looked up: a name, a class or a reference, as somebody wrote it."""
+"""A name, class or label to look up, as entered by a user."""
 Remark = Annotated[str, Meta(max_length=1000)]
 Probability = Annotated[float, Meta(ge=0.0, le=1.0)]
 
@@ -50,35 +50,35 @@ Quaternion = tuple[Unit, Unit, Unit, Unit]
 """Unit quaternion, `wxyz`."""
 
 Source = Literal["operator", "file", "scene", "perception", "agent"]
-"""Who says so. Only operators and files decide what a thing is; anybody may say where it is now."""
+"""The source of a change. Only operators and files decide classes; any source may change a pose."""
 
 LESSER: frozenset[Source] = frozenset(("scene", "perception", "agent"))
-"""Those that never outrank an operator. An `agent` decides by itself: a language model, for one."""
+"""Sources that never override an operator. An `agent` acts autonomously, such as a language model."""
 
 IDENTITY: Quaternion = (1.0, 0.0, 0.0, 0.0)
 _UNIT_TOLERANCE = 1e-3
 
 
 def require_unit(quaternion: Quaternion) -> None:
-    """Raises ValueError for a quaternion that is not of unit length (to one in a thousand)."""
-    if quaternion == IDENTITY:  # as most are
+    """Raise ValueError for a quaternion that is not of unit length (tolerance 0.001)."""
+    if quaternion == IDENTITY:  # the usual case
         return
     norm = math.hypot(*quaternion)
-    if not abs(norm - 1.0) <= _UNIT_TOLERANCE:  # NaN is no length
+    if not abs(norm - 1.0) <= _UNIT_TOLERANCE:  # also true for NaN
         raise ValueError(f"the quaternion {quaternion} has length {norm:.4g}; it must be 1")
 
 
 class Pose(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True):
-    """Where a thing stands in the map frame (z up): its bottom centre [m] and its orientation.
+    """A pose in the map frame (z up): the bottom centre [m] and the orientation of an object.
 
-    Raises ValueError for a quaternion that is not of unit length (to one in a thousand).
+    Raises ValueError for a quaternion that is not of unit length (tolerance 0.001).
     """
 
     position_m: Vector
     orientation_wxyz: Quaternion = IDENTITY
 
     def __post_init__(self) -> None:
-        if self.orientation_wxyz != IDENTITY:  # as that of most is not: a map has very many
+        if self.orientation_wxyz != IDENTITY:  # skips the call for most poses
             require_unit(self.orientation_wxyz)
 
     @property
@@ -89,19 +89,19 @@ class Pose(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=Tr
 
     @property
     def upright(self) -> float:
-        """The cosine of the angle between its own z axis and the map's: 1 upright, 0 on its side."""
+        """The cosine of the angle between its z axis and the map's: 1 is upright, 0 is on its side."""
         _, x, y, _ = self.orientation_wxyz
         return 1.0 - 2.0 * (x * x + y * y)
 
 
 def name_stem(class_name: str) -> str:
-    """What the names of a class's entities begin with: the class in lower case, without a prefix."""
+    """Return the first part of generated names: the class in lower case, without a prefix."""
     stem = re.sub(r"[^\w.-]", "", composed(class_name.rpartition(":")[2].lower()))[:120]
     return stem if stem[:1].isalpha() else f"_{stem}"
 
 
 def free_name(class_name: str, taken: Container[str]) -> str:
-    """The class in lower case, without a prefix, and the first number that is free: `chair1`."""
+    """Return the class in lower case, without a prefix, with the first unused number: `chair1`."""
     stem, number = name_stem(class_name), 1
     while f"{stem}{number}" in taken:
         number += 1
@@ -109,24 +109,24 @@ def free_name(class_name: str, taken: Container[str]) -> str:
 
 
 def composed(name: str) -> str:
-    """A name in Unicode's composed form (NFC), in which names are kept and compared."""
+    """Return a name in Unicode's composed form (NFC), in which names are stored and compared."""
     return name if name.isascii() else unicodedata.normalize("NFC", name)
 
 
 def orientation_from_yaw(yaw_rad: float) -> Quaternion:
-    """The quaternion that turns by `yaw_rad` about z."""
+    """Return the quaternion of a rotation by `yaw_rad` about z."""
     return (math.cos(yaw_rad / 2.0), 0.0, 0.0, math.sin(yaw_rad / 2.0))
 
 
 def rounded(pose: Pose) -> Pose:
-    """To a micrometre, and without minus zeros: what physics knows no better is not worth its digits."""
+    """Return a pose rounded to a micrometre, without negative zeros."""
     x, y, z = (round(value, 6) + 0.0 for value in pose.position_m)
     qw, qx, qy, qz = (round(value, 6) + 0.0 for value in pose.orientation_wxyz)
     return Pose(position_m=(x, y, z), orientation_wxyz=(qw, qx, qy, qz))
 
 
 def carried(pose: Pose, was: Pose, now: Pose) -> Pose:
-    """Where a thing at `pose` comes to be when its bearer goes from `was` to `now`, as one rigid body."""
+    """Return the new pose of an object that moves rigidly with a support from `was` to `now`."""
     turn = _product(now.orientation_wxyz, _inverse(was.orientation_wxyz))
     px, py, pz = (p - o for p, o in zip(pose.position_m, was.position_m, strict=True))
     _, *offset = _product(_product(turn, (0.0, px, py, pz)), _inverse(turn))
@@ -140,7 +140,7 @@ def carried(pose: Pose, was: Pose, now: Pose) -> Pose:
 
 
 def compose(frame: Pose, pose: Pose) -> Pose:
-    """Where a thing that is at `pose` in a frame is in that in which the frame itself is at `frame`.
+    """Return `pose`, given relative to a frame, in the parent frame in which the frame's pose is `frame`.
 
     `map_from_lidar = compose(map_from_robot, robot_from_lidar)`.
     """
@@ -154,7 +154,7 @@ def compose(frame: Pose, pose: Pose) -> Pose:
 
 
 def inverse(frame: Pose) -> Pose:
-    """Where the outer frame is in the one that is at `frame` in it."""
+    """Return the pose of the parent frame relative to the frame."""
     back = _inverse(frame.orientation_wxyz)
     x, y, z = frame.position_m
     origin = Pose(position_m=(-x, -y, -z))
@@ -162,7 +162,7 @@ def inverse(frame: Pose) -> Pose:
 
 
 def relative(pose: Pose, frame: Pose) -> Pose:
-    """A pose as seen from a frame; both are given in one and the same."""
+    """Return a pose relative to a frame; both are given in the same parent frame."""
     return compose(inverse(frame), pose)
 
 
@@ -173,7 +173,7 @@ def _unit(q: Quaternion) -> Quaternion:
 
 
 def _product(a: Quaternion, b: Quaternion) -> Quaternion:
-    """The rotation `b`, then `a`."""
+    """Return the rotation `b` followed by `a`."""
     aw, ax, ay, az = a
     bw, bx, by, bz = b
     return (
@@ -185,25 +185,25 @@ def _product(a: Quaternion, b: Quaternion) -> Quaternion:
 
 
 def _inverse(q: Quaternion) -> Quaternion:
-    """The rotation back; `q` may be off unit length by what `require_unit` allows."""
+    """Return the inverse rotation; `q` may deviate from unit length as far as `require_unit` allows."""
     w, x, y, z = q
     square = w * w + x * x + y * y + z * z
     return (w / square, -x / square, -y / square, -z / square)
 
 
 def distance_m(a: Pose, b: Pose) -> float:
-    """Distance of two positions [m]."""
+    """Return the distance of two positions [m]."""
     return math.dist(a.position_m, b.position_m)
 
 
 def angle_rad(a: Pose, b: Pose) -> float:
-    """The angle of the rotation from one orientation to the other, in [0, pi]."""
+    """Return the angle of the rotation from one orientation to the other, in [0, pi]."""
     dot = abs(sum(p * q for p, q in zip(a.orientation_wxyz, b.orientation_wxyz, strict=True)))
     return 2.0 * math.acos(min(1.0, dot))
 
 
 class Provenance(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True):
-    """The commit that last changed something, and who made it."""
+    """The commit that last changed a fact, and its author."""
 
     commit: int
     stamp_ns: int
@@ -216,44 +216,44 @@ class Provenance(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fie
 Value = bool | int | float | str
 """A property's value: a boolean, a number, a text (with @ and its language), or an individual's name."""
 Stated = Value | tuple[Value, ...]
-"""What is stated by a property: one value if it is functional, else all of them."""
+"""The asserted value of a functional property, or all values of another property."""
 
 
 class BodyState(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What the simulator makes of an entity.
+    """The state of an entity's body in the simulator.
 
-    `present`: it stands there. `ghost`: seen but not colliding, because something else fills the place.
-    `pending`: not spawned yet. `failed`: cannot be made, `detail` says why. `missing`: the scene, which is
-    the truth here, does not have it. `none`: it is not to have one (a place; or only perception tells the
-    map). `unknown`: no simulator runs.
+    `present`: it is in the scene. `ghost`: it is visible but does not collide, because another body occupies
+    its place. `pending`: it is not spawned yet. `failed`: it cannot be created, for the reason in `detail`.
+    `missing`: the scene, which is the source of truth, does not have it. `none`: the entity has no body (a
+    place, or perception is the source of truth). `unknown`: no simulator is running.
     """
 
     status: Literal["present", "ghost", "pending", "failed", "missing", "none", "unknown"]
     detail: str = ""
     model: str = ""
-    """The model that the body was made from; for a pending one, the model that it will have."""
+    """The model of the body; for a pending one, the model that it will have."""
     own_size: bool = False
-    """The entity's size is that of its model, because the map states none."""
+    """Whether the entity's size is that of its model, because the map has none."""
     joints: tuple[Joint, ...] = ()
-    """The joints that move parts of the body, as they stand just now."""
+    """The joints of the body with their current positions."""
     openness: float | None = None
-    """How far open it is just now, 0 to 1: as the joint that is open furthest; None if nothing opens."""
+    """The current openness of the joint that is open furthest, 0 to 1; None if no joint opens something."""
     switched_on: bool | None = None
-    """Whether any of its switches is on just now; None if it has none."""
+    """Whether any of its switches is currently on; None if it has none."""
 
 
 Tracking = Literal["sim", "stream"]
-"""Where the live poses of a tracked entity come from: the simulator, or whoever publishes them."""
+"""The source of a tracked entity's live poses: the simulator or a publisher."""
 
 
 Tracked = Literal["", "sim", "stream"]
-"""The same, or "" for what is not tracked."""
+"""The same, or "" for an entity that is not tracked."""
 
 
 class Live(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True):
-    """Where a tracked entity is just now, as far as was heard: `age_s` seconds ago, measured at `stamp_ns`.
+    """The last live pose of a tracked entity, received `age_s` seconds ago and measured at `stamp_ns`.
 
-    `stale`: nothing has been heard for longer than `semmap up --stale`; it is taken to be where it was.
+    `stale` means that no pose was received for longer than `semmap up --stale`; the last one is used.
     """
 
     pose: Pose
@@ -264,19 +264,21 @@ class Live(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=Tr
 
 
 class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True):
-    """One individual of the map that is somewhere: an object, a person, a wall, or a place.
+    """One individual of the map with a position: an object, a person, a wall, or a place.
 
-    Class names are local names of the TBox (`Chair`); `types` holds all that are asserted or follow.
-    `size_m` is its extent along its own axes [m]. In commits and in what is published it is what the map
-    states, or None; replies fill in what its body measures, or what its model does. Where there is no model
-    either, it is None: the size is not known, and a box stands in for it in the scene.
-    `tracked` says where its live poses come from, or "" for what is not tracked; `pose` is then the last one
-    that was journalled, and `live`, which replies fill in, the newest.
-    `pose_provenance` says what last changed its pose, `shape_provenance` its class or size,
-    `reference_provenance` what it is called, `joint_provenance` how far open it is and how its joints stand
-    (None if that was never stated), `switch_provenance` whether it is on and how its switches stand, and
-    `grip_provenance` what holds it (likewise). `properties` are the data and object properties that are
-    asserted of it.
+    Class names are local names of the TBox (`Chair`). `types` has all asserted and inferred classes.
+
+    `size_m` is the extent along its own axes [m]. In commits and publications, it is the asserted size or
+    None. Replies fill in the size of the body or of the model. Without a model it is None: the size is
+    unknown, and the scene shows a box.
+
+    `tracked` is the source of live poses, or "". For tracked entities, `pose` is the last committed pose, and
+    `live`, which replies fill in, is the newest.
+
+    There is one provenance each for the pose, for the shape (class or size) and for the labels
+    (`reference_provenance`). `joint_provenance` is for openness and joint positions, `switch_provenance` for
+    switches, and `grip_provenance` for the attachment; these are None if never set. `properties` are the
+    asserted data and object properties.
     """
 
     name: str
@@ -288,7 +290,7 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
     preferred_reference: str | None = None
     alternative_references: tuple[str, ...] = ()
     conflict: str = ""
-    """What perception sees against this, kept beside it because an operator said it; empty for nothing."""
+    """An observation that contradicts an operator's assertion, which is kept; empty if there is none."""
     properties: dict[str, Stated] = {}
     """Other asserted properties, by name: `{"isOpen": true, "hasColor": ["color_red"]}`."""
     place: bool = False
@@ -307,52 +309,52 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
 
     @property
     def joints_said(self) -> Provenance | None:
-        """What last changed how its joints are to stand, those of switches among them; None for nothing."""
-        said = (self.joint_provenance, self.switch_provenance)
-        return max((p for p in said if p is not None), key=lambda p: p.commit, default=None)
+        """The provenance of the last change of any joint or switch position, or None."""
+        both = (self.joint_provenance, self.switch_provenance)
+        return max((p for p in both if p is not None), key=lambda p: p.commit, default=None)
 
 
 class ClassInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One named class of the TBox, as commands need it.
+    """A named class of the TBox.
 
-    `name` is the local name of its IRI, or `prefixed` where other classes share that.
+    `name` is the local name of its IRI, or `prefixed` if other classes have the same local name.
     """
 
     name: str
     iri: str
     prefixed: str = ""
-    """The name with its prefix: `dm:Chair`. It always means this class."""
+    """The name with its prefix, which is unique: `dm:Chair`."""
     parents: tuple[str, ...]
     ancestors: tuple[str, ...]
     labels: dict[str, str]
-    """Language tag (or "") to text, one a language."""
+    """Language tag (or "") to text, one per language."""
     also: tuple[str, ...] = ()
-    """Its other labels."""
+    """Further labels."""
     comment: str = ""
     spatial: bool
-    """Its individuals are in space: they may be added."""
+    """Whether its instances are physical things, which can be added to the map."""
     place: bool
     fixed: bool
     model: str
     asserted: int = 0
-    """How many entities say they are of this class."""
+    """The number of entities that are asserted to be of this class."""
     inferred: int = 0
-    """How many are, by inference."""
+    """The number of entities of this class, including inferred ones."""
 
 
 class PropertyInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One data or object property of the TBox that may be stated of an entity, as commands need it."""
+    """A data or object property of the TBox that can be set for an entity."""
 
     name: str
     iri: str
     kind: Literal["data", "object"]
     functional: bool
-    """It has one value at most: a new one takes the place of the one before."""
+    """Whether it has at most one value, so that a new value replaces the previous one."""
     domain: tuple[str, ...]
     range: tuple[str, ...]
-    """Datatypes or classes; empty for anything."""
+    """Datatypes or classes; empty if there is no restriction."""
     labels: dict[str, str]
     """Language tag (or "") to text."""
     comment: str = ""
     values: dict[str, str]
-    """The individuals of the TBox that it may point to, by name, with their labels."""
+    """The individuals of the TBox that can be its value, by name, with their labels."""

@@ -1,13 +1,13 @@
 """The error tree, and its form on the wire.
 
 SemmapError
-├── Refused        exit status 1: the request was understood and the map says no
+├── Refused        exit status 1: the request is valid, but rejected
 │   ├── Inconsistent, PreconditionFailed, UnknownName, NameTaken
-├── Busy           exit status 1: not looked at, because too much waits already; to be sent again later
-├── BadRequest     exit status 2: the request cannot be understood
+├── Busy           exit status 1: not processed because the queue is full; retry later
+├── BadRequest     exit status 2: the request is invalid
 │   ├── UnknownClass, UnknownVerb, BadFile
-├── NoAnswer       exit status 3: nobody serves the key, or this client may not ask it
-└── InternalError  exit status 1: a fault of ours, told as one
+├── NoAnswer       exit status 3: no node serves the key, or access is denied
+└── InternalError  exit status 1: a fault in semmap
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from msgspec import Struct
 from semmap.schemas.explanations import Explanation
 
 LONGEST_TEXT = 10_000
-"""Characters of an error that are sent: what a sentence quotes may be of any length."""
+"""The maximum number of characters of an error text, as quoted input can be of any length."""
 _LONGEST_WORD = 200
-"""Characters of a word for which similar ones are looked for."""
+"""The maximum number of characters of a word for which similar ones are searched."""
 
 
 class SemmapError(Exception):
-    """Base of every error that crosses the wire. The text is one sentence saying what is possible."""
+    """The base of all errors in replies. The text is one sentence with the problem and the next step."""
 
     code: ClassVar[str] = "error"
     exit_status: ClassVar[int] = 1
     again_s: float | None = None
-    """Of Busy: after how long to come again [s]."""
+    """For Busy: the time after which to retry [s]."""
 
     def __init__(self, text: str, *, explanation: Explanation | None = None) -> None:
         super().__init__(text)
@@ -40,19 +40,19 @@ class SemmapError(Exception):
 
 
 def in_part(error: SemmapError, done: Sequence[int], number: int, count: int) -> SemmapError:
-    """The error of part `number` of `count`, with what became of the others: `done` are their commits."""
+    """Return the error of part `number` of `count`, with the commits `done` of the parts before it."""
     if not done:
         return error
     before = f"commit {done[0]}" if len(done) == 1 else f"commits {done[0]} to {done[-1]}"
     text = (
-        f"{error.text}; that is in part {number} of {count}: what is before it is committed"
-        f" ({before}) and stays, the rest is not"
+        f"{error.text}; this is in part {number} of {count}: the parts before it are committed ({before}),"
+        " the rest is not"
     )
     return type(error)(text, explanation=error.explanation)
 
 
 class Refused(SemmapError):
-    """Understood, and not done."""
+    """The request is valid, but was rejected."""
 
     code = "refused"
 
@@ -64,7 +64,7 @@ class Inconsistent(Refused):
 
 
 class PreconditionFailed(Refused):
-    """The map is no longer as the sender believed it to be."""
+    """The map is not in the state that the request requires."""
 
     code = "precondition-failed"
 
@@ -76,13 +76,13 @@ class UnknownName(Refused):
 
 
 class NameTaken(Refused):
-    """Another individual has this name already."""
+    """Another individual already has this name."""
 
     code = "name-taken"
 
 
 class Busy(SemmapError):
-    """Not looked at: too much waits already. Nothing was done, so it is safe to send it again."""
+    """The queue is full. The request was not processed, so it is safe to retry it."""
 
     code = "busy"
 
@@ -94,20 +94,20 @@ class Busy(SemmapError):
 
 
 class BadRequest(SemmapError):
-    """The request cannot be understood: usage, a malformed value or message."""
+    """The request is invalid: wrong usage, or a malformed value or message."""
 
     code = "bad-request"
     exit_status = 2
 
 
 class UnknownClass(BadRequest):
-    """The TBox has no such class, or it is not the class of a thing in space."""
+    """The TBox has no such class, or it is not a class of physical things."""
 
     code = "unknown-class"
 
 
 class UnknownVerb(BadRequest):
-    """There is no such command."""
+    """No command has this name."""
 
     code = "unknown-verb"
 
@@ -119,20 +119,20 @@ class BadFile(BadRequest):
 
 
 class NoAnswer(SemmapError):
-    """Nobody replied: the node is not running, or this client may not ask it."""
+    """No reply: the node is not running, or this client has no access to it."""
 
     code = "no-answer"
     exit_status = 3
 
 
 class InternalError(SemmapError):
-    """A fault in semmap itself; the node that met it has logged it and lives on."""
+    """A fault in semmap; the node has logged it and continues."""
 
     code = "internal"
 
 
 class ErrorMessage(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
-    """What an error reply carries. `again_s` is when to come again [s], of one that says busy."""
+    """The content of an error reply. For `busy`, `again_s` is the time after which to retry [s]."""
 
     code: str
     text: str
@@ -161,47 +161,47 @@ _BY_CODE: dict[str, type[SemmapError]] = {
 
 
 def to_message(error: SemmapError) -> ErrorMessage:
-    """The wire form of `error`."""
+    """Return the message for an error."""
     return ErrorMessage(
         code=error.code, text=shortened(error.text), explanation=error.explanation, again_s=error.again_s
     )
 
 
 def from_message(message: ErrorMessage) -> SemmapError:
-    """The error that `message` stands for; a code from a newer version becomes a plain SemmapError."""
+    """Return the error for a message; an unknown code from a newer version becomes a plain SemmapError."""
     error = _BY_CODE.get(message.code, SemmapError)(message.text, explanation=message.explanation)
     error.again_s = message.again_s
     return error
 
 
 def shortened(text: str, most: int = LONGEST_TEXT) -> str:
-    """`text`, or of a longer one the beginning and the number of characters left out."""
+    """Return `text`, truncated to `most` characters with the number of omitted ones."""
     return text if len(text) <= most else f"{text[:most]} ... (and {len(text) - most:,} more characters)"
 
 
 SKIP_UNKNOWN = "; --skip-unknown leaves these out"
 _A_WORD = 4
-"""Letters of a word that may be looked for within others."""
+"""The minimum length of a word that is searched as a part of others."""
 _FEW = 10
 _MANY = 30
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """`; did you mean A, B or C?` with the nearest of `known`, or nothing when none is near."""
+    """Return `; did you mean A, B or C?` with the most similar names, or an empty text if there are none."""
     names = nearest(word, known)
     return f"; did you mean {enumerated(names)}?" if names else ""
 
 
 def nearest(word: str, known: Iterable[str]) -> list[str]:
-    """Up to three of `known`: those first that the word is a part of, then words of it, then the nearest.
+    """Return up to three names: those that contain the word, then words of it, then the most similar ones.
 
-    Of `kitchen table` the last word says what it is, so `table` comes before `kitchen`.
-    A client, which knows few names, may be without RapidFuzz.
+    The last word of `kitchen table` is its head, so `table` comes before `kitchen`. Without RapidFuzz, which
+    clients need not have installed, difflib is used.
     """
     if len(word) > _LONGEST_WORD:
-        return []  # nobody meant it, and to compare it takes as long as it is
+        return []  # comparing a long text is slow and finds no name
     try:
-        from rapidfuzz import fuzz, process, utils  # takes a tenth of what a command line takes to begin
+        from rapidfuzz import fuzz, process, utils  # slow to import: a tenth of a command's start-up time
     except ImportError:
         import difflib
 
@@ -219,24 +219,26 @@ def nearest(word: str, known: Iterable[str]) -> list[str]:
 
 
 def enumerated(names: Sequence[str]) -> str:
-    """`A, B or C`."""
+    """Return `A, B or C`."""
     return " or ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
 def unknown_classes(users: Mapping[str, Sequence[str]], known: Iterable[str]) -> str:
-    """One sentence on the unknown classes of a file and whose they are, and how to go on without them."""
+    """Return a sentence about the unknown classes of a file, their entities, and how to skip them."""
     return f"{_unknown('class', 'classes', users, known)}{SKIP_UNKNOWN}"
 
 
 def unknown_properties(users: Mapping[str, Sequence[str]], known: Iterable[str]) -> str:
-    """One sentence on properties that the TBox does not have, and who has them."""
+    """Return a sentence about properties that the TBox lacks, and the entities that use them."""
     return _unknown("property", "properties", users, known)
 
 
 def _unknown(one: str, many: str, users: Mapping[str, Sequence[str]], known: Iterable[str]) -> str:
     known, few = list(known), max(1, _FEW // len(users))
-    said = [f"'{name}' (of {_some(whose, few)}{did_you_mean(name, known)})" for name, whose in users.items()]
-    return f"unknown {one if len(said) == 1 else many} {_some(said, _MANY)}"
+    described = [
+        f"'{name}' (of {_some(whose, few)}{did_you_mean(name, known)})" for name, whose in users.items()
+    ]
+    return f"unknown {one if len(described) == 1 else many} {_some(described, _MANY)}"
 
 
 def _some(names: Sequence[str], few: int) -> str:

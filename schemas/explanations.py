@@ -1,4 +1,4 @@
-"""Explanations of why a fact follows or why a map is inconsistent, for people and programs."""
+"""Explanations of inferred facts and inconsistencies, for people and programs."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ class Step(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     rule: str
     premises: tuple[Triple, ...]
     conclusion: Triple | None
-    """None when the rule concludes that the map is inconsistent."""
+    """None if the rule concludes that the map is inconsistent."""
 
 
 class Explanation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
     """A proof: `steps` lead from the asserted triples in `support` (a minimal set) to `conclusion`.
 
-    `steps` are in order: each premise is in `support` or is the conclusion of an earlier step.
-    A conclusion that was asserted has itself as support and no steps.
+    `steps` are in order: each premise is in `support` or is the conclusion of an earlier step. An asserted
+    conclusion has itself as support and no steps.
     """
 
     conclusion: Triple | None
-    """None for an inconsistency, and for what no single triple says."""
+    """None for an inconsistency, and for a conclusion that is not a single triple."""
     support: tuple[Triple, ...]
     steps: tuple[Step, ...]
     text: str
-    """The same in one sentence, with labels instead of IRIs."""
+    """The proof in one sentence, with labels instead of IRIs."""
     supposed: Triple | None = None
-    """For a proof by refutation, what cannot be: with it, `support` is contradictory, as `steps` show.
+    """In a proof by refutation, the refuted assumption: `steps` derive a contradiction from it and `support`.
 
-    `conclusion` is then what follows from that, if a triple says it, or else None. Each premise is also this
-    triple, then.
+    `conclusion` is then the consequence of the refutation, or None if it is not a single triple. Premises can
+    also be this triple.
     """

@@ -1,4 +1,4 @@
-"""Frames: coordinate systems that are somewhere in one another, a tree with the map's frame at its root."""
+"""Coordinate frames: a tree with the map's frame at its root."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ MAP: Final = "map"
 
 LONGEST_NAME: Final = 300
 FrameName = Annotated[str, Meta(min_length=1, max_length=LONGEST_NAME)]
-"""A frame as somebody wrote it."""
+"""A frame name as entered by a user."""
 
 FrameSource = Literal["map", "sim", "stream", "camera"]
-"""Who says where a frame is: the map, the simulator, whoever publishes it, or a camera of the simulator."""
+"""The source of a frame's pose: the map, the simulator, a publisher, or a camera of the simulator."""
 
 
 class FramePose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
-    """Where a frame is in its `parent`, on `semmap/frame/<name>`: its origin [m] and how it is turned.
+    """The pose of a frame in its `parent`, published on `semmap/frame/<name>`: origin [m] and orientation.
 
-    It is turned by `yaw` [rad] about the parent's z, or by `orientation` (unit quaternion wxyz). `stamp_ns`
-    is when that was measured, in nanoseconds since 1970; 0 stands for when it arrives. What is `fixed` is
-    said once and never stale; everything else has to be said again and again.
+    The orientation is `yaw` [rad] about the parent's z, or `orientation` (unit quaternion wxyz). `stamp_ns`
+    is the time of the measurement in nanoseconds since 1970; 0 stands for the time of arrival. A `fixed`
+    frame is published once and does not become stale; other frames must be published repeatedly.
     """
 
     parent: FrameName
@@ -37,15 +37,15 @@ class FramePose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, o
     fixed: bool = False
 
     def require_pose(self) -> Pose:
-        """Its pose in the parent. Raises BadRequest for yaw and orientation, or no unit quaternion."""
+        """Return the pose. Raises BadRequest for yaw with orientation, or for a non-unit quaternion."""
         return pose_of(self.at, self.yaw, self.orientation)
 
 
 class Frame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One frame of the tree. `pose` is that in its parent, `map_pose` that in the map's frame.
+    """One frame of the tree. `pose` is in its parent, `map_pose` in the map's frame.
 
-    `age_s` is how long ago its pose was heard [s], None for what is not live. Where `problem` says why it
-    cannot be used (it is stale, its parent is not there), `map_pose` is None.
+    `age_s` is the time since the last pose was received [s], None for a frame that is not live. `map_pose` is
+    None if there is a `problem`, such as a stale pose or a missing parent.
     """
 
     name: str

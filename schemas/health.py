@@ -7,15 +7,15 @@ from typing import Literal
 from msgspec import Struct
 
 WORKING = ("loading ", "undoing ", "removing ")
-"""With one of these words the knowledge base's detail begins while a large change takes long."""
+"""The beginnings of the knowledge base's `detail` during a large change."""
 
 
 class Health(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Sent once a second by the thread that owns a node's state, so a hung node falls silent."""
+    """A heartbeat, sent once a second by the thread that owns a node's state, so a hung node sends none."""
 
     node: str
     host: str = ""
-    """The name of the machine that it runs on."""
+    """The name of its machine."""
     pid: int
     started_ns: int
     stamp_ns: int
@@ -23,10 +23,10 @@ class Health(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     detail: str = ""
     last_error: str = ""
     commit: int | None = None
-    """Of the knowledge base: the number of the last commit, so that a follower notices what it has missed."""
+    """For the knowledge base: the number of the last commit, by which subscribers detect missed commits."""
     digest: str = ""
-    """That of the last commit, so that a follower notices one that was never made."""
+    """The digest of the last commit, by which subscribers detect forged commits."""
     ignored: int = 0
-    """Publications that were no messages, since its start."""
+    """The number of invalid messages since its start."""
     notes: tuple[str, ...] = ()
-    """What whoever runs the system should know once, and `status` goes on to show."""
+    """Notes for the operator, which are printed once and shown by `status`."""

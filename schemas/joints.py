@@ -1,4 +1,4 @@
-"""Joints of bodies: hinges, slides and ball joints; how far open what they carry is, and which switch."""
+"""Joints of bodies: hinges, slides and ball joints, with their openness and switch states."""
 
 from __future__ import annotations
 
@@ -10,35 +10,35 @@ from msgspec import Struct
 from semmap.schemas import errors
 
 OPEN_FROM: Final = 0.05
-"""A thing counts as open from this share of the way on; less is a door that stands ajar by its play."""
+"""The share of the range from which an object counts as open; less can be the play of a closed door."""
 
 ON_FROM: Final = 0.5
-"""A switch counts as on from half of its way on."""
+"""The share of the range from which a switch counts as on."""
 
 _SHUT: Final = 0.01
 
 IS_OPEN: Final = "isOpen"
 OPENNESS: Final = "openness"
 JOINT_POSITIONS: Final = "jointPositions"
-"""The properties by which a map states how its joints stand. Each says more than the one before."""
+"""The properties for the positions of joints that open something, each more precise than the previous one."""
 OPENING: Final = (IS_OPEN, OPENNESS, JOINT_POSITIONS)
 
 IS_SWITCHED_ON: Final = "isSwitchedOn"
 SWITCH_POSITIONS: Final = "switchPositions"
-"""The same for those that switch something: `jointPositions` has all other joints."""
+"""The same for switches; `jointPositions` contains all other joints."""
 SWITCHING: Final = (IS_SWITCHED_ON, SWITCH_POSITIONS)
 
 STANDING: Final = (*OPENING, *SWITCHING)
-"""All by which a map states how joints stand."""
+"""All properties for joint positions."""
 
 
 class Joint(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
-    """A joint of a body, as it stands: a hinge or a slide with limits opens something, or switches it.
+    """A joint of a body with its position. A hinge or slide with limits opens something or is a switch.
 
-    `position` is an angle [rad] for a hinge, a distance [m] for a slide, and for a ball joint the angle
-    [rad] by which it is turned away from its reference. `closed` is the limit at which what it carries is
-    shut, or, if it is a `switch`, off; None for a joint that does neither: a ball, or one without limits.
-    `initial` is where it stands before anybody moves it.
+    `position` is an angle [rad] for a hinge, a distance [m] for a slide, and for a ball joint the angle [rad]
+    of rotation from its reference. `closed` is the limit at which the moved part is closed, or a `switch` is
+    off. It is None for other joints: ball joints, and joints without limits. `initial` is the initial
+    position.
     """
 
     name: str
@@ -52,22 +52,22 @@ class Joint(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_
 
     @property
     def has_ends(self) -> bool:
-        """Does it open or switch something?"""
+        """Whether it opens or switches something."""
         return self.closed is not None and self.lower is not None and self.upper is not None
 
     @property
     def opens(self) -> bool:
-        """Does it open something?"""
+        """Whether it opens something."""
         return self.has_ends and not self.switch
 
     @property
     def switches(self) -> bool:
-        """Does it switch something?"""
+        """Whether it is a switch."""
         return self.has_ends and self.switch
 
     @property
     def open_end(self) -> float:
-        """The limit at which what it carries is wide open, or on; only of one that has ends."""
+        """The limit at which it is fully open or on; only for joints with `has_ends`."""
         if self.lower is None:
             raise errors.InternalError("the joint has no lower limit")
         if self.upper is None:
@@ -76,16 +76,16 @@ class Joint(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_
 
     @property
     def openness(self) -> float | None:
-        """The share of the way from shut to wide open, 0 to 1; None for a joint that opens nothing."""
+        """The position between closed and fully open, 0 to 1; None for a joint that opens nothing."""
         return self.openness_at(self.position)
 
     def openness_at(self, position: float) -> float | None:
-        """What its openness would be at another position."""
+        """Return the openness at another position."""
         return self._share_at(position) if self.opens else None
 
     @property
     def share(self) -> float | None:
-        """The share of its way, 0 to 1, from shut or off; None for one that neither opens nor switches."""
+        """The position between closed (or off) and open (or on), 0 to 1; None for other joints."""
         return self._share_at(self.position) if self.has_ends else None
 
     def _share_at(self, position: float) -> float:
@@ -96,34 +96,34 @@ class Joint(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_
 
     @property
     def is_on(self) -> bool | None:
-        """Whether a switch is on; None for what is none."""
+        """Whether a switch is on; None for other joints."""
         return self._share_at(self.position) >= ON_FROM if self.switches else None
 
     def position_at(self, share: float) -> float:
-        """Where it stands when it is so far open, or on; only of one that has ends."""
+        """Return the position for a share of its range; only for joints with `has_ends`."""
         if self.closed is None:
             raise errors.InternalError("the joint has no closed position")
         return self.closed + share * (self.open_end - self.closed)
 
 
 def openness(joints: Iterable[Joint]) -> float | None:
-    """How far open a thing is: as far as the joint that is open furthest; None if nothing of it opens."""
+    """Return the openness of the joint that is open furthest, or None if no joint opens something."""
     return max((share for joint in joints if (share := joint.openness) is not None), default=None)
 
 
 def is_on(joints: Iterable[Joint]) -> bool | None:
-    """Whether a thing is switched on: any of its switches is; None if it has none."""
+    """Return whether any of the switches is on, or None if there are none."""
     found = [on for joint in joints if (on := joint.is_on) is not None]
     return any(found) if found else None
 
 
 def positions_text(joints: Iterable[Joint]) -> str:
-    """Positions as a map states them, `door=1.571 drawer=0.2`: in radians and metres, to a thousandth."""
+    """Return positions as a property value, `door=1.571 drawer=0.2`: radians and metres, to a thousandth."""
     return " ".join(f"{joint.name}={round(joint.position, 3) + 0.0:g}" for joint in joints)
 
 
 def positions_of(text: str) -> dict[str, float]:
-    """Positions as a map states them, by the joint's name; what is not written so is passed over."""
+    """Parse positions in a property value, by joint name; malformed words are ignored."""
     found = {}
     for word in text.split():
         name, equals, number = word.rpartition("=")
@@ -137,9 +137,9 @@ def positions_of(text: str) -> dict[str, float]:
 
 
 def stated(joints: Iterable[Joint], properties: Mapping[str, object]) -> dict[str, float] | None:
-    """Where a map states that joints stand, by name; None where it states nothing of the kind.
+    """Return the asserted joint positions by name, or None if no property sets them.
 
-    Of the properties the most exact counts: one by one of switches and of all other joints.
+    The most precise property is used, separately for switches and for all other joints.
     """
     joints = tuple(joints)
     switches = _switches_stated(joints, properties)
@@ -150,35 +150,35 @@ def stated(joints: Iterable[Joint], properties: Mapping[str, object]) -> dict[st
 
 
 def wanted(joints: Iterable[Joint], properties: Mapping[str, object]) -> dict[str, float]:
-    """Where joints are to stand, by name: as a map states; as they are made where it states nothing.
+    """Return the desired joint positions by name: the asserted ones, or the initial ones without assertions.
 
-    Left out are those of which it says only what does not concern them, as that a thing is open of its wheel.
+    Joints that the assertions do not concern, such as the wheels of an object that is open, are left out.
     """
     joints = tuple(joints)
     found = {joint.name: joint.initial for joint in joints}
-    for kind, said in (
+    for kind, asserted in (
         ([joint.name for joint in joints if not joint.switches], _openings_stated(joints, properties)),
         ([joint.name for joint in joints if joint.switches], _switches_stated(joints, properties)),
     ):
-        for name in kind if said is not None else ():
+        for name in kind if asserted is not None else ():
             del found[name]
-        found.update({} if said is None else said)
+        found.update({} if asserted is None else asserted)
     return found
 
 
 def _switches_stated(joints: Iterable[Joint], properties: Mapping[str, object]) -> dict[str, float] | None:
-    said, on = properties.get(SWITCH_POSITIONS), properties.get(IS_SWITCHED_ON)
-    if isinstance(said, str):
-        return positions_of(said)
+    text, on = properties.get(SWITCH_POSITIONS), properties.get(IS_SWITCHED_ON)
+    if isinstance(text, str):
+        return positions_of(text)
     if not isinstance(on, bool):
         return None
     return {joint.name: joint.position_at(float(on)) for joint in joints if joint.switches}
 
 
 def _openings_stated(joints: Iterable[Joint], properties: Mapping[str, object]) -> dict[str, float] | None:
-    said = properties.get(JOINT_POSITIONS)
-    if isinstance(said, str):
-        return positions_of(said)
+    text = properties.get(JOINT_POSITIONS)
+    if isinstance(text, str):
+        return positions_of(text)
     share = properties.get(OPENNESS)
     if isinstance(share, bool) or not isinstance(share, (int, float)):
         is_open = properties.get(IS_OPEN)
@@ -190,7 +190,7 @@ def _openings_stated(joints: Iterable[Joint], properties: Mapping[str, object]) 
 
 
 def in_words(joint: Joint) -> str:
-    """How a joint stands: `door open to 50% (0.873 rad)`, `knob off (0 rad)`."""
+    """Return a text about a joint: `door open to 50% (0.873 rad)`, `knob off (0 rad)`."""
     unit = "m" if joint.kind == "slide" else "rad"
     position, share = f"{round(joint.position, 3) + 0.0:g} {unit}", joint.openness
     if joint.is_on is not None:

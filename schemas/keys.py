@@ -1,6 +1,6 @@
-"""Every key of the system, its message and its quality of service. No key is written anywhere else.
+"""All keys of the system, with their message types and quality of service. Other modules write no keys.
 
-A prefix for one robot (`robot1/semmap/...`) is Zenoh's own `namespace` setting.
+The prefix of a robot (`robot1/semmap/...`) is Zenoh's `namespace` setting.
 """
 
 from __future__ import annotations
@@ -33,26 +33,26 @@ SERVED_BY = {CMD: "coordinator", BRIDGE: "kb_node", SIM: "sim_node", PERCEPTION:
 _AS = f"{ROOT}/as"
 
 OF_THE_MAP = frozenset({"sparql"})
-"""Verbs of `CMD` that kb_node serves itself while it is ready: look-ups, for which the way is short."""
+"""Commands that kb_node serves directly while it is ready, to shorten the path of queries."""
 
 NODES = ("kb_node", "coordinator", "sim_node", "perception_node", "recorder")
 """The nodes that `semmap up` can start."""
 
 WEB = "web"
-"""The page, which `semmap up --web` starts beside the nodes; it is a client like any other."""
+"""The web page, a client that `semmap up --web` starts."""
 
 ROS = "ros"
-"""The bridge that `semmap ros` runs beside the nodes; a client, too."""
+"""The ROS bridge, a client that `semmap ros` starts."""
 
 CLIENTS = (WEB, ROS)
-"""Clients whose hearts beat, too. Any number may run, and it is no fault when one has ended."""
+"""Clients that publish heartbeats. Any number can run, and it is not a fault if one ends."""
 
 ROUTER = "router"
-"""The process that everybody, nodes included, is connected to under `semmap up --secure`."""
+"""The process that all nodes and clients connect to under `semmap up --secure`."""
 
 
 class Topic(NamedTuple):
-    """A publication. `lossless` blocks rather than drops, and is recovered after a cut; else newest wins."""
+    """A published key. `lossless` blocks instead of dropping and is recovered after a disconnection."""
 
     key: str
     message: Any
@@ -62,32 +62,32 @@ class Topic(NamedTuple):
 ACK = Topic(f"{ROOT}/ack", Ack, "lossless")
 COMMIT = Topic(f"{ROOT}/jena/commit", Commit, "lossless")
 EFFECTS = Topic(COMMIT.key, Effects, "lossless")
-"""The same publication, read without its triples."""
-UNTOLD = Topic(f"{ROOT}/jena/untold", Effects, "lossless")
-"""The effects of the commits that no reply tells the coordinator of."""
+"""The same publication, decoded without its triples."""
+COMMIT_EFFECTS = Topic(f"{ROOT}/jena/untold", Effects, "lossless")
+"""The effects of commits that the coordinator does not get in a reply."""
 ENTITY = Topic(f"{ROOT}/jena/entity/*/*", Described, "lossless")
 QUERY = Topic(f"{ROOT}/jena/query/*", RowsChanged, "lossless")
 POSES = Topic(f"{SIM}/poses", Poses, "newest")
 CAMERA = Topic(f"{SIM}/camera/*/*", bytes, "newest")
 SEGMENTS = Topic(f"{SIM}/camera/*/segments", bytes, "newest")
 LIVE_POSE = Topic(f"{ROOT}/live/*", LivePose, "newest")
-"""Of one tracked entity, by whoever knows where it is."""
+"""The pose of one tracked entity, from any publisher."""
 LIVE_POSES = Topic(f"{ROOT}/live", LivePoses, "newest")
-"""Of all tracked entities, by the coordinator."""
+"""The poses of all tracked entities, published by the coordinator."""
 FRAME = Topic(f"{ROOT}/frame/**", FramePose, "newest")
-"""Where a frame is in its parent, by whoever knows; a name with `/` has several chunks."""
+"""The pose of a frame in its parent, from any publisher; a name with `/` has several chunks."""
 OBSERVATIONS = Topic(f"{PERCEPTION}/observations", Observations, "newest")
 CLOUD = Topic(f"{PERCEPTION}/cloud", SegmentedCloud, "newest")
 DETECTIONS = Topic(f"{PERCEPTION}/detections", Observations, "newest")
-"""What a detector of one's own has seen: perception compares it with the map as it does with what it sees."""
+"""Detections of an external detector, which perception compares with the map like its own."""
 MASKS = Topic(f"{PERCEPTION}/masks", DetectedMasks, "newest")
-"""What a 2-D detector of one's own has found in a camera's picture: perception cuts that up by it."""
+"""Masks of an external 2-D detector, by which perception segments the camera image."""
 HEALTH = Topic(f"{ROOT}/health/*", Health, "newest")
 
 TOPICS = (
     ACK,
     COMMIT,
-    UNTOLD,
+    COMMIT_EFFECTS,
     ENTITY,
     QUERY,
     POSES,
@@ -104,112 +104,112 @@ TOPICS = (
 
 
 def published() -> tuple[str, ...]:
-    """Key expressions of all that is published, or put as a command, in whatever namespace."""
+    """Return the key expressions of all publications and put commands, in any namespace."""
     commands = (CMD, f"{CMD}/*", f"{commands_as()}/*")
     return tuple(f"**/{key}" for key in (*(topic.key for topic in TOPICS), *commands))
 
 
 def entity_key(class_name: str, name: str) -> str:
-    """Where the state of one entity is published under one of its classes."""
+    """Return the key on which an entity's state is published under one of its classes."""
     return f"{ROOT}/jena/entity/{_chunk(class_name)}/{_chunk(name)}"
 
 
 def of_entity(key: str) -> tuple[str, str]:
-    """The class and the name in the key of an entity."""
+    """Return the class and the name in the key of an entity."""
     class_chunk, name_chunk = key.split("/")[-2:]
     return unquote(class_chunk), unquote(name_chunk)
 
 
 @lru_cache(10_000)
 def _chunk(text: str) -> str:
-    """`text` as one chunk of a key: what means something in a key is percent-escaped, letters are not."""
+    """Return `text` as one chunk of a key: special characters are percent-escaped, letters are not."""
     return _RESERVED.sub(lambda match: quote(match[0], safe=""), text)
 
 
 def query_key(watch: str) -> str:
-    """Where the news of a standing query is published."""
+    """Return the key on which the changes of a standing query are published."""
     return f"{ROOT}/jena/query/{watch}"
 
 
 def live_pose_key(name: str) -> str:
-    """Where the live poses of one tracked entity are published."""
+    """Return the key on which the live poses of one tracked entity are published."""
     return f"{ROOT}/live/{_chunk(name)}"
 
 
 def of_live_pose(key: str) -> str:
-    """The entity's name in such a key."""
+    """Return the entity's name in such a key."""
     return unquote(last_chunk(key))
 
 
 def frame_key(name: str) -> str:
-    """Where a frame is published: `robot1/lidar` on `semmap/frame/robot1/lidar`."""
+    """Return the key of a frame: `semmap/frame/robot1/lidar` for `robot1/lidar`."""
     return f"{ROOT}/frame/{'/'.join(map(_chunk, name.split('/')))}"
 
 
 def of_frame(key: str) -> str:
-    """The frame's name in such a key."""
+    """Return the frame's name in such a key."""
     return unquote(key.partition(f"{ROOT}/frame/")[2])
 
 
 def camera_key(camera: str, plane: Literal["rgb", "depth", "segments"]) -> str:
-    """Where the raw planes of one camera are published; the attachment is a `CameraFrame`."""
+    """Return the key of a camera's raw planes; the attachment of a sample is a `CameraFrame`."""
     return f"{SIM}/camera/{camera}/{plane}"
 
 
 def health_key(node: str) -> str:
-    """Where a node's heartbeat is published."""
+    """Return the key of a node's heartbeats."""
     return f"{ROOT}/health/{node}"
 
 
 def live_key(node: str, instance: str = "*") -> str:
-    """The liveliness token of one instance of a node; `**` does not match its `@` chunk."""
+    """Return the liveliness token of one instance of a node; `**` does not match its `@` chunk."""
     return f"{ROOT}/@live/{node}/{instance}"
 
 
 def robots_live(node: str = "*") -> str:
-    """The liveliness tokens of a node of all robots that have a name, as a session without one sees them."""
+    """Return the liveliness tokens of a node of all named robots, for a session without a namespace."""
     return f"*/{live_key(node)}"
 
 
 def live_robot(key: str) -> str:
-    """The robot of such a token's key."""
+    """Return the robot in such a token's key."""
     return key.partition("/")[0]
 
 
 @cache
 def servers(prefix: str, verb: str) -> tuple[str, ...]:
-    """The nodes that may answer `prefix/verb`."""
+    """Return the nodes that can serve `prefix/verb`."""
     prefix = served(prefix)
-    first_hand = ("kb_node",) if prefix == CMD and verb in OF_THE_MAP else ()
-    return first_hand + tuple(node for served, node in SERVED_BY.items() if served == prefix)
+    direct = ("kb_node",) if prefix == CMD and verb in OF_THE_MAP else ()
+    return direct + tuple(node for served, node in SERVED_BY.items() if served == prefix)
 
 
 def commands_as(name: str = "*") -> str:
-    """The prefix under which `name`, and nobody else, asks for commands when the system is secure."""
+    """Return the command prefix of the identity `name` in a secure system; only it has access."""
     return f"{_AS}/{name}/cmd"
 
 
 def served(prefix: str) -> str:
-    """`prefix` as one of `SERVED_BY`, whoever asks."""
+    """Return the prefix in `SERVED_BY`, without the identity."""
     return CMD if prefix.startswith(f"{_AS}/") else prefix
 
 
 def asked_as(key: str) -> str:
-    """Who asks, by the key of a command: a name, or nothing where the key does not say."""
+    """Return the identity in the key of a command, or an empty text if it has none."""
     chunks = key.split("/")
     return chunks[2] if len(chunks) > 2 and f"{chunks[0]}/{chunks[1]}" == _AS else ""
 
 
 def recovery(key: str) -> str:
-    """Where the two ends of a lossless topic find one another, and what was missed is recovered."""
+    """Return the key expression by which advanced subscribers of a lossless topic recover missed samples."""
     return f"{key}/@adv/**"
 
 
 def live_node(key: str) -> str:
-    """The node of a liveliness token's key."""
+    """Return the node in a liveliness token's key."""
     return key.split("/")[-2]
 
 
 def last_chunk(key: str) -> str:
-    """The verb of a query's key, or the node of a heartbeat's."""
+    """Return the command in a query's key, or the node in a heartbeat's."""
     return key.rsplit("/", 1)[-1]

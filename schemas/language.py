@@ -1,4 +1,4 @@
-"""What words mean: commands as frames, roles and entities, and descriptions as the entities that fit them."""
+"""Results of language processing: semantic frames of commands, and entities that match descriptions."""
 
 from __future__ import annotations
 
@@ -7,24 +7,24 @@ from typing import Literal
 from msgspec import Struct, field
 
 Language = Literal["english", "italian"]
-"""The languages in which commands are understood."""
+"""The languages of commands."""
 
 Mood = Literal["command", "question", "past"]
-"""What a sentence is said for; statements of what is (`this is the kitchen`) count as commands."""
+"""The mood of a sentence; statements about the present (`this is the kitchen`) count as commands."""
 
 
 class Argument(Struct, frozen=True):
-    """What fills a role. Words count from 1.
+    """The filler of a role. Words are counted from 1.
 
-    `entity` is the one that is meant; where several may be, `candidates` has their names instead. One of them
-    is meant if it is `ambiguous`, any or all of them if it is not (*a cup*, *the cups*); `number` of them
-    where a number is said (*two cups*).
+    `entity` is the referent; if there are several, `candidates` has their names instead. If `ambiguous`,
+    exactly one of them is the referent; otherwise any or all of them are (*a cup*, *the cups*). `number` is
+    set if the text contains a numeral (*two cups*).
     """
 
     role: str
     text: str
     span: tuple[int, int]  # first and last word
-    head: int  # the word that it is about
+    head: int  # the head word
     entity: str | None = None
     candidates: tuple[str, ...] = ()
     ambiguous: bool = False
@@ -32,7 +32,7 @@ class Argument(Struct, frozen=True):
 
     @property
     def filler(self) -> str:
-        """The entity's name, the names of those that it may be (`2 of cup1|cup2|cup3`), or the words."""
+        """The entity's name, the candidates' names (`2 of cup1|cup2|cup3`), or the words."""
         several = "|".join(self.candidates)
         if several and self.number is not None:
             several = f"{self.number} of {several}"
@@ -40,7 +40,7 @@ class Argument(Struct, frozen=True):
 
 
 class SemanticFrame(Struct, frozen=True):
-    """What is to be done or is said: a frame of FrameNet, the words that call for it, and its arguments."""
+    """A semantic frame of FrameNet with the words that evoke it and its arguments."""
 
     name: str
     verb: tuple[int, ...]
@@ -49,20 +49,20 @@ class SemanticFrame(Struct, frozen=True):
 
     @property
     def text(self) -> str:
-        """`Taking(Theme=bottle1, Source=table1)`, with `not` before it if it is not to be done."""
+        """`Taking(Theme=bottle1, Source=table1)`, with `not` before it if it is negated."""
         filled = ", ".join(f"{argument.role}={argument.filler}" for argument in self.arguments)
         return f"{'not ' if self.negated else ''}{self.name}({filled})"
 
 
 class Grounded(Struct, frozen=True):
-    """A word and the entity that it names. Words count from 1."""
+    """A word and the entity that it denotes. Words are counted from 1."""
 
     token: int
     entity: str
 
 
 class Account(Struct, frozen=True):
-    """What is there after a commit, as a text of so many words, which names all but `left_out` things."""
+    """A text about the map after a commit, which names all but `left_out` things."""
 
     text: str
     words: int
@@ -71,12 +71,12 @@ class Account(Struct, frozen=True):
 
 
 class Understood(Struct, frozen=True):
-    """A command as it was understood.
+    """A parsed command.
 
-    `unknown` are words used as verbs that nobody has taught; `language` is the one in which it was read. A
-    `mood` other than "command" says why there are no frames: something is asked, or told of the past.
-    `question` is what to ask back where arguments are ambiguous. `doubts` say, a sentence each, what of the
-    command does not fit the map: a thing is not where it is to be taken from, or there are not so many.
+    `unknown` are unknown verbs, and `language` is the detected or given language. A `mood` other than
+    "command" explains why there are no frames: the text is a question or about the past. `question` is a
+    clarification question if arguments are ambiguous. `doubts` are sentences about parts of the command that
+    contradict the map: an object is not at its stated source, or there are fewer objects than required.
     """
 
     words: tuple[str, ...]
@@ -90,7 +90,7 @@ class Understood(Struct, frozen=True):
 
 
 class Candidate(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """An entity that a description may mean, and what of the description fits it, a clause each."""
+    """An entity that matches a description, with one clause for each part that it matches."""
 
     entity: str
     class_: str = field(name="class")
@@ -102,12 +102,12 @@ Outcome = Literal["one", "several", "ambiguous", "none"]
 
 
 class Found(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What a description means in the map, as of commit `seq`.
+    """The entities that a description denotes, as of commit `seq`.
 
-    `candidates` are what is meant (*one*, *several*) or may be (*ambiguous*, with the `question` to ask
-    back), the best first, at most 50, and `others` counts the rest; *none* has none. `text` says the outcome
-    in a sentence. `nearest` fit all but one part of the description; `gone` says when such a thing was last
-    there. `read_as` pairs each word that was taken for another, mistyped or misheard, with that.
+    `candidates` are the matches (*one*, *several*) or possible matches (*ambiguous*, with a clarification
+    `question`). They are sorted by quality, at most 50, and `others` counts the rest. `text` is the outcome
+    in one sentence. If there are none, `nearest` are entities that match most of the description, and `gone`
+    reports when such an entity last existed. `read_as` are pairs of a misspelt word and its correction.
     """
 
     outcome: Outcome

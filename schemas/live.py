@@ -1,4 +1,4 @@
-"""Live poses: where tracked entities are just now, newest wins, without commits."""
+"""Live poses of tracked entities, which are not committed."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ StampNs = Annotated[int, Meta(ge=0, le=(1 << 63) - 1)]
 
 
 class LivePose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
-    """Where a tracked entity is, on `semmap/live/<name>`: its bottom centre [m] in the map frame.
+    """The pose of a tracked entity, published on `semmap/live/<name>`.
 
-    It faces `yaw` [rad], or has an `orientation` (unit quaternion wxyz); without either it is upright and
-    faces +x. `stamp_ns` is when that was measured, in nanoseconds since 1970; 0 stands for when it arrives.
+    `at` is its bottom centre [m] in the map frame. The orientation is `yaw` [rad] or `orientation` (unit
+    quaternion wxyz); without either, it is upright and faces +x. `stamp_ns` is the time of the measurement in
+    nanoseconds since 1970; 0 stands for the time of arrival.
     """
 
     at: Vector
@@ -25,12 +26,12 @@ class LivePose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, om
     stamp_ns: StampNs = 0
 
     def require_pose(self) -> Pose:
-        """The same as a pose. Raises BadRequest for yaw and orientation together, or no unit quaternion."""
+        """Return the pose. Raises BadRequest for yaw with orientation, or for a non-unit quaternion."""
         return pose_of(self.at, self.yaw, self.orientation)
 
 
 class LivePoses(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Where all tracked entities are that were heard of lately, by name; on `semmap/live`, at most 10 Hz."""
+    """The last poses of all tracked entities, by name; published on `semmap/live` at 10 Hz or less."""
 
     stamp_ns: int
     entities: dict[str, Live]

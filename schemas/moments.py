@@ -1,4 +1,4 @@
-"""Points in the map's history: a commit, or a time."""
+"""Points in the map's history: a commit or a time."""
 
 from __future__ import annotations
 
@@ -26,22 +26,21 @@ _OF_TODAY = re.compile(r"\d\d:\d\d(:\d\d([.,]\d+)?)?(Z|[+-]\d\d:?\d\d)?")
 _LASTS_S = {
     len(time): seconds for time, seconds in (("", 86_400), ("T12", 3600), ("T12:30", 60), ("T12:30:05", 1))
 }
-"""How long a time is, by how much of it is written; with a fraction of a second it is exact."""
+"""The duration that a written time denotes, by its length; with a fraction of a second it is exact."""
 
 When = (
     Annotated[int, Meta(ge=0)]
     | Annotated[float, Meta(ge=0.0)]
     | Annotated[str, Meta(min_length=1, max_length=100)]
 )
-"""As it is written: a commit's number, seconds since 1970, a stamp as replies have it (`stamp_ns`), or ISO
-8601; without an offset it is local time, that of the client where one of ours sends it, and without a date
-it is today's.
+"""A commit's number, seconds since 1970, a time stamp as in replies (`stamp_ns`), or ISO 8601.
 
-A time denotes its written precision: `12:30:05` is that second, `12:30` the minute, a date the whole day."""
+Without an offset, a time is in the client's local time; without a date, it is today's. A time covers its
+written precision: `12:30:05` is that second, `12:30` the minute, a date the whole day."""
 
 
 class Moment(NamedTuple):
-    """Just after a commit, or from a time to another [ns since 1970], both included."""
+    """The state after a commit, or an interval of time [ns since 1970], both ends included."""
 
     commit: int | None = None
     first_ns: int = 0
@@ -49,7 +48,7 @@ class Moment(NamedTuple):
 
 
 def read_moment(when: When) -> Moment:
-    """What is meant by a commit's number or a time. Raises BadRequest."""
+    """Parse a commit number or a time. Raises BadRequest."""
     try:
         return _read_text(when) if isinstance(when, str) else _read_number(when)
     except (ValueError, OverflowError, OSError):
@@ -59,10 +58,7 @@ def read_moment(when: When) -> Moment:
 
 
 def with_offset(when: When | None) -> When | None:
-    """The same for a reader in another time zone.
-
-    A time without an offset gets that of this machine, and one without a date today's.
-    """
+    """Return a time with an explicit offset and date, for a node in another time zone."""
     if not isinstance(when, str):
         return when
     when = _with_date(when)
@@ -71,7 +67,7 @@ def with_offset(when: When | None) -> When | None:
     try:
         return when + datetime.fromisoformat(when).astimezone().strftime("%z")[:5]
     except (ValueError, OverflowError, OSError):
-        return when  # whoever reads it says what is wrong with it
+        return when  # the node that parses it reports the error
 
 
 def _read_text(text: str) -> Moment:

@@ -1,6 +1,6 @@
-"""The content of files on its way: packed once, by who sends it, and unpacked where it is read.
+"""Compression of files in messages: compressed by the sender, decompressed where they are parsed.
 
-Files that are packed already (`map.ttl.gz`) travel as they are.
+Compressed files (`map.ttl.gz`) are sent unchanged.
 """
 
 from __future__ import annotations
@@ -11,64 +11,62 @@ from typing import Final
 from semmap.schemas.errors import BadFile
 
 PACKED_FROM: Final = 32 << 20
-"""Bytes; smaller files travel as they are."""
+"""The size from which files are compressed [bytes]."""
 LARGEST: Final = 1 << 30
-"""Bytes that a file may have, packed or not: some millions of triples, and an end for what has none."""
+"""The maximum size of a file, compressed or not [bytes]: some millions of triples."""
 _FREE: Final = 16 << 20
 _AT_MOST: Final = 250
-"""How many times larger than packed a file may be, beyond what is free; RDF is some 30 times."""
+"""The maximum compression ratio of files larger than `_FREE`; RDF has a ratio of about 30."""
 _MEMBERS: Final = 1000
-"""Pieces that a packed file may have: gzip files may be put one after the other, and each takes its time."""
+"""The maximum number of members of a gzip file, as each one takes time."""
 _MAGIC: Final = b"\x1f\x8b"
-"""How gzip's format begins; no text does."""
+"""The first bytes of the gzip format, which no text begins with."""
 _GZIP: Final = 31
-"""zlib's word for that format."""
+"""zlib's window size argument for the gzip format."""
 
 
 def packed(content: bytes) -> bytes:
-    """The content of a file as a message carries it: with gzip if it is large."""
+    """Return the content of a file for a message, compressed with gzip if it is large."""
     if len(content) < PACKED_FROM or is_packed(content):
         return content
     return zlib.compress(content, 1, wbits=_GZIP)
 
 
 def is_packed(content: bytes) -> bool:
-    """Did it come packed?"""
+    """Return whether the content is compressed."""
     return content.startswith(_MAGIC)
 
 
 def unpacked(content: bytes, filename: str) -> bytes:
-    """The content of a file, whether it came packed or not. Raises BadFile for what cannot be unpacked."""
+    """Return the decompressed content of a file. Raises BadFile if it cannot be decompressed."""
     members: list[bytes] = []
     size, rest = 0, content if is_packed(content) else b""
     largest = min(LARGEST, _FREE + _AT_MOST * len(content))
     try:
         while rest:
             if len(members) == _MEMBERS:
-                raise BadFile(
-                    f"{_called(filename)} is packed in more than {_MEMBERS:,} pieces; pack it as one"
-                )
+                raise BadFile(f"{_called(filename)}: more than {_MEMBERS:,} gzip members; compress it as one")
             member = zlib.decompressobj(wbits=_GZIP)
             members.append(member.decompress(rest, largest + 1 - size))
             size += len(members[-1])
             if size > largest:
-                raise BadFile(f"{_called(filename)} is larger than {largest >> 20} MiB when it is unpacked")
+                raise BadFile(f"{_called(filename)}: decompressed size exceeds {largest >> 20} MiB")
             if not member.eof:
-                raise BadFile(f"{_called(filename)} ends too early to be unpacked")
+                raise BadFile(f"{_called(filename)}: the gzip data is truncated")
             rest = member.unused_data.lstrip(b"\0")
     except zlib.error as error:
-        raise BadFile(f"{_called(filename)} cannot be unpacked: {error}") from None
+        raise BadFile(f"{_called(filename)}: cannot decompress: {error}") from None
     return b"".join(members) if members else content
 
 
 def beginning(content: bytes, size: int, filename: str) -> bytes:
-    """The first `size` bytes of what `unpacked` gives. Raises BadFile for what cannot be unpacked."""
+    """Return the first `size` bytes of the decompressed content. Raises BadFile if that fails."""
     if not is_packed(content):
         return content[:size]
     try:
         return zlib.decompressobj(wbits=_GZIP).decompress(content, size)
     except zlib.error as error:
-        raise BadFile(f"{_called(filename)} cannot be unpacked: {error}") from None
+        raise BadFile(f"{_called(filename)}: cannot decompress: {error}") from None
 
 
 def _called(filename: str) -> str:

@@ -1,4 +1,4 @@
-"""What perception saw."""
+"""Observations of perception and messages of external detectors."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from semmap.schemas.entities import Pose, Probability, Size
 
 MISSING: Final = "not seen where it should stand"
 DISPLACED: Final = "something else is in its place"
-"""The conflicts of an entity that perception has seen to be gone, and may not remove or is to mark only."""
+"""The conflicts of an entity that perception observed to be absent, but may not remove."""
 
 
 class Observation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One object as it was seen once.
+    """One observation of an object.
 
-    `class_` is the most special class that is sure enough (`Object` for what is like nothing known), with
-    `probability` that the thing is one of it. `candidates` are the leaves of the vote with theirs. `pose` and
-    `size_m` are those of the whole object, its hidden part included. `whole` is false when the picture's edge
-    cuts it or something hides a part.
+    `class_` is the most specific class with sufficient confidence (`Object` for unknown things), and
+    `probability` is the probability of this class. `candidates` are the leaf classes with theirs. `pose` and
+    `size_m` include hidden parts of the object. `whole` is false if the object is occluded or cut off by the
+    image border.
     """
 
     class_: str = field(name="class")
@@ -30,15 +30,15 @@ class Observation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     points: int
     whole: bool = True
     entity: str = ""
-    """The entity of the map that it was taken for, once it was."""
+    """The entity of the map that it is associated with, if any."""
     fit: Probability | None = None
-    """How well the model of its class fits what was seen, if that was tried; `pose` is the model's then."""
+    """The quality of the model fit, if one was tried; `pose` is the model's then."""
     shown: bool = False
-    """Whether its class is that of a thing that was shown, as which it is known rather than by training."""
+    """Whether the class comes from an exemplar instead of training."""
 
 
 class CameraView(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Whence a frame was taken: `intrinsics` (3, 3) [pixel] and `map_from_camera` (4, 4) [m], row by row."""
+    """The view of a frame: `intrinsics` (3, 3) [pixel] and `map_from_camera` (4, 4) [m], row-major."""
 
     camera: str
     width: int
@@ -49,7 +49,7 @@ class CameraView(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Observations(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """All that was seen in one look of one camera, or of several that looked at the same time."""
+    """The observations in one frame, or in simultaneous frames of several cameras."""
 
     stamp_ns: int
     views: tuple[CameraView, ...]
@@ -57,10 +57,10 @@ class Observations(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
 
 class SegmentedCloud(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The points of one look, and whose each is. For the eye: thinned out.
+    """The segmented point cloud of one frame, downsampled for display.
 
     `positions` (N, 3) little-endian 32-bit floats, map frame [m]; `colors` (N, 3) rgb bytes; `labels` (N,)
-    little-endian 16-bit: 0 for none of the observations, n for the n-th.
+    little-endian 16-bit: 0 for no observation, n for the n-th.
     """
 
     stamp_ns: int
@@ -70,9 +70,9 @@ class SegmentedCloud(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
 
 class SeenInFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One object in a frame of a dataset: as in `Observation`, and where in the picture.
+    """One object in a frame of a dataset: as in `Observation`, with its bounding box in the image.
 
-    `box_px`: first column and row, and those after the last [pixel].
+    `box_px`: first column and row, and the column and row after the last [pixel].
     """
 
     class_: str = field(name="class")
@@ -86,7 +86,7 @@ class SeenInFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
 
 class FrameRow(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What one frame of a dataset shows, or what is wrong with it."""
+    """The objects in one frame of a dataset, or an error."""
 
     frame: str
     objects: tuple[SeenInFrame, ...] = ()
@@ -94,9 +94,9 @@ class FrameRow(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class MaskRun(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A mask as COCO writes it: `counts` are run lengths, column after column, as numbers or compressed.
+    """A mask in COCO's run-length encoding: `counts` are numbers or compressed, in column-major order.
 
-    `size` is (height, width) [pixel]. `label` is what its thing is taken for, in the detector's own words.
+    `size` is (height, width) [pixel]. `label` is the detector's label of the object.
     """
 
     size: tuple[int, int]
@@ -114,9 +114,9 @@ class MaskImage(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class DetectedMasks(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What a 2-D detector has found in a picture of a camera, which was taken at `stamp_ns`.
+    """The detections of a 2-D detector in the camera image that was taken at `stamp_ns`.
 
-    Either `masks` or an `image`. With `alone`, nothing but these is to be found in it.
+    They are given as `masks` or as an `image`. With `alone`, only these objects are considered.
     """
 
     camera: str

@@ -1,4 +1,4 @@
-"""Floor plans and ways through them: places, things and walls as outlines seen from above, map frame [m]."""
+"""Floor plans and paths: places, things and walls as outlines seen from above, map frame [m]."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Outline(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields
 
 
 class PlannedPlace(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A place: its outer border counterclockwise, then its holes; on the floor at `floor`, `height` high."""
+    """A place: its outer border (counterclockwise), then its holes; at height `floor`, and `height` high."""
 
     name: str
     label: str
@@ -30,13 +30,13 @@ class PlannedPlace(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     floor: float
     height: float
     part: bool = False
-    """It is a part of a room, such as a corner."""
+    """Whether it is a part of a room, such as a corner."""
     forbidden: bool = False
-    """Robots are to stay out."""
+    """Whether robots must not enter it."""
 
 
 class PlannedThing(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A thing as it stands, part by part. A `door` may say whether it is open and what it connects."""
+    """A thing with the outlines of its parts. A `door` can have a state and the places that it connects."""
 
     name: str
     label: str
@@ -49,17 +49,17 @@ class PlannedThing(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
 
 class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What a plan is drawn from. `walls` are those of the simulated world; a map may have some as things."""
+    """The content of a floor plan. `walls` are those of the simulated world; others can be things."""
 
     places: tuple[PlannedPlace, ...]
     things: tuple[PlannedThing, ...]
     walls: tuple[Outline, ...] = ()
     notes: tuple[str, ...] = ()
-    """What the plan lacks."""
+    """What is missing in the plan."""
 
 
 class WallsQuery(Call[tuple[Outline, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What of the world itself stands in the way: its solid geometry, but for floors and for its bodies."""
+    """Request the obstacles in the world's own geometry, without floors and bodies."""
 
     VERB: ClassVar[str] = "walls"
 
@@ -67,16 +67,16 @@ class WallsQuery(Call[tuple[Outline, ...]], frozen=True, kw_only=True, forbid_un
 Clearance = Annotated[float, Meta(ge=0.0, le=5.0)]
 Height = Annotated[float, Meta(ge=-100.0, le=100.0)]
 HeightRange = tuple[Height, Height]
-"""Above the floor [m]: what is between is in a robot's way."""
+"""Heights above the floor [m] between which objects are obstacles."""
 HEIGHTS_M: HeightRange = (0.05, 1.5)
 RADIUS_M = 0.25
 
 
 class Way(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A way: its length [m], the places and doors on it in order, and its corners, map frame [m].
+    """A path: its length [m], the places and doors on it in order, and its corners, map frame [m].
 
-    `closed` are the doors of it that are closed: with any, it is no way until they are opened, and
-    `text` says so. `notes` say what was assumed.
+    `closed` are the closed doors on it, which must be opened first; `text` mentions them. `notes` are the
+    assumptions.
     """
 
     metres: float

@@ -1,7 +1,7 @@
-"""Polygons on the floor: the extents of places, as GeoSPARQL's `wktLiteral` writes them.
+"""Polygons on the floor: the extents of places, in the format of GeoSPARQL's `wktLiteral`.
 
 `POLYGON ((0 0, 4 0, 4 3, 0 3, 0 0), (1 1, 1 2, 2 2, 2 1, 1 1))`: metres in the map frame, the outer border
-first, then holes. What is read here is *simple*: no border crosses or touches itself or another.
+first, then holes. Polygons must be *simple*: no border crosses or touches itself or another one.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from semmap.schemas.errors import BadRequest
 
 Point = tuple[float, float]
 Ring = tuple[Point, ...]
-"""Corners one after another; the last one is joined to the first, which is not repeated."""
+"""Corners in order; the last one is connected to the first, which is not repeated."""
 Bounds = tuple[float, float, float, float]
 """Least x and y, greatest x and y [m]."""
 
 EXTENT: Final = "hasExtent"
-"""The property that an extent is stated by."""
+"""The property of an extent."""
 MOST_POINTS: Final = 500
-"""Corners that an extent may have, all borders together."""
+"""The maximum number of corners of an extent, in all borders."""
 HEIGHT_M: Final = 2.5
-"""Of a place whose extent is a polygon, unless its size says how high it is."""
+"""The default height of a place with an extent, if it has no size."""
 _LEAST_AREA_M2: Final = 1e-4
 _DIGITS: Final = 6
 _FORM: Final = "write POLYGON ((x y, x y, x y, x y)), in metres of the map frame, ending where it begins"
@@ -48,22 +48,22 @@ class Polygon(NamedTuple):
 
     @property
     def bounds(self) -> Bounds:
-        """The smallest rectangle along the axes around it."""
+        """The axis-aligned bounding rectangle."""
         xs, ys = zip(*self.outer, strict=True)
         return min(xs), min(ys), max(xs), max(ys)
 
     @property
     def area_m2(self) -> float:
-        """Without the holes."""
+        """The area without the holes."""
         return sum(map(signed_area, self.rings))
 
     def contains(self, point: Point) -> bool:
-        """Whether a point lies in it; of one on a border that is not defined."""
+        """Return whether a point is inside; undefined for points on a border."""
         return sum(_is_in(point, ring) for ring in self.rings) % 2 == 1
 
 
 def signed_area(ring: Sequence[Point]) -> float:
-    """Area of a ring [m^2], negative if it is clockwise."""
+    """Return the area of a ring [m^2], negative if it is clockwise."""
     doubled = 0.0
     x0, y0 = ring[-1]
     for x, y in ring:
@@ -74,7 +74,7 @@ def signed_area(ring: Sequence[Point]) -> float:
 
 @lru_cache(maxsize=1024)
 def read_wkt(text: str) -> Polygon:
-    """The polygon that WKT describes. Raises BadRequest, with what is wrong and how it is written."""
+    """Parse a polygon in WKT. Raises BadRequest with the problem and the expected form."""
     match = _POLYGON.fullmatch(text)
     if match is None:
         if re.match(r"\s*<", text):
@@ -82,14 +82,14 @@ def read_wkt(text: str) -> Polygon:
                 f"an extent is in metres of the map frame and names no other reference system: {_FORM}"
             )
         kind = re.match(r"\s*([A-Za-z]+(?:\s+[ZMzm]{1,2}\b)?)", text)
-        said = kind[1].upper() if kind else (text.strip()[:20] or "nothing")
-        raise BadRequest(f"an extent is one POLYGON, not {said}: {_FORM}")
+        given = kind[1].upper() if kind else (text.strip()[:20] or "nothing")
+        raise BadRequest(f"an extent is one POLYGON, not {given}: {_FORM}")
     rings: list[Ring] = []
     rest = match[1]
     while True:
         found = _RING.match(rest)
         if found is None:
-            raise BadRequest(f"the parentheses of the extent do not match: {_FORM}")
+            raise BadRequest(f"the extent has unbalanced parentheses: {_FORM}")
         rings.append(_ring(found[1]))
         rest = rest[found.end() :]
         if not rest:
@@ -110,7 +110,7 @@ def _ring(text: str) -> Ring:
             raise BadRequest(
                 f"'{' '.join(numbers)[:40]}' is not a point of an extent, which is two numbers x y: {_FORM}"
             ) from None
-        if not (abs(x) <= REACH_M and abs(y) <= REACH_M):  # nor is NaN
+        if not (abs(x) <= REACH_M and abs(y) <= REACH_M):  # also for NaN
             raise BadRequest(
                 f"an extent lies within {REACH_M:g} m of the map's origin; ({x:g}, {y:g}) does not"
             )
@@ -125,14 +125,14 @@ def _ring(text: str) -> Ring:
 
 
 def simple(rings: Iterable[Sequence[Point]]) -> Polygon:
-    """The polygon with these borders, the outer one first.
+    """Return the polygon with these borders, the outer one first.
 
-    Raises BadRequest unless it is simple, has an area, and is within `MOST_POINTS`.
+    Raises BadRequest if it is not simple, has no area, or has more than `MOST_POINTS` corners.
     """
     tidied = [_tidied(ring) for ring in rings]
     count = sum(map(len, tidied))
     if count > MOST_POINTS:
-        raise BadRequest(f"an extent has at most {MOST_POINTS} corners, and this one {count}; simplify it")
+        raise BadRequest(f"the extent has {count} corners; the maximum is {MOST_POINTS}: simplify it")
     if any(len(ring) < 3 for ring in tidied):
         raise BadRequest(_NO_AREA)
     _require_apart(tidied)
@@ -149,7 +149,7 @@ def simple(rings: Iterable[Sequence[Point]]) -> Polygon:
 
 
 def _tidied(ring: Sequence[Point]) -> Ring:
-    """Without corners that repeat the one before."""
+    """Return the ring without repeated corners."""
     rounded = [(round(x, _DIGITS) + 0.0, round(y, _DIGITS) + 0.0) for x, y in ring]
     return tuple(point for k, point in enumerate(rounded) if point != rounded[k - 1])
 
@@ -170,7 +170,7 @@ class _Edge(NamedTuple):
 
 
 def _require_apart(rings: Sequence[Ring]) -> None:
-    """Raises BadRequest where borders meet, but for the corners that two edges of a ring have in common."""
+    """Raise BadRequest if borders meet, except at common corners of adjacent edges."""
     edges = sorted(
         _Edge(min(a[0], b[0]), max(a[0], b[0]), min(a[1], b[1]), max(a[1], b[1]), a, b, number, place)
         for number, ring in enumerate(rings)
@@ -190,11 +190,11 @@ def _require_apart(rings: Sequence[Ring]) -> None:
 
 
 def _meet(one: _Edge, other: _Edge, rings: Sequence[Ring]) -> bool:
-    """Whether two edges have a point in common that they need not have."""
+    """Return whether two edges meet at a point other than their common corner."""
     if one.ring == other.ring:
         count = len(rings[one.ring])
         step = (one.place - other.place) % count
-        if step in (1, count - 1):  # neighbours have a corner in common, and no more unless one turns back
+        if step in (1, count - 1):  # adjacent edges share a corner, and overlap only if one turns back
             first, second = (other, one) if step == 1 else (one, other)
             if count == 3:
                 return False
@@ -220,7 +220,7 @@ def _is_between(a: Point, b: Point, c: Point) -> bool:
 
 
 def _is_in(point: Point, ring: Sequence[Point]) -> bool:
-    """By the crossings of a ray along x."""
+    """Return whether a point is in a ring, by the crossings of a ray along x."""
     px, py = point
     inside = False
     x0, y0 = ring[-1]
@@ -232,7 +232,7 @@ def _is_in(point: Point, ring: Sequence[Point]) -> bool:
 
 
 def wkt(polygon: Polygon) -> str:
-    """The WKT of a polygon, each border ending where it begins."""
+    """Return the WKT of a polygon, with closed borders."""
     rings = (", ".join(f"{_number(x)} {_number(y)}" for x, y in (*ring, ring[0])) for ring in polygon.rings)
     return f"POLYGON ({', '.join(f'({ring})' for ring in rings)})"
 
@@ -243,13 +243,13 @@ def _number(value: float) -> str:
 
 
 def extent_of(entity: Entity) -> Polygon | None:
-    """The extent of a place whose extent is a polygon; None for any other entity."""
+    """Return the extent of a place that has one, or None."""
     text = entity.properties.get(EXTENT) if entity.place else None
     return known(text) if isinstance(text, str) else None
 
 
 def known(text: str) -> Polygon | None:
-    """The polygon that WKT describes; None for what does not describe one."""
+    """Parse a polygon in WKT; None if it is invalid."""
     try:
         return read_wkt(text)
     except BadRequest:
@@ -257,9 +257,9 @@ def known(text: str) -> Polygon | None:
 
 
 def outline_of(entity: Entity) -> Polygon | None:
-    """What an entity covers on the floor: its polygon, or else the rectangle of its size as it is turned.
+    """Return the footprint of an entity: its extent, or else the rotated rectangle of its size.
 
-    None for what has no position or no size.
+    It is None for an entity without a position or size.
     """
     if (extent := extent_of(entity)) is not None:
         return extent
@@ -281,7 +281,7 @@ def outline_of(entity: Entity) -> Polygon | None:
 
 
 def box_around(polygon: Polygon, z_m: float, height_m: float) -> tuple[tuple[float, float, float], Size]:
-    """The bottom centre and the size [m] of the upright box around a polygon."""
+    """Return the bottom centre and the size [m] of the upright bounding box of a polygon."""
     x0, y0, x1, y1 = polygon.bounds
     centre = (round((x0 + x1) / 2, _DIGITS), round((y0 + y1) / 2, _DIGITS), z_m)
     return centre, (round(x1 - x0, _DIGITS), round(y1 - y0, _DIGITS), height_m)

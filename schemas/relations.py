@@ -1,4 +1,4 @@
-"""Where things are relative to one another, with the measurement behind each relation."""
+"""Spatial relations with their measurements."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ RelationName = Literal[
 ]  # fmt: skip
 
 ViewPoint = tuple[Metres, Metres, Metres, Annotated[float, Meta(ge=-1e6, le=1e6)]]
-"""Where a viewer stands and looks: x, y, z [m] and yaw [rad], map frame."""
+"""Position and direction of a viewer: x, y, z [m] and yaw [rad], map frame."""
 
 
 _NUMBER: Final = r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*"
@@ -24,9 +24,9 @@ _POSITION: Final = re.compile(",".join([_NUMBER] * 3))
 
 
 def position_in(word: str) -> Vector | None:
-    """The position [m] that is written `2.5,1,0.8`; None for what names something.
+    """Return the position [m] that is written `2.5,1,0.8`, or None for any other word.
 
-    Raises BadRequest for one beyond `REACH_M`.
+    Raises BadRequest for a coordinate beyond `REACH_M`.
     """
     if (match := _POSITION.fullmatch(word)) is None:
         return None
@@ -37,20 +37,20 @@ def position_in(word: str) -> Vector | None:
 
 
 class Relation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """`subject` is on, in, near ... `object`, worked out from their poses, sizes and shapes.
+    """`subject` is on, in, near ... `object`, computed from poses, sizes and shapes.
 
-    `gap_m` is the distance that counts for the relation [m], `share` the part of the base, volume or
-    footprint that it is about (0 to 1), or of the lines of sight; of left, right, in front and behind `gap_m`
-    is how far apart the centres are in that direction. `text` says both in one sentence. `holds` is
-    False only where a pair was asked for, of what a viewer cannot see, and of what is on nothing.
+    `gap_m` is the relevant distance [m]; for left, right, in front and behind, it is the distance of the
+    centres in that direction. `share` is the relevant part of the base, volume or footprint, or of the lines
+    of sight (0 to 1). `text` describes both in one sentence. `holds` is False only if a pair was requested,
+    for objects that a viewer cannot see, and for objects without a support.
     """
 
     relation: RelationName
     subject: str
     object: str
-    """Of `isVisibleFrom` a pose, and where nothing bears the subject, it is ""."""
+    """Empty for `isVisibleFrom` a pose, and if the subject has no support."""
     and_object: str | None = None
-    """Of `isBetween` the second of the two."""
+    """The second object of `isBetween`."""
     holds: bool = True
     gap_m: float = 0.0
     share: float = 1.0
@@ -58,12 +58,12 @@ class Relation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Described(Entity, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """An entity with, if that was asked for, where it is.
+    """An entity with its spatial relations, if they were requested.
 
-    `whereabouts`: what it is inside, on and in, as measured. `denied`: what somebody said of that and is not
-    so, as things stand. `withheld`: what is measured, or was said, and would contradict the map, with the
-    reason, a sentence each; it is not among `whereabouts`. `on_nothing`: how high it is above what is below
-    it, where nothing bears it, not even the floor; or that its size is not known.
+    `whereabouts`: what it is inside, on and in, as computed. `denied`: asserted relations of these kinds that
+    the geometry contradicts. `withheld`: relations that are suppressed because they would contradict the map,
+    with the reason. `on_nothing`: the height above what is below it if it has no support, or a note that its
+    size is unknown.
     """
 
     whereabouts: tuple[Relation, ...] = ()
@@ -81,15 +81,15 @@ class Described(Entity, frozen=True, kw_only=True, forbid_unknown_fields=True):
         withheld: tuple[str, ...] = (),
         on_nothing: str = "",
     ) -> Described:
-        """An entity with these relations."""
+        """Return an entity with these relations."""
         fields = {name: getattr(entity, name) for name in Entity.__struct_fields__}
         return cls(**fields, whereabouts=whereabouts, denied=denied, withheld=withheld, on_nothing=on_nothing)
 
 
 class Where(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Which entities by where they are; all that is given must hold. See `semmap.schemas.commands.List`.
+    """Spatial conditions that all must hold. See `semmap.schemas.commands.List`.
 
-    `near` and `to` may also be positions in the map frame (`position_in`).
+    `near` and `to` can also be positions in the map frame (`position_in`).
     """
 
     on: Text | None = None
@@ -101,5 +101,5 @@ class Where(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def words(self) -> tuple[str | None, str | None, str | None, str | None]:
-        """What is meant by name, reference or class: on, in, near, to."""
+        """The names, labels or classes of `on`, `in`, `near` and `to`."""
         return self.on, self.in_, self.near, self.to

@@ -14,26 +14,26 @@ from semmap.schemas.relations import Relation
 
 
 class Changed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The map has changed (or, without `commit`, there was nothing to change)."""
+    """The result of a change; without a `commit`, nothing had to be changed."""
 
     commit: int | None
     text: str
     names: tuple[str, ...] = ()
     skipped: tuple[str, ...] = ()
-    """What was left out, and why."""
+    """Skipped items, with the reason."""
     notes: tuple[str, ...] = ()
-    """How the request was understood, where it was not taken literally; and what may be a mistake."""
+    """How the request was interpreted, and possible mistakes in it."""
     dry_run: bool = False
-    """Nothing was done: this is what would have been."""
+    """Whether it was a dry run: nothing was changed."""
     follows: tuple[str, ...] = ()
-    """Of a dry run: what would follow about the entities that it touches, and does not now."""
+    """In a dry run: new inferences about the affected entities."""
     no_longer_follows: tuple[str, ...] = ()
     undone: tuple[Change, ...] = ()
-    """Of an undo: what the commits that it took back had changed, of the first entities that they touched."""
+    """For undo: the changes of the undone commits, for the first affected entities."""
 
 
 class Checked(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The verdict."""
+    """The result of a consistency check."""
 
     consistent: bool
     engine: str
@@ -42,46 +42,46 @@ class Checked(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     text: str
     explanation: Explanation | None = None
     denied: tuple[Relation, ...] = ()
-    """What somebody said of where things are, and is not so as they stand; it contradicts nothing."""
+    """Asserted spatial relations that the geometry contradicts; they do not make the map inconsistent."""
     withheld: tuple[str, ...] = ()
-    """What is measured of where things are and would contradict the map, with the reason, a sentence each."""
+    """Computed spatial relations that are suppressed as they would contradict the map, with the reason."""
     crowds: tuple[str, ...] = ()
-    """Where so many things are in one spot that not all are looked at as bearers, a sentence each."""
+    """Spots with so many things that not all are considered as supports, one sentence each."""
 
 
 class Compacted(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """How many commits a snapshot has taken the place of (or would, in a dry run), and what remains."""
+    """The number of commits that a snapshot replaced (or would, in a dry run), and what remains."""
 
     commits: int
     first: int
     """The first commit that is kept."""
     bytes_before: int
-    """What the journal takes on disk."""
+    """The size of the journal on disk."""
     bytes_after: int
     text: str
     dry_run: bool = False
 
 
 class Possible(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Whether something could be without contradicting the map."""
+    """Whether a statement would be consistent with the map."""
 
     possible: bool
     text: str
-    """The answer in one sentence; if it could not be, why not."""
+    """The answer in one sentence, with the reason if it is not possible."""
     explanation: Explanation | None = None
-    """Why it could not be."""
+    """The proof that it is not possible."""
 
 
 class Inferred(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Triples that follow, grouped by subject in the order of names."""
+    """Inferred triples, grouped by subject and sorted by name."""
 
     triples: tuple[Triple, ...]
     text: tuple[str, ...]
-    """One line a triple, with local names."""
+    """One line per triple, with local names."""
 
 
 class Document(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A serialised map, as it was after commit `seq`."""
+    """A serialised map after commit `seq`."""
 
     content: bytes
     media_type: str
@@ -90,49 +90,49 @@ class Document(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class NodeStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One node, as its heartbeats tell."""
+    """The state of a node according to its heartbeats."""
 
     node: str
     state: Literal["starting", "ready", "silent"]
     host: str = ""
-    """The name of the machine that it runs on."""
+    """The name of its machine."""
     pid: int
     uptime_s: float
     heartbeat_age_s: float
     detail: str = ""
     last_error: str = ""
     notes: tuple[str, ...] = ()
-    """What is good to know of what it works with: of the knowledge base, on its TBox."""
+    """Notes about its data, such as the knowledge base's TBox."""
 
 
 class SystemStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The whole system. `version` is that of semmap in the coordinator."""
+    """The state of the whole system. `version` is the coordinator's version of semmap."""
 
     truth: str
     commit: int
     entities: int
     bodies: int
     in_agreement: bool | None
-    """Map and scene are the same, to within the thresholds, and nothing is `pending` or `displaced`.
+    """Whether map and scene agree within the thresholds, and nothing is `pending` or `displaced`.
 
-    None when no simulator runs, and when the map is updated by perception only. It is false while a robot
-    drives, so a program that waits names the entities that it waits for (`names` of the command).
+    It is None without a simulator, and if only perception updates the map. It is false while a robot drives,
+    so a program that waits should give the entities that it waits for (`names` of the command).
     """
     nodes: tuple[NodeStatus, ...]
     problems: tuple[str, ...] = ()
     version: str = ""
     pending: tuple[str, ...] = ()
-    """Changes of the scene or the map that are still to be made, a sentence each.
+    """Pending changes of the scene or the map, one sentence each.
 
-    These are the first five, and how many more there are. Empty when every entity has its body and the map
-    follows all that rests."""
+    Only the first five are listed, with the number of the others. Empty if every entity has its body, and the
+    poses of all bodies at rest are committed."""
     displaced: tuple[str, ...] = ()
-    """Bodies that move or stand farther from their committed pose than the thresholds, in the same form:
+    """Bodies that are moving, or farther from their committed pose than the thresholds, in the same form:
     `robot1 is moving: 1.2 m from its committed pose`."""
 
 
 class LoggedCommit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A commit without its triples: who, when, why, how sure, and what it touched."""
+    """A commit without its triples: author, time, reason, confidence and affected entities."""
 
     seq: int
     stamp_ns: int
@@ -144,26 +144,26 @@ class LoggedCommit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     undoes: tuple[int, ...]
     tbox: bool
     inserted: int
-    """How many triples came."""
+    """The number of inserted triples."""
     retracted: int
-    """How many went."""
+    """The number of retracted triples."""
     changed: tuple[str, ...]
     removed: tuple[str, ...]
     changes: tuple[Change, ...] = ()
-    """What was and what is, of the first entities that it touched."""
+    """The previous and new values for the first affected entities."""
     notes: tuple[str, ...] = ()
-    """What else there is to know of it: see `semmap.schemas.commits.Commit`."""
+    """Notes about the commit: see `semmap.schemas.commits.Commit`."""
     authenticated: bool = False
-    """A certificate has proved the agent's name; else it is as somebody said."""
+    """Whether the agent's name was authenticated by a certificate."""
 
 
 class Sighting(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Where an entity was last, and by whose word; and whether it is known to be gone from there.
+    """The last pose of an entity with its provenance, and whether the entity was observed to be absent.
 
-    `removed` is the commit that took it out of the map since. `gone` is the commit by which perception said
-    that the place was looked at and the entity was not there; None where nobody has seen that. `seen_ns` is
-    when a camera last saw it [ns since 1970], as long as the knowledge base has been running; None if none
-    has. `text` says all this in one sentence.
+    `removed` is the commit that removed it from the map. `gone` is the commit in which perception reported
+    that the place was observed and the entity absent; None if there is none. `seen_ns` is the time of the
+    last observation by a camera [ns since 1970], since the knowledge base was started; None if there is none.
+    `text` is a summary in one sentence.
     """
 
     name: str
@@ -176,10 +176,10 @@ class Sighting(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Moved(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The body was moved: the map follows when it comes to rest, by `commit` if that was waited for.
+    """The body was moved; its pose is committed when it comes to rest, in `commit` if that was waited for.
 
-    Without a `commit`, `notes` say why there is none (yet): nobody waited, time is paused, or the map has the
-    body there already.
+    Without a `commit`, `notes` give the reason: the command did not wait, time is paused, or the map already
+    has this pose.
     """
 
     name: str
@@ -189,13 +189,13 @@ class Moved(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Done(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """It was done."""
+    """The command succeeded."""
 
     text: str
 
 
 class Ack(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The answer to a command that came as a put."""
+    """The reply to a command that was sent as a put."""
 
     id: str
     verb: str

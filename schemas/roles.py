@@ -1,7 +1,8 @@
-"""Who may do what: the one table from which the router's rules are made, and by which commands are judged.
+"""Access control: the table from which the router's rules and the checks of commands are derived.
 
-The router admits everybody to their own `semmap/as/<name>/cmd/*` and to the other keys as `GRANTS` says; the
-coordinator, which can read commands, refuses those that `COMMANDS` does not grant to the role of who asks.
+The router grants each identity access to its own `semmap/as/<name>/cmd/*`, and to other keys according to
+`GRANTS`. The coordinator, which decodes commands, rejects those that `COMMANDS` does not grant to the
+sender's role.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ _OBSERVERS: Final[Roles] = _OPERATORS | {"perception"}
 _ADMINS: Final[Roles] = frozenset(("admin", "node"))
 _NODES: Final[Roles] = frozenset(("node",))
 
-_VERBS: Final[dict[Roles, tuple[str, ...]]] = {
+_COMMANDS_OF: Final[dict[Roles, tuple[str, ...]]] = {
     ANYBODY: (
         *(
             "list",
@@ -68,8 +69,8 @@ _VERBS: Final[dict[Roles, tuple[str, ...]]] = {
     ),
     _ADMINS: ("backup", "compact"),
 }
-COMMANDS: Final[dict[str, Roles]] = {verb: roles for roles, verbs in _VERBS.items() for verb in verbs}
-"""Verb to the roles that may ask for it; `load --tbox` takes an admin."""
+COMMANDS: Final[dict[str, Roles]] = {name: roles for roles, names in _COMMANDS_OF.items() for name in names}
+"""Command to the roles that may send it; `load --tbox` requires an admin."""
 
 SOURCES: Final[dict[Role, frozenset[Source]]] = {
     "perception": frozenset(("perception",)),
@@ -77,11 +78,11 @@ SOURCES: Final[dict[Role, frozenset[Source]]] = {
     "admin": frozenset(("operator", "file", "perception", "agent")),
     "node": frozenset(get_args(Source)),
 }
-"""What those who change the map may sign as."""
+"""The sources that each role may give in commands that change the map."""
 
 
 class Grant(NamedTuple):
-    """Roles that may ask (a query), follow (subscribe to) or publish a key expression."""
+    """The roles that may query (`ask`), subscribe to (`follow`) or publish a key expression."""
 
     may: Literal["ask", "follow", "publish"]
     key: str
@@ -94,7 +95,7 @@ def _topic(topic: keys.Topic, *, follow: Roles = ANYBODY, publish: Roles = _NODE
 
 GRANTS: Final[tuple[Grant, ...]] = (
     *_topic(keys.COMMIT),
-    *_topic(keys.UNTOLD, follow=_NODES),
+    *_topic(keys.COMMIT_EFFECTS, follow=_NODES),
     *_topic(keys.ENTITY),
     *_topic(keys.QUERY),
     *_topic(keys.POSES, publish=frozenset(("robot",))),
@@ -120,52 +121,53 @@ GRANTS: Final[tuple[Grant, ...]] = (
     Grant("ask", f"{keys.PERCEPTION}/*", _NODES),
     Grant("ask", f"{keys.CMD}/*", _NODES),
 )
-"""Everything but commands under one's own name and the presence of nodes, which everybody sees."""
+"""All grants, except those of all roles: commands under the own name, and liveliness tokens."""
 
 
 def granted(role: Role, may: Literal["ask", "follow", "publish"]) -> tuple[str, ...]:
-    """The key expressions that a role may ask, follow or publish."""
+    """Return the key expressions that a role may query, subscribe to or publish."""
     return tuple(grant.key for grant in GRANTS if grant.may == may and role in grant.roles)
 
 
 def followed(role: str) -> tuple[str, ...]:
-    """The key expressions that somebody may follow; nothing for a role that there is not."""
+    """Return the key expressions that a role may subscribe to; none for an unknown role."""
     return tuple(grant.key for grant in GRANTS if grant.may == "follow" and role in grant.roles)
 
 
 def may_publish(role: str, topic: keys.Topic) -> bool:
-    """Whether somebody of this role may publish on a topic."""
+    """Return whether a role may publish on a topic."""
     return any(g.may == "publish" and g.key == topic.key and role in g.roles for g in GRANTS)
 
 
 def not_publishing(role: str, topic: keys.Topic) -> str:
-    """Why somebody may not publish on a topic, in a sentence."""
+    """Return the error text for publishing on a topic without permission."""
     allowed = [
         f"'{r}'" for g in GRANTS if g.may == "publish" and g.key == topic.key for r in ROLES if r in g.roles
     ]
     others = enumerated([r for r in allowed if r != "'node'"] or ["'node'"])
-    return f"your certificate ({role}) may not publish on {topic.key}; that takes the role {others}"
+    return f"role '{role}' of your certificate may not publish on {topic.key}; required role: {others}"
 
 
 def default_source(role: str) -> Source:
-    """What a client of this role signs as, unless it says otherwise."""
+    """Return the default source of a client with this role."""
     return "perception" if role == "perception" else "operator"
 
 
 def refusal(role: str, command: Command) -> str | None:
-    """Why somebody of this role may not ask for `command`, in a sentence; None if they may."""
+    """Return the error text if a role may not send `command`, else None."""
     if isinstance(command, Load) and command.tbox:
-        verb, allowed = "load --tbox", _ADMINS
+        name, allowed = "load --tbox", _ADMINS
     else:
-        verb, allowed = command.VERB, COMMANDS.get(command.VERB, _NODES)
+        name, allowed = command.VERB, COMMANDS.get(command.VERB, _NODES)
     if role not in allowed:
         others = enumerated([f"'{r}'" for r in ROLES if r in allowed and r != "node"] or ["'node'"])
-        return f"your certificate ({role}) may not {verb}; that takes the role {others}"
+        return f"role '{role}' of your certificate may not use '{name}'; required role: {others}"
     sources = SOURCES.get(role)
     if command.VERB in _SIGNED and sources is not None and command.source not in sources:
         only = enumerated(sorted(sources))
-        return f"your certificate ({role}) may not speak as {command.source}; it may change the map as {only}"
+        return f"role '{role}' of your certificate may not use the source {command.source}; use {only}"
     return None
 
 
-_SIGNED: Final = frozenset(verb for roles, verbs in _VERBS.items() if roles != ANYBODY for verb in verbs)
+_SIGNED: Final = frozenset(n for roles, names in _COMMANDS_OF.items() if roles != ANYBODY for n in names)
+"""The commands whose source is checked."""

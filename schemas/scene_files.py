@@ -1,4 +1,4 @@
-"""Scenes in JSON: `{"entities": [{"class": "Chair", "at": [1, 2, 0]}, ...]}`; a world has `"cameras"`, too.
+"""Scenes in JSON: `{"entities": [{"class": "Chair", "at": [1, 2, 0]}, ...]}`; worlds can have `"cameras"`.
 
 Their JSON Schema is `schemas/scene.schema.json`; `python -m semmap.schemas.scene_files` prints it.
 """
@@ -33,10 +33,10 @@ from semmap.schemas.errors import BadFile, BadRequest
 class Described(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
     """One entity of a scene file.
 
-    `at` is the bottom centre [m] in the map frame; `yaw` [rad] or `orientation` (unit quaternion wxyz) turns
-    it; `size` is its extent along its own axes [m]; `ref` is what people call it, `alt` what they call it
-    too. `extent` is what a place covers, in WKT: `POLYGON ((x y, ...))`. `set` are other properties, each
-    written `PROPERTY=VALUE`; an individual that one names comes before it in the file, or is in the map.
+    `at` is the bottom centre [m] in the map frame, and `yaw` [rad] or `orientation` (unit quaternion wxyz)
+    its orientation. `size` is the extent along its own axes [m]. `ref` is its label, `alt` are aliases.
+    `extent` is the area of a place in WKT: `POLYGON ((x y, ...))`. `set` are other properties, each written
+    `PROPERTY=VALUE`; an individual in a value must precede it in the file or be in the map.
     """
 
     class_: Text = field(name="class")
@@ -49,7 +49,7 @@ class Described(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fiel
     ref: Text | None = None
     alt: tuple[Text, ...] = ()
     affords: tuple[Text, ...] = ()
-    """Affordances, by their names in the TBox: `containing`, `supporting`, ..."""
+    """Affordances by their names in the TBox: `containing`, `supporting`, ..."""
     set: tuple[Text, ...] = ()
 
     def __post_init__(self) -> None:
@@ -69,9 +69,9 @@ FieldOfView = Annotated[float, Meta(extra_json_schema={"minimum": _NARROWEST_RAD
 class Camera(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
     """A camera of a world, at `at` [m] in the map frame.
 
-    It is turned towards the point `look_at` [m], with the map's z axis up in the picture; or `orientation`
-    (unit quaternion wxyz) is that of its optical frame: x to the right, y down, z into the scene. `fovy` is
-    its vertical angle of view [rad].
+    It points at `look_at` [m], with the map's z axis up in the image, or it has an `orientation` (unit
+    quaternion wxyz) of its optical frame: x to the right, y down, z into the scene. `fovy` is its vertical
+    field of view [rad].
     """
 
     at: Vector
@@ -89,14 +89,14 @@ class Camera(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit
             require_unit(self.orientation)
         if not _NARROWEST_RAD <= self.fovy <= _WIDEST_RAD:
             raise ValueError(
-                f"fovy is {self.fovy:g}; it is an angle from {_NARROWEST_RAD:g} to {_WIDEST_RAD:g} radians"
+                f"fovy is {self.fovy:g}; it must be from {_NARROWEST_RAD:g} to {_WIDEST_RAD:g} radians"
             )
 
 
 def pose_of(
     at: Vector, yaw: float | None, orientation: Quaternion | None, before: Pose | None = None
 ) -> Pose:
-    """The pose that is asked for; without an angle the orientation stays as `before`. Raises BadRequest."""
+    """Return the requested pose; without an angle, the orientation is that of `before`. Raises BadRequest."""
     if yaw is not None and orientation is not None:
         raise BadRequest("give yaw or orientation, not both")
     if yaw is not None:
@@ -115,12 +115,12 @@ def pose_of(
 
 _BOM = b"\xef\xbb\xbf"
 _NAME_IN_JSON_SCHEMA = r"^[\p{L}_][\p{L}\p{M}\p{N}_.-]{0,127}$"
-"""NAME_PATTERN for editors, whose regular expressions are those of JavaScript."""
+"""NAME_PATTERN as a JavaScript regular expression, which editors use."""
 _NO_JSON = re.compile(rb"[\[:,]\s*-?(?:NaN|Infinity)\b")
 
 
 class SceneFile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What stands in a scene. Of its `cameras` only a world takes notice; null leaves the choice to it."""
+    """The content of a scene file. `cameras` are used only in a world; null means its default cameras."""
 
     entities: tuple[Described, ...]
     cameras: tuple[Camera, ...] | None = None
@@ -134,7 +134,7 @@ class SceneFile(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 def read(content: bytes, filename: str) -> SceneFile:
-    """What a scene file says. Raises BadFile naming the field at fault."""
+    """Parse a scene file. Raises BadFile with the invalid field."""
     try:
         return codec.decode(content.removeprefix(_BOM), SceneFile)
     except BadRequest as error:
@@ -145,7 +145,7 @@ def read(content: bytes, filename: str) -> SceneFile:
 
 
 def json_schema() -> str:
-    """The JSON Schema of scene files."""
+    """Return the JSON Schema of scene files."""
     schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "semmap scene"}
     text = json.dumps({**schema, **msgspec.json.schema(SceneFile)}, indent=2)
     return text.replace(json.dumps(NAME_PATTERN), json.dumps(_NAME_IN_JSON_SCHEMA)) + "\n"

@@ -1,4 +1,4 @@
-"""The simulated scene: bodies, their poses, and what one may ask of the simulator."""
+"""The simulated scene: bodies, their poses, and the requests to the simulator."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from semmap.schemas.entities import Angle, Metres, Name, Pose, Probability, Size
 from semmap.schemas.joints import Joint
 
 PixelCount = Annotated[int, Meta(ge=1, le=1 << 14)]
-"""How wide or high a picture may be."""
+"""Width or height of an image [pixel]."""
 
 
 UPRIGHT: Final = 0.85
-"""A robot stands as long as its own z axis is so much of an upright one; at 32 degrees it falls over."""
+"""The cosine of the tilt (32 degrees) beyond which a robot has fallen over."""
 
 
 class BodyOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A body to be made for an entity, standing at `pose` as of commit `commit`.
+    """A body to create for an entity, at `pose` as of commit `commit`.
 
-    With commit 0 it is for no entity, but of the world's own furniture.
-    `model` is a name of the model library or of a file; empty or unknown means a box of `size_m`.
-    `size_m` None means the model's own size. `properties` are those by which the map states how its joints
-    stand (`semmap.schemas.joints.OPENING`); without them they stand as the model has them.
+    Commit 0 stands for a body of the world's own furniture, without an entity. `model` is a name in the model
+    library or of a file; an empty or unknown one means a box of `size_m`. Without `size_m`, the model's size
+    is used. `properties` are those that set joint positions (`semmap.schemas.joints.OPENING`); without them,
+    the joints are in the model's initial position.
     """
 
     name: Name
@@ -38,16 +38,18 @@ class BodyOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A body as it stands in the scene.
+    """A body in the scene with its state.
 
-    `commit` is the commit whose pose it was last ordered to take, 0 for what the map never placed, and -1
-    for a robot and its parts until it is first placed, moved or driven in this run of the simulator.
-    `shape_commit` is the commit it was made for. `entity` tells bodies made from the map from the
-    world's own furniture. `size_m` is what it really measures. `joints` are those that move parts of it, and
-    `joint_commit` is the commit whose positions these were last ordered to take. It rests when these do, too.
-    `part_of` names the body that carries it, as a kitchen does its oven in an MJCF world. `held_by` names the
-    body that holds it and `grip` is where, in that body's frame; `grip_commit` is the commit that last
-    ordered it to be held or let go, 0 for a hand, and -1 while nobody has done either.
+    `commit` is the commit of the pose that was last applied to it. It is 0 if the map never placed the body,
+    and -1 for a robot and its parts until they are first placed, moved or driven in this run of the
+    simulator. `shape_commit` is the commit of its creation. `entity` is false for the world's own furniture.
+    `size_m` is the actual size.
+
+    `joints` are its joints, and `joint_commit` is the commit of the positions that were last applied to them.
+    A body is at rest only if its joints are. `part_of` is the parent body, such as the kitchen of an oven in
+    an MJCF world. `held_by` is the body that it is attached to, and `grip` its pose in that body's frame.
+    `grip_commit` is the commit that last attached or detached it, 0 for a manual change, and -1 if there was
+    none.
     """
 
     name: str
@@ -68,25 +70,25 @@ class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     grip: Pose | None = None
     grip_commit: int = -1
     in_the_way: str = ""
-    """The body that fills the place of a ghost, where it is one of the scene."""
+    """For a non-colliding body, the body that occupies its place."""
     robot: bool = False
-    """It was put there by `semmap up --robot`: it becomes an entity whatever the truth is, and is tracked."""
+    """Whether `semmap up --robot` created it: it becomes a tracked entity for any source of truth."""
 
     @property
     def has_fallen(self) -> bool:
-        """Whether it is a robot that lies on its side."""
+        """Whether it is a robot that has fallen over."""
         return self.robot and not self.part_of and self.pose.upright < UPRIGHT
 
 
 class Spawned(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What came of it: the bodies made, and a reason for each that could not be."""
+    """The created bodies, and a reason for each one that failed."""
 
     bodies: tuple[Body, ...]
     failed: dict[str, str]
 
 
 class Spawn(Call[Spawned], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Make bodies, all in one go; each succeeds or fails by itself."""
+    """Create bodies in one step; each one succeeds or fails independently."""
 
     LARGEST: ClassVar[int] = MANY
 
@@ -95,13 +97,13 @@ class Spawn(Call[Spawned], frozen=True, kw_only=True, forbid_unknown_fields=True
 
 
 class Deleted(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The bodies that were there and are gone."""
+    """The names of the deleted bodies."""
 
     names: tuple[str, ...]
 
 
 class Delete(Call[Deleted], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Take bodies away; one that is not there is no error."""
+    """Delete bodies; a nonexistent body is not an error."""
 
     LARGEST: ClassVar[int] = MANY
 
@@ -110,7 +112,7 @@ class Delete(Call[Deleted], frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 class Placement(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Put one body at `pose`. With a `commit` it is the map's order, without one it is a hand."""
+    """Move one body to `pose`. With a `commit` the map requests it, otherwise it is a manual move."""
 
     name: str
     pose: Pose
@@ -118,18 +120,18 @@ class Placement(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class BodiesMoved(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The bodies that were moved, where there was room for them, and a reason for each that was not."""
+    """The bodies that were moved, and a reason for each one that was not, such as an occupied place."""
 
     bodies: tuple[Body, ...]
     failed: dict[str, str]
     paused: bool = False
-    """Simulated time stands still: nothing falls or moves before it runs again."""
+    """Whether simulated time is paused, so that nothing falls or moves."""
     stamp_ns: int = 0
-    """When it was done, by the clock of the poses [ns since 1970]: earlier ones are from before."""
+    """The time of the move, by the clock of the poses [ns since 1970]; earlier poses are outdated."""
 
 
 class MoveBodies(Call[BodiesMoved], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Put bodies elsewhere: kinematically, then released to physics."""
+    """Move bodies kinematically, and then release them to physics."""
 
     LARGEST: ClassVar[int] = MANY
 
@@ -138,10 +140,10 @@ class MoveBodies(Call[BodiesMoved], frozen=True, kw_only=True, forbid_unknown_fi
 
 
 class JointOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Move a body's joints: all that open something to `openness`, or each that is named to its position.
+    """Move a body's joints: all that open something to `openness`, or named joints to `positions`.
 
-    Positions are in radians and metres; none at all leave everything as it stands. With a `joint` it is about
-    that one only. With a `commit` it is the map's order, without one it is a hand.
+    Positions are in radians and metres; without any, the joints stay. With a `joint`, only that one moves.
+    With a `commit` the map requests it, otherwise it is a manual move.
     """
 
     name: str
@@ -152,7 +154,7 @@ class JointOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class JointsMoving(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The bodies whose joints are on their way, and a reason for each that was not moved."""
+    """The bodies whose joints are moving, and a reason for each one that was not moved."""
 
     bodies: tuple[Body, ...]
     failed: dict[str, str]
@@ -162,7 +164,7 @@ class JointsMoving(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
 
 class MoveJoints(Call[JointsMoving], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Begin to move joints, as a hand would: with bounded force, so that what is in the way stops them."""
+    """Start to move joints with bounded force, so that obstacles stop them."""
 
     LARGEST: ClassVar[int] = MANY
 
@@ -171,10 +173,10 @@ class MoveJoints(Call[JointsMoving], frozen=True, kw_only=True, forbid_unknown_f
 
 
 class GripOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Have a body held by another (`holder`), or by nobody (""): then it is let go where it is.
+    """Attach a body to `holder`, or detach it at its current pose if `holder` is "".
 
-    `grip` is where it is to be in the frame of its holder's bottom centre; without one it is held as it is.
-    With a `commit` it is the map's order, without one it is a hand.
+    `grip` is its pose in the frame of the holder's bottom centre; without it, the current pose is used.
+    With a `commit` the map requests it, otherwise it is a manual change.
     """
 
     name: str
@@ -184,14 +186,14 @@ class GripOrder(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Gripped(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The bodies that are held or were let go, and a reason for each for which that cannot be."""
+    """The bodies that were attached or detached, and a reason for each one that failed."""
 
     bodies: tuple[Body, ...]
     failed: dict[str, str]
 
 
 class Grip(Call[Gripped], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Weld bodies to those that hold them, or let them go."""
+    """Attach bodies to other bodies, or detach them."""
 
     LARGEST: ClassVar[int] = MANY
 
@@ -200,11 +202,11 @@ class Grip(Call[Gripped], frozen=True, kw_only=True, forbid_unknown_fields=True)
 
 
 Point = tuple[Metres, Metres]
-"""On the floor, in the map frame [m]."""
+"""A point on the floor, in the map frame [m]."""
 
 
 class Driven(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """How a course ended, and where the robot is then; `driving` if nobody waited, or time is paused."""
+    """The outcome of a drive command and the robot's pose; `driving` if not waited for, or time is paused."""
 
     name: str
     outcome: Literal["driving", "there", "blocked", "fallen", "stopped"]
@@ -215,11 +217,10 @@ class Driven(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class DriveBase(Call[Driven], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Drive a robot's base through these points, in a straight line to each, and at the end turn to `yaw`.
+    """Drive a robot's base through points, in a straight line to each, and turn to `yaw` at the end.
 
-    No points stop it. It goes at most at `speed` [m/s]; nobody looks whether the way is free, and a course
-    along which it gets no further is given up. With `wait` the reply comes when the course ends, or time
-    is paused.
+    Without points, it stops. It drives at most at `speed` [m/s] and does not avoid obstacles; a blocked drive
+    is aborted. With `wait`, the reply is sent when the drive ends or time is paused.
     """
 
     VERB: ClassVar[str] = "drive"
@@ -231,9 +232,9 @@ class DriveBase(Call[Driven], frozen=True, kw_only=True, forbid_unknown_fields=T
 
 
 class Leaf(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What one joint moves of a surface: `count` rows of its points from row `first` on.
+    """The part of a surface that one joint moves: `count` rows of its points from row `first` on.
 
-    A hinge turns them about `axis` through `anchor` [m], a slide shifts them along it, in the body's frame.
+    A hinge rotates them about `axis` through `anchor` [m], a slide shifts them along it, in the body's frame.
     """
 
     joint: str
@@ -245,11 +246,11 @@ class Leaf(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Surface(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A body's surface in triangles, for those who draw it: arrays as raw little-endian bytes, row by row.
+    """The triangle mesh of a body's surface, as raw little-endian arrays in row-major order.
 
     `points` (N, 3) float32 [m] in the body's frame, whose origin is the bottom centre; outward `normals`
     (N, 3) float32; `colours` (N, 3) uint8, red, green, blue; `triangles` (M, 3) uint32, rows of the points.
-    It is with all joints at 0; `leaves` are what these move.
+    All joints are at 0; `leaves` are the parts that they move.
     """
 
     points: bytes
@@ -260,22 +261,22 @@ class Surface(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Surfaces(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Those of the bodies that are there; of the world's own as their parts stood when it was asked."""
+    """The surfaces of existing bodies; parts of the world's own bodies are in their current position."""
 
     surfaces: dict[str, Surface]
 
 
 class SurfaceQuery(Call[Surfaces], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What these bodies look like."""
+    """Request the surfaces of bodies."""
 
     VERB: ClassVar[str] = "surfaces"
     names: tuple[str, ...]
 
 
 class WorldQuery(Call[Surface], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What the world itself looks like: the walls and whatever else of its file is no body, in the map frame.
+    """Request the surface of the world: walls and other geometry that belongs to no body, in the map frame.
 
-    Planes are left out, for they have no end.
+    Planes are left out because they are infinite.
     """
 
     VERB: ClassVar[str] = "world"
@@ -288,10 +289,10 @@ class Picture(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class PictureQuery(Call[Picture], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A picture of the scene for people, from a camera of the world; or, without one, of everything.
+    """Render the scene from a camera of the world, or without one, the whole scene.
 
-    With a `box` (lowest and highest corner [m], map frame) it is of that, seen from above. `labels` writes
-    the names of the entities' bodies on it, of those whose middle is in the box.
+    With a `box` (lowest and highest corner [m], map frame), that region is rendered from above. `labels`
+    shows the names of the entities whose bodies' centres are in the box.
     """
 
     VERB: ClassVar[str] = "picture"
@@ -303,9 +304,9 @@ class PictureQuery(Call[Picture], frozen=True, kw_only=True, forbid_unknown_fiel
 
 
 class CameraPose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Where a camera of the world is just now: its optical frame (x right, y down, z into the scene).
+    """The current pose of a camera's optical frame (x right, y down, z into the scene).
 
-    `part_of` names the body that carries it; "" for one that stays where it is.
+    `part_of` is the body that it is mounted on, or "" for a static camera.
     """
 
     camera: str
@@ -314,22 +315,22 @@ class CameraPose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class CamerasQuery(Call[tuple[CameraPose, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Where all cameras are."""
+    """Request the poses of all cameras."""
 
     VERB: ClassVar[str] = "cameras"
 
 
 class CameraFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What goes with each raw plane of a camera, as its attachment.
+    """The attachment of each raw plane of a camera.
 
-    `encoding`: `rgb8` has (height, width, 3) bytes; `depth32f` (height, width) floats, metres along the
-    optical axis, 0 where nothing is seen; `segments16` (height, width) unsigned numbers, 0 for none of
-    the bodies and n for `names[n - 1]`. Numbers are little-endian, rows from the top. `intrinsics` (3, 3)
-    [pixel] and `map_from_camera` (4, 4) [m] are row by row; the camera's frame is the optical one, with x
-    to the right, y down, z into the scene, and the middle of the first pixel at (0.5, 0.5).
+    `encoding`: `rgb8` has (height, width, 3) bytes; `depth32f` has (height, width) floats, metres along the
+    optical axis, 0 for no measurement; `segments16` has (height, width) unsigned numbers, 0 for no body and
+    n for `names[n - 1]`. Numbers are little-endian, rows are from the top. `intrinsics` (3, 3) [pixel] and
+    `map_from_camera` (4, 4) [m] are in row-major order. The camera's frame is the optical one: x to the
+    right, y down, z into the scene. The centre of the first pixel is at (0.5, 0.5).
 
-    A publisher that drops what cannot go at once, as Zenoh's do unless told otherwise, drops every plane of
-    some 30 MB: such want `CongestionControl.BLOCK`.
+    Planes of 30 MB or more need a publisher with `CongestionControl.BLOCK`; with Zenoh's default, they are
+    dropped.
     """
 
     camera: str
@@ -344,9 +345,9 @@ class CameraFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
 
 class Scene(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Every body. `run` differs after a restart.
+    """All bodies. `run` changes with each restart.
 
-    `version` grows with each spawn and delete, and when a body becomes a ghost or ceases to be one.
+    `version` increases with each spawn and delete, and when a body becomes non-colliding or colliding.
     """
 
     run: str
@@ -356,20 +357,19 @@ class Scene(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     world: str
     bodies: tuple[Body, ...]
     left_out: tuple[str, ...] = ()
-    """The bodies of the world that are none of these, but only parts of them: names, or what is told of those
-    without a name."""
+    """Bodies of the world that are only parts of the others: names, or descriptions of unnamed ones."""
 
 
 class SceneQuery(Call[Scene], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Every body as it stands."""
+    """Request the state of all bodies."""
 
     VERB: ClassVar[str] = "snapshot"
 
 
 class Poses(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Where all bodies are now; `poses` has seven numbers a body: position [m], quaternion wxyz.
+    """The current poses of all bodies; `poses` has seven numbers per body: position [m], quaternion wxyz.
 
-    `joints` has the positions of the joints of all bodies that have any, in their order [rad, m].
+    `joints` has the joint positions of all bodies in order [rad, m].
     """
 
     run: str
@@ -382,4 +382,4 @@ class Poses(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     commits: tuple[int, ...]
     joints: tuple[float, ...] = ()
     joint_commits: tuple[int, ...] = ()
-    """One for each body that has joints."""
+    """One commit for each body with joints."""

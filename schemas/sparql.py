@@ -1,4 +1,4 @@
-"""Answers to SPARQL queries, and the news of standing ones. Terms are N-Triples text, as everywhere."""
+"""Results of SPARQL queries, and changes of standing queries. Terms are N-Triples text."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ Row = tuple[Term | None, ...]
 
 
 class SparqlResult(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What a query gave on the map as it was after commit `seq`.
+    """The result of a query on the map after commit `seq`.
 
-    `select`: a row a solution, in the query's order. `ask`: `verdict`. `graph` (CONSTRUCT, DESCRIBE): a row
-    a triple, sorted, each once. `notes`: where there is nothing, each term of the query that the map does
-    not know, a sentence each.
+    `select` has one row per solution, in the query's order. `ask` has a `verdict`. `graph` (CONSTRUCT,
+    DESCRIBE) has one row per triple, sorted, without duplicates. If the result is empty, `notes` lists the
+    terms of the query that the map does not contain.
     """
 
     kind: Literal["select", "ask", "graph"]
@@ -29,9 +29,9 @@ class SparqlResult(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
 
 class Watching(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A standing query is watched: its rows after commit `seq`, and the news from then on.
+    """A standing query that was started, with its rows after commit `seq`.
 
-    It ends `lease_s` after it was last renewed. `notes` are those of a `SparqlResult`.
+    It ends `lease_s` seconds after it was last renewed. `notes` are those of a `SparqlResult`.
     """
 
     watch: str
@@ -43,10 +43,10 @@ class Watching(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class RowsChanged(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Rows that a standing query has gained and lost by commit `seq`; a row that it has n times, n times.
+    """The rows that a standing query gained and lost by commit `seq`, including duplicates.
 
-    `since` is the commit after which its rows were looked at before: `seq - 1`, unless more was going on
-    than could be evaluated, and several commits are told of in one. With an `error` the query has ended.
+    `since` is the commit of the previous evaluation: `seq - 1`, or earlier if several commits were evaluated
+    together under load. With an `error`, the query has ended.
     """
 
     watch: str

@@ -1,4 +1,4 @@
-"""What `semmap tbox check` finds out about an ontology."""
+"""The report of `semmap tbox check` about an ontology."""
 
 from __future__ import annotations
 
@@ -6,55 +6,55 @@ from msgspec import Struct
 
 
 class Unsatisfiable(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A class of which nothing can be, and why."""
+    """A class that cannot have instances, and the reason."""
 
     iri: str
     why: str
 
 
 class Quickness(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """How long it takes, on the machine and at the moment of asking."""
+    """Measured durations on this machine."""
 
     load_s: float
-    """From the triples to a reasoner that is ready for changes, in the processor's time [s]."""
+    """Loading the triples into a reasoner that is ready for changes, processor time [s]."""
     add_p50_ms: float | None
-    """To add a typical individual and check the result, median [ms]; None where none could be added."""
+    """Adding a typical individual and checking the result, median [ms]; None if none could be added."""
     not_incremental: str = ""
-    """Why every change is worked out from nothing; empty where it is not."""
+    """The reason why every change is computed from scratch; empty if reasoning is incremental."""
 
 
 class TBoxReport(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """An ontology with its imports, as semmap would take it for its TBox."""
+    """A report about an ontology with its imports, as a TBox for semmap."""
 
     files: tuple[str, ...]
-    """Those that were named, then those that they import."""
+    """The given files, followed by the imported ones."""
     ontologies: dict[str, str]
-    """IRI of an ontology to that of its version, which may be empty."""
+    """IRI of an ontology to its version IRI, which can be empty."""
     imports: dict[str, str]
-    """Import to the file that was found for it."""
+    """Imported IRI to the file that was found for it."""
     missing: tuple[str, ...]
     """The imports that were not found."""
     triples: int
     classes: int
     spatial_classes: int | None
-    """How many of the classes are of things in space; None where that cannot be told."""
+    """The number of classes of physical things; None if it cannot be determined."""
     object_properties: int
     data_properties: int
     annotation_properties: int
     individuals: int
     outside_rl: dict[str, int]
-    """Kind of axiom outside OWL 2 RL to how many there are; what they say beyond it has no effect."""
+    """Kind of axiom outside OWL 2 RL to its count; such axioms have no effect beyond OWL 2 RL."""
     inconsistent: str = ""
-    """Why the ontology contradicts itself; empty where it does not."""
+    """The reason why the ontology is inconsistent; empty if it is consistent."""
     unsatisfiable: tuple[Unsatisfiable, ...] = ()
     untried: int = 0
-    """How many classes were not tried, because it takes too long."""
+    """The number of classes that were not tested because of the time limit."""
     ambiguous: dict[str, dict[str, str]] = {}
-    """Local name that several classes share, to the names that tell them apart (`soma:Joint`), with IRIs."""
+    """Local name that several classes share, to their prefixed names (`soma:Joint`) with IRIs."""
     quickness: Quickness | None = None
-    """None for an ontology that contradicts itself."""
+    """None for an inconsistent ontology."""
 
     @property
     def is_sound(self) -> bool:
-        """Can there be something of every class?"""
+        """Whether the ontology is consistent and every class can have instances."""
         return not self.inconsistent and not self.unsatisfiable

@@ -1,4 +1,4 @@
-"""Turns msgspec's validation errors into sentences that say what is valid."""
+"""Wording of messages: counts, durations, lists, and msgspec's validation errors as sentences."""
 
 from __future__ import annotations
 
@@ -18,29 +18,29 @@ _NUMBERS = (inspect.FloatType, inspect.IntType)
 
 
 def counted(count: int, one: str, many: str = "") -> str:
-    """`1 camera`, `2 cameras`; `many` where an s is not enough."""
+    """Return `1 camera` or `2 cameras`; `many` is an irregular plural."""
     return f"{count} {one if count == 1 else many or f'{one}s'}"
 
 
 def entities(count: int) -> str:
-    """`1 entity`, `2 entities`."""
+    """Return `1 entity` or `2 entities`."""
     return counted(count, "entity", "entities")
 
 
 def bodies(count: int) -> str:
-    """`1 body`, `2 bodies`."""
+    """Return `1 body` or `2 bodies`."""
     return counted(count, "body", "bodies")
 
 
 def fallen(name: str, pose: Pose) -> str:
-    """Of a robot that lies on its side: where, and how it gets up."""
+    """Return a message about a robot that has fallen over, with the command to put it upright."""
     x, y, _ = pose.position_m
     there = f"at ({x:.2f}, {y:.2f})"
     return f"has fallen over {there}; to put it upright: semmap move {name} --at {x:.2f} {y:.2f} 0 --yaw 0"
 
 
 def duration(seconds: float) -> str:
-    """A length of time as a person says it: `12 s`, `5 min`, `3.5 h`, `12 days`."""
+    """Return a readable duration: `12 s`, `5 min`, `3.5 h`, `12 days`."""
     for unit, length_s, most in (("s", 1.0, 120.0), ("min", 60.0, 7200.0), ("h", 3600.0, 172_800.0)):
         if seconds < most:
             return f"{seconds / length_s:.{0 if unit != 'h' else 1}f} {unit}"
@@ -48,15 +48,15 @@ def duration(seconds: float) -> str:
 
 
 def few(names: Collection[str], most: int = 10) -> str:
-    """`cup1, plate1 and spoon1`; of more than `most` the first, and the number of the others."""
+    """Return `cup1, plate1 and spoon1`; at most `most` parts, with the number of the others."""
     shown = list(names) if len(names) <= most else [*list(names)[: most - 1], f"{len(names) - most + 1} more"]
     *rest, last = shown or ["nothing"]
     return f"{', '.join(rest)} and {last}" if rest else last
 
 
 def unknown_labels(labels: Collection[str]) -> str:
-    """That labels of a detector's masks are no class, and what to do about it."""
-    return f"labels of masks that are no class here: {few(labels)}; --label-map FILE tells their classes"
+    """Return a message about mask labels of a detector that are not classes."""
+    return f"mask labels without a class: {few(labels)}; map them to classes with --label-map FILE"
 
 
 def carried(name: str, load: Collection[str], left: Collection[str] = ()) -> str:

@@ -7,11 +7,18 @@
         for entity in client.list("Graspable_Thing"):
             print(entity.name, entity.pose)
 
-`semmap.aio` has the same client for an event loop, `semmap.fleet` asks several robots together,
-`semmap.recordings` films and replays the past, `semmap.testing` has a system for your tests,
-`semmap.reasoner` the OWL 2 RL reasoner by itself, `semmap.commands` what can be sent, and `semmap.wire` what
-programs need that speak Zenoh themselves. Only the names in `__all__` of these modules are public;
-`semmap.nodes`, `semmap.schemas` and `semmap.ontology` are private and may change with any version.
+Further modules:
+
+- `semmap.aio`: the same client for an event loop
+- `semmap.fleet`: queries to several robots
+- `semmap.recordings`: videos and replays of the history
+- `semmap.testing`: a system for your tests
+- `semmap.reasoner`: the OWL 2 RL reasoner as a library
+- `semmap.commands`: the commands as messages
+- `semmap.wire`: keys and messages for programs that use Zenoh directly
+
+Only the names in `__all__` of these modules are public. `semmap.nodes`, `semmap.schemas` and
+`semmap.ontology` are private and can change with any version.
 """
 
 from __future__ import annotations
@@ -45,9 +52,9 @@ if TYPE_CHECKING:
         UnknownName,
         UnknownVerb,
     )
+    from semmap.schemas.exemplars import LessonTold, ShownView
     from semmap.schemas.explanations import Explanation, Step
     from semmap.schemas.frames import Frame
-    from semmap.schemas.happenings import Difference, Related, Spell, Spells
     from semmap.schemas.joints import Joint
     from semmap.schemas.language import (
         Account,
@@ -58,7 +65,7 @@ if TYPE_CHECKING:
         SemanticFrame,
         Understood,
     )
-    from semmap.schemas.lessons import LessonTold, ShownView
+    from semmap.schemas.map_history import Difference, Related, Spell, Spells
     from semmap.schemas.plans import Outline, Plan, PlannedPlace, PlannedThing, Way
     from semmap.schemas.relations import Described, Relation
     from semmap.schemas.replies import (
@@ -213,7 +220,7 @@ _NAMES_OF: Final = {
         "Step",
     ),
     "schemas.frames": ("Frame",),
-    "schemas.happenings": (
+    "schemas.map_history": (
         "Difference",
         "Related",
         "Spell",
@@ -229,7 +236,7 @@ _NAMES_OF: Final = {
         "SemanticFrame",
         "Understood",
     ),
-    "schemas.lessons": (
+    "schemas.exemplars": (
         "ShownView",
         "LessonTold",
     ),
@@ -269,10 +276,10 @@ _MODULE_OF: Final = {name: module for module, names in _NAMES_OF.items() for nam
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public name or module when it is first used.
+    """Import a public name or module on first use.
 
-    Every module below imports this one first, so that it must stay free of imports: `semmap.schemas` is pure
-    data, `semmap.reasoner` needs no Zenoh, and a node that starts does not load the client.
+    Every submodule imports this module first, so it must not import anything: `semmap.schemas` is pure data,
+    `semmap.reasoner` needs no Zenoh, and a node does not load the client.
     """
     if name in _MODULES:
         return importlib.import_module(f"semmap.{name}")

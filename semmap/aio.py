@@ -1,4 +1,4 @@
-"""The client for programs with an event loop: the same verbs, awaited.
+"""The client for programs with an event loop: the same methods as coroutines.
 
 import semmap.aio
 

@@ -1,4 +1,4 @@
-"""What can be sent to a system: `client.send(Add("Cup"))` does what `client.add("Cup")` does."""
+"""The commands as messages: `client.send(Add("Cup"))` is the same as `client.add("Cup")`."""
 
 from semmap.schemas.commands import (
     Add,

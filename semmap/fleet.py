@@ -1,4 +1,4 @@
-"""Several robots: asked together, or mirrored into one SPARQL server and asked there.
+"""Several robots: queried together, or mirrored into one SPARQL server and queried there.
 
 with semmap.fleet.robots("arm*") as robots:
     for answer in robots.list("Cup"):

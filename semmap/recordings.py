@@ -1,10 +1,10 @@
-"""The past of a map: filmed, run again, and compared with a recording of it.
+"""The history of a map: export as video, replay, and comparison with a recording.
 
     from semmap.recordings import Film, movie
 
     movie("morning.mp4", Film(since="08:00", until="09:00", speed=10.0), data="maps/flat")
 
-Each reads the journal of a data folder, or of a running system, and changes nothing.
+All functions read the journal of a data folder or of a running system and do not change it.
 """
 
 from semmap.nodes.extern.movie import Film, movie

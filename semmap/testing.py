@@ -1,4 +1,4 @@
-"""A system for your tests, on a free port and stopped at the end: `with own_system(tmp_path) as client:`."""
+"""A system for your tests, on a free port, stopped at the end: `with own_system(tmp_path) as client:`."""
 
 from semmap.nodes.extern.testing import free_endpoint, own_system
 

@@ -1,7 +1,7 @@
-"""For programs that speak Zenoh themselves: the keys, the messages on them, and how those are encoded.
+"""Keys, messages and their encoding, for programs that use Zenoh directly.
 
-A camera of your own publishes raw planes at `camera_key(name, plane)`, each with an encoded `CameraFrame` as
-its attachment:
+A camera publishes raw planes at `camera_key(name, plane)`, each with an encoded `CameraFrame` as its
+attachment:
 
     publisher = session.declare_publisher(camera_key("front", "depth"))
     publisher.put(depth_m.tobytes(), attachment=encode(CameraFrame(camera="front", encoding="depth32f", ...)))

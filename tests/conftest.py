@@ -41,7 +41,7 @@ from tests import tiers
 # A shell that starts pytest in the background has it ignore Ctrl-C, and so would what it spawns.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# Containers often forbid bytecode; each of the many processes that are spawned would compile everything anew.
+# Containers often forbid bytecode; each of the many spawned processes would compile all modules again.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
@@ -59,7 +59,7 @@ PATIENCE_S = 60.0
 
 @contextlib.contextmanager
 def handling(node: Node) -> Iterator[None]:
-    """The node handles events, on a thread of its own."""
+    """Run the node's event loop in a thread."""
     thread = threading.Thread(target=node.run)
     thread.start()
     try:
@@ -71,14 +71,14 @@ def handling(node: Node) -> Iterator[None]:
 
 
 def until(condition: Callable[[], Any], what: str) -> Any:
-    """Wait for `condition()` to hold and return what it gave; fail after a while."""
+    """Wait until `condition()` is true and return its value; fail after a timeout."""
     deadline, pause_s = time.monotonic() + PATIENCE_S, 0.005
     while time.monotonic() < deadline:
         if result := condition():
             return result
         time.sleep(pause_s)
         pause_s = min(2 * pause_s, 0.1)
-    return pytest.fail(f"waited {PATIENCE_S:g} s in vain: {what}")
+    return pytest.fail(f"timeout after {PATIENCE_S:g} s: {what}")
 
 
 class System:
@@ -96,7 +96,7 @@ class System:
         """It has said that it is ready, or ended."""
 
     def cli(self, *words: str | Path, status: int = 0) -> str:
-        """What `semmap WORDS` prints; it must end with `status`, and with an error say one line."""
+        """Run `semmap WORDS` and return its output; require the exit status, and one line for an error."""
         out, err = io.StringIO(), io.StringIO()
         with (
             contextlib.redirect_stdout(out),
@@ -113,7 +113,7 @@ class System:
 
     @contextlib.contextmanager
     def spawned(self, *words: str, **streams: int) -> Iterator[subprocess.Popen[str]]:
-        """`semmap WORDS` as a process of its own; ended with Ctrl-C."""
+        """Run `semmap WORDS` as a process, which is ended with Ctrl-C."""
         environment = {**os.environ, "SEMMAP_CONNECT": self.endpoint}
         command = [_BIN / "semmap", *words]
         with subprocess.Popen(
@@ -126,11 +126,11 @@ class System:
                 _await_end(process)
 
     def client(self) -> contextlib.AbstractContextManager[Client]:
-        """A client of this system."""
+        """Return a client of this system."""
         return connect(self.endpoint)
 
     def pid(self, node: str) -> int:
-        """The process of a node, as soon as the coordinator has heard of it."""
+        """Return the process of a node, after its first heartbeat."""
         with self.client() as client:
             found = until(lambda: [n for n in client.status().nodes if n.node == node], f"a beat of {node}")
             return int(found[0].pid)
@@ -188,7 +188,7 @@ class System:
             return status is not None and status.commit == 1 and not status.problems
 
     def stop(self) -> None:
-        """Press Ctrl-C, and wait for the end."""
+        """Send Ctrl-C and wait for the end."""
         self.process.send_signal(signal.SIGINT)
         _await_end(self.process)
 
@@ -197,7 +197,7 @@ class System:
 def running(data: Path, *words: str | Path, endpoint: str | None = None) -> Iterator[System]:
     """`semmap up` with these words, ready; stopped at the end.
 
-    A map of the TBox and ABox that come with semmap is not begun anew by each: most of a start is that.
+    Maps with the shipped TBox and ABox are copied, because creating them takes most of the start.
     """
     endpoint = endpoint or free_endpoint()
     said = [*map(str, words)]
@@ -214,7 +214,7 @@ def running(data: Path, *words: str | Path, endpoint: str | None = None) -> Iter
     finally:
         if process.poll() is None:
             system.stop()
-        reader.join(PATIENCE_S)  # what holds the pipe still open is left to whoever looks for leftovers
+        reader.join(PATIENCE_S)  # a process that keeps the pipe open is found by the check for leftovers
 
 
 @pytest.fixture(scope="session")
@@ -262,7 +262,7 @@ def empty_scene(_shared_scene: System) -> System:
 
 
 def _ask_status(client: Client) -> SystemStatus | None:
-    """The status; None while the coordinator is away."""
+    """Return the status, or None while the coordinator is not running."""
     try:
         return client.status()
     except errors.NoAnswer:
@@ -300,7 +300,7 @@ def _begun(abox: str) -> Path:
 
 
 def _read(system: System) -> None:
-    """Keep what it says until its end: a pipe that nobody reads fills up, and would hold it up."""
+    """Read the output until its end: a full pipe would block the process."""
     assert system.process.stdout is not None
     with system.process.stdout as said:
         for line in said:
@@ -322,7 +322,7 @@ def _says_ready(system: System) -> bool:
 
 
 def _await_end(process: subprocess.Popen[str]) -> None:
-    """Wait for a process that was told to end; one that does not is killed, and the test fails."""
+    """Wait for a process to end; kill it and fail the test after a timeout."""
     try:
         process.wait(_END_S)
     except subprocess.TimeoutExpired:
@@ -341,7 +341,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
-    """The other tests start none."""
+    """Prevent the other tests from starting processes."""
     tiers.watch(item)
     try:
         return (yield)

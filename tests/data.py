@@ -1,4 +1,4 @@
-"""Where the data for tests lies, which is no part of the project."""
+"""The location of the test data, which is not part of the project."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 
 def data_folder() -> Path:
-    """The folder named by SEMMAP_DATA; the test is skipped without it, or fails where it is required."""
+    """Return the folder in SEMMAP_DATA; without it, skip the test, or fail it if the data is required."""
     default = Path(__file__).parents[1] / ".." / "shared" / "data"
     folder = Path(os.environ.get("SEMMAP_DATA") or default)
     if not folder.is_dir():

@@ -1,8 +1,8 @@
-"""How often a claim is tried that holds for any input: more often where there is time."""
+"""The number of examples of property-based tests."""
 
 import os
 
 
 def tries(thorough: int) -> int:
-    """All of them under `make test-long`, which sets SEMMAP_THOROUGH; a third of them else."""
+    """Return `count` under `make test-long`, which sets SEMMAP_THOROUGH, otherwise a third of it."""
     return thorough if os.environ.get("SEMMAP_THOROUGH") == "1" else -(-thorough // 3)

@@ -1,4 +1,4 @@
-"""A node that is killed repeatedly while a client sends commands as fast as it can."""
+"""Kills a node repeatedly while a client sends requests as fast as possible."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Busy(threading.Thread):
         raise NotImplementedError
 
     def unanswered(self):
-        """Handle a step without reply: it may have been executed."""
+        """Handle a step without a reply, which may have been executed."""
         raise NotImplementedError
 
     def stop(self):
@@ -44,7 +44,7 @@ class Busy(threading.Thread):
         assert not self.is_alive()
 
     def goes_on(self):
-        """Wait until another step has succeeded."""
+        """Wait for one more completed step."""
         before = self.done
         until(lambda: self.done > before, "the client goes on")
 

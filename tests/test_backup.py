@@ -1,4 +1,4 @@
-"""Backup, restore and compact, of whole systems that go on meanwhile."""
+"""Backup, restore and compact of running systems."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A file of very many triples: loaded whole, told of on stderr, with the nodes alive and memory bounded."""
+"""Loads a very large file: progress on stderr, live nodes, and bounded memory."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import subprocess
 import psutil
 import pytest
 
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import Pose
 from tests.conftest import running
@@ -24,7 +24,7 @@ def write(file, triples):
         count = i = 0
         while count < triples:
             at = Pose(position_m=(i % 300, i // 300, 0.0))
-            for triple in stars.star(f"chair{i}", v.dm("Chair"), pose=at, preferred="chair"):
+            for triple in entity_triples.describe(f"chair{i}", v.dm("Chair"), pose=at, preferred="chair"):
                 out.write(" ".join(triple) + " .\n")
                 count += 1
             i += 1

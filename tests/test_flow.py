@@ -186,9 +186,9 @@ def test_while_the_knowledge_base_is_away_the_coordinator_says_so(flat, client):
     os.kill(flat.pid("kb_node"), signal.SIGKILL)
     for _ in range(20):
         with contextlib.suppress(errors.NoAnswer):
-            client.history()  # is passed on to nobody
+            client.history()  # has no responder
         with contextlib.suppress(errors.NoAnswer):
-            client.sparql("ASK {}")  # is nobody's to answer, until the coordinator notices
+            client.sparql("ASK {}")  # has no responder until the coordinator notices
         with flat.client() as newcomer:
             newcomer.status()
     until(lambda: client.status().in_agreement, "map and scene agree again")
@@ -224,7 +224,7 @@ def test_two_systems_on_one_machine_do_not_meet(flat, client, empty_map):
     assert "table_of_the_other" not in flat.cli("list")
 
 
-def test_nobody_there_is_no_answer_and_never_an_empty_list():
+def test_without_a_system_the_result_is_an_error_and_not_an_empty_list():
     with pytest.raises(errors.NoAnswer), connect(free_endpoint()):
         pass
 
@@ -295,7 +295,7 @@ def described_by(bodies):
 
 
 @pytest.mark.long
-def test_a_node_that_hangs_is_killed_and_started_anew(tmp_path):
+def test_a_node_that_hangs_is_killed_and_restarted(tmp_path):
     with running(tmp_path, "--abox", "none", "--no-record") as system, system.client() as client:
         pid = system.pid("sim_node")
         os.kill(pid, signal.SIGSTOP)

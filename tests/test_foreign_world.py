@@ -1,4 +1,4 @@
-"""Minutes in a world of things that nobody here modelled: what stands still keeps its name and its place."""
+"""A world of third-party objects for minutes: objects at rest keep their name and place."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ from tests.data import data_folder
 
 TOP_Z = 0.74
 SETTLED_LOOKS = 40
-"""After so many looks what was odd in the first ones is over."""
+"""The number of observations after which the tracks are stable."""
 WATCHED_S, WATCHED_LOOKS = 120.0, 60
-"""How long the table is watched then."""
+"""The duration of the observation afterwards."""
 NEAR_M = 0.05
 PLACES = (
     ("ycb 006_mustard_bottle", -0.45, 0.20, 0.4),
@@ -73,7 +73,7 @@ def test_foreign_things_that_stand_still_are_each_known_once_and_left_alone(tmp_
     assert not renamed_back(change for change in reversed(since) if change.kind == "class")
 
 
-def test_a_class_that_comes_back_is_told():
+def test_a_class_that_returns_is_reported():
     def called(name: str, *classes: str) -> list[Change]:
         steps = pairwise(classes)
         return [Change(name=name, kind="class", was=was, now=now) for was, now in steps]

@@ -1,4 +1,4 @@
-"""A disk that takes no more: commits are refused, the system stays up and says so, and goes on later."""
+"""A full disk: commits are rejected, the system reports it, and continues when there is space again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Things that are held over the wire: words, hands and the map agree on who holds what."""
+"""Attachments in a whole system: commands, manual moves and the map agree."""
 
 import json
 import os
@@ -9,8 +9,8 @@ import pytest
 
 from semmap.nodes import bus
 from semmap.schemas import errors, keys
+from semmap.schemas.attachments import grip_of, holder_of
 from semmap.schemas.entities import compose, distance_m
-from semmap.schemas.grips import grip_of, holder_of
 from semmap.schemas.scenes import Grip, GripOrder, Gripped, Scene, SceneQuery
 from tests.conftest import running, until
 
@@ -105,7 +105,7 @@ def test_it_is_taken_carried_and_put(client):
     client.move("tray1", at=(3.0, 2.0, 0.0))
     until(lambda: client.get("tray1").pose.position_m[1] > 1.9, "the map follows the tray")
     agree(client, "cup1", "tray1")
-    assert len(client.history("cup1")) == moved  # the tray's move is no commit of the cup
+    assert len(client.history("cup1")) == moved  # the tray's move does not commit the cup
     until(lambda: live_off_m(client) < 0.02, "the cup is where the tray takes it")
     assert client.get("cup1").live.pose.position_m[1] == pytest.approx(2.0, abs=0.02)
     assert client.get("cup1").pose.position_m[1] == pytest.approx(0.0, abs=0.02)

@@ -1,4 +1,4 @@
-"""Every map of the HuRIC corpus loads, and its scene stands: through a whole running system."""
+"""Loads every map of the HuRIC corpus into a running system and its scene."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Doors over the wire: hands, words and the map agree on how far open a thing is."""
+"""Doors in a whole system: commands, manual changes and the map agree on the openness."""
 
 import pytest
 

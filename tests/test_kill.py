@@ -1,4 +1,4 @@
-"""A knowledge base that is killed again and again while a client commits as fast as it can."""
+"""Kills the knowledge base repeatedly while a client commits as fast as possible."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def test_every_acknowledged_commit_is_there_and_no_other_one_half(empty_map, kil
     assert seqs[-1] == len(there) + 1
 
 
-def test_whoever_asks_right_after_a_kill_waits_for_the_restart(empty_map):
+def test_a_request_right_after_a_kill_waits_for_the_restart(empty_map):
     empty_map.begin_anew("none")
     with empty_map.client() as client:
         for i, ask in enumerate(

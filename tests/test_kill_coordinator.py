@@ -1,4 +1,4 @@
-"""A coordinator that is killed repeatedly while a client adds entities without names."""
+"""Kills the coordinator repeatedly while a client adds entities without names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A whole system under more than it can do: refused or done, and nothing lost silently."""
+"""Overload of a whole system: commands are rejected or executed, and none is lost silently."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def system(flat_map):
     return flat_map
 
 
-def test_puts_without_end_are_done_or_refused_and_the_status_is_told_meanwhile(system):
+def test_endless_puts_are_executed_or_rejected_and_the_status_stays_available(system):
     acks: dict[str, str] = {}
     flooding, answered = threading.Event(), threading.Event()
 

@@ -1,4 +1,4 @@
-"""Commands that move bodies return when the map has followed, so that an undo takes back the move."""
+"""Commands that move bodies return after the commit, so that `undo` undoes the move."""
 
 import asyncio
 

@@ -1,4 +1,4 @@
-"""Perception end to end: spawned processes, simulated cameras, a map that nobody fills by hand."""
+"""Perception end to end: spawned processes, simulated cameras, and a map that perception fills."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""More entities than are told of one by one: loaded, followed, listed, queried, and there after a restart."""
+"""More entities than are published one by one: load, subscribe, list, query and restart."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def counted(client):
     return int(v.lexical(found))
 
 
-def test_a_commit_that_is_told_of_in_brief_is_known_to_everybody(tmp_path):
+def test_an_abridged_commit_reaches_all_subscribers(tmp_path):
     with running(tmp_path / "data", *UP) as system, system.client() as client:
         with client.commits(timeout=60.0) as commits:
             loaded = client.load(scene(tmp_path / "many.json"))

@@ -1,4 +1,4 @@
-"""What was stored opens: a data folder that an older version wrote is the same map in this one."""
+"""Data folders of older versions open as the same map."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def test_its_entities_are_there(opened):
     assert semantic_map.entity("kitchen1").place
 
 
-def test_its_history_is_told_and_the_past_is_as_it_was(opened):
+def test_its_history_is_unchanged(opened):
     past = HistoryReader(opened[1])
     told = past.history(History())
     assert [commit.verb for commit in told] == [

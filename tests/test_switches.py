@@ -1,4 +1,4 @@
-"""Switches of an MJCF world over the wire: hands, words and the map agree on what is on."""
+"""Switches of an MJCF world in a whole system: commands, manual changes and the map agree."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Tests that need real processes are found by their code, and no other test can start one."""
+"""Tests that need processes are detected from their code, and other tests cannot start one."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def test_a_pure_test_cannot_start_a_process(monkeypatch):
         subprocess.run(["true"], check=True)
 
 
-def test_what_a_library_starts_is_no_matter_of_ours(monkeypatch, tmp_path):
+def test_processes_of_libraries_are_ignored(monkeypatch, tmp_path):
     monkeypatch.setattr(tiers, "_is_pure", True)
     library = tmp_path / "site-packages" / "library.py"
     code = compile("import subprocess\nended = subprocess.run(['true'])", str(library), "exec")

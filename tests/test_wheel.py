@@ -1,4 +1,4 @@
-"""The wheel: what is in it, and that a system runs from it where there is no checkout."""
+"""The wheel: its contents, and a system that runs from it without a checkout."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""MuJoCo's window in the whole system: a real mouse on a display of its own, and the map follows."""
+"""MuJoCo's window in a whole system: mouse actions on a virtual display change the map."""
 
 import os
 import shutil

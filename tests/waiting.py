@@ -1,4 +1,4 @@
-"""What a test on the wire waits for, before it publishes or asks: that somebody is there to hear it."""
+"""Waits until subscribers and queryables are matched, before a test publishes or queries."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ def until_followed(session: bus.Session, *key_exprs: str) -> None:
 
 
 def until_served(session: bus.Session, *key_exprs: str) -> None:
-    """Wait until a question of this session on each key reaches a queryable."""
+    """Wait until this session has a matching queryable for each key."""
     for key_expr in key_exprs:
         querier = session.declare_querier(key_expr)
-        until(lambda querier=querier: querier.matching_status.matching, f"somebody who serves {key_expr}")
+        until(lambda querier=querier: querier.matching_status.matching, f"a queryable for {key_expr}")
         querier.undeclare()
 
 
 def questions_asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """The keys of the questions that nodes of this process ask from now on, each time that they ask."""
+    """Record the keys of all queries that nodes in this process send."""
     asked: list[str] = []
     ask_later = bus.ask_later
 
@@ -45,7 +45,7 @@ def questions_asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 def publications_kept(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """What comes to those who follow a topic from now on, when it has been handed to them."""
+    """Record the messages of a topic after their delivery to subscribers."""
     kept: list[Any] = []
     follow = bus.follow
 

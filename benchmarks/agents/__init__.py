@@ -1,1 +1,1 @@
-"""What an agent needs to do ordinary tasks with the tools of `semmap mcp`: calls, and characters to read."""
+"""The cost of ordinary tasks for an agent with the tools of `semmap mcp`: calls, and characters read."""

@@ -1,4 +1,4 @@
-"""`python -m benchmarks.agents [--json FILE]`: sixty tasks by tools, and by `list --format json` alone."""
+"""`python -m benchmarks.agents [--json FILE]`: sixty tasks with tools, and with `list --format json` only."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from semmap.testing import own_system
 
 _WORDS = ("--allow", "change", "--classes", "Cup,Book,Door", "--rate", "600", "--agent", "benchmark")
 _BY_LIST: dict[Kind, str] = {"find": "1", "count": "1", "compare": "1", "when": "one a commit"}
-"""Calls of `list` that hold what is asked for; the others cannot be done with it."""
+"""Tasks that can be done with `list`."""
 
 
 class Done(NamedTuple):
-    """One task as it was done. `fault` is empty where it was right."""
+    """The result of one task. `fault` is empty if it is correct."""
 
     task: Task
     calls: int
@@ -33,25 +33,25 @@ class Done(NamedTuple):
 
 
 async def done(task: Task, agent: Agent, client: Client) -> Done:
-    """Do a task, and compare with what the map says then."""
+    """Do a task and compare the result with the map."""
     agent.begin()
     try:
         found = await task.way(agent)
         true = task.truth(client)
         fault = "" if found == true else f"found {found!r}, but it is {true!r}"
-    except Exception as error:  # whatever goes wrong, the other tasks are done
+    except Exception as error:  # a failure must not prevent the other tasks
         fault = f"{type(error).__name__}: {error}"
     return Done(task, agent.calls, agent.characters, fault)
 
 
 async def all_done(client: Client, endpoint: str) -> list[Done]:
-    """All tasks, one after another."""
+    """Do all tasks in order."""
     async with talking(endpoint, *_WORDS) as agent:
         return [await done(task, agent, client) for task in TASKS]
 
 
 def rows(found: Sequence[Done], listed: int, commits: int) -> list[Row]:
-    """How many were right, and what they took; `listed` are the characters of all entities as JSON."""
+    """Return the number of correct tasks and their cost; `listed` is the size of all entities as JSON."""
     made = [Row("tasks done right", sum(not d.fault for d in found) / len(found), "", 1.0, more=True)]
     for kind in dict.fromkeys(d.task.kind for d in found):
         of = [d for d in found if d.task.kind == kind]
@@ -67,7 +67,7 @@ def rows(found: Sequence[Done], listed: int, commits: int) -> list[Row]:
 
 
 def measured() -> tuple[list[Done], list[Row]]:
-    """On a system of one's own: the flat, and a little past."""
+    """Run all tasks on a separate system with the flat and a short history."""
     endpoint = free_endpoint()
     with (
         tempfile.TemporaryDirectory() as folder,
@@ -80,9 +80,9 @@ def measured() -> tuple[list[Done], list[Row]]:
 
 
 def main() -> None:
-    """Print the table, and what went wrong."""
+    """Print the table and the faults."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures here, too")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="also write the figures to this file")
     said = parser.parse_args()
     found, table = measured()
     print(lines(table))

@@ -1,4 +1,4 @@
-"""A scripted agent: calls the tools of `semmap mcp` over stdio, and counts what it has to read."""
+"""A scripted agent that calls the tools of `semmap mcp` over stdio and counts what it reads."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ SEMMAP = str(Path(sys.executable).parent / "semmap")
 
 
 class RefusedCallError(Exception):
-    """A tool has refused; the text is its sentence."""
+    """A tool call was rejected; the text is the tool's error."""
 
 
 class Agent:
-    """Calls tools; `calls` and `characters` are those since the last `begin`."""
+    """Calls tools; `calls` and `characters` count from the last `begin`."""
 
     def __init__(
         self, client: Client, tell: Callable[[str, dict[str, Any], str], None] | None = None
@@ -32,11 +32,11 @@ class Agent:
         self.begin()
 
     def begin(self) -> None:
-        """Count anew."""
+        """Reset the counters."""
         self.calls = self.characters = 0
 
     async def __call__(self, tool: str, **fields: Any) -> dict[str, Any]:
-        """What a tool answers. Raises RefusedCallError; who comes too often comes again, uncounted."""
+        """Return a tool's reply. Raises RefusedCallError; rate-limited calls are retried, uncounted."""
         arguments = {name.rstrip("_"): value for name, value in fields.items()}
         while True:
             found = await self.client.call_tool(tool, arguments)
@@ -54,7 +54,7 @@ class Agent:
         return answer
 
     async def refused(self, tool: str, **fields: Any) -> str:
-        """The sentence with which a tool refuses; empty if it does not."""
+        """Return the error of a rejected tool call, or an empty text."""
         try:
             await self(tool, **fields)
         except RefusedCallError as error:
@@ -62,7 +62,7 @@ class Agent:
         return ""
 
     async def committed(self, **fields: Any) -> dict[str, Any]:
-        """A change, proposed and committed."""
+        """Propose and commit a change."""
         proposed = await self("propose", **fields)
         return await self("commit", token=proposed["token"])
 
@@ -71,7 +71,7 @@ class Agent:
 async def talking(
     endpoint: str, *words: str, tell: Callable[[str, dict[str, Any], str], None] | None = None
 ) -> AsyncIterator[Agent]:
-    """An agent and its `semmap mcp WORDS`, a process of its own."""
+    """Start an agent with a process of `semmap mcp WORDS`."""
     environment = {**os.environ, "SEMMAP_CONNECT": endpoint}
     server = StdioServerParameters(command=SEMMAP, args=["mcp", *words], env=environment)
     async with Client(server) as client:

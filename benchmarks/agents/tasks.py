@@ -1,6 +1,6 @@
-"""Sixty tasks: what somebody wants, the shortest correct way by tools, and what the map itself says.
+"""Sixty tasks: the request, the shortest correct sequence of tool calls, and the expected result.
 
-What an agent finds is compared with what a client of the system finds by other means.
+The agent's result is compared with that of a client that uses other commands.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ Kind = Literal["find", "count", "compare", "why", "when", "change", "refuse", "u
 
 
 class Task(NamedTuple):
-    """`way(agent)` is what the agent finds or does; `truth(client)`, asked afterwards, what is so."""
+    """`way(agent)` returns the agent's result; `truth(client)` then returns the expected one."""
 
     kind: Kind
     wanted: str
@@ -231,11 +231,11 @@ _DESK = [8.4, 7.5, 0.74]
 
 
 def prepare(client: Client) -> None:
-    """Commits 2 to 5: a little past."""
+    """Make commits 2 to 5, a short history."""
     client.update("cup1", at=(8.2, 2.2, 0.74), reason="to the table")
     client.update("book1", at=(8.2, 2.1, 0.74), reason="to the table")
     client.update("cup1", at=(9.0, 7.42, 0.74), reason="back to the desk")
-    client.set("door1", "isOpen", True, reason="somebody came in")
+    client.set("door1", "isOpen", True, reason="a person came in")
 
 
 TASKS = (
@@ -283,7 +283,7 @@ TASKS = (
             values=[False]),
     _change("the door is open", _is("door1", "isOpen", True), verb="set", name="door1", property="isOpen",
             values=[True]),
-    _change("nobody knows of the door", lambda c: "isOpen" not in c.get("door1").properties, verb="unset",
+    _change("unset the door's state", lambda c: "isOpen" not in c.get("door1").properties, verb="unset",
             name="door1", property="isOpen"),
     _change("its own book is gone", lambda c: "book9" not in _those(c, "Book"), verb="remove",
             names=["book9"]),

@@ -1,1 +1,1 @@
-"""The knowledge base's speed and memory: the engine alone, the node on its disk, the system over Zenoh."""
+"""Speed and memory of the knowledge base: the engine alone, the node with its disk, the system over Zenoh."""

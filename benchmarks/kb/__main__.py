@@ -17,49 +17,53 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from benchmarks.kb import disk, engine, in_turn, scale, table, university, wire
-from benchmarks.relations import kept
+from benchmarks.relations import fact_costs
 from benchmarks.table import Row, lines
 from semmap.nodes.kb_node.documents import rdf
 
 PARTS = ("core", "owlrl", "disk", "wire", "sim")
 UNIVERSITY = "university"
-"""Another shape of data, in the engine alone; measured when it is asked for."""
+"""Data of another shape, in the engine alone; measured only on request."""
 UNIVERSITY_TRIPLES = (120_000, 1_200_000)
 VARIANTS = "variants"
-"""The engine with other TBoxes: a top property declared, and `--ontology`."""
+"""The engine with other TBoxes: with a top property, and with `--ontology`."""
 IN_TURN = "turns"
-"""The version in `--before` and this one in turn."""
+"""The version in `--before` and this one, measured in turn."""
 LARGE = "scale"
-"""A part that is measured when it is asked for: it takes minutes and gigabytes."""
+"""A part that is measured only on request: it takes minutes and gigabytes."""
 FURTHER = (UNIVERSITY, VARIANTS, IN_TURN, LARGE)
 CORE_SIZES, LARGE_SIZES = "10,100,1000,10000,100000", "10000,100000"
 T = TypeVar("T")
 
 
 def arguments() -> argparse.Namespace:
-    """What the command line says."""
+    """Parse the command line."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.kb", description="Speed and memory.")
     parser.add_argument(
         "--sizes",
         nargs="+",
         help=f"entities in the engine alone ({CORE_SIZES}), or in {LARGE} ({LARGE_SIZES})",
     )
-    parser.add_argument("--entities", type=int, default=10_000, help="in the node, on disk and over Zenoh")
-    parser.add_argument("--sim-entities", type=int, default=300, help="with bodies in the simulator")
+    parser.add_argument(
+        "--entities", type=int, default=10_000, help="entities in the node, on disk and over Zenoh"
+    )
+    parser.add_argument("--sim-entities", type=int, default=300, help="entities with bodies in the simulator")
     parser.add_argument("--repeat", type=int, default=1000, help="single changes of each sort")
-    parser.add_argument("--parts", default=",".join(PARTS), help=f"of: {','.join((*PARTS, *FURTHER))}")
+    parser.add_argument(
+        "--parts", default=",".join(PARTS), help=f"parts to measure: {','.join((*PARTS, *FURTHER))}"
+    )
     parser.add_argument("--before", type=Path, metavar="DIR", help=f"another version's root, for {IN_TURN}")
     parser.add_argument(
         "--no-relations",
         action="store_true",
-        help=f"for {IN_TURN} over Zenoh: with a TBox that does not declare what is computed of places",
+        help=f"for {IN_TURN} over Zenoh: with a TBox that does not declare spatial relations",
     )
-    parser.add_argument("--ontology", type=Path, help=f"one over DUL, such as SOMA-HOME.owl, for {VARIANTS}")
-    parser.add_argument("--folder", type=Path, help="where the journals are; default: the temporary folder")
-    parser.add_argument("--quick", action="store_true", help="small and rough: a look, no figures to cite")
     parser.add_argument(
-        "--patience", type=int, default=1800, help=f"seconds for each size in {LARGE}, then the next one"
+        "--ontology", type=Path, help=f"an ontology based on DUL, such as SOMA-HOME.owl, for {VARIANTS}"
     )
+    parser.add_argument("--folder", type=Path, help="folder of the journals; default: the temporary folder")
+    parser.add_argument("--quick", action="store_true", help="small and rough, not for publication")
+    parser.add_argument("--patience", type=int, default=1800, help=f"timeout for each size in {LARGE} [s]")
     parser.add_argument("--json", type=Path, metavar="FILE", dest="json_file")
     words = parser.parse_args()
     words.sizes = ",".join(words.sizes) if words.sizes else None
@@ -71,7 +75,7 @@ def arguments() -> argparse.Namespace:
 
 
 def main() -> None:
-    """Measure, print the table as it grows, write JSON."""
+    """Measure, print the growing table, and write JSON."""
     words = arguments()
     parts = set(words.parts.split(","))
     report: dict[str, Any] = {"machine": platform.platform(), "load_average": os.getloadavg()}
@@ -110,7 +114,7 @@ def main() -> None:
 
 
 def _core(words: argparse.Namespace, report: dict[str, Any], *, with_owlrl: bool) -> list[Row]:
-    """The engine at each size, a crowded room, and if wanted owlrl on a map of 100."""
+    """Measure the engine at each size, a crowded room, and optionally owlrl on a map of 100."""
     engines = [
         _alone(engine.measure, int(size), words.repeat) for size in (words.sizes or CORE_SIZES).split(",")
     ]
@@ -143,14 +147,15 @@ def _variants(words: argparse.Namespace, report: dict[str, Any]) -> list[Row]:
 
 
 def _in_turn(words: argparse.Namespace, report: dict[str, Any]) -> list[Row]:
-    """Against another version."""
+    """Compare with another version."""
     size, count = words.entities, words.repeat
     core = in_turn.core(words.before, size, count)
     with tempfile.TemporaryDirectory(dir=words.folder) as folder:
         tbox = None
         if words.no_relations:
             tbox = Path(folder, "no_relations.nt")
-            tbox.write_bytes(rdf.serialise(frozenset(kept.without_relations(kept.household())), "ntriples"))
+            triples = frozenset(fact_costs.without_relations(fact_costs.household()))
+            tbox.write_bytes(rdf.serialise(triples, "ntriples"))
         wired = in_turn.wire(words.before, Path(folder), size, count, tbox)
     rows = table.of_core_in_turn(core, size) + table.of_wire_in_turn(wired, size)
     sizes = UNIVERSITY_TRIPLES[:1] if words.quick else UNIVERSITY_TRIPLES
@@ -170,7 +175,7 @@ def _in_turn(words: argparse.Namespace, report: dict[str, Any]) -> list[Row]:
 
 
 def _large(words: argparse.Namespace, report: dict[str, Any]) -> list[Row]:
-    """Whole systems of growing size."""
+    """Measure whole systems of increasing size."""
     found = []
     for size in map(int, (words.sizes or LARGE_SIZES).split(",")):
         try:
@@ -184,7 +189,7 @@ def _large(words: argparse.Namespace, report: dict[str, Any]) -> list[Row]:
 
 @contextmanager
 def _within(seconds: int) -> Iterator[None]:
-    """Raises TimeoutError in this thread when it takes longer."""
+    """Raise TimeoutError in this thread after the timeout."""
 
     def give_up(*_: object) -> None:
         raise TimeoutError
@@ -199,7 +204,7 @@ def _within(seconds: int) -> Iterator[None]:
 
 
 def _alone(function: Callable[..., T], *values: Any) -> T:
-    """`function(*values)` in a process of its own, whose memory nobody else has used."""
+    """Call `function(*values)` in a new process, for independent memory figures."""
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
         return pool.submit(function, *values).result()
 

@@ -1,4 +1,4 @@
-"""Files that describe very many things, 14 triples each: Turtle, and the same as a JSON scene."""
+"""Files with very many entities of 14 triples each: Turtle, and the same as a JSON scene."""
 
 from __future__ import annotations
 
@@ -8,21 +8,21 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import Pose, Size
 from semmap.schemas.explanations import Term
 
 CLASSES = ("Chair", "Bottle", "Book", "Lamp", "Cup")
-"""About a fifth of the things is of each."""
+"""Each class has about a fifth of the things."""
 RARE_CLASS = "Fridge"
 RARE_EVERY = 100
-"""One thing in so many is of the rare class instead."""
+"""One thing in this many has the rare class instead."""
 _PREFIXES = {"": v.ABOX, "dm": v.TBOX, "xsd": v.XSD}
 
 
 class Thing(NamedTuple):
-    """A thing of a made-up building; its size [m] along its own axes."""
+    """A thing of a generated building; its size [m] is along its own axes."""
 
     name: str
     class_name: str
@@ -32,7 +32,7 @@ class Thing(NamedTuple):
 
 
 def things(count: int) -> Iterator[Thing]:
-    """So many, on a grid of one metre that is a thousand wide."""
+    """Yield things on a grid of 1 m that is 1000 wide."""
     random_ = random.Random(count)
 
     def number(low: float, high: float) -> float:
@@ -46,7 +46,7 @@ def things(count: int) -> Iterator[Thing]:
 
 
 def count_of(class_name: str, count: int) -> int:
-    """How many of so many things are of a class."""
+    """Return how many of `count` things are of a class."""
     return sum(_class(i) == class_name for i in range(count))
 
 
@@ -55,16 +55,16 @@ def _class(i: int) -> str:
 
 
 def write_turtle(path: Path, count: int) -> None:
-    """`count` things, a line a triple."""
+    """Write `count` things, one triple per line."""
     with path.open("w") as file:
         file.writelines(f"@prefix {prefix}: <{iri}> .\n" for prefix, iri in _PREFIXES.items())
         for name, class_name, pose, size_m, ref in things(count):
-            star = stars.star(name, v.dm(class_name), pose=pose, size_m=size_m, preferred=ref)
+            star = entity_triples.describe(name, v.dm(class_name), pose=pose, size_m=size_m, preferred=ref)
             file.writelines(f"{_short(s)} {_short(p)} {_short(o)} .\n" for s, p, o in star)
 
 
 def write_json(path: Path, count: int) -> None:
-    """`count` things as a scene."""
+    """Write `count` things as a scene."""
     entities = [
         {"name": name, "class": class_name, "at": pose.position_m, "size": size_m, "ref": ref}
         for name, class_name, pose, size_m, ref in things(count)
@@ -73,7 +73,7 @@ def write_json(path: Path, count: int) -> None:
 
 
 def _short(term: Term) -> str:
-    """A term as Turtle writes it with the prefixes."""
+    """Return a term in Turtle with prefixes."""
     if term.startswith('"'):
         text, caret, datatype = term.partition("^^")
         return f"{text}{caret}{_short(datatype)}" if caret else term

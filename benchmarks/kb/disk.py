@@ -19,21 +19,21 @@ from semmap.schemas.commits import Transaction
 
 
 class Disk(NamedTuple):
-    """A map of so many entities in one process, with its journal."""
+    """Figures of a map with its journal in one process."""
 
     entities: int
     bulk_load: Cost
-    """One durable commit of all of them into an empty map."""
+    """One durable commit of all entities into an empty map."""
     start_up: Cost
-    """From the journal's file to a map that answers, when it was started before."""
+    """Loading the journal until the map answers queries, for a later start."""
     list_all: Figures
-    """All of them, encoded as for the wire."""
+    """Listing all entities, encoded as messages."""
     sync: Figures
-    """What the disk takes for any durable write, to compare."""
+    """A durable write to the disk, for comparison."""
 
 
 def measure(where: Path | None, size: int) -> Disk:
-    """Journals in a new folder in `where`, or in the temporary one."""
+    """Measure with journals in a new folder in `where`, or in the temporary folder."""
     with tempfile.TemporaryDirectory(dir=where) as folder:
         path = Path(folder)
         bulk_load = prepare(path, size)
@@ -46,7 +46,7 @@ def measure(where: Path | None, size: int) -> Disk:
 
 
 def prepare(folder: Path, size: int, tbox: Path = HOUSEHOLD_TTL) -> Cost:
-    """A journal of `size` entities in `folder`, as a node leaves it that was stopped; its bulk load."""
+    """Write a journal of `size` entities to `folder` like a stopped node; return the bulk load time."""
     seed(folder, tbox, None)
     journal = Journal(folder / FILENAME)
     semantic_map = SemanticMap(journal)

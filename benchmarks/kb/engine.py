@@ -1,4 +1,4 @@
-"""The reasoner alone: single changes to maps of several sizes, memory, a crowded room; owlrl beside it."""
+"""The reasoner alone: single changes at several sizes, memory, a crowded room; compared with owlrl."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ import rdflib
 from benchmarks.kb.made import Figures, each, entities, pose, tbox, timed
 from semmap.nodes.kb_node.documents import ontology_files
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Term, Triple
 
@@ -29,7 +29,7 @@ _OF_CLASSES = 16
 
 
 class Engine(NamedTuple):
-    """One size. Memory is resident: what the map added to the process, and the whole process, an entity."""
+    """Figures of one size. Memory is resident memory per entity: of the map, and of the whole process."""
 
     entities: int
     load_s: float
@@ -42,7 +42,7 @@ class Engine(NamedTuple):
 
 
 def measure(size: int, repeat: int) -> Engine:
-    """A map of `size` entities, and `repeat` single changes of each sort. Run it in a process of its own."""
+    """Measure `repeat` changes of each sort on a map of `size` entities. Run it in a separate process."""
     random_ = random.Random(size)
     reasoner = Reasoner(tbox())
     gc.collect()
@@ -68,10 +68,10 @@ def measure(size: int, repeat: int) -> Engine:
 
 
 def adds(size: int, repeat: int, *, top: bool = False, ontology: Path | None = None) -> Figures:
-    """Single adds to a map of `size` entities; run it in a process of its own.
+    """Measure single adds to a map of `size` entities. Run it in a separate process.
 
-    Of the household, if wanted with a `top` property declared; or with an `ontology` over DUL, and of its
-    artefacts.
+    The entities are household objects, optionally with a `top` property in the TBox, or artefacts of an
+    `ontology` based on DUL.
     """
     random_, prefixes = random.Random(size), count()
     if ontology is None:
@@ -94,7 +94,7 @@ def _artefacts(
     wanted: int, random_: random.Random, classes: Sequence[Term], prefix: str
 ) -> Iterator[list[Triple]]:
     for i in range(wanted):
-        yield stars.star(
+        yield entity_triples.describe(
             f"{prefix}{i}",
             classes[i % len(classes)],
             pose=pose(random_),
@@ -105,7 +105,7 @@ def _artefacts(
 
 
 def room(repeat: int) -> tuple[Figures, Figures]:
-    """A kitchen with 10 000 parts: add one, remove it."""
+    """Measure adding and removing one of 10 000 parts of a kitchen."""
     reasoner = Reasoner(tbox())
     kitchen = v.entity_iri("kitchen")
     reasoner.apply(insert=[(kitchen, v.RDF_TYPE, v.dm("Kitchen"))])
@@ -120,7 +120,7 @@ def room(repeat: int) -> tuple[Figures, Figures]:
 
 
 def against_owlrl(size: int, repeat: int) -> Figures:
-    """owlrl: the closure of a map of `size` entities and one more, and its list of contradictions."""
+    """Measure owlrl's closure of a map of `size` entities and one more, and its list of contradictions."""
     random_ = random.Random(size)
     stars_ = list(entities(size + repeat, random_))
     known = [*tbox(), *(t for star in stars_[:size] for t in star)]
@@ -134,15 +134,15 @@ def _graph(triples: list[Triple]) -> rdflib.Graph:
 
 
 def _position(star: list[Triple], random_: random.Random) -> tuple[list[Triple], list[Triple]]:
-    """What goes and what comes when the entity of a star moves."""
+    """Return the triples to retract and to insert when an entity moves."""
     coordinates = next(o for _, p, o in star if p == v.HAS_POSITION)
     old = [t for t in star if t[0] == coordinates and t[1] in v.COORDINATE_XYZ]
-    new = stars.position(star[0][0], coordinates, pose(random_))
+    new = entity_triples.position(star[0][0], coordinates, pose(random_))
     return old, [t for t in new if t[1] in v.COORDINATE_XYZ]
 
 
 def _kitchen(star: list[Triple]) -> list[Triple]:
-    """An entity that is a kitchen besides."""
+    """Return an entity that is also a kitchen."""
     return [*star, (star[0][0], v.RDF_TYPE, v.dm("Kitchen"))]
 
 

@@ -1,4 +1,4 @@
-"""The least that a command over Zenoh could take: the same chain of processes, and nothing of ours in it.
+"""The lower bound for a command over Zenoh: the same chain of processes without our code.
 
 A client asks one process, which asks another, which writes as many pages as a commit takes and waits for the
 disk; both replies come back. Questions, replies and pages have the sizes of those of an `add` or a `move`.
@@ -24,12 +24,12 @@ from semmap.nodes import bus
 from semmap.nodes.extern.testing import free_endpoint
 
 _PAGE_BYTES = 4096 + 24
-"""A page in SQLite's log, with its head."""
+"""The size of a page in SQLite's log, with its header."""
 _LOG_PAGES = 1000
 
 
 class Sizes(NamedTuple):
-    """Bytes, as measured; the pages are of the log."""
+    """Measured sizes [bytes]; pages are those of the log."""
 
     command: int
     transaction: int
@@ -39,7 +39,7 @@ class Sizes(NamedTuple):
 
 
 class Found(NamedTuple):
-    """How long each took, and the CPU time of one in all three processes [ms]."""
+    """Durations, and the CPU time per request in all three processes [ms]."""
 
     took_ms: list[float]
     cpu_ms: float
@@ -50,15 +50,15 @@ _RELAYED, _WRITTEN = "floor/relayed", "floor/written"
 
 
 def asked(session: zenoh.Session, key: str, size: int) -> bytes:
-    """The reply to a question of so many bytes, as a client waits for it."""
+    """Send a request of the given size and wait for the reply, like a client."""
     for reply in session.get(key, payload=bytes(size), consolidation=zenoh.ConsolidationMode.NONE):
         if reply.ok is not None:
             return reply.ok.payload.to_bytes()
-    raise RuntimeError(f"nobody answers on {key}")
+    raise RuntimeError(f"no reply on {key}")
 
 
 def relay(where: str, beyond: str) -> None:
-    """What stands where the coordinator does, until stdin ends."""
+    """Run the process in the place of the coordinator, until stdin is closed."""
     with bus.open_session(bus.Network(connect=(beyond,), listen=(where,), mode="peer")) as session:
 
         def on_query(query: zenoh.Query) -> None:
@@ -72,7 +72,7 @@ def relay(where: str, beyond: str) -> None:
 
 
 def write(where: str, folder: str) -> None:
-    """What stands where the knowledge base does, until stdin ends."""
+    """Run the process in the place of the knowledge base, until stdin is closed."""
     path = Path(folder) / "log"
     path.write_bytes(bytes(_LOG_PAGES * _PAGE_BYTES))
     log, at = os.open(path, os.O_RDWR), 0
@@ -104,7 +104,7 @@ def _until_told() -> None:
 
 @contextmanager
 def chain(folder: str) -> Iterator[Callable[[str, int], Found]]:
-    """`do(word, count)` asks processes that stand in a row, this one the first; a file is in `folder`."""
+    """Yield `do(word, count)`, which queries the chain of processes; their file is in `folder`."""
     first, last = free_endpoint(), free_endpoint()
     with ExitStack() as stack:
         processes = [
@@ -129,7 +129,7 @@ def chain(folder: str) -> Iterator[Callable[[str, int], Found]]:
 
 @contextmanager
 def _process(*words: str) -> Iterator[subprocess.Popen[str]]:
-    """This file as another process, when it is ready; its stdin ends with the block."""
+    """Start this file as another process and wait until it is ready; its stdin is closed after the block."""
     command = [sys.executable, "-P", __file__, *words]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
@@ -148,7 +148,7 @@ def _cpu_s(processes: Sequence[psutil.Process]) -> float:
 
 
 def main() -> None:
-    """Be one of the processes."""
+    """Run one of the processes."""
     bus.set_reader_threads()
     match sys.argv[1:]:
         case ["relay", where, beyond]:

@@ -1,4 +1,4 @@
-"""Another version and this one in turn: on a machine with others a gain is seen side by side only."""
+"""Measures another version and this one in turn: on a shared machine, gains show only side by side."""
 
 from __future__ import annotations
 
@@ -21,32 +21,32 @@ SUSTAINED = "sustained"
 _HERE = Path(__file__).parents[2]
 _ROUNDS = 6
 _SHORT_ROUNDS = 30
-"""Over Zenoh: what else the machine does changes from second to second."""
+"""Over Zenoh, where other load changes from second to second."""
 
 
 class Pair(NamedTuple):
-    """The medians of a figure: before, and now."""
+    """The medians of a figure for both versions."""
 
     before: float
     now: float
 
     @property
     def ratio(self) -> float:
-        """Now, in terms of before."""
+        """The ratio of this version to the previous one."""
         return self.now / self.before
 
 
 class Sides:
-    """The processes of both versions, asked in turn.
+    """The processes of both versions, queried in turn.
 
-    Who is asked first changes from round to round: who was asked last has its caches filled.
+    The order alternates, because the last queried process has warm caches.
     """
 
     def __init__(self, sides: Sequence[subprocess.Popen[str]]) -> None:
         self._sides = sides
 
     def ask(self, word: str, count: int, round_: int = 0) -> tuple[Any, Any]:
-        """What the version before and this one answer."""
+        """Return the replies of the previous version and of this one."""
         answers: dict[int, Any] = {}
         for i in (round_ % 2, 1 - round_ % 2):
             side = self._sides[i]
@@ -58,7 +58,7 @@ class Sides:
 
 
 def core(before: Path, size: int, count: int) -> dict[str, Pair]:
-    """The engine alone; medians of the rounds' medians [ms]."""
+    """Measure the engine alone; medians of the rounds' medians [ms]."""
     with _sides(before, ["core", str(size)], ["core", str(size)]) as sides:
         sides.ask("warm", count // 5)
         rounds = [sides.ask(f"n{i}_", count, i) for i in range(_ROUNDS)]
@@ -66,25 +66,25 @@ def core(before: Path, size: int, count: int) -> dict[str, Pair]:
 
 
 class Least(NamedTuple):
-    """The median of what a chain of bare processes takes, and what the processors spend on it [ms]."""
+    """The median duration of a chain of bare processes, and its CPU time [ms]."""
 
     took_ms: float
     cpu_ms: float
 
 
 class Wired(NamedTuple):
-    """Of commands by their names: how long one takes, and what the processors spend on it [ms]."""
+    """The duration and CPU time of commands by name [ms]."""
 
     took: dict[str, Pair]
-    """Medians [ms]; of `sustained` the moves a second."""
+    """Medians [ms]; for `sustained`, moves per second."""
     floor: dict[str, Least]
-    """Of some, the least that this machine and its libraries would take (`floor.py`)."""
+    """The lower bounds on this machine for some commands (`floor.py`)."""
     cpu: dict[str, Pair]
-    """Means, in all processes together, the client's too [ms]: a busy machine disturbs it less."""
+    """Mean CPU times in all processes including the client [ms], which depend less on other load."""
 
 
 def wire(before: Path, folder: Path, size: int, count: int, tbox: Path | None = None) -> Wired:
-    """Two whole systems at once, one client each; with `tbox` this version's has that one."""
+    """Measure two whole systems with one client each; `tbox` replaces the TBox of this version."""
     words = [["wire", str(folder / side), str(size)] for side in ("before", "now")]
     words[1] += [] if tbox is None else [str(tbox)]
     took: dict[str, tuple[list[float], list[float]]] = {what: ([], []) for what in WIRE}
@@ -114,7 +114,7 @@ def wire(before: Path, folder: Path, size: int, count: int, tbox: Path | None = 
 
 
 def of_university(before: Path, triples: int, turns: int) -> Pair:
-    """CPU time from nothing to all that follows of university data [s]."""
+    """Measure the CPU time for all inferences of university data [s]."""
     words = ["university", str(triples), str(Path(university.__file__))]
     rounds = []
     for _ in range(turns):
@@ -134,7 +134,7 @@ def _pair(rounds: Sequence[tuple[float, float]]) -> Pair:
 
 @contextmanager
 def _sides(before: Path, *words: Sequence[str]) -> Iterator[Sides]:
-    """A process of each version, when both are ready."""
+    """Start a process of each version and wait until both are ready."""
     with ExitStack() as stack:
         sides = []
         for root, said in zip((before.resolve(), _HERE), words, strict=True):

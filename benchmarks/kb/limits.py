@@ -1,6 +1,6 @@
-"""What no load of a large file can do without, each by itself: reading it, messages, compressing, the disk.
+"""The indispensable steps of loading a large file, each measured alone: parsing, messages, compression, disk.
 
-It is measured in the same run, in a process that does nothing else, by the fastest libraries that there are.
+They are measured in the same run, in a separate process, with the fastest libraries.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import pyoxigraph
 from benchmarks.kb import big_files
 from benchmarks.kb.made import timed
 from semmap.nodes.kb_node.storage.encoding import body_encoding
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import codec, scene_files
 from semmap.schemas.commits import NewEntity, Snapshot, Transaction
@@ -26,28 +26,28 @@ from semmap.schemas.entities import Entity, Provenance
 from semmap.schemas.explanations import Triple
 
 _AT_ONCE = 5000
-"""Entities, and triples, in one message."""
+"""Entities and triples per message."""
 
 T = TypeVar("T")
 
 
 class Limits(NamedTuple):
-    """CPU times, in seconds, but for the disk's."""
+    """CPU times [s], except for the disk's."""
 
     turtle_s: float
-    """Oxigraph reads the Turtle and makes one object of Python's a triple, which is dropped."""
+    """Oxigraph parses the Turtle and creates one Python object per triple, which is discarded."""
     json_s: float | None
-    """msgspec reads the scene into our messages; None where there is none."""
+    """msgspec parses the scene into our messages; None without a scene."""
     messages_s: float
-    """The new entities go to the knowledge base and come back as entities: written and read once each way."""
+    """The new entities are encoded and decoded once for the request and once for the reply."""
     compress_s: float
-    """zlib compresses the triples as the journal has them."""
+    """zlib compresses the triples in the journal's encoding."""
     disk_s: float
-    """By the clock: what was compressed is written to a new file, and waited for."""
+    """Wall time for writing the compressed data to a new file and syncing it."""
 
 
 def measure(folder: Path, size: int, turtle: Path, scene: Path | None) -> Limits:
-    """The limits of loading these files of `size` entities; `folder` is on the disk that is measured."""
+    """Measure the limits for these files of `size` entities; `folder` is on the measured disk."""
     turtle_s = _cpu_s(lambda: deque(pyoxigraph.parse(path=turtle, format=pyoxigraph.RdfFormat.TURTLE), 0))
     json_s = None if scene is None else _cpu_s(lambda: scene_files.read(scene.read_bytes(), scene.name))
     messages_s = 0.0
@@ -84,7 +84,7 @@ def _parts(items: Iterator[T]) -> Iterator[tuple[T, ...]]:
 
 
 def _star(thing: big_files.Thing) -> list[Triple]:
-    return stars.star(
+    return entity_triples.describe(
         thing.name, v.dm(thing.class_name), pose=thing.pose, size_m=thing.size_m, preferred=thing.ref
     )
 

@@ -1,4 +1,4 @@
-"""Made-up entities of the usual shape over the household TBox: a star of 20 triples, coordinates its own."""
+"""Generated household entities of the usual shape: 20 triples each, with individual coordinates."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from time import perf_counter, process_time, thread_time
 from typing import Any, NamedTuple
 
 from semmap.nodes.kb_node.documents import rdf
-from semmap.ontology import HOUSEHOLD_TTL, stars
+from semmap.ontology import HOUSEHOLD_TTL, entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import Pose
 from semmap.schemas.explanations import Triple
@@ -26,14 +26,14 @@ def tbox() -> list[Triple]:
 
 
 def pose(random_: random.Random) -> Pose:
-    """Somewhere within 1.5 km, 3 m from any other place: things of up to 2 m do not stand in one another."""
+    """Return a position within 1.5 km, 3 m from all others, so that things of up to 2 m do not overlap."""
     x, y = (_APART_M * random_.randrange(-500, 500) + _number(random_, 0, 0.9) for _ in range(2))
     return Pose(position_m=(round(x, 4), round(y, 4), 0.0))
 
 
 def star(name: str, class_name: str, random_: random.Random) -> list[Triple]:
-    """One entity with position, size, a preferred and an alternative reference."""
-    return stars.star(
+    """Return the triples of one entity with position, size, a label and an alias."""
+    return entity_triples.describe(
         name,
         v.dm(class_name),
         pose=pose(random_),
@@ -44,19 +44,19 @@ def star(name: str, class_name: str, random_: random.Random) -> list[Triple]:
 
 
 def entities(count: int, random_: random.Random, prefix: str = "e") -> Iterator[list[Triple]]:
-    """So many stars; the i-th is of class `CLASSES[i % 8]` and named `<prefix><i>`."""
+    """Yield the triples of entities; the i-th is of class `CLASSES[i % 8]` and named `<prefix><i>`."""
     return (star(f"{prefix}{i}", CLASSES[i % len(CLASSES)], random_) for i in range(count))
 
 
 def timed(act: Callable[[], object]) -> float:
-    """How long it takes [s]."""
+    """Return the duration [s]."""
     started = perf_counter()
     act()
     return perf_counter() - started
 
 
 class Cost(NamedTuple):
-    """What one long act took: by the clock on the wall, and of this process's CPU time, in seconds."""
+    """The wall time and this process's CPU time of one long action [s]."""
 
     wall_s: float
     cpu_s: float
@@ -70,15 +70,15 @@ def cost(act: Callable[[], object]) -> Cost:
 
 
 def percentiles(times_s: list[float]) -> Figures:
-    """Median and 99th percentile [ms]; of a single time, that time."""
+    """Return median and 99th percentile [ms]."""
     p99 = quantiles(times_s, n=100, method="inclusive")[98] if len(times_s) > 1 else times_s[0]
     return {"p50_ms": median(times_s) * 1e3, "p99_ms": p99 * 1e3}
 
 
 def each(items: Iterable[Any], act: Callable[[Any], object]) -> Figures:
-    """`percentiles` of `act(item)`: as the clock on the wall has it, and of this thread's own CPU time.
+    """Return `percentiles` of the wall time and of this thread's CPU time of `act(item)`.
 
-    On a machine that is busy with other things the two differ, most of all in the 99th percentile.
+    On a busy machine the two differ, mainly in the 99th percentile.
     """
     wall_s, cpu_s = [], []
     for item in items:

@@ -1,10 +1,10 @@
-"""One version's side of a comparison: it does what stdin says, and prints how long that took, in JSON.
+"""One version's side of a comparison: executes commands from stdin and prints the durations in JSON.
 
     PYTHONPATH=<its root> python -P <this file> core 10000
     PYTHONPATH=<its root> python -P <this file> wire FOLDER 10000 [TBOX]
     PYTHONPATH=<its root> python -P <this file> university 120000 <benchmarks/kb/university.py>
 
-It uses only what both versions have.
+It uses only functions that both versions have.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _UP = ("--no-record", "--world", "empty", "--no-sim")
 
 
 def core(size: int) -> Iterator[Callable[[str, int], Any]]:
-    """A map in the engine alone; each round is of adds, moves, refusals and removals: medians in ms."""
+    """Measure the engine alone; each round has adds, moves, rejections and removals: medians in ms."""
     random_ = random.Random(size)
     reasoner = Reasoner(made.tbox())
     for first in range(0, size, 1000):
@@ -53,9 +53,9 @@ def core(size: int) -> Iterator[Callable[[str, int], Any]]:
 
 
 def system(folder: Path, size: int, tbox: Path | None) -> Iterator[Callable[[str, int], Any]]:
-    """A whole system of so many entities, with one client: each time in ms, or moves a second.
+    """Measure a whole system with one client: each duration in ms, or moves per second.
 
-    With the time, in ms a command, that the processors spent on that in all processes, this one's too.
+    Also measures the CPU time per command in all processes including this one [ms].
     """
     disk.prepare(folder, size, *([tbox] if tbox else []))
     random_, live = random.Random(), list[str]()
@@ -100,7 +100,7 @@ def _timed(client: Client, word: str, random_: random.Random, size: int, live: l
 
 
 def university(triples: int, module: Path) -> Iterator[Callable[[str, int], Any]]:
-    """University data by the generator in `module`, once: its figures."""
+    """Measure university data from the generator in `module` once."""
     spec = importlib.util.spec_from_file_location("university", module)
     assert spec is not None
     assert spec.loader is not None
@@ -110,7 +110,7 @@ def university(triples: int, module: Path) -> Iterator[Callable[[str, int], Any]
 
 
 def main() -> None:
-    """Say `ready`, then answer each line `WORD COUNT`."""
+    """Print `ready`, then answer each line `WORD COUNT`."""
     what, *words = sys.argv[1:]
     match what:
         case "core":

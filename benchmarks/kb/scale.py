@@ -1,4 +1,4 @@
-"""Very many entities in one system: loading, memory, starting, the first and later queries, lists, adds."""
+"""Very many entities in one system: loading, memory, start, first and later queries, lists, adds."""
 
 from __future__ import annotations
 
@@ -31,45 +31,45 @@ _LARGE = 100_000
 _QUIET_S = 10.0
 _CHECKED_UP_TO = 100_000
 _JSON_UP_TO = 100_000
+"""The maximum number of entities for JSON scenes; larger ones are measured as Turtle only."""
 _IDLE_S = 0.2
-"""CPU time within a second of one that has nothing to do but beat."""
-"""Entities: a scene of more is measured as Turtle only."""
+"""CPU time per second of an idle node that only sends heartbeats."""
 
 
 class Scale(NamedTuple):
-    """A map of so many entities of 14 triples; times in seconds, memory in MB of all processes together."""
+    """Figures of a map with 14 triples per entity: times in seconds, memory of all processes in MB."""
 
     entities: int
     load_turtle_s: float
     load_json_s: float | None
     memory_loaded_mb: float
     cpu_of_load_s: dict[str, float]
-    """CPU time of the load from Turtle in each node: on a busy machine it tells more than the clock."""
+    """CPU time of loading Turtle in each node, which depends less on other load than wall time."""
     first_sparql_after_load_s: float
     memory_queried_mb: float
-    """The store of SPARQL included."""
+    """Including the SPARQL store."""
     memory_of_nodes_mb: dict[str, float]
     start_s: float
-    """From `semmap up` until `get` answers."""
+    """From `semmap up` until the reply to `get`."""
     cpu_of_start_s: dict[str, float]
     first_sparql_s: float
-    """The first one after that start: a count."""
+    """The first query after that start: a count."""
     sparql_s: float
     sparql_by_command_line_s: float
     list_class_s: float
-    """One in a hundred of the entities, by the client."""
+    """Listing one percent of the entities, by the client."""
     early_add_ms: float
-    """While the knowledge base still works out, between other things, where everything is."""
+    """While the knowledge base still computes the spatial relations."""
     add_ms: float
     update_ms: float
     check_s: float | None
-    """`check` from nothing, by the client."""
+    """`check` without a cache, by the client."""
     limits: limits.Limits
-    """Of the loads, in the same run."""
+    """The limits of the loads, in the same run."""
 
 
 def measure(folder: Path, size: int) -> Scale:
-    """A system of its own in `folder`, filled from a file, stopped and started again."""
+    """Measure a system in `folder` that is filled from a file, stopped and started again."""
     turtle, scene = folder / "things.ttl", folder / "things.json"
     load_json_s = None
     if size <= _JSON_UP_TO:
@@ -134,7 +134,7 @@ def measure(folder: Path, size: int) -> Scale:
 
 @contextmanager
 def _running(data: Path) -> Iterator[tuple[Client, str]]:
-    """A client of a system on `data`, and its endpoint. The map that is there already wins."""
+    """Start a system on `data`; yield a client and its endpoint. An existing map is used."""
     endpoint = free_endpoint()
     with own_system(data, *_UP, endpoint=endpoint) as client:
         yield client, endpoint
@@ -159,7 +159,7 @@ def _count_by_command_line(endpoint: str, count: int) -> None:
 
 
 def _wait_until_quiet(client: Client) -> None:
-    """Return when the knowledge base has nothing left to do after its start."""
+    """Wait until the knowledge base is idle after its start."""
     before_s = math.inf
     while (now_s := _cpu_s(client)["kb_node"]) - before_s > _IDLE_S or before_s == math.inf:
         before_s = now_s
@@ -175,12 +175,12 @@ def _place(random_: random.Random) -> tuple[float, float, float]:
 
 
 def _cpu_s(client: Client) -> dict[str, float]:
-    """CPU time that each node has used since it was started, its children left out."""
+    """Return the CPU time of each node since its start, without its children."""
     return {node.node: sum(psutil.Process(node.pid).cpu_times()[:2]) for node in _nodes(client)}
 
 
 def _memory_mb(client: Client) -> dict[str, float]:
-    """Proportional set size of each node with its children; pages that they share count once."""
+    """Return the proportional set size of each node with its children; shared pages count once."""
     found: dict[str, float] = {}
     for node in _nodes(client):
         process = psutil.Process(node.pid)
@@ -190,7 +190,7 @@ def _memory_mb(client: Client) -> dict[str, float]:
 
 
 def _pss_mb(process: psutil.Process) -> float:
-    """Proportional set size; 0 of a process that has ended meanwhile."""
+    """Return the proportional set size, or 0 if the process has ended."""
     try:
         return float(process.memory_full_info().pss / 1e6)
     except psutil.NoSuchProcess:

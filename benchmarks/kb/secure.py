@@ -1,7 +1,7 @@
-"""`python -m benchmarks.kb.secure`: what certificates, and the way through the router, cost a client.
+"""`python -m benchmarks.kb.secure`: the cost of certificates and of the router for a client.
 
-Two systems side by side, one of them with `--secure`; this process is the one client of each, and they take
-turns, so that a busy machine disturbs both alike.
+Runs two systems, one with `--secure`, with this process as the only client of each. They are measured in
+turn, so that other load affects both equally.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from semmap.nodes.identity import authority
 
 _QUIET = ("--no-sim", "--no-record", "--world", "empty")
 _TURN = 20
-"""Commands of one sort in a row, before the other system has its turn."""
+"""The number of commands in a row before switching to the other system."""
 
 
 def measure(turns: int) -> list[Row]:
-    """Medians of each sort of command, and the ratio of an add."""
+    """Print the medians of each command, and the ratio for an add."""
     random_ = random.Random(0)
 
     def add(client: Client, i: int) -> None:

@@ -1,4 +1,4 @@
-"""What was measured beside what is to be reached."""
+"""The table of measurements and targets."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Bounds = tuple[float | None, float | None]
 
 
 def of_engine(engines: Sequence[Engine]) -> list[Row]:
-    """Single changes, at every size, and how they grow."""
+    """Single changes at every size, and their growth."""
     rows: list[Row] = []
     for e in engines:
         rows += _pair(f"core: add and check, {e.entities}", e.add, (0.1, 0.5), (0.03, 0.1))
@@ -33,7 +33,7 @@ def of_engine(engines: Sequence[Engine]) -> list[Row]:
 
 
 def of_variants(plain: Figures, top: Figures, foreign: Figures | None, size: int) -> list[Row]:
-    """Adds where the TBox is another."""
+    """Adds with other TBoxes."""
     of = f"core: add and check, {size}"
     rows = [
         Row(f"{of}, p50", plain["p50_ms"], "ms", None, 0.015),
@@ -50,11 +50,11 @@ _AGAINST: dict[str, Bounds] = {
     "reference": (0.7, None),
     "remove": (0.7, None),
 }
-"""Of what a command took before, over Zenoh."""
+"""The ratio to the previous duration of a command over Zenoh."""
 
 
 def of_core_in_turn(pairs: Mapping[str, Pair], size: int) -> list[Row]:
-    """The engine alone, against the version before."""
+    """The engine alone, compared with the previous version."""
     return [
         Row(f"core: {what}, {size}, {pair.before:.4f} ms before, {pair.now:.4f}", pair.ratio, "times", 1.0)
         for what, pair in pairs.items()
@@ -62,7 +62,7 @@ def of_core_in_turn(pairs: Mapping[str, Pair], size: int) -> list[Row]:
 
 
 def of_wire_in_turn(wired: Wired, size: int) -> list[Row]:
-    """Over Zenoh, against the version before."""
+    """Over Zenoh, compared with the previous version."""
     rows: list[Row] = []
     for what, pair in wired.took.items():
         if what == SUSTAINED:
@@ -83,7 +83,7 @@ def of_wire_in_turn(wired: Wired, size: int) -> list[Row]:
 
 
 def of_university_in_turn(pair: Pair, triples: int) -> Row:
-    """University data, against the version before."""
+    """University data, compared with the previous version."""
     said = f"university data, {triples} triples: CPU time, {pair.before:.2f} s before, {pair.now:.2f} now"
     return Row(said, pair.ratio, "times", 1.0, 0.6)
 
@@ -106,7 +106,7 @@ def of_owlrl(owlrl: Figures, engine: Engine) -> list[Row]:
 
 
 def of_university(universities: Sequence[University]) -> list[Row]:
-    """University data, from nothing to all that follows."""
+    """University data: all inferences."""
     rows: list[Row] = []
     for found in universities:
         of = f"university data, {found.triples} triples"
@@ -118,7 +118,7 @@ def of_university(universities: Sequence[University]) -> list[Row]:
 
 
 def of_reasonable(ours: University, reasonable_s: float) -> Row:
-    """How long we take for university data, in terms of `reasonable`, which is written in Rust."""
+    """The duration for university data relative to `reasonable`, which is written in Rust."""
     whole_s = ours.load_cpu_s + ours.enumerate_cpu_s
     of = f"university data, {ours.triples} triples"
     said = f"{of}: CPU time, reasonable {reasonable_s:.2f} s, ours {whole_s:.2f}"
@@ -139,7 +139,7 @@ def of_disk(disk: Disk) -> list[Row]:
 
 
 def of_wire(wire: Wire) -> list[Row]:
-    """What a client sees. With the simulator there is nothing that must be reached."""
+    """Client-side figures. There are no targets with the simulator."""
     where = f"{wire.entities} entities, simulator {'on' if wire.sim else 'off'}"
     bounds = ((None, None), (None, None)) if wire.sim else ((2.0, 10.0), (1.0, 4.0))
     rows = _pair(f"over Zenoh: add, {where}", wire.add, *bounds)
@@ -167,7 +167,7 @@ _OF_SIZE: dict[int, dict[str, Bounds]] = {
     },
     1_000_000: {"load_turtle": (150.0, 60.0), "memory_gb": (6.0, 4.0), "start": (60.0, 25.0)},
 }
-"""Reach and aim at the sizes for which there are any."""
+"""Return the targets for the sizes that have any."""
 
 
 def of_scale(found: Sequence[Scale]) -> list[Row]:

@@ -1,7 +1,7 @@
-"""University data of our own in LUBM's shape: departments, people, courses, publications; the engine alone.
+"""Generated university data like LUBM's: departments, people, courses, publications; the engine alone.
 
-The ontology has what LUBM has: class and property hierarchies, an inverse and a transitive property, domains
-and ranges, and classes defined by what their members do.
+The ontology has the constructs of LUBM: class and property hierarchies, an inverse and a transitive property,
+domains and ranges, and classes defined by what their members do.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ _DEPARTMENTS = 18
 
 
 class University(NamedTuple):
-    """One size: how long everything takes from nothing, in seconds, and what memory it adds in MB."""
+    """Figures of one size: duration of all inferences [s] and additional memory [MB]."""
 
     triples: int
     inferred: int
@@ -61,7 +61,7 @@ class University(NamedTuple):
 
 
 def measure(triples: int) -> University:
-    """Load about so many triples together with the ontology, and go through all that follows."""
+    """Load about `triples` triples with the ontology, and iterate over all inferences."""
     tbox = [(str(q.subject), str(q.predicate), str(q.object)) for q in _parsed()]
     data = list(dict.fromkeys(_data(triples)))
     gc.collect()
@@ -78,7 +78,7 @@ def measure(triples: int) -> University:
 
 
 def against_reasonable(triples: int) -> float | None:
-    """CPU time of `reasonable` for the closure of the same triples [s]; None where it is not installed."""
+    """Return `reasonable`'s CPU time for the closure of the same triples [s]; None if it is not installed."""
     if find_spec("reasonable") is None:
         return None
     import rdflib

@@ -1,4 +1,4 @@
-"""The whole system over Zenoh: `semmap up` in processes of its own, this process its one client."""
+"""The whole system over Zenoh: `semmap up` with this process as its only client."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import psutil  # type: ignore[import-untyped]
 
-from benchmarks.kb.awake import awake_cores
+from benchmarks.kb.busy_cores import awake_cores
 from benchmarks.kb.made import CLASSES, Figures, each, pose
 from semmap.nodes import bus
 from semmap.nodes.extern.client import Client
@@ -23,16 +23,16 @@ IN_FLIGHT = 32
 
 
 class Wire(NamedTuple):
-    """What a client sees. Times of single commands are with one request in flight."""
+    """Client-side figures. Single commands are measured with one request in flight."""
 
     entities: int
     sim: bool
     start_s: float
-    """From `semmap up` to a system that is ready, all processes and their imports included."""
+    """From `semmap up` until the system is ready, including the start of all processes."""
     add: Figures
     move: Figures
     awake_add: Figures
-    """The same while no core falls asleep."""
+    """The same while no core sleeps."""
     awake_move: Figures
     sustained_moves_per_s: float
     list_all: Figures
@@ -77,7 +77,7 @@ def _add(client: Client, name: str, i: int, random_: random.Random) -> None:
 
 
 def _sustained(client: Client, names: list[str], random_: random.Random) -> float:
-    """Moves a second, all durable, `IN_FLIGHT` at a time, none refused."""
+    """Return durable moves per second, with `IN_FLIGHT` at a time and none rejected."""
     answers: queue.SimpleQueue[Callable[[], Any]] = queue.SimpleQueue()
 
     def send(name: str) -> None:
@@ -98,7 +98,7 @@ def _sustained(client: Client, names: list[str], random_: random.Random) -> floa
 
 
 def _sparql(client: Client, repeat: int) -> Figures:
-    """The classes of one entity, looked up by its IRI."""
+    """Query the classes of one entity by its IRI."""
     query = f"SELECT ?class WHERE {{ <{client.get('e1').iri}> a ?class }}"
     return each(range(repeat), lambda _: client.sparql(query))
 
@@ -110,7 +110,7 @@ def _settle(client: Client) -> None:
 
 
 def _memory(client: Client) -> dict[str, float]:
-    """Resident kB of each node."""
+    """Return the resident memory of each node [kB]."""
     nodes = client.status().nodes
     return {n.node: psutil.Process(n.pid).memory_info().rss / 1024 for n in nodes}
 

@@ -1,1 +1,1 @@
-"""How well commands are understood: frames, what fills their roles, and which entities are meant."""
+"""Accuracy of command understanding: frames, roles and resolved entities."""

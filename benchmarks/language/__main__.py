@@ -48,7 +48,7 @@ def _rows(title: str, found: Scores, reach: tuple[float, ...] | None = None) -> 
 
 
 def rows(examples: list[Example], with_ablations: bool) -> list[Row]:
-    """All figures; whatever is read was not learnt from."""
+    """Return all figures, on commands outside the training set."""
     found = _rows("ten folds", scores(trials.trial(trials.folds(examples))), _REACH["folds"])
     found += _rows("a folder left out", scores(trials.trial(trials.groups(examples))), _REACH["groups"])
     found += _rows("baseline", scores(baseline.pairs(trials.folds(examples))))
@@ -62,7 +62,7 @@ def rows(examples: list[Example], with_ablations: bool) -> list[Row]:
 
 
 def _evaluate(folder: Path, predictions: Path) -> Scores:
-    """Read every command of a folder with what ships, and write what was understood."""
+    """Parse every command of a folder with the shipped taggers, and write the results."""
     pairs, _ = trials.read(corpus.read(folder), shipped())
     said = [
         {
@@ -87,15 +87,17 @@ def _evaluate(folder: Path, predictions: Path) -> Scores:
 
 
 def main() -> None:
-    """Print the table, or evaluate what ships on any folder."""
+    """Print the table, or evaluate the shipped taggers on any folder."""
     parser = argparse.ArgumentParser(description=__doc__)
     data = Path(os.environ.get("SEMMAP_DATA", "../shared/data")) / "huric"
     parser.add_argument("--data", type=Path, default=data, help="the corpus: a folder of .hrc files")
-    parser.add_argument("--ablations", action="store_true", help="also what each part earns")
-    parser.add_argument("--errors", action="store_true", help="only the commands that went wrong, grouped")
-    parser.add_argument("--evaluate", type=Path, metavar="DIR", help="read these .hrc files with what ships")
-    parser.add_argument("--predictions", type=Path, metavar="FILE", help="where to write what was understood")
-    parser.add_argument("--find", action="store_true", help="only how well things are found")
+    parser.add_argument("--ablations", action="store_true", help="also measure the contribution of each part")
+    parser.add_argument("--errors", action="store_true", help="only list the wrong commands, grouped")
+    parser.add_argument(
+        "--evaluate", type=Path, metavar="DIR", help="evaluate the shipped taggers on these .hrc files"
+    )
+    parser.add_argument("--predictions", type=Path, metavar="FILE", help="file for the predictions")
+    parser.add_argument("--find", action="store_true", help="only evaluate find")
     parser.add_argument("--json", type=Path, metavar="FILE")
     given: Any = parser.parse_args()
     if (given.evaluate is None) != (given.predictions is None):

@@ -1,4 +1,4 @@
-"""What each source of knowledge earns: the same trials without it, learning included."""
+"""Ablations: the same trials without one source of knowledge, including training."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ GROUPS: Final = {  # a feature is of a group if it mentions it, also together wi
     "kinds of things": r"kinds?=",
     "near or far in the map": r"\bnear( last)?=",
 }
-"""Groups of the features of `predicates` and `roles`, and what the names of theirs look like."""
+"""Groups of features of `predicates` and `roles`, with patterns of their names."""
 
 
 def rows(examples: list[Example]) -> Iterator[Row]:
-    """Frames, heads and whole commands by five folds and with a folder left out, without one thing each."""
+    """Yield scores of frames, heads and whole commands without one source each."""
     trials_without: dict[str, dict[str, Any]] = {
         "nothing": {},
         "patterns of ours": {"with_made": False},
@@ -55,7 +55,7 @@ def _five(examples: list[Example]) -> Iterator[trials.Split]:
 
 
 def without(pattern: str) -> Seen:
-    """What drops the features whose names match a pattern."""
+    """Return a filter for the features whose names match a pattern."""
     found = re.compile(pattern)
     return lambda features: [[f for f in word if not found.search(f)] for word in features]
 

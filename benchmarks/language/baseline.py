@@ -1,4 +1,4 @@
-"""The least that a reader should do: the most frequent frame and roles, the nearest label."""
+"""The baseline: the most frequent frame and roles, and the most similar label."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ENOUGH = 0.7  # similarity of a word to a label
 
 
 def pairs(splits: Iterator[Split]) -> Pairs:
-    """What the baseline understands, having counted in the rest."""
+    """Return the baseline's results, trained on the rest."""
     found: Pairs = []
     for learnt_from, kept in splits:
         verbs: dict[str, Counter[str]] = {}

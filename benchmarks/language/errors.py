@@ -1,4 +1,4 @@
-"""The commands that are not understood as a whole, grouped by the first thing that is wrong."""
+"""Commands that are not completely correct, grouped by the first error."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from semmap.schemas.language import SemanticFrame, Understood
 
 
 class Group(NamedTuple):
-    """Errors of one kind, and the commands that have them."""
+    """One kind of error and its commands."""
 
     title: str
     commands: tuple[str, ...]
 
 
 def groups(pairs: Pairs) -> list[Group]:
-    """Every command that is wrong in exactly one group, the largest group first."""
+    """Return each wrong command in exactly one group, the largest group first."""
     found: dict[str, list[str]] = {}
     for example, understood in pairs:
         if not is_whole(example, understood):
@@ -31,7 +31,7 @@ def groups(pairs: Pairs) -> list[Group]:
 
 
 def lines(found: list[Group]) -> Iterator[str]:
-    """A line for each group with the number of its commands, and each command under it."""
+    """Yield a line for each group with its size, followed by its commands."""
     for group in found:
         yield f"{len(group.commands):3}  {group.title}"
         yield from (f"       {command}" for command in group.commands)

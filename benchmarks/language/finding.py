@@ -1,4 +1,4 @@
-"""How well `find` finds 150 descriptions of things in a flat and 20 rooms, and how fast."""
+"""Accuracy and speed of `find` for 150 descriptions of things in a flat and 20 rooms."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from semmap.nodes.kb_node.answers.entity_search import Finding
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
-from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL, stars
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL, entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commands import Find
@@ -32,7 +32,7 @@ _ENTITIES: Final = 1000
 
 
 class Tried(NamedTuple):
-    """A description, what was found, and whether that is right."""
+    """A description, its result, and whether it is correct."""
 
     number: int
     asked: Mapping[str, Any]
@@ -41,12 +41,12 @@ class Tried(NamedTuple):
 
     @property
     def was_looked_at(self) -> bool:
-        """Whether it was read while the grammar was written: every third was; of the rest only the score."""
+        """Whether it was inspected during development, as every third was; of the rest only the score was."""
         return self.number % 3 == 0
 
 
 def tried() -> list[Tried]:
-    """All descriptions, each in its map."""
+    """Evaluate all descriptions, each in its map."""
     written = json.loads(DESCRIPTIONS.read_text("utf-8"))
     found: list[Tried] = []
     for name, room in written["maps"].items():
@@ -79,7 +79,7 @@ def _try(finding: Finding, index: int, asked: Mapping[str, Any]) -> Tried:
 
 
 def rows() -> list[Row]:
-    """The figures: all, by what was looked at, by kind, by language; and how long one takes."""
+    """Return the figures: in total, for seen and unseen ones, by kind, by language; and the duration."""
     all_ = tried()
     found = [_row("find: right of 150", all_, 0.92, 0.98)]
     found.append(
@@ -99,7 +99,7 @@ def _row(what: str, some: Iterable[Tried], reach: float | None = None, aim: floa
 
 
 def milliseconds(entities: int = _ENTITIES) -> float:
-    """The median of all the descriptions, each asked of one map of so many things, in flats of rooms [ms]."""
+    """Return the median duration of all descriptions in one map of so many things [ms]."""
     written = json.loads(DESCRIPTIONS.read_text("utf-8"))
     rooms = [room for room in written["maps"].values() if not isinstance(room, str)]
     asked = [d for d in written["descriptions"] if d["map"] != "flat" and not isinstance(d["viewer"], str)]
@@ -117,7 +117,7 @@ def milliseconds(entities: int = _ENTITIES) -> float:
 
 
 def _floors(rooms: list[list[Mapping[str, Any]]], entities: int) -> Iterator[Triple]:
-    """The rooms side by side, 14 m apart, again and again until there are so many entities."""
+    """Return the rooms side by side, 14 m apart, repeated until there are enough entities."""
     many = ((number, room) for number, room in enumerate(rooms * entities))
     everything = ((number, entity) for number, room in many for entity in room)
     for number, entity in islice(everything, entities):
@@ -140,10 +140,10 @@ def _size(said: Sequence[float]) -> Size:
 def _star(
     entity: Mapping[str, Any], suffix: str = "", by: tuple[float, float] = (0.0, 0.0)
 ) -> Iterator[Triple]:
-    """The triples of an entity of a room. suffix: of its name; by: where the room is [m]."""
+    """Yield the triples of an entity of a room; `suffix` of its name, `by` is the room's offset [m]."""
     x, y, z = entity["at"]
     name = entity["name"] + suffix
-    yield from stars.star(
+    yield from entity_triples.describe(
         name, v.dm(entity["class"]),
         pose=Pose(
             position_m=(float(x) + by[0], float(y) + by[1], float(z)),
@@ -164,7 +164,7 @@ def _star(
 
 @functools.cache
 def _closure() -> tuple[str, bytes]:
-    """Name and content of the file that keeps what follows from the TBox."""
+    """Return name and content of the file with the TBox's inferences."""
     with TemporaryDirectory() as folder:
         path = Path(folder)
         journal = Journal.create(path / FILENAME, HOUSEHOLD_TTL.read_bytes())

@@ -1,4 +1,4 @@
-"""What was understood of commands against what annotators saw in them."""
+"""Scores of parsed commands against the annotations."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from semmap.schemas.language import SemanticFrame, Understood
 
 
 def f1(right: int, one: int, other: int) -> float:
-    """The harmonic mean of precision and recall, 0 where there is nothing."""
+    """Return the harmonic mean of precision and recall, or 0."""
     return 2 * right / (one + other) if one + other else 0.0
 
 
@@ -80,12 +80,12 @@ def _count(n: Counter[str], example: Example, understood: Understood) -> None:
 
 
 def is_whole(example: Example, understood: Understood) -> bool:
-    """Whether a command was understood without any error."""
+    """Return whether a command was parsed without any error."""
     return scores([(example, understood)]).whole == 1.0
 
 
 def matched(seen: Iterable[Filled], said: Iterable[SemanticFrame]) -> list[tuple[Filled, SemanticFrame]]:
-    """The annotated frames that were found, each with what was understood of it."""
+    """Return the annotated frames that were found, each with the prediction."""
     left = list(said)
     pairs = []
     for frame in seen:

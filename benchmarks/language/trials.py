@@ -1,4 +1,4 @@
-"""Learning from a part of the corpus and reading the rest."""
+"""Cross-validation on the corpus."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ Split = tuple[list[Example], list[Example]]  # to learn from, to be read
 
 
 def folds(examples: Sequence[Example], number: int = 10, seed: int = 1) -> Iterator[Split]:
-    """Every example is read once by what learnt from the other nine tenths."""
+    """Return ten folds; every example is tested once by taggers trained on the other nine tenths."""
     shuffled = random.Random(seed).sample(list(examples), len(examples))
     for k in range(number):
         yield [e for i, e in enumerate(shuffled) if i % number != k], shuffled[k::number]
 
 
 def groups(examples: Sequence[Example]) -> Iterator[Split]:
-    """Each folder is read by what learnt from the others."""
+    """Return one fold per folder, tested by taggers trained on the others."""
     for group in sorted({example.group for example in examples}):
         yield [e for e in examples if e.group != group], [e for e in examples if e.group == group]
 
@@ -50,7 +50,7 @@ def trial(
     seen: Seen = lambda features: features,
     known: Vocabulary | None = None,
 ) -> Pairs:
-    """What is understood of all that is read, by what learnt from the rest.
+    """Return the predictions for all test examples by taggers trained on the rest.
 
     changed, seen: what is done to every example, and to the features of its words, also while learning.
     known: what things are called, the household TBox's classes and our synonyms unless said otherwise.
@@ -69,7 +69,7 @@ def trial(
 
 
 def read(examples: Sequence[Example], interpreter: Interpreter) -> tuple[Pairs, float]:
-    """What is understood, from words and map alone, and milliseconds a sentence, p50, the map being known."""
+    """Return the predictions from words and map alone, and the median duration per sentence [ms]."""
     pairs: Pairs = []
     times = []
     for example in examples:
@@ -82,13 +82,13 @@ def read(examples: Sequence[Example], interpreter: Interpreter) -> tuple[Pairs, 
 
 
 def scene_of(example: Example, seed: int = 0, known: Vocabulary | None = None) -> Scene:
-    """The map of an example, its entities in no order: that of their names tells which are spoken of."""
+    """Return the map of an example in random order, as the order of names reveals the mentioned entities."""
     things: list[Thing] = random.Random(f"{seed} {example.name}").sample(example.things, len(example.things))
     return scene(things, known or household(), lexicon.load())
 
 
 def italian(corpus: Sequence[Example]) -> Pairs:
-    """What ships of the Italian commands of `italian.json`, each in the map of the corpus's command."""
+    """Return the shipped taggers' predictions for the Italian commands of `italian.json`."""
     by_name = {example.name: example for example in corpus}
     text = (resources.files(__package__) / "italian.json").read_text("utf-8")
     pairs: Pairs = []

@@ -1,1 +1,1 @@
-"""How well and how fast perception sees: `python -m benchmarks.perception`."""
+"""Accuracy and speed of perception: `python -m benchmarks.perception`."""

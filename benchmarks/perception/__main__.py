@@ -8,7 +8,7 @@ import os
 import platform
 from pathlib import Path
 
-from benchmarks.perception import fitted, foreign, learnt, live, recorded, simulated, tracking, unknown
+from benchmarks.perception import exemplars, fitted, foreign, live, recorded, simulated, tracking, unknown
 from benchmarks.perception.table import Row, lines
 from semmap.nodes.perception_node.recognition.recognition_model import shipped
 
@@ -16,18 +16,20 @@ PARTS = ("recorded", "simulated", "painted", "unknown", "foreign", "fitted", "le
 
 
 def arguments() -> argparse.Namespace:
-    """What the command line says."""
+    """Parse the command line."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.perception")
-    parser.add_argument("--parts", default=",".join(PARTS), help=f"of: {','.join(PARTS)}")
+    parser.add_argument("--parts", default=",".join(PARTS), help=f"parts to measure: {','.join(PARTS)}")
     parser.add_argument("--scenes", type=int, default=50, help="simulated rooms of each sort")
     parser.add_argument(
         "--recorded", type=Path, default=recorded.data_folder(), help="real scenes with labels"
     )
-    parser.add_argument("--piles", type=int, default=300, help="rendered scenes to learn segmentation from")
-    parser.add_argument("--samples", type=Path, help="of semmap.nodes.training.recognition --parts")
+    parser.add_argument("--piles", type=int, default=300, help="rendered scenes to train segmentation on")
+    parser.add_argument(
+        "--samples", type=Path, help="the folder of semmap.nodes.training.recognition --parts"
+    )
     parser.add_argument("--things", type=Path, default=recorded.data_folder().with_name("foreign"))
-    parser.add_argument("--training-scenes", type=int, default=400, help="where there are no samples")
-    parser.add_argument("--moves", type=int, default=100, help="of things that keep their names")
+    parser.add_argument("--training-scenes", type=int, default=400, help="scenes to train on without samples")
+    parser.add_argument("--moves", type=int, default=100, help="moves for tracking")
     parser.add_argument("--json", type=Path, metavar="FILE", dest="json_file")
     return parser.parse_args()
 
@@ -48,7 +50,7 @@ def main() -> None:
     if "fitted" in parts:
         rows += fitted.measure(words.scenes, shipped())
     if "learnt" in parts:
-        rows += learnt.measure(words.things, words.scenes // 2, shipped())
+        rows += exemplars.measure(words.things, words.scenes // 2, shipped())
     if "unknown" in parts:
         rows += unknown.measure(words.scenes, words.samples, words.training_scenes)
     if "tracking" in parts:

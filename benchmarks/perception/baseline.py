@@ -1,4 +1,4 @@
-"""What ours is compared with: planes and DBSCAN for the segments, chance for the class."""
+"""Baselines: planes and DBSCAN for segmentation, chance for classification."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _LEAST = 40
 
 
 def clustered(clouds: Sequence[Cloud], learnt: RecognitionModel) -> FrameResult:
-    """Our pipeline, but with what is off the planes grouped by DBSCAN."""
+    """Run our pipeline with DBSCAN for the points outside the planes."""
     return observe_views([_dbscan(segment_cloud(cloud)) for cloud in clouds], learnt)
 
 
@@ -42,7 +42,7 @@ def _dbscan(sight: SegmentedView) -> SegmentedView:
 
 
 def guessed(looks: Sequence[FrameResult], learnt: RecognitionModel) -> Iterator[FrameResult]:
-    """The same observations, but each of a leaf drawn by lot."""
+    """Return the observations with random leaf classes."""
     rng = np.random.default_rng(0)
     leaves: NDArray[np.str_] = np.array([name for name in learnt.classes if name not in (UNKNOWN, CLUTTER)])
     for look in looks:

@@ -1,4 +1,4 @@
-"""Models fitted to what is seen in simulated rooms: how far their orientation is off, whose name is lost."""
+"""Model fitting in simulated rooms: orientation errors and lost names."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ from semmap.schemas.entities import Pose
 from semmap.schemas.perception import Observation
 
 _SEEDS = {False: 20273, True: 20274}
-"""Rooms in which nothing was tuned."""
+"""Rooms that were not used for tuning."""
 
 
 @dataclass
 class Fitted:
-    """Sums over rooms. `directed` things were named rightly and are not round."""
+    """Sums over rooms. `directed` things are correctly classified and not round."""
 
     directed: int = 0
     errors_deg: list[float] = field(default_factory=list)
@@ -49,12 +49,12 @@ class Fitted:
 
     @property
     def covered(self) -> float:
-        """The share of things with a front or an axis that have a fitted orientation."""
+        """The share of non-round things with a fitted orientation."""
         return len(self.errors_deg) / max(1, self.directed)
 
 
 def matched(room: Room, shot: Shot, found: FrameResult) -> Iterator[tuple[Item, Pose, int]]:
-    """Each thing that was found, where it stands, and the number of its observation from 1."""
+    """Yield each detected thing with its true pose and the number of its observation from 1."""
     items = {item.name: item for item in room.items}
     shared, pixels = overlap(shot, found)
     wanted = [n for n in range(len(shot.bodies)) if pixels[n] >= LEAST_PIXELS]
@@ -67,7 +67,7 @@ def matched(room: Room, shot: Shot, found: FrameResult) -> Iterator[tuple[Item, 
 def score(
     seen: Sequence[tuple[Room, Shot]], looks: Sequence[FrameResult], judge: Judge, surfaces: ClassSurfaces
 ) -> Fitted:
-    """Fit all that was found, and compare with the truth."""
+    """Fit all detections and compare them with the ground truth."""
     total = Fitted()
     for (room, shot), found in zip(seen, looks, strict=True):
         clouds = with_poses(shot.clouds[: len(found.labels)], found)
@@ -108,7 +108,7 @@ def _error_deg(pose: Pose, truth: Pose, fold: int) -> float:
 
 
 def measure(scenes: int, learnt: RecognitionModel) -> list[Row]:
-    """All figures of so many easy and as many crowded rooms, from both cameras and from one."""
+    """Return all figures for easy and crowded rooms, from both cameras and from one."""
     judge, surfaces, rows = Judge(class_of_models(MODELS), learnt.ancestors), shipped_surfaces(), list[Row]()
     for crowded, name in ((False, "easy"), (True, "crowded")):
         seen = list(shots(rooms(scenes, _SEEDS[crowded], crowded=crowded), seed=3))

@@ -1,7 +1,7 @@
-"""Things that nobody here modelled, each named by what has not learnt from it.
+"""Classification of third-party objects by cross-validation.
 
-The things are dealt out to folds; each fold's are shown to perception that learnt from the others, and those
-that nothing may be learnt from to each in turn. Frames are those of `foreign_frames`.
+The things are divided into folds; each fold is classified by perception that was trained on the others.
+Things that are excluded from training are classified by each of them. Frames are those of `foreign_frames`.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _THIN_M = 0.025
 
 
 def measure(folder: Path, samples: Path | None, training_scenes: int) -> list[Row]:
-    """Train once a fold, then show all things; `samples` saves the rendering. No rows without things."""
+    """Train once per fold, then classify all things; `samples` saves the rendering."""
     things = foreign_things(folder)
     if not things:
         print(f"{folder} holds no things: the rows of foreign things are left out")
@@ -57,7 +57,7 @@ def measure(folder: Path, samples: Path | None, training_scenes: int) -> list[Ro
 
 
 def folds(things: Sequence[ForeignThing]) -> dict[str, int]:
-    """The fold of each thing by its name: those of one class in different ones."""
+    """Return the fold of each thing by name; things of one class are in different folds."""
     in_order = sorted(
         things, key=lambda thing: (not thing.learnable, thing.new, thing.classes[0], thing.name)
     )
@@ -73,7 +73,7 @@ def _without(
 def tallies(
     things: Sequence[ForeignThing], dealt: dict[str, int], learnt: Sequence[RecognitionModel]
 ) -> tuple[Counter[str], Counter[str]]:
-    """How often things of known classes 2.5 cm and higher, and those of none, were what; see `outcome`."""
+    """Count the outcomes of things of known classes, from 2.5 cm in height, and of unknown ones."""
     rng, studio = np.random.default_rng(_SEED), Studio()
     known, new = Counter[str](), Counter[str]()
     for number, (_, stood) in enumerate(scenes(things, _ALONE, _MIXED, rng)):
@@ -96,7 +96,7 @@ def tallies(
 
 
 def outcome(said: str | None, classes: Sequence[str], learnt: RecognitionModel) -> str:
-    """`exact` for one of its classes, `above` for one above these, `Object`, `wrong`; None is `missed`."""
+    """Return `exact` for one of its classes, `above` for a superclass, `Object`, `wrong`, or `missed`."""
     if said is None:
         return "missed"
     if said in classes:
@@ -109,7 +109,7 @@ def outcome(said: str | None, classes: Sequence[str], learnt: RecognitionModel) 
 def matched(
     true: NDArray[np.integer], labels: NDArray[np.int32], things: int, objects: int
 ) -> list[int | None]:
-    """For each thing of a mask (H, W), counted from 1, the object whose label covers it, from 0."""
+    """Return for each thing of a mask (H, W), from 1, the object whose label covers it, from 0."""
     cells = np.bincount(
         (true.astype(np.int64) * (objects + 1) + labels).ravel(), minlength=(things + 1) * (objects + 1)
     ).reshape(things + 1, objects + 1)

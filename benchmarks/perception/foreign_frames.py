@@ -1,4 +1,4 @@
-"""Frames of things that nobody here modelled: meshes with their own textures, before the simulated camera.
+"""Frames of third-party objects: textured meshes in front of the simulated camera.
 
     python -m benchmarks.perception.foreign_frames OUT [--things DIR] [--alone 4] [--mixed 60] [--seed 1]
 
@@ -37,7 +37,7 @@ _BEDDED_M = 0.0005
 
 @dataclass(frozen=True)
 class Stood:
-    """A thing where it stands: the middle of its bottom [m] and yaw [rad]."""
+    """A placed thing: bottom centre [m] and yaw [rad]."""
 
     thing: ForeignThing
     x: float
@@ -49,7 +49,7 @@ class Stood:
 def scenes(
     things: Sequence[ForeignThing], alone: int, mixed: int, rng: np.random.Generator
 ) -> Iterator[tuple[str, list[Stood]]]:
-    """Each thing by itself so many times, and so many tables of several."""
+    """Yield each thing alone `alone` times, and `mixed` tables of several things."""
     for thing in things:
         for _ in range(alone):
             x, y = rng.uniform(-0.15, 0.15, 2).tolist()
@@ -62,7 +62,7 @@ def scenes(
 
 
 def distance_m(number: int, rng: np.random.Generator) -> float:
-    """From how far a frame of this number is taken: every other one from near."""
+    """Return the range of distances of a frame; every second one is from near."""
     return float(rng.uniform(*(_NEAR_M if number % 2 == 0 else _FAR_M)))
 
 
@@ -71,7 +71,7 @@ def _height(rng: np.random.Generator) -> float:
 
 
 class Studio:
-    """Photographs tables of things."""
+    """Renders tables of things."""
 
     def __init__(self) -> None:
         self._eye = Eye()
@@ -79,7 +79,7 @@ class Studio:
     def shoot(
         self, stood: Sequence[Stood], distance_m: float, rng: np.random.Generator
     ) -> tuple[View, NDArray[np.uint8], NDArray[np.float32], NDArray[np.uint8]]:
-        """The view, rgb (H, W, 3), depth with noise (H, W) [m], and (H, W) whose each pixel is, 0: none."""
+        """Return the view, rgb (H, W, 3), noisy depth (H, W) [m], and object numbers (H, W), 0 for none."""
         model = _compiled(stood, rng)
         data = mujoco.MjData(model)
         mujoco.mj_forward(model, data)
@@ -113,7 +113,7 @@ def _compiled(stood: Sequence[Stood], rng: np.random.Generator) -> mujoco.MjMode
 
 
 def _add(spec: mujoco.MjSpec, one: Stood, number: int) -> None:
-    """A thing's parts, each with its texture."""
+    """Return a thing's parts with their textures."""
     import trimesh
 
     body = spec.worldbody.add_body(
@@ -144,7 +144,7 @@ def _add(spec: mujoco.MjSpec, one: Stood, number: int) -> None:
 
 
 def _look(part: Any) -> tuple[Image.Image | None, list[float]]:
-    """A part's texture and colour."""
+    """Return a part's texture and colour."""
     material = getattr(part.visual, "material", None)
     image = getattr(material, "image", None) or getattr(material, "baseColorTexture", None)
     if image is not None and getattr(part.visual, "uv", None) is not None:
@@ -160,7 +160,7 @@ def write_frame(
     distance: str,
     stood: Sequence[Stood],
 ) -> None:
-    """The files of one frame."""
+    """Write the files of one frame."""
     view, rgb, depth, mask = shot
     folder.mkdir(parents=True, exist_ok=True)
     Image.fromarray(rgb).save(folder / "rgb.png")
@@ -196,14 +196,14 @@ def write_frame(
 
 
 def main() -> None:
-    """Render, and say where."""
+    """Render the frames and print the folder."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("out", type=Path)
     parser.add_argument("--things", type=Path, default=Path("../shared/data/foreign"))
-    parser.add_argument("--alone", type=int, default=4, help="frames of each thing by itself")
-    parser.add_argument("--mixed", type=int, default=60, help="frames of several together")
+    parser.add_argument("--alone", type=int, default=4, help="frames of each thing alone")
+    parser.add_argument("--mixed", type=int, default=60, help="frames with several things")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     rng, studio = np.random.default_rng(options.seed), Studio()

@@ -1,9 +1,9 @@
-"""Things that nobody here modelled, and what they are taken for.
+"""A contact sheet of third-party objects with their predicted classes.
 
     python -m benchmarks.perception.foreign_picture OUT.png [--things DIR] [--samples DIR] [--seed 1]
 
-Every thing whose scan may be shown stands on one of the tables, once: nothing is picked out. With the samples
-that `semmap.nodes.training.recognition --parts` leaves, all is learnt anew without these things.
+Every thing whose scan may be published is on one of the tables once, without selection. With the samples
+that `semmap.nodes.training.recognition --parts` leaves, perception is trained again without these things.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ from semmap.nodes.training.scenes.placements import spread
 
 Picture = NDArray[np.uint8]
 Box = tuple[float, float, float, float]
-"""First column and row in a picture, and last [pixel]."""
+"""First column and row in an image, and last [pixel]."""
 
 ACROSS, TABLES = 3, 6
 _PANEL = (500, 375)
 _AROUND = 28
-"""So many pixels beside the things are shown, too."""
+"""The margin around the things [pixel]."""
 _TABLE_M, _APART_M, _MORE = (0.5, 0.62), 0.05, 1.15
 _NEAR_M = 1.0
 _PALE, _PAPER = 0.75, 238
@@ -58,13 +58,13 @@ _LEGEND = {
 
 
 def tables(things: Sequence[ForeignThing], rng: np.random.Generator) -> list[list[Stood]]:
-    """Each thing on one of the tables, large ones dealt out evenly."""
+    """Distribute the things over the tables, large ones evenly."""
     largest_first = sorted(things, key=lambda thing: -max(thing.size_m[:2]))
     return [_placed(largest_first[n::TABLES], rng) for n in range(min(TABLES, len(things)))]
 
 
 def _placed(things: Sequence[ForeignThing], rng: np.random.Generator) -> list[Stood]:
-    """Things on one table, spread as near to one another as there is room for all."""
+    """Place all things on one table, as densely as necessary."""
     (x, y), z = _TABLE_M, float(rng.uniform(0.5, 0.9))
     while True:
         found = spread([thing.size_m for thing in things], (x, y), _APART_M, rng)
@@ -77,7 +77,7 @@ def _placed(things: Sequence[ForeignThing], rng: np.random.Generator) -> list[St
 def panel(
     studio: Studio, stood: Sequence[Stood], learnt: RecognitionModel, rng: np.random.Generator
 ) -> tuple[Image.Image, Counter[str]]:
-    """A table as the camera sees it, on each thing what it is said to be, in the colour of the outcome."""
+    """Render a table with the predicted class on each thing, in the colour of the outcome."""
     view, rgb, depth, mask = studio.shoot(stood, _NEAR_M, rng)
     found = observe_views(
         [segment_cloud(cloud_of(depth, rgb, view.intrinsics, view.map_from_camera))], learnt
@@ -117,13 +117,13 @@ def _words(said: str | None, came: str, thing: ForeignThing) -> str:
 
 
 def _rim(pixels: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Around pixels (H, W), without the specks that a noisy depth leaves in them."""
+    """Return the box of pixels (H, W), ignoring specks from depth noise."""
     whole = ndimage.binary_fill_holes(ndimage.binary_closing(pixels, iterations=2)) | pixels
     return np.asarray(ndimage.binary_dilation(whole, iterations=3) & ~whole)
 
 
 def _crop(things: NDArray[np.bool_]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Corner and size [pixel] of the part of a picture (H, W) with all things, of a panel's shape."""
+    """Return corner and size [pixel] of the image part with all things, in a panel's aspect ratio."""
     rows, columns = np.nonzero(things)
     whole = np.array(things.shape[::-1], float)
     low, high = np.array([columns.min(), rows.min()]), np.array([columns.max(), rows.max()])
@@ -133,7 +133,7 @@ def _crop(things: NDArray[np.bool_]) -> tuple[NDArray[np.float64], NDArray[np.fl
 
 
 def _box_in(pixels: NDArray[np.bool_], corner: NDArray[np.float64], scale: float) -> Box:
-    """The box of a thing's pixels (H, W) in a panel."""
+    """Return the box of a thing's pixels (H, W) in a panel."""
     rows, columns = np.nonzero(pixels)
     ends = np.array([[columns.min(), rows.min()], [columns.max() + 1, rows.max() + 1]])
     (left, top), (right, bottom) = ((ends - corner) * scale).tolist()
@@ -141,7 +141,7 @@ def _box_in(pixels: NDArray[np.bool_], corner: NDArray[np.float64], scale: float
 
 
 def _write(image: Image.Image, of: Box, words: str, came: str, taken: Sequence[Box]) -> Box:
-    """Words on an outcome's colour, at that side of a thing where they cover least; where they are then."""
+    """Draw a label at the side of a thing where it covers least; return its box."""
     draw, font = ImageDraw.Draw(image), ImageFont.load_default(18)
     left, top, right, bottom = of
     middle, half = (left + right) / 2.0, draw.textlength(words, font) / 2.0 + 6.0
@@ -161,7 +161,7 @@ def _write(image: Image.Image, of: Box, words: str, came: str, taken: Sequence[B
 
 
 def _shared(one: Box, other: Box) -> float:
-    """The area [pixel] that two boxes share."""
+    """Return the intersection area of two boxes [pixel]."""
     across = min(one[2], other[2]) - max(one[0], other[0])
     down = min(one[3], other[3]) - max(one[1], other[1])
     return max(0.0, across) * max(0.0, down)
@@ -170,7 +170,7 @@ def _shared(one: Box, other: Box) -> float:
 def drawn(
     learnt: RecognitionModel, things: Sequence[ForeignThing], seed: int
 ) -> tuple[Image.Image, Counter[str]]:
-    """All tables, and below them what the colours mean and how often each came."""
+    """Draw all tables, with a legend of the colours and counts."""
     rng, studio = np.random.default_rng(seed), Studio()
     panels, total = list[Picture](), Counter[str]()
     for stood in tables(things, rng):
@@ -195,7 +195,7 @@ def _with_legend(picture: Image.Image, total: Counter[str]) -> Image.Image:
 
 
 def main() -> None:
-    """Draw, and say how often what came."""
+    """Draw the sheet and print the counts of outcomes."""
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks.perception.foreign_picture",
         description=__doc__,
@@ -203,7 +203,7 @@ def main() -> None:
     )
     parser.add_argument("out", type=Path)
     parser.add_argument("--things", type=Path, default=Path("../shared/data/foreign"))
-    parser.add_argument("--samples", type=Path, help="learn from these, without the things that are drawn")
+    parser.add_argument("--samples", type=Path, help="train on these, without the drawn things")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     things = [thing for thing in foreign_things(options.things) if thing.learnable]

@@ -1,4 +1,4 @@
-"""The whole system, live: how long from a new thing in view to its entity in the map."""
+"""The whole system live: the latency from a new thing in view to its entity in the map."""
 
 from __future__ import annotations
 
@@ -40,12 +40,12 @@ _WORLD = f"""<mujoco>
 
 
 class Latency(NamedTuple):
-    """Seconds from the moment at which each new body stood there; `missed`: it never became an entity."""
+    """Latencies from the placement of each new body [s]; `missed` bodies never became an entity."""
 
     seconds: tuple[float, ...]
     missed: int
     look_ms: float
-    """What a look of two cameras took at the end."""
+    """The duration of one observation with two cameras at the end."""
 
 
 def measure() -> list[Row]:
@@ -68,7 +68,7 @@ def measure() -> list[Row]:
 
 
 def new_things(folder: Path, things: int = 10) -> Latency:
-    """Put one thing after the other on a table of a running system, and take it away again."""
+    """Place one thing after another on a table of a running system, and remove it again."""
     random_ = random.Random(3)
     seconds: list[float | None] = []
     with _running(folder) as client:
@@ -95,7 +95,7 @@ def new_things(folder: Path, things: int = 10) -> Latency:
 
 
 def _is_there(known: dict[str, Entity], at: tuple[float, float]) -> bool:
-    """Whether something small stands there, as far as the map knows."""
+    """Return whether the map has a small thing there."""
     return any(
         math.dist(e.pose.position_m[:2], at) < 0.08
         for e in list(known.values())
@@ -112,7 +112,7 @@ def _is_gone(known: dict[str, Entity], at: tuple[float, float]) -> bool:
 
 
 def _until(condition: Callable[[], bool], every_s: float = 0.01) -> float | None:
-    """How long it took to come true [s], None if it did not."""
+    """Return the time until a condition holds [s], or None after the timeout."""
     started = time.monotonic()
     while not condition():
         if time.monotonic() - started > _PATIENCE_S:
@@ -123,7 +123,7 @@ def _until(condition: Callable[[], bool], every_s: float = 0.01) -> float | None
 
 @contextmanager
 def _running(folder: Path) -> Iterator[Client]:
-    """A system whose simulator has a table and two cameras, and whose map only perception tells."""
+    """Start a system with a table, two cameras, and perception as the source of truth."""
     world = folder / "world.xml"
     world.write_text(_WORLD)
     with socket.socket() as probe:

@@ -31,7 +31,7 @@ _GOLDEN = 0.618034  # neighbours in number are far apart in hue
 
 
 def overlay(colors: Picture, labels: NDArray[np.int32]) -> Picture:
-    """The picture (H, W, 3) with a tint of its own for each label (H, W), and dimmed where there is none."""
+    """Return the image (H, W, 3) with one tint per label (H, W), dimmed elsewhere."""
     count = int(labels.max(initial=0)) + 1
     tints = np.array([colorsys.hsv_to_rgb(n * _GOLDEN % 1, 0.85, 1.0) for n in range(count)]) * 255
     tinted = (1 - _TINT) * colors + _TINT * tints[labels]
@@ -39,13 +39,13 @@ def overlay(colors: Picture, labels: NDArray[np.int32]) -> Picture:
 
 
 def recorded_row(scenes: Sequence[Scene], judge: Judge) -> Picture:
-    """Each scene's labels over its picture, side by side, at half the size."""
+    """Return each scene's image with its labels, side by side at half the size."""
     panels = [overlay(_colors(scene), segment(scene.cloud, judge).labels)[::2, ::2] for scene in scenes]
     return np.concatenate(panels, axis=1)
 
 
 def simulated_row(width: int) -> Picture:
-    """Three simulated rooms, one loose, two crowded, with what things were taken for; `width` in pixels."""
+    """Return three simulated rooms (one loose, two crowded) with predicted classes; `width` in pixels."""
     chosen = chain(*(rooms(1, seed, crowded=crowded) for seed, crowded in _ROOMS))
     panels = []
     for _, shot in shots(chosen, seed=3):
@@ -56,7 +56,7 @@ def simulated_row(width: int) -> Picture:
 
 
 def _named(picture: Picture, seen: FrameResult) -> Picture:
-    """The class of each observation written in the middle of its pixels."""
+    """Write the class of each observation at the centre of its pixels."""
     image = Image.fromarray(picture)
     draw, font = ImageDraw.Draw(image), ImageFont.load_default(20)
     for number, observation in enumerate(seen.observations.observations, 1):
@@ -74,7 +74,7 @@ def _colors(scene: Scene) -> Picture:
 
 
 def main() -> None:
-    """Draw scenes by a model that learnt from all the others."""
+    """Draw scenes segmented by a model trained on all the others."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.perception.pictures", description=__doc__)
     parser.add_argument("out", type=Path)
     parser.add_argument("--scenes", default="learn24,learn31,learn33")

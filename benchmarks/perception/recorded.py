@@ -1,4 +1,4 @@
-"""Segmentation of real Kinect scenes: how many objects are found, by models that never saw the scene."""
+"""Segmentation of real Kinect scenes by models that were not trained on them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from semmap.nodes.training.segmentation.recorded_scenes import Scene, read_scene
 from semmap.nodes.training.segmentation.teach import Lessons, learn, lessons, made_up
 
 IOU, LEAST_POINTS = 0.5, 400
-"""An object is found by a segment that overlaps it by more; smaller ones are not asked for, nor counted."""
+"""The minimum overlap of a matching segment, and the minimum size of objects that are counted."""
 
 _FOLDS = 6
 _REPEATS = 3
@@ -31,13 +31,13 @@ _GROUPS = {
     "learn": {"boxes": 17, "stacked": 25, "occluded": 33, "cylinders": 45},
     "test": {"boxes": 16, "stacked": 24, "occluded": 31, "cylinders": 43, "mixed": 55, "complex": 66},
 }
-"""Each group's scenes are numbered up to this one, from where the group before ends."""
+"""The last scene number of each group."""
 
 Labels = NDArray[np.int32]
 
 
 class Counts(NamedTuple):
-    """Of one scene or of many: objects there, segments found, and pairs of them that match."""
+    """Counts over scenes: objects, segments, and matching pairs."""
 
     objects: int = 0
     found: int = 0
@@ -54,12 +54,12 @@ class Counts(NamedTuple):
 
 
 def data_folder() -> Path:
-    """Where the recorded scenes are: `mosd/` of the folder named by SEMMAP_DATA."""
+    """Return the folder of recorded scenes: `mosd/` in SEMMAP_DATA."""
     return Path(os.environ.get("SEMMAP_DATA") or "../shared/data") / "mosd"
 
 
 def group_of(name: str) -> str:
-    """The group of a scene of the database, by its file's name."""
+    """Return the group of a scene by its file name."""
     found = re.fullmatch(r"(learn|test)(\d+)", name)
     if found is None:
         return "other"
@@ -80,7 +80,7 @@ def score(scene: Scene, labels: Labels) -> Counts:
 
 
 def by_group(scenes: Iterable[Scene], segments: Callable[[Scene], Labels]) -> dict[str, Counts]:
-    """The counts of each group of scenes, and of "all"."""
+    """Return the counts of each group of scenes, and of "all"."""
     totals: dict[str, Counts] = {}
     for scene in scenes:
         counts = score(scene, segments(scene))
@@ -90,7 +90,7 @@ def by_group(scenes: Iterable[Scene], segments: Callable[[Scene], Labels]) -> di
 
 
 def measure(folder: Path, piles: int) -> list[Row]:
-    """By cross-validation, with groups left out, learnt from renderings alone; baselines, and the time."""
+    """Evaluate by cross-validation, without groups, and on renderings only; with baselines and time."""
     scenes = list(read_scenes(folder))
     if not scenes:
         print(f"no recorded scenes in {folder}: set SEMMAP_DATA, or give --recorded")
@@ -109,13 +109,13 @@ def measure(folder: Path, piles: int) -> list[Row]:
         *(Row(f"the same, {group} left out", strange[group].f1) for group in groups),
         Row("the same, learnt from renderings alone", rendered["all"].f1),
     ]
-    for what, segments in (("plane and DBSCAN", clustered), ("chance: patches merged by lot", by_lot)):
+    for what, segments in (("plane and DBSCAN", clustered), ("chance: patches merged by lot", random_labels)):
         rows.append(Row(f"real scenes: F1, {what}", by_group(scenes, segments)["all"].f1))
     return rows + times(scenes)
 
 
 def times(scenes: Iterable[Scene]) -> list[Row]:
-    """By the clock, and the CPU's time, which a busy machine disturbs less."""
+    """Measure wall time and CPU time, which depends less on other load."""
     clock, cpu = np.transpose([_milliseconds(scene.cloud) for scene in scenes])
     return [
         Row("real scenes: segmentation, median", float(np.median(clock)), "ms", 40, 20, less=True),
@@ -126,7 +126,7 @@ def times(scenes: Iterable[Scene]) -> list[Row]:
 
 
 def held_out(scenes: Sequence[Scene], heard: Lessons, folds: Iterable[Sequence[str]]) -> Mapping[str, Counts]:
-    """Each fold's scenes by a model that learnt from all the others."""
+    """Segment each fold's scenes by a model trained on all the others."""
     totals: dict[str, Counts] = {}
     for fold in folds:
         judge = MergeModel(learn(heard, frozenset(fold)), "")
@@ -140,14 +140,14 @@ def _segmented(scene: Scene, judge: Judge) -> Labels:
     return segment(scene.cloud, judge).labels
 
 
-def by_lot(scene: Scene) -> Labels:
-    """Our patches, merged by tossing a coin."""
+def random_labels(scene: Scene) -> Labels:
+    """Merge our patches at random."""
     rng = np.random.default_rng(0)
     return _segmented(scene, lambda known, a, b: rng.random(len(a), dtype=np.float32))
 
 
 def clustered(scene: Scene) -> Labels:
-    """Open3D's plane, and what is above it grouped by DBSCAN: a third of the pixels, 2 cm, 10 neighbours."""
+    """Segment by Open3D's plane and DBSCAN above it: a third of the pixels, 2 cm, 10 neighbours."""
     import open3d
 
     every = 3
@@ -166,8 +166,8 @@ def clustered(scene: Scene) -> Labels:
 
 
 def _milliseconds(cloud: Cloud) -> tuple[float, float]:
-    """How long one takes, by the clock and of the CPU: the median of some."""
-    shipped()  # reading what is learnt is no part of it
+    """Return the median wall time and CPU time of several runs."""
+    shipped()  # loading the model is not part of the measurement
     taken = []
     for _ in range(_REPEATS):
         started = time.perf_counter(), time.thread_time()

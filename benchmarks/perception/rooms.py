@@ -1,4 +1,4 @@
-"""Rooms to be judged in, made by other rules than those of training: other sizes, colours, poses, cameras."""
+"""Rooms for evaluation, generated with other sizes, colours, poses and cameras than in training."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from semmap.nodes.sim_node.vision.view import View, look_at
 from semmap.nodes.training.scenes.simulated_scenes import Item
 
 THIN_M = 0.025
-"""What is lower than this drowns in the sensor's noise, and is told apart."""
+"""Lower things are hidden by sensor noise and counted separately [m]."""
 
 _THINGS = (
     "can bottle wine_bottle jar carton cereals cup bowl glass pitcher pot vase kettle toaster apple banana"
@@ -23,14 +23,14 @@ _THINGS = (
     " toilet_paper soap backpack bag folder lamp hammer microwave"
 )
 THINGS = tuple(_THINGS.split())
-"""What may stand on a table in these rooms: all of it higher than `THIN_M`."""
+"""The models on tables in these rooms, all higher than `THIN_M`."""
 
 _SUPPORTS = {"table": 0.75, "desk": 0.75, "counter": 0.9}
 
 
 @dataclass(frozen=True)
 class Room:
-    """A table and what stands on it, and two cameras."""
+    """A table with the things on it, and two cameras."""
 
     items: tuple[Item, ...]
     views: tuple[View, ...]
@@ -38,7 +38,7 @@ class Room:
 
 
 def rooms(count: int, seed: int, *, crowded: bool, things: Sequence[str] = THINGS) -> Iterator[Room]:
-    """Random rooms: a table with six to twelve things, apart or crowded and touching."""
+    """Yield random rooms: a table with six to twelve things, apart or crowded and touching."""
     rng = np.random.default_rng(seed)
     for _ in range(count):
         yield _room(rng, crowded=crowded, things=things)
@@ -76,11 +76,11 @@ def _any_colour(rng: np.random.Generator) -> Colour:
 
 
 Spot = tuple[float, float, float]
-"""Middle x and y [m], yaw [rad]."""
+"""Centre x and y [m], yaw [rad]."""
 
 
 def _rows(sizes: Sequence[Vec3], top_m: Vec3, rng: np.random.Generator) -> list[Spot | None]:
-    """Row after row from one edge of the table, 4 cm and more between any two."""
+    """Place things in rows from one edge of the table, at least 4 cm apart."""
     spots: list[Spot | None] = []
     x, y, deep = -top_m[0] / 2 + 0.03, -top_m[1] / 2 + 0.03, 0.0
     for size in sizes:
@@ -97,7 +97,7 @@ def _rows(sizes: Sequence[Vec3], top_m: Vec3, rng: np.random.Generator) -> list[
 
 
 def _heap(sizes: Sequence[Vec3], top_m: Vec3, rng: np.random.Generator) -> list[Spot | None]:
-    """Side by side in the directions of one grid: each touches the one before, in rows that nearly touch."""
+    """Place things side by side on a grid; each touches the previous one, and rows nearly touch."""
     turn, spots = float(rng.uniform(-0.4, 0.4)), []
     x, y, deep = 0.0, 0.0, 0.0
     line = float(rng.uniform(0.45, 0.8))
@@ -119,7 +119,7 @@ def _heap(sizes: Sequence[Vec3], top_m: Vec3, rng: np.random.Generator) -> list[
 
 
 def _cameras(top_m: Vec3, rng: np.random.Generator) -> tuple[View, View]:
-    """Two Kinects on stands, 60 to 130 degrees apart, that look down at the table."""
+    """Return two Kinects on stands, 60 to 130 degrees apart, looking down at the table."""
     first, apart = rng.uniform(-math.pi, math.pi), math.radians(rng.uniform(60.0, 130.0))
     found = []
     for azimuth in (first, first + apart):

@@ -1,4 +1,4 @@
-"""Perception of simulated rooms: what is found, what it is taken for, how far poses and sizes are off."""
+"""Perception of simulated rooms: detection, classification, pose and size errors."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from semmap.schemas.entities import Pose, Size
 from semmap.schemas.perception import Observation
 
 LEAST_PIXELS = 150
-"""A thing of which all cameras together see fewer is not asked for."""
+"""The minimum number of visible pixels, in all cameras together, of an expected thing."""
 
 SAME_IOU = 0.5
 SMALL_M = 0.3
@@ -37,7 +37,7 @@ Perceive = Callable[[Sequence[Cloud]], FrameResult]
 
 @dataclass
 class Score:
-    """Sums over rooms. Errors are of things that were found and whole in view."""
+    """Sums over rooms. Errors are those of detected, completely visible things."""
 
     asked: int = 0
     found: int = 0
@@ -49,34 +49,34 @@ class Score:
     wrong: list[tuple[str, str]] = field(default_factory=list)
 
     def f1(self, hits: int) -> float:
-        """Of so many hits among what was asked for and what was said."""
+        """Return the F1 score from hits, expected and reported numbers."""
         return 2.0 * hits / max(1, self.asked + self.said)
 
 
 class Judge:
-    """Knows what is right: `class_of` a model, and what is above a class (without `Object`)."""
+    """The ground truth: `class_of` a model, and the superclasses of a class (without `Object`)."""
 
     def __init__(self, class_of: Mapping[str, str], above: Mapping[str, Sequence[str]]) -> None:
         self._class_of = class_of
         self._above = {name: set(found) - {"Object"} for name, found in above.items()}
 
     def class_of(self, item: Item) -> str:
-        """The class that its model stands for."""
+        """Return the class of its model."""
         return self._class_of[item.kind]
 
     def exact(self, item: Item, said: str) -> bool:
-        """The very class."""
+        """Return whether the class is exact."""
         return said == self._class_of[item.kind]
 
     def right(self, item: Item, said: str) -> bool:
-        """The class or one above it, below `Object`."""
+        """Return whether it is the class or a superclass below `Object`."""
         return self.exact(item, said) or said in self._above[self._class_of[item.kind]]
 
 
 def shots(
     rooms: Iterable[Room], seed: int, paint: Callable[[np.random.Generator], Paint] | None = None
 ) -> Iterable[tuple[Room, Shot]]:
-    """Photograph the rooms, the things on their tables painted."""
+    """Render the rooms with painted things."""
     stage, rng = Stage(), np.random.default_rng(seed)
     for room in rooms:
         bodies = stage.show(room.items)
@@ -87,14 +87,14 @@ def shots(
 
 @dataclass(frozen=True)
 class Looks:
-    """What was perceived of each room, and how long it took [s]."""
+    """Yield the observations of each room, with the duration [s]."""
 
     looks: list[FrameResult]
     seconds: list[float]
 
 
 def looked(photographed: Iterable[tuple[Room, Shot]], perceive: Perceive, *, cameras: int = 2) -> Looks:
-    """Perceive every room with so many of its cameras."""
+    """Run perception on every room with so many of its cameras."""
     looks, seconds = [], []
     for _, shot in photographed:
         started = time.perf_counter()
@@ -110,7 +110,7 @@ def score(
     *,
     of: Collection[str] = tuple(MODELS),
 ) -> Score:
-    """Compare with the truth; only things of some models are asked for."""
+    """Compare with the ground truth for things of the given models."""
     total = Score()
     for (room, shot), seen in zip(photographed, looks, strict=True):
         _count(total, room, shot, seen, judge, of)
@@ -148,7 +148,7 @@ def _count(
 
 
 def overlap(shot: Shot, look: FrameResult) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Intersection over union (bodies, observations) of pixels in all pictures; visible pixels a body."""
+    """Return intersection over union (bodies, observations) of pixels, and visible pixels per body."""
     rows, columns = len(shot.bodies) + 1, len(look.observations.observations) + 1
     both = np.zeros((rows, columns))
     for owner, label, cloud in zip(shot.owners, look.labels, shot.clouds, strict=False):
@@ -161,18 +161,18 @@ def overlap(shot: Shot, look: FrameResult) -> tuple[NDArray[np.float64], NDArray
 
 
 def position_error_m(observation: Observation, truth: Pose) -> float:
-    """Distance of the bottom centres."""
+    """Return the distance of the bottom centres."""
     return float(np.linalg.norm(np.subtract(observation.pose.position_m, truth.position_m)))
 
 
 def size_error_m(observation: Observation, truth: Size) -> float:
-    """Mean error of the three extents; which horizontal side is called x does not matter."""
+    """Return the mean error of the three extents; the horizontal axes can be swapped."""
     said, true = ([*sorted(size[:2]), size[2]] for size in (observation.size_m, truth))
     return float(np.abs(np.subtract(said, true)).mean())
 
 
 def measure(scenes: int, learnt: RecognitionModel) -> list[Row]:
-    """All figures of so many easy and as many crowded rooms."""
+    """Return all figures for easy and crowded rooms."""
     judge = Judge(class_of_models(MODELS), learnt.ancestors)
     ours = partial(observe_clouds, learnt=learnt)
     rows: list[Row] = []
@@ -211,7 +211,7 @@ def measure(scenes: int, learnt: RecognitionModel) -> list[Row]:
 
 
 def measure_painted(scenes: int, learnt: RecognitionModel) -> list[Row]:
-    """Our own models in easy rooms, all in black, and each in any one colour: what is right of all."""
+    """Evaluate our models in easy rooms, all black, and each in one random colour."""
     judge = Judge(class_of_models(MODELS), learnt.ancestors)
     rows = []
     for name, paint, reach, aim in (

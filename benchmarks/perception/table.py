@@ -1,4 +1,4 @@
-"""What was measured, beside what is to be reached."""
+"""Tables of measurements and targets."""
 
 from __future__ import annotations
 

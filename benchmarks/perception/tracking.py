@@ -1,4 +1,4 @@
-"""Do things keep their names while they are moved about? The pipeline and the association, without the wire.
+"""Identity of moved things: pipeline and association, without Zenoh.
 
 Twenty things stand in cells of a table that two cameras see from opposite corners, noise on. One after the
 other is taken to a free cell and turned. Then the entity that stands where the thing really is must be the
@@ -35,7 +35,7 @@ _CELL_M, _COLUMNS, _ROWS = 0.24, 6, 4
 TABLE_M = (_COLUMNS * _CELL_M + 0.1, _ROWS * _CELL_M + 0.1, 0.75)
 _LARGEST_M = 0.18
 _LOOKS = 5
-"""Looks after each move; at five a second it takes one second."""
+"""The number of observations after each move; five take one second."""
 _SAME_M = 0.06
 _SEEDS = (5, 6, 7)
 CAMERAS = [
@@ -51,7 +51,7 @@ class Kept(NamedTuple):
     kept: int
     held: int
     entities: int
-    """How many the map had in the end."""
+    """The number of entities at the end."""
 
 
 def measure(moves: int, learnt: RecognitionModel) -> list[Row]:
@@ -74,14 +74,14 @@ def measure(moves: int, learnt: RecognitionModel) -> list[Row]:
 
 
 class ObedientMap:
-    """A map that takes whatever perception tells it."""
+    """A map that applies all updates of perception."""
 
     def __init__(self) -> None:
         self.entities: dict[str, Entity] = {}
         self._commit = 0
 
     def obey(self, command: Command) -> None:
-        """Change as told."""
+        """Apply a change."""
         self._commit += 1
         said = Provenance(commit=self._commit, stamp_ns=0, source="perception")
         match command:
@@ -98,7 +98,7 @@ class ObedientMap:
                 self.entities[name] = self._updated(self.entities[name], command)
 
     def at(self, x: float, y: float) -> str | None:
-        """The entity that stands nearest to a place of the table, if it stands there."""
+        """Return the entity nearest to a position on the table, if it is there."""
         distances = {
             math.dist(e.pose.position_m[:2], (x, y)): name
             for name, e in self.entities.items()
@@ -128,7 +128,7 @@ def identity(
     things: int = 20,
     seed: int,
 ) -> Kept:
-    """Move things about and see who keeps their names."""
+    """Move things and count which ones keep their names."""
     rng, config = np.random.default_rng(seed), TrackingConfig()
     cells = _cells(rng)
     items = [_item(n, cell, rng) for n, cell in enumerate(cells[:things])]
@@ -167,7 +167,7 @@ def identity(
 
 
 def things_on_a_table(things: int, rng: np.random.Generator) -> list[Item]:
-    """Each in a cell of its own."""
+    """Place each thing in its own cell."""
     return [_item(n, cell, rng) for n, cell in enumerate(_cells(rng)[:things])]
 
 

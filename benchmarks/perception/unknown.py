@@ -1,4 +1,4 @@
-"""Things of classes that training never saw: are they called `Object`, or by a class above the true one?"""
+"""Things of untrained classes: whether they are reported as `Object` or as a superclass."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SEED = 20263
 
 
 def measure(scenes: int, samples: Path | None, training_scenes: int) -> list[Row]:
-    """Train without ten classes drawn by lot, then show their things; `samples` saves the rendering."""
+    """Train without ten random classes, then classify their things; `samples` saves the rendering."""
     class_of = class_of_models(MODELS)
     kinds = [str(kind) for kind in np.random.default_rng(_SEED).choice(THINGS, LEFT_OUT, replace=False)]
     learnt = learn(

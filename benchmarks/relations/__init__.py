@@ -1,1 +1,1 @@
-"""Spatial relations against MuJoCo's contacts, and against what a person said of the flat."""
+"""Spatial relations compared with MuJoCo's contacts and with manual annotations of the flat."""

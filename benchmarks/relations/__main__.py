@@ -6,17 +6,17 @@ import argparse
 import json
 from pathlib import Path
 
-from benchmarks.relations import kept, rightness, speed, watched
+from benchmarks.relations import accuracy, fact_costs, speed, stability
 from benchmarks.table import Row, as_json, lines
 
 
 def rows(scenes: int, pairs: int, sizes: list[int], watched_s: float) -> list[Row]:
-    """All figures."""
-    on, touches, steep = rightness.against_contacts(scenes)
-    inside = rightness.inside_against_samples(pairs)
-    flat = rightness.flat()
-    rest = watched.at_rest(watched_s)
-    facts = kept.measure(10_000, 400)
+    """Return all figures."""
+    on, touches, steep = accuracy.against_contacts(scenes)
+    inside = accuracy.inside_against_samples(pairs)
+    flat = accuracy.flat()
+    rest = stability.at_rest(watched_s)
+    facts = fact_costs.measure(10_000, 400)
     moves = {size: speed.move_ms(size) for size in sizes}
     return [
         Row(f"isOn against resting contacts, {scenes} settled scenes: F1", on.f1, "", 0.97, 0.99, more=True),
@@ -70,9 +70,11 @@ def main() -> None:
     """Measure, print a table, write JSON."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.relations", description="Spatial relations.")
     parser.add_argument("--scenes", type=int, default=200, help="random settled scenes")
-    parser.add_argument("--pairs", type=int, default=2000, help="of a container and a thing")
+    parser.add_argument("--pairs", type=int, default=2000, help="pairs of a container and a thing")
     parser.add_argument("--sizes", type=int, nargs="+", default=[500, 10_000, 100_000], help="entities")
-    parser.add_argument("--watched", type=float, default=120.0, metavar="S", help="of things at rest [s]")
+    parser.add_argument(
+        "--watched", type=float, default=120.0, metavar="S", help="duration of observing things at rest [s]"
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", dest="json_file")
     words = parser.parse_args()
     found = rows(words.scenes, words.pairs, words.sizes, words.watched)

@@ -1,4 +1,4 @@
-"""The sixty situations as one picture: `python -m benchmarks.relations.picture docs/relations.png`."""
+"""The sixty situations as one image: `python -m benchmarks.relations.picture docs/relations.png`."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ _FLOOR: Colour = (0.86, 0.85, 0.82)
 _PLACES: tuple[Colour, ...] = ((0.78, 0.84, 0.90), (0.90, 0.84, 0.74), (0.78, 0.88, 0.78))
 _BOXES: tuple[Colour, ...] = ((0.72, 0.55, 0.36), (0.45, 0.58, 0.66), (0.62, 0.66, 0.42))
 _ROUND_ABOUT = (0.06, 0.13)
-"""How much of what is around small things is shown, at least and at most [m]."""
+"""The minimum and maximum visible surroundings of small things [m]."""
 _OF_A_ROOM_M = 0.9
-"""How much of a room is shown around what stands in it."""
+"""The visible part of a room around the things in it."""
 _FROM_THE_SIDE, _FROM_ABOVE = (0.90, -0.42, 0.16), (0.55, -0.30, 0.90)
 _SEEN_FROM = {
     "let go two centimetres above it": (0.90, -0.42, -0.03),
@@ -64,7 +64,7 @@ _SEEN_FROM = {
     "through a wall, in the flat only": (0.45, -0.15, 1.00),
     "of no known size": (0.80, -0.50, 0.42),
 }
-"""From where a situation is looked at, if not from the front: its direction."""
+"""The viewing directions of situations that are not shown from the front."""
 _LOOKED_AT_CLOSELY = {
     "beside it, at its height",
     "nearly all of it over the edge",
@@ -79,7 +79,7 @@ _WORDS = {
 
 
 def tile(number: int, situation: Situation, lines: int) -> Image.Image:
-    """One situation, drawn, with its title and what is said of it, in so many lines."""
+    """Draw one situation with its title and its relations, in so many lines."""
     told = sentences(situation)
     made = Image.new("RGB", (_WIDTH, _HEIGHT + (lines + 1) * _LINE + 16), _PAPER)
     made.paste(view_of(situation), (0, 0))
@@ -93,7 +93,7 @@ def tile(number: int, situation: Situation, lines: int) -> Image.Image:
 
 
 def sentences(situation: Situation) -> list[str]:
-    """What is said, shortly."""
+    """Return the relations as short text."""
     said = sorted(situation.said) + sorted(situation.also)
     seen: set[Said] = set()
     told: list[str] = []
@@ -106,7 +106,7 @@ def sentences(situation: Situation) -> list[str]:
 
 
 def view_of(situation: Situation) -> Image.Image:
-    """The things themselves; what has something inside it is cut open in front."""
+    """Draw the things; containers with content are cut open in front."""
     entities = [entity for entity in situation.things if entity.pose is not None]
     solids = [solid for entity in entities if (solid := solid_of(entity)) is not None]
     ox, oy, _ = solids[0].position if abs(solids[0].position[0]) > 1000.0 else (0.0, 0.0, 0.0)
@@ -153,14 +153,14 @@ def view_of(situation: Situation) -> Image.Image:
 
 
 def _named(situation: Situation) -> list[str]:
-    """Of which the name is written: the things that are told apart by nothing but their numbers."""
+    """Return the things whose names are shown: those that differ only in their numbers."""
     names = [entity.name for entity in situation.things if not entity.place]
     kinds = [name.rstrip("0123456789") for name in names]
     return [name for name, kind in zip(names, kinds, strict=True) if kinds.count(kind) > 1]
 
 
 def _outline(solid: Solid, view: View, origin: tuple[float, float, float]) -> Rectangle:
-    """The rectangle around it in the picture [pixel]: left, top, right, bottom."""
+    """Return its bounding box in the image [pixel]: left, top, right, bottom."""
     x, y, z = solid.size
     heights = (0.0,) if solid.is_place else (0.0, z)
     corners = [solid.to_map((u * x, v * y, w)) for u in (-0.5, 0.5) for v in (-0.5, 0.5) for w in heights]
@@ -170,7 +170,7 @@ def _outline(solid: Solid, view: View, origin: tuple[float, float, float]) -> Re
 
 
 def _name_things(made: Image.Image, named: dict[str, Rectangle], others: list[Rectangle]) -> None:
-    """Write names above, beside or below what they are of: where they hide least."""
+    """Write names above, beside or below their things, where they cover least."""
     hidden = [one for one in others if (one[2] - one[0]) * (one[3] - one[1]) < 0.4 * _WIDTH * _HEIGHT]
     for name, (x0, y0, x1, y1) in named.items():
         wide, high = _extent(name)
@@ -184,7 +184,7 @@ def _name_things(made: Image.Image, named: dict[str, Rectangle], others: list[Re
 
 
 def _name_places(made: Image.Image, named: list[tuple[str, Rectangle]]) -> None:
-    """Write the names of places in a column, each with the colour of its floor."""
+    """Write the names of places in a column, with the colours of their floors."""
     for row, ((name, _), colour) in enumerate(zip(named, _PLACES, strict=False)):
         wide, high = _extent(name)
         top = 8.0 + row * (high + 9)
@@ -210,13 +210,13 @@ def _write(made: Image.Image, name: str, where: Rectangle) -> None:
 
 
 def _shared(one: Rectangle, other: Rectangle) -> float:
-    """The area that two rectangles share."""
+    """Return the intersection area of two rectangles."""
     wide, high = min(one[2], other[2]) - max(one[0], other[0]), min(one[3], other[3]) - max(one[1], other[1])
     return max(0.0, wide) * max(0.0, high)
 
 
 def _close(situation: Situation, solids: list[Solid]) -> list[Solid]:
-    """What the picture is about, if all that is said of it is that it is on or inside something larger."""
+    """Return the thing in focus, if all relations are about it being on or inside something larger."""
     relations = {relation for _, relation, _ in (*situation.said, *situation.also)}
     small = [solid for solid in solids if max(solid.size) < 0.5 * max(max(s.size) for s in solids)]
     carried = {name for name, _, _ in situation.said}
@@ -246,7 +246,7 @@ def _parts(entity: Entity, solid: Solid, opened: set[str], colour: Colour) -> li
 
 
 def _fills(part: Part, model: str) -> bool:
-    """Whether a part takes up most of a hollow, as the water in a bathtub does, which hides what is in it."""
+    """Return whether a part fills most of an interior and hides its content, like water in a bathtub."""
     for inner in shapes()[model].interiors:
         low, high = np.array(inner.low), np.array(inner.high)
         middle, reach = np.array(part.centre), part.reach()
@@ -256,7 +256,7 @@ def _fills(part: Part, model: str) -> bool:
 
 
 def _cut_open(entity: Entity) -> list[Part]:
-    """The walls and boards of a closed thing without its front."""
+    """Return the walls and boards of a closed thing without its front."""
     felt = [part for part in build(entity.model, entity.size_m).parts if part.role is not Role.SEEN]
     x = max(float(part.centre[0] + part.reach()[0]) for part in felt)
     behind = [part for part in felt if part.centre[0] + part.reach()[0] < x - 0.03 or part.reach()[0] > 0.05]
@@ -265,7 +265,7 @@ def _cut_open(entity: Entity) -> list[Part]:
 
 
 def sheet() -> Image.Image:
-    """All situations in rows."""
+    """Draw all situations in rows."""
     rows: list[list[Image.Image]] = []
     numbered = list(enumerate(SITUATIONS, start=1))
     for first in range(0, len(numbered), _COLUMNS):
@@ -282,7 +282,7 @@ def sheet() -> Image.Image:
 
 
 def main() -> None:
-    """Write the picture to the file named on the command line."""
+    """Write the image to the file named on the command line."""
     sheet().save(Path(sys.argv[1]), optimize=True)
 
 

@@ -1,4 +1,4 @@
-"""Random settled scenes of the library's models, and who rests on whom by MuJoCo's contact forces."""
+"""Random settled scenes of the library's models, with supports by MuJoCo's contact forces."""
 
 from __future__ import annotations
 
@@ -26,25 +26,25 @@ THINGS = (
 )  # fmt: skip
 STEEPEST = math.cos(math.radians(30.0))
 LEAST_SHARE = 0.05
-"""Of a thing's weight that a contact must carry to count as its support."""
+"""The share of a thing's weight that a contact must carry to count as support."""
 
 _NOBODY = Provenance(commit=1, stamp_ns=0, source="scene")
 
 
 class Settled(NamedTuple):
-    """A scene at rest: the entities as a map would have them, and the truth about them."""
+    """A scene at rest: the entities of a map, and the ground truth."""
 
     entities: list[Entity]
     on: set[tuple[str, str]]
-    """Upper and lower, of every resting contact."""
+    """Upper and lower body of every resting contact."""
     touching: set[frozenset[str]]
     steeply: set[tuple[str, str]]
-    """Upper and lower, of the steeper contacts that carry what has no resting contact, not even with the
+    """Upper and lower body of the steeper contacts of things without any resting contact, including the
     floor."""
 
 
 def settled_scene(seed: int, things: int = 14, settle_s: float = 4.0) -> Settled:
-    """Furniture in a row, and things dropped on it, some on one another, some beside it."""
+    """Return furniture in a row with things dropped on it, on one another, and beside it."""
     rng = random.Random(seed)
     world = World()
     orders = [

@@ -1,6 +1,6 @@
-"""Sixty situations made by hand, each with what a person would say of it.
+"""Sixty manually created situations with the relations that a person would state.
 
-`tests/kb_node/relations/test_situations.py` holds the relations to it, `picture` draws it.
+`tests/kb_node/relations/test_situations.py` checks the relations against them, and `picture` draws them.
 """
 
 from __future__ import annotations
@@ -19,22 +19,22 @@ Said = tuple[str, str, str]
 
 
 class Situation(NamedTuple):
-    """Some things, and what holds of them."""
+    """Some things with their relations."""
 
     title: str
     things: tuple[Entity, ...]
     said: frozenset[Said]
-    """All that holds of what is on, inside and attached to what; of places where there are any."""
+    """All support, containment and attachment relations, and those with places if there are any."""
     also: frozenset[Said] = frozenset()
-    """Of the other relations what a person would say first."""
+    """The most salient other relations."""
     never: frozenset[Said] = frozenset()
-    """What a hasty reading would say."""
+    """Plausible but wrong relations."""
 
 
 def thing(
     name: str, at: Vector, *, yaw: float = 0.0, turn: Quaternion | None = None, size: Size | None = None
 ) -> Entity:
-    """By its model's name and a number; with a size and no model of that name a box."""
+    """Create a thing by its model's name and a number; with a size and without such a model, a box."""
     model = name.rstrip("0123456789")
     known = model in shapes()
     return Entity(
@@ -46,7 +46,7 @@ def thing(
 
 
 def place(name: str, at: Vector, size: Size) -> Entity:
-    """A room, or a part of one."""
+    """Create a room or a part of one."""
     return Entity(
         name=name, class_="Location", iri=f"urn:{name}", types=(), place=True, size_m=size,
         pose=Pose(position_m=at), provenance=_NOBODY, pose_provenance=_NOBODY, shape_provenance=_NOBODY,
@@ -55,7 +55,7 @@ def place(name: str, at: Vector, size: Size) -> Entity:
 
 
 def situation(title: str, *things: Entity, said: str = "", also: str = "", never: str = "") -> Situation:
-    """The facts as "cup1 isOn table1, table1 isOn rug1"."""
+    """Parse facts such as "cup1 isOn table1, table1 isOn rug1"."""
     return Situation(title, things, _facts(said), _facts(also), _facts(never))
 
 
@@ -65,18 +65,18 @@ def _facts(text: str) -> frozenset[Said]:
 
 
 def about_y(degrees: float) -> Quaternion:
-    """A turn about the y axis: the top leans towards +x."""
+    """Return a rotation about the y axis, which tilts the top towards +x."""
     half = math.radians(degrees) / 2
     return (math.cos(half), 0.0, math.sin(half), 0.0)
 
 
 def surface(model: str, nth: int = 0) -> float:
-    """The height of a model's surface, counted from above [m]."""
+    """Return the height of a model's surface, counted from above [m]."""
     return shapes()[model].surfaces[nth].height
 
 
 def tall(model: str) -> float:
-    """A model's height [m]."""
+    """Return a model's height [m]."""
     return shapes()[model].size_m[2]
 
 
@@ -90,19 +90,19 @@ BLOCK = (0.2, 0.2, 0.1)
 
 
 def on_table(name: str, x: float = 0.0, y: float = 0.0, z: float = 0.0, **fields: object) -> Entity:
-    """A thing on the table, or `z` above its top."""
+    """Place a thing on the table, or `z` above its top."""
     return thing(name, (x, y, TOP + z), **fields)  # type: ignore[arg-type]
 
 
 def _leaning(name: str, foot_x: float, degrees: float) -> Entity:
-    """A thin upright thing whose lower edge at its +x side is at a place on the table, its top towards -x."""
+    """Place a thin upright thing with its lower +x edge at a point on the table, tilted towards -x."""
     x, _, _ = own_size_m(name.rstrip("0123456789")) or (0.0, 0.0, 0.0)
     lean = math.radians(degrees)
     return on_table(name, foot_x - x / 2 * math.cos(lean), 0.0, x / 2 * math.sin(lean), turn=about_y(degrees))
 
 
 def _ramp(name: str, rise_m: float, run_m: float) -> Entity:
-    """A flat thing with its lower edge on the table at x = 0, over an edge that is so high and so far."""
+    """Place a flat thing with its lower edge on the table at x = 0, leaning on an edge."""
     x, _, _ = own_size_m(name.rstrip("0123456789")) or (0.0, 0.0, 0.0)
     lean = math.atan2(rise_m, run_m)
     return on_table(
@@ -111,7 +111,7 @@ def _ramp(name: str, rise_m: float, run_m: float) -> Entity:
 
 
 def _in(model: str, level: int) -> float:
-    """The height of a board inside a model, the lowest first."""
+    """Return the height of a board inside a model, the lowest first."""
     return sorted(s.height for s in shapes()[model].surfaces)[level]
 
 

@@ -1,4 +1,4 @@
-"""How long relations take: from nothing, and when one thing is moved."""
+"""Duration of computing relations: from scratch, and after one move."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _entity(name: str, model: str, at: Vector, size: Size | None = None) -> Enti
 
 
 def move_ms(entities: int, moves: int = 500) -> float:
-    """The median time in which the relations follow one cup that was moved to another table [ms]."""
+    """Return the median time to update the relations after a cup is moved to another table [ms]."""
     facts, there = Facts(), rooms(entities)
     facts.update(there)
     dice = random.Random(2)
@@ -58,7 +58,7 @@ def move_ms(entities: int, moves: int = 500) -> float:
 
 
 def from_nothing_ms(entities: int, times: int = 20) -> float:
-    """The median time in which all relations of so many are worked out [ms]."""
+    """Return the median time to compute all relations of so many entities [ms]."""
     there = rooms(entities)
     taken = []
     for _ in range(times):

@@ -1,1 +1,1 @@
-"""How fast the simulator is: by itself, and in the whole system."""
+"""Speed of the simulator, alone and in the whole system."""

@@ -10,7 +10,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from benchmarks.sim import alone, doors, drive, endurance, live, system, worlds
+from benchmarks.sim import doors, drive, endurance, live, standalone, system, worlds
 from benchmarks.table import Row, lines
 
 
@@ -37,7 +37,9 @@ def main() -> None:
 
 def _alone(words: argparse.Namespace) -> list[Row]:
     sizes = (10, 100) if words.quick else (10, 100, 500)
-    return [row for size in sizes for row in alone.spawn_and_delete(size)] + alone.real_time_factors()
+    return [
+        row for size in sizes for row in standalone.spawn_and_delete(size)
+    ] + standalone.real_time_factors()
 
 
 def _system(words: argparse.Namespace) -> list[Row]:
@@ -75,7 +77,7 @@ def _drive(words: argparse.Namespace) -> list[Row]:
 
 PARTS: dict[str, Callable[[argparse.Namespace], list[Row]]] = {
     "alone": _alone,
-    "frames": lambda _: alone.frames(),
+    "frames": lambda _: standalone.frames(),
     "system": _system,
     "loads": _loads,
     "live": _live,
@@ -88,7 +90,7 @@ PARTS: dict[str, Callable[[argparse.Namespace], list[Row]]] = {
 
 def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.sim", description="Speed and memory.")
-    parser.add_argument("--parts", default=",".join(PARTS), help=f"of: {','.join(PARTS)}")
+    parser.add_argument("--parts", default=",".join(PARTS), help=f"parts to measure: {','.join(PARTS)}")
     parser.add_argument("--minutes", type=float, default=60.0, help="simulated minutes of endurance")
     parser.add_argument(
         "--door-minutes", type=float, default=1.0, metavar="N",
@@ -99,13 +101,13 @@ def _arguments() -> argparse.Namespace:
         type=int,
         default=1,
         metavar="N",
-        help="so many drives, all but one a bit aside",
+        help="number of drives, all but one with random offsets",
     )
     parser.add_argument(
         "--worlds", type=Path, metavar="DIR",
-        help="instead of the parts: what becomes of the bodies of every MJCF file in this folder",
+        help="instead of the parts: import every MJCF file in this folder, and report its bodies",
     )  # fmt: skip
-    parser.add_argument("--quick", action="store_true", help="small and rough: a look, no figures to cite")
+    parser.add_argument("--quick", action="store_true", help="small and rough, not for publication")
     parser.add_argument("--json", type=Path, metavar="FILE", dest="json_file")
     words = parser.parse_args()
     if words.quick:

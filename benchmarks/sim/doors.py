@@ -1,4 +1,4 @@
-"""Doors: what joints cost at rest, how soon the map follows, and whether map and scene agree in the end."""
+"""Doors: the cost of joints at rest, the latency of commits, and the agreement of map and scene."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 from statistics import median
 from time import thread_time
 
-from benchmarks.sim.made import p50_p95_ms
+from benchmarks.sim.generated_scenes import p50_p95_ms
 from benchmarks.sim.system import Watch
 from benchmarks.table import Row
 from semmap.nodes import bus
@@ -38,11 +38,11 @@ _IN_A_ROW = 5
 _STEP_S = 0.01
 _THERE_RAD = 0.001
 _OFF = Thresholds().share + 0.002
-"""A joint is at odds with the map if it is off by more of its way than what the keeper lets be."""
+"""The deviation beyond which a joint disagrees with the map; it exceeds the reconciler's tolerance."""
 
 
 def measure(folder: Path, *, quick: bool) -> list[Row]:
-    """What joints cost, and how soon the map follows them."""
+    """The cost of joints, and the latency of commits."""
     with own_system(folder / "flat", "--no-record", "--no-sim") as client:
         things = [e for e in client.list() if e.pose is not None and not e.place]
     rows = at_rest(things, 20 if quick else 200)
@@ -51,13 +51,13 @@ def measure(folder: Path, *, quick: bool) -> list[Row]:
 
 
 def measure_at_random(folder: Path, minutes: float) -> list[Row]:
-    """Forty doors for so many simulated minutes; these take longer where the machine is busy."""
+    """Measure forty doors for so many simulated minutes, which take longer on a busy machine."""
     with own_system(folder / "doors", *_BARE) as client:
         return [at_random(client, folder, minutes)]
 
 
 def at_rest(things: Sequence[Entity], trials: int) -> list[Row]:
-    """Real-time factors at rest of a map with all its joints and without any, in turn; and while awake."""
+    """Measure real-time factors with and without joints at rest, in turn; and while awake."""
     worlds = [_furnished(things, models) for models in (build, rigid)]
     joints = len(worlds[0].poses().joints)
     factors = [_in_turn(worlds, trials, awake=awake) for awake in (False, True)]
@@ -71,7 +71,7 @@ def at_rest(things: Sequence[Entity], trials: int) -> list[Row]:
 
 
 def rigid(name: str, size_m: Vec3 | None) -> Model:
-    """A shipped model none of whose parts move."""
+    """Return a shipped model without moving parts."""
     model = build(name, size_m)
     if not model.leaves:
         return model
@@ -99,7 +99,7 @@ def _order(thing: Entity) -> BodyOrder:
 
 
 def _in_turn(worlds: Sequence[World], trials: int, *, awake: bool) -> tuple[float, float]:
-    """The real-time factors [times] of two worlds, as the simulator lets time pass: in steps of 10 ms."""
+    """Return the real-time factors of two worlds, in the simulator's steps of 10 ms."""
     took: list[list[float]] = [[] for _ in worlds]
     for _ in range(trials):
         for world, times in zip(worlds, took, strict=True):
@@ -115,15 +115,15 @@ def _in_turn(worlds: Sequence[World], trials: int, *, awake: bool) -> tuple[floa
 
 
 def mark_awake(world: World) -> None:
-    """Wake all that can move."""
+    """Wake all movable bodies."""
     for tree in range(world.model.ntree):
         sleep.wake(world.data, tree)
 
 
 def soon(client: Client, trials: int) -> list[Row]:
-    """From the end of a fridge door's motion to the commit that states it, as it comes in here.
+    """Measure the latency from the end of a fridge door's motion to the arrival of its commit.
 
-    How long the motion takes is known from the same door in this process, whose simulated time is exact.
+    The duration of the motion is known from the same door in this process, with exact simulated time.
     """
     client.add("Fridge", "fridge1", at=(0.0, 0.0, 0.0), wait=True)
     watch = Watch(client)
@@ -153,7 +153,7 @@ def soon(client: Client, trials: int) -> list[Row]:
 
 
 def _lasts_s(fridge: Entity, swings: Sequence[float]) -> list[float]:
-    """How long the door takes for each of these openings in turn [s of simulated time]."""
+    """Return the durations of these openings in turn [s of simulated time]."""
     world = World()
     world.spawn([_order(fridge)])
     world.step(2.0)
@@ -170,7 +170,7 @@ def _lasts_s(fridge: Entity, swings: Sequence[float]) -> list[float]:
 
 
 def at_random(client: Client, folder: Path, minutes: float) -> Row:
-    """Hands and words open and close doors; how often, when all was quiet, map and joints did not agree."""
+    """Open and close doors manually and by commands; count disagreements of map and joints at rest."""
     described = [
         {"class": CLASSES[i % len(CLASSES)], "name": f"door{i}", "at": [3.0 * (i % 8), 3.0 * (i // 8), 0.0]}
         for i in range(_DOORS)
@@ -208,9 +208,9 @@ def _turn(client: Client, name: str, dice: random.Random) -> None:
 
 
 def _quiet(client: Client) -> list[str]:
-    """Wait until nothing moves and all is followed; the names of which map and joints do not agree.
+    """Wait until nothing moves and all is committed; return the names that disagree.
 
-    Those that are still not in agreement after a while count.
+    Only disagreements that persist after a while count.
     """
     deadline_s = time.monotonic() + _PATIENCE_S
     agreed, doors = 0, tuple(f"door{i}" for i in range(_DOORS))
@@ -222,22 +222,22 @@ def _quiet(client: Client) -> list[str]:
 
 
 def _told(entity: Entity) -> str:
-    """What the map states of a thing's joints, and how they stand."""
+    """Return the asserted and the actual joint positions of a thing."""
     said = {name: entity.properties[name] for name in OPENING if name in entity.properties}
     stands = ", ".join(in_words(joint) for joint in entity.body.joints) if entity.body else "no body"
     return f"{entity.name} (said: {said}; it stands: {stands})"
 
 
 def _scene(client: Client) -> Scene:
-    """The scene as it is now."""
+    """Return the current scene."""
     scene: Scene = bus.ask(client.session, keys.SIM, SceneQuery.VERB, SceneQuery(), Scene)
     return scene
 
 
 def agrees(entity: Entity) -> bool:
-    """Whether its joints stand where the map states, or the map states nothing and they are as made.
+    """Return whether its joints are as asserted, or in their initial position without an assertion.
 
-    Where it only states that a thing is open, any share of the way that counts as open will do.
+    If only `isOpen` is asserted, any position that counts as open is correct.
     """
     if entity.body is None or not entity.body.joints:
         return False

@@ -1,7 +1,7 @@
-"""A drive through rooms of the flat by the robot's head camera: what perception then believes to be there.
+"""A drive through the flat with the robot's head camera: the entities that perception creates.
 
 In one process and in simulated time, so that a busy machine changes nothing: the simulator's world with its
-robot and camera, perception's looks and its association, and a map that does what it is told.
+robot and camera, perception with its association, and a map that applies all updates.
 """
 
 from __future__ import annotations
@@ -52,9 +52,9 @@ _COURSE = (
     *(((5.0, 1.8), yaw) for yaw in (math.pi, 2.4, -2.4)),
     *(((3.6, 1.9), yaw) for yaw in (math.pi, 2.2, 1.4, -2.2, -1.4)),
 )
-"""Where it stops to look, and which way it looks then: a place [m] and a yaw [rad]."""
+"""The stops of the course: position [m] and viewing direction [rad]."""
 _ASIDE_M, _TURNED_RAD = 0.08, 0.12
-"""On courses other than the first it stops up to this far aside, along either axis, and turned by so much."""
+"""The maximum offsets of the stops on other courses, along both axes and in yaw."""
 _LOOKS_S = 2.0
 _NEAR_M = 0.6
 _WRONG_M = 0.2
@@ -64,7 +64,7 @@ _ROBOT, _CAMERA = "robot1", "robot1_head"
 
 
 class Said(NamedTuple):
-    """The demo flat: `classes` of its TBox, all that stands in it but doors, and what is to be found."""
+    """The demo flat: `classes` of its TBox, all things except doors, and the things to be found."""
 
     classes: tuple[ClassInfo, ...]
     everything: list[Entity]
@@ -72,9 +72,9 @@ class Said(NamedTuple):
 
 
 class Course(NamedTuple):
-    """What became of a drive: what is believed to be there, and how often the robot got stuck.
+    """The result of a drive: the perceived entities, and how often the robot got stuck.
 
-    `frame_ms`: CPU time that perception took for a frame, the mean of `frames`.
+    `frame_ms`: mean CPU time of perception per frame, over `frames`.
     """
 
     seen: list[Entity]
@@ -84,7 +84,7 @@ class Course(NamedTuple):
 
 
 class Score(NamedTuple):
-    """How many things are found, how many doubles of them are seen, how many of those found are off."""
+    """The numbers of things found, of duplicates, and of misplaced ones."""
 
     found: float
     doubles: float
@@ -92,9 +92,9 @@ class Score(NamedTuple):
 
 
 def measure(folder: Path, drives: int = 1) -> list[Row]:
-    """The share of things found, doubles, and the share of those found that are in a wrong place.
+    """Return the share of things found, the duplicates, and the share of misplaced ones.
 
-    Means of so many drives, the first of which is the course itself.
+    The figures are means of several drives; the first one is the course itself.
     """
     said = _said(folder)
     started = time.monotonic()
@@ -123,7 +123,7 @@ def measure(folder: Path, drives: int = 1) -> list[Row]:
 
 
 def stops(seed: int) -> list[tuple[tuple[float, float], float]]:
-    """Where a drive stops to look, (x, y) [m] and yaw [rad]: as the course says, or with a seed nearly so."""
+    """Return the stops of a drive, (x, y) [m] and yaw [rad]; a seed adds random offsets."""
     if not seed:
         return list(_COURSE)
     chance = random.Random(seed)
@@ -158,7 +158,7 @@ def _described(thing: Entity) -> dict[str, object]:
 
 
 def _world(folder: Path, said: Said) -> World:
-    """The flat without walls and doors, and the robot in it."""
+    """Return the flat without walls and doors, with the robot."""
     path = folder / "world.json"
     path.write_text(json.dumps({"cameras": [], "entities": [_described(e) for e in said.everything]}))
     robot = RobotConfig(SHIPPED["porter"], _ROBOT, (*_AT, 0.0))
@@ -168,7 +168,7 @@ def _world(folder: Path, said: Said) -> World:
 def _drive(
     world: World, classes: tuple[ClassInfo, ...], course: Sequence[tuple[tuple[float, float], float]]
 ) -> Course:
-    """Along a course, with a look at each stop."""
+    """Drive along a course with an observation at each stop."""
     learnt = shipped()
     observer, hierarchy = Observer(learnt), hierarchy_of(classes, learnt.usual_m)
     believed, tracks, config = ObedientMap(), Tracks(), TrackingConfig()
@@ -196,7 +196,7 @@ def _drive(
 
 
 def _filmed(world: World, eye: Eye) -> Iterator[Cloud]:
-    """What the head's camera sees on the way and, at the end of it, for a while."""
+    """Yield the frames of the head camera on the way and for a while at its end."""
     still_s = 0.0
     while still_s < _LOOKS_S:
         world.step(_FRAME_S)
@@ -215,9 +215,9 @@ def _filmed(world: World, eye: Eye) -> Iterator[Cloud]:
 
 
 def score(things: list[Entity], seen: list[Entity], known: ClassHierarchy | None = None) -> Score:
-    """How many things are found, how many of those seen are doubles of one, how many found are off.
+    """Return the numbers of things found, of duplicates, and of misplaced ones.
 
-    A thing is found by what is seen within 60 cm of it and is called so, or by a more general name: its
+    A thing is found if an entity within 60 cm has its class or a more general one: its
     class, one above it, or Object, as `known` tells. Without `known` any class will do. Pairs are made by
     distance, the nearest first; a double is seen at a thing that something else has found.
     """

@@ -8,18 +8,18 @@ from time import perf_counter
 import numpy as np
 import psutil  # type: ignore[import-untyped]
 
-from benchmarks.sim.made import MODELS, order
+from benchmarks.sim.generated_scenes import MODELS, order
 from benchmarks.table import Row
 from semmap.nodes.sim_node.world import World
 from semmap.schemas.entities import Pose
 from semmap.schemas.scenes import Placement
 
 _SETTLED = 12
-"""Memory after this part of the time is the measure: 5 minutes of 60."""
+"""The first measurement of memory is after this fraction of the time: 5 minutes of 60."""
 
 
 def endure(minutes: float) -> list[Row]:
-    """One change every simulated second, between 20 and 60 bodies on 10 m by 10 m."""
+    """Make one change per simulated second, with 20 to 60 bodies on 10 m by 10 m."""
     world, rng = World(), np.random.default_rng(0)
     process, baseline = psutil.Process(), 0
     rounds, started = int(60 * minutes), perf_counter()

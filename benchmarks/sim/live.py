@@ -1,4 +1,4 @@
-"""What live poses cost: many tracked things, each at 50 Hz, from a process of its own."""
+"""The cost of live poses: many tracked things at 50 Hz each, published from another process."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _SETTLE_S = 3.0
 
 
 def measure(folder: Path, things: int = 100, rate_hz: float = 50.0, seconds: float = 15.0) -> list[Row]:
-    """The coordinator's and the knowledge base's share of a core, the commits, and how old a pose is."""
+    """The CPU shares of coordinator and knowledge base, the commits, and the age of poses."""
     with running(folder, "--no-sim") as (client, _):
         client.clear()
         _load(client, folder, things)
@@ -57,7 +57,7 @@ def measure(folder: Path, things: int = 100, rate_hz: float = 50.0, seconds: flo
 
 
 def publish(endpoint: str, things: int, rate_hz: float, seconds: float, rounds: Synchronized[int]) -> None:
-    """All of them go round in circles; `rounds` counts how often each was published."""
+    """Publish poses on circles; `rounds` counts the publications of each."""
     with connect(endpoint) as client:
         started = time.monotonic()
         while (now_s := time.monotonic() - started) < seconds:
@@ -79,7 +79,7 @@ def _load(client: Client, folder: Path, things: int) -> None:
 
 
 def _shares(nodes: dict[str, psutil.Process], seconds: float) -> dict[str, float]:
-    """By node, its share of one core while so much time passes."""
+    """Return each node's share of one core over a duration."""
     before = {name: sum(process.cpu_times()[:2]) for name, process in nodes.items()}
     started = time.monotonic()
     time.sleep(seconds)

@@ -1,4 +1,4 @@
-"""The simulator in the whole system: `semmap up` in processes of its own, this process its one client."""
+"""The simulator in the whole system: `semmap up` with this process as its only client."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from time import perf_counter, sleep, time_ns
 from typing import Any
 
 from benchmarks.kb.wire import running
-from benchmarks.sim.made import grid, p50_p95_ms
+from benchmarks.sim.generated_scenes import grid, p50_p95_ms
 from benchmarks.table import Row
 from semmap.nodes import bus
 from semmap.nodes.extern.client import Client
@@ -26,7 +26,7 @@ _PATIENCE_S = 120.0
 
 
 class Watch:
-    """Waits for something to be true of what is published; told of each message as it comes in."""
+    """Waits for conditions on published messages; it is notified of each message."""
 
     def __init__(self, client: Client) -> None:
         self._changed = threading.Condition()
@@ -38,18 +38,18 @@ class Watch:
         ]
 
     def close(self) -> None:
-        """Follow no longer."""
+        """Unsubscribe."""
         for subscriber in self._subscribers:
             subscriber.undeclare()
 
     def wait(self, condition: Callable[[], Any]) -> None:
-        """Until it holds; it is looked at after each message."""
+        """Wait until a condition holds, which is evaluated after each message."""
         with self._changed:
             if not self._changed.wait_for(condition, _PATIENCE_S):
                 raise TimeoutError("the system did not get that far")
 
     def row(self, name: str) -> tuple[Pose, bool] | None:
-        """Where the body is, and whether it rests."""
+        """Return the body's position, and whether it is at rest."""
         poses = self.poses
         if poses is None or name not in poses.names:
             return None
@@ -58,7 +58,7 @@ class Watch:
         return Pose(position_m=(x, y, z)), poses.resting[row]
 
     def count(self) -> int:
-        """How many bodies there are."""
+        """Return the number of bodies."""
         return 0 if self.poses is None else len(self.poses.names)
 
     def _on_poses(self, _: str, poses: Poses) -> None:
@@ -74,7 +74,7 @@ class Watch:
 
 
 def measure(folder: Path, bodies: int, trials: int) -> list[Row]:
-    """Beside so many bodies: a command becomes a body, and a body that was moved a commit."""
+    """Measure the latencies from a command to its body and from a moved body to its commit."""
     with _empty_system(folder) as (client, watch):
         _load(client, folder, bodies)
         watch.wait(lambda: watch.count() == bodies)
@@ -97,7 +97,7 @@ def measure(folder: Path, bodies: int, trials: int) -> list[Row]:
 
 
 def load(folder: Path, entities: int, reach_s: float) -> Row:
-    """A whole map from a file, from the command to the last of its bodies."""
+    """Measure loading a map from a file, until its last body exists."""
     with _empty_system(folder) as (client, watch):
         started = perf_counter()
         _load(client, folder, entities)
@@ -108,7 +108,7 @@ def load(folder: Path, entities: int, reach_s: float) -> Row:
 
 @contextmanager
 def _empty_system(folder: Path) -> Iterator[tuple[Client, Watch]]:
-    """A client of a system with neither entities nor bodies, which begins with those of the shipped flat."""
+    """Yield a client of an empty system, which is created with the TBox of the shipped flat."""
     with running(folder) as (client, _):
         watch = Watch(client)
         try:
@@ -140,9 +140,9 @@ def _until_seen(client: Client, watch: Watch, name: str) -> float:
 
 
 def _until_followed(client: Client, watch: Watch, name: str, turn: int) -> tuple[float, float]:
-    """How long until the map's commit came in here [s]: since the body rested, and since the hand's command.
+    """Return the latency of the commit [s]: since the body was at rest, and since the move command.
 
-    It is said to rest by the first poses that say so; they have the simulator's stamp.
+    The first poses with the body at rest have the simulator's time stamp.
     """
     place = (-3.0 - 2.0 * (turn % 10), -3.0 - 2.0 * (turn // 10), 0.0)
     watch.followed_ns.pop(name, None)

@@ -1,4 +1,4 @@
-"""Worlds of others: of every MJCF file below a folder, what becomes of its bodies in a system of its own."""
+"""Third-party worlds: imports every MJCF file below a folder, and reports its bodies."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ _CALM_S = 2.0
 
 
 class Outcome(NamedTuple):
-    """What becomes of the bodies of one world."""
+    """The import result of one world."""
 
     bodies: int
     entities: int
     named: int
-    """How many are no entities, and are said not to be."""
+    """The number of bodies that did not become entities and are reported."""
     lost: tuple[str, ...]
 
 
 def measure(folder: Path) -> list[Row]:
-    """A row for each MJCF file that has bodies; what does not load is told with the reason, and not counted.
+    """Return a row for each MJCF file with bodies; files that fail to load are reported and not counted.
 
     Raises BadFile if there is no such file in the folder.
     """
@@ -75,7 +75,7 @@ def measure(folder: Path) -> list[Row]:
 
 
 def is_scene(path: Path) -> bool:
-    """Whether a file is MJCF by its root, and no part that others include."""
+    """Return whether a file is MJCF by its root element, and not included by others."""
     try:
         root = next(ElementTree.iterparse(path, ("start",)))[1]
     except (ElementTree.ParseError, OSError):
@@ -84,13 +84,13 @@ def is_scene(path: Path) -> bool:
 
 
 def _bodies(path: Path) -> list[str]:
-    """The names of the bodies in a file, "" for those without one. Raises BadFile."""
+    """Return the names of the bodies in a file, "" for unnamed ones. Raises BadFile."""
     model: mujoco.MjModel = read_mjcf(path).compile()
     return [model.body(number).name for number in range(1, model.nbody)]
 
 
 def _try_out_twice(path: Path, names: list[str]) -> Outcome:
-    """The same as `try_out`; on a machine that is too busy a start may fail. Raises RuntimeError."""
+    """Call `try_out`, and retry a failed start on a busy machine. Raises RuntimeError."""
     try:
         return try_out(path, names)
     except RuntimeError:
@@ -98,9 +98,9 @@ def _try_out_twice(path: Path, names: list[str]) -> Outcome:
 
 
 def try_out(path: Path, names: list[str]) -> Outcome:
-    """Begin with this world, and compare what map and `semmap status` say with the names of its bodies.
+    """Start with this world, and compare map and `semmap status` with the names of its bodies.
 
-    A body without a name is accounted for by a name that the system gave it, or by what is told of it.
+    An unnamed body is accounted for by a generated name or by a description in the status.
     """
     words = ("--world", str(path), "--truth", "scene", "--no-record")
     with tempfile.TemporaryDirectory() as folder, own_system(Path(folder) / "data", *words) as client:
@@ -116,7 +116,7 @@ def try_out(path: Path, names: list[str]) -> Outcome:
 
 
 def _settled(client: Client) -> tuple[set[str], Scene]:
-    """The names of the entities, once no more come, and the scene as it is then."""
+    """Return the names of the entities when they are complete, and the scene."""
     deadline, since = time.monotonic() + _PATIENCE_S, math.inf
     before: set[str] = set()
     while time.monotonic() < min(deadline, since + _CALM_S):

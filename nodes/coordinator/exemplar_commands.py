@@ -11,7 +11,7 @@ from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
 from semmap.schemas import commands as c
 from semmap.schemas import errors, keys
 from semmap.schemas.calls import Relay
-from semmap.schemas.lessons import LessonTold
+from semmap.schemas.exemplars import LessonTold
 
 R = TypeVar("R")
 

@@ -22,8 +22,8 @@ from semmap.nodes.runtime.version import version
 from semmap.ontology.model_shapes import own_size_m
 from semmap.schemas import bridge, errors
 from semmap.schemas import commands as c
+from semmap.schemas.attachments import holder_of
 from semmap.schemas.entities import Entity, Size
-from semmap.schemas.grips import holder_of
 from semmap.schemas.moments import When
 from semmap.schemas.relations import Described
 from semmap.schemas.replies import SystemStatus

@@ -152,7 +152,11 @@ class Coordinator:
             ),
         }
         Follower(
-            node, dispatcher.map, keys.UNTOLD, on_commit=lambda commit, known: None, on_snapshot=self._on_map
+            node,
+            dispatcher.map,
+            keys.COMMIT_EFFECTS,
+            on_commit=lambda commit, known: None,
+            on_snapshot=self._on_map,
         )
         node.follow_newest(keys.POSES, self._on_poses)
         node.follow(keys.HEALTH, self._on_health)

@@ -30,7 +30,7 @@ class CommitPublisher:
         self._session = session
         self._describe = describe
         self._commits = bus.publisher(session, keys.COMMIT)
-        self._effects = bus.publisher(session, keys.UNTOLD)
+        self._effects = bus.publisher(session, keys.COMMIT_EFFECTS)
         self._entities_are_watched = bus.subscriber_check(session, keys.ENTITY)
         self._types = {entity.name: entity.types for entity in entities}
 

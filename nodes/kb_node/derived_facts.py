@@ -23,7 +23,7 @@ from semmap.nodes.kb_node.relations.facts.contradictions import PROPERTIES, fact
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.facts.rules import COMPUTED
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Term, Triple
@@ -37,7 +37,7 @@ PART = 20_000
 FEW_ASIDE = 100
 """Up to this number, all suppressed facts are checked against each assertion, which takes some hundredths of
 a second."""
-_MEASURES = frozenset((*stars.COORDINATE_PROPERTIES, *v.SIZE_XYZ, v.LEXICAL_REFERENCE))
+_MEASURES = frozenset((*entity_triples.COORDINATE_PROPERTIES, *v.SIZE_XYZ, v.LEXICAL_REFERENCE))
 """Properties whose values do not relate individuals."""
 
 

@@ -23,7 +23,7 @@ from semmap.nodes.kb_node.relations.facts.rules import RULES, About
 from semmap.nodes.kb_node.relations.lazy_space import LazySpace
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors, wording
 from semmap.schemas.commits import Commit, Edit
@@ -38,7 +38,7 @@ _MANY = 1000
 """Removed entities that are checked for objects that they leave behind."""
 _OPENING = frozenset((v.IS_OPEN, v.OPENNESS, v.JOINT_POSITIONS))
 _GEOMETRY = _OPENING.union(
-    stars.COORDINATE_PROPERTIES, v.SIZE_XYZ, (v.HAS_POSITION, v.HAS_SIZE, v.HAS_EXTENT, v.MODEL)
+    entity_triples.COORDINATE_PROPERTIES, v.SIZE_XYZ, (v.HAS_POSITION, v.HAS_SIZE, v.HAS_EXTENT, v.MODEL)
 )
 _SHAPING: Final = (EXTENT, *OPENING)
 """Properties that the shape depends on."""

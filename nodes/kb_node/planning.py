@@ -54,7 +54,7 @@ def make_plan(state: MapState, transaction: Transaction) -> Plan | None:
     for triple in retracted:
         if triple in state.tbox:
             raise errors.Refused(
-                f"the TBox states that {v.spoken(triple)}, and commands cannot change the TBox"
+                f"the TBox states that {v.to_words(triple)}, and commands cannot change the TBox"
             )
     return Plan(retracted, inserted, (*notes, *denied.notes))
 

@@ -57,7 +57,7 @@ def require(transaction: Transaction, held: Container[Triple]) -> None:
     """Raise PreconditionFailed for a required triple that is not in `held`."""
     for triple in transaction.require:
         if triple not in held:
-            raise errors.PreconditionFailed(f"it no longer holds that {v.spoken(triple)}; repeat the query")
+            raise errors.PreconditionFailed(f"it no longer holds that {v.to_words(triple)}; repeat the query")
 
 
 def require_unchanged(transaction: Transaction, entities: Mapping[str, Entity]) -> None:

@@ -1,1 +1,1 @@
-"""What people say about a map and what is said of it: words, nouns and phrases, which all parts share."""
+"""Language processing: commands, noun phrases and generated texts; words, nouns and phrases are shared."""

@@ -28,7 +28,7 @@ _IRREGULAR: Final = {
     "woman": "women",
 }
 _COMPOUNDED: Final = ("shelf", "knife", "leaf", "loaf")
-"""Irregular also as the end of a word: bookshelf."""
+"""Irregular also as the last part of a compound: bookshelf."""
 _WITHOUT_ARTICLE: Final = frozenset(
     (
         *("air", "bread", "butter", "cheese", "chocolate", "clothing", "conditioning", "corn", "cutlery"),
@@ -50,7 +50,7 @@ _WITHOUT_ARTICLE: Final = frozenset(
         *("pants", "scissors", "shoes", "slippers", "stairs", "trousers"),
     )
 )
-"""Last words of what is not counted one by one, and of what is always several."""
+"""Last words of mass nouns and of nouns that are always plural."""
 _AS_CONSONANT: Final = re.compile(
     r"(?:eu|one\b|once|ubiq|uni(?!n|m)|us[aeiu]|ut[ei]|u\b|ur[aeio])", re.IGNORECASE
 )
@@ -59,19 +59,19 @@ _NUMBERS: Final = ("no", "one")
 
 
 def is_counted(noun: str) -> bool:
-    """Whether one says "a chair", and not, as of milk, scissors and Anna, "a milk"."""
+    """Return whether a noun takes an article ("a chair"), unlike milk, scissors and Anna."""
     return not noun.istitle() and noun.lower().rpartition(" ")[2] not in _WITHOUT_ARTICLE
 
 
 def article(noun: str) -> str:
-    """`a` or `an`, by how the word is likely to be spoken."""
+    """Return `a` or `an`, by the likely pronunciation of the word."""
     if _AS_VOWEL.match(noun):
         return "an"
     return "an" if noun[:1].lower() in "aeiou" and not _AS_CONSONANT.match(noun) else "a"
 
 
 def plural(noun: str) -> str:
-    """The plural of a noun phrase whose last word is its noun."""
+    """Return the plural of a noun phrase whose last word is its noun."""
     if not is_counted(noun):
         return noun
     before, space, word = noun.rpartition(" ")
@@ -91,23 +91,23 @@ def _plural(word: str) -> str:
     return word + "s"
 
 
-def counted(count: int, noun: str) -> str:
-    """`a chair`, `4 chairs`, `milk`, `milk (2)`."""
+def with_count(count: int, noun: str) -> str:
+    """Return `a chair`, `4 chairs`, `milk` or `milk (2)`."""
     if not is_counted(noun):
         return noun if count == 1 else f"{noun} ({count})"
     return f"{article(noun)} {noun}" if count == 1 else f"{count} {plural(noun)}"
 
 
-def number(count: int, noun: str) -> str:
-    """`no chairs`, `one chair`, `4 chairs`."""
+def with_number_word(count: int, noun: str) -> str:
+    """Return `no chairs`, `one chair` or `4 chairs`."""
     return f"{_NUMBERS[count] if count < len(_NUMBERS) else count} {noun if count == 1 else plural(noun)}"
 
 
 def is_plural(count: int, noun: str) -> bool:
-    """Whether the verb that goes with so many is in the plural."""
+    """Return whether the verb for this number of things is in the plural."""
     return count != 1 or (not is_counted(noun) and noun.endswith("s"))
 
 
-def listed(parts: Sequence[str]) -> str:
-    """`a cup, 2 plates and a spoon`."""
+def enumerate_nouns(parts: Sequence[str]) -> str:
+    """Return an enumeration: `a cup, 2 plates and a spoon`."""
     return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}" if parts else ""

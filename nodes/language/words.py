@@ -1,4 +1,4 @@
-"""A sentence as words: base forms and parts of speech, by a lexicon and the words around."""
+"""Tokenisation, base forms and part-of-speech tagging by a lexicon and neighbouring words."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _OPENS_CLAUSE: Final = ("conj", "modal", "adv", "neg")
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """A word of a sentence: as said, its base form, its part of speech."""
+    """A word of a sentence: its text, base form and part of speech."""
 
     text: str
     lemma: str
@@ -42,17 +42,17 @@ class Word:
 
 
 def split(text: str) -> list[str]:
-    """The words of a text in lower case, without punctuation; `it's` and `don't` are two words each."""
+    """Return a text's words in lower case, without punctuation; `it's` and `don't` are two words each."""
     return _WORD.findall(plain(text))
 
 
 def plain(text: str) -> str:
-    """A text in lower case, without markup and terminals' control sequences, apostrophes alike."""
+    """Return a text in lower case, without markup and control sequences, with uniform apostrophes."""
     return _NOT_SAID.sub(" ", text).lower().replace("’", "'")
 
 
 def lemma(word: str, lexicon: Lexicon) -> str:
-    """The base form: irregular ones by the lexicon, plurals by their ending."""
+    """Return the base form: irregular words by the lexicon, plurals by their ending."""
     if word in lexicon.irregular:
         return lexicon.irregular[word]
     if len(word) > 3 and word.endswith("ies"):
@@ -64,15 +64,15 @@ def lemma(word: str, lexicon: Lexicon) -> str:
     return word
 
 
-def based(text: str, lexicon: Lexicon) -> str:
-    """A text with each word in its base form."""
+def to_base_forms(text: str, lexicon: Lexicon) -> str:
+    """Return a text with each word in its base form."""
     return " ".join(lemma(word, lexicon) for word in text.split())
 
 
 def tag(texts: Sequence[str], lexicon: Lexicon, kinds: Sequence[PartOfSpeech | None] = ()) -> list[Word]:
-    """Words with their base forms and parts of speech.
+    """Return the words with their base forms and parts of speech.
 
-    texts: lower-case words in order. kinds: the parts of speech that are known, None for each that is not.
+    `texts` are lower-case words in order. `kinds` are the known parts of speech, None for unknown ones.
     """
     tagged: list[Word] = []
     for i, text in enumerate(texts):
@@ -83,12 +83,12 @@ def tag(texts: Sequence[str], lexicon: Lexicon, kinds: Sequence[PartOfSpeech | N
 
 
 def is_verb(text: str, lexicon: Lexicon) -> bool:
-    """Whether a word may be a form of a verb of the lexicon."""
+    """Return whether a word can be a form of a verb of the lexicon."""
     return bool(_verb(text, lexicon))
 
 
 def _verb(text: str, lexicon: Lexicon) -> str:
-    """The base form of a verb of the lexicon, "" for what is none."""
+    """Return the base form of a verb of the lexicon, or "" for any other word."""
     forms = [text, lexicon.irregular.get(text, "")]
     for ending in ("ing", "ed"):
         if text.endswith(ending) and len(text) > len(ending) + 2:
@@ -98,7 +98,7 @@ def _verb(text: str, lexicon: Lexicon) -> str:
 
 
 def _kind(texts: Sequence[str], i: int, before: Sequence[Word], lexicon: Lexicon) -> PartOfSpeech:
-    """The part of speech of the word at i, the words before it being known."""
+    """Return the part of speech of the word at i, given the tagged words before it."""
     text, is_a = texts[i], lexicon.is_a
     previous = before[-1] if before else None
     following = texts[i + 1] if i + 1 < len(texts) else ""
@@ -144,10 +144,10 @@ def _kind(texts: Sequence[str], i: int, before: Sequence[Word], lexicon: Lexicon
 
 
 def _begins_as_verb(text: str, previous: Word | None, following: str, lexicon: Lexicon) -> bool:
-    """Whether the word stands where a verb does: at the start of a clause, or where no noun would."""
+    """Return whether the word is in the position of a verb: at the start of a clause, or not after a noun."""
     opens = previous is None or previous.kind in _OPENS_CLAUSE or lexicon.is_a(previous.text, "clause_opener")
     base = _verb(text, lexicon)
-    if not base:  # not known, and yet said as one
+    if not base:  # an unknown verb
         if opens and lexicon.is_a(text, "untaught"):
             return True
         known = any(lexicon.is_a(text, name) for name in ("preposition", "adverb", "adjective", "robot"))
@@ -161,7 +161,7 @@ def _begins_as_verb(text: str, previous: Word | None, following: str, lexicon: L
 
 
 def _is_particle(text: str, following: str, before: Sequence[Word], lexicon: Lexicon) -> bool:
-    """Whether the word belongs to the verb (turn on the light, turn it off) and opens no phrase."""
+    """Return whether the word belongs to the verb (turn on the light, turn it off) and opens no phrase."""
     if not lexicon.is_a(text, "particle"):
         return False
     verb = next((word for word in reversed(before) if word.kind == "verb"), None)

@@ -15,7 +15,7 @@ from semmap.nodes.perception_node.views.merged_thing import Thing
 from semmap.nodes.runtime.loop import Node
 from semmap.schemas import calls, errors, keys, wording
 from semmap.schemas.commands import Forget, Learn, Learned
-from semmap.schemas.lessons import LessonTold, ShownView
+from semmap.schemas.exemplars import LessonTold, ShownView
 from semmap.schemas.perception import Observation
 
 _NOW_S = 3.0

@@ -20,7 +20,7 @@ from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, 
 from semmap.nodes.perception_node.recognition.similarity import WIDTH
 from semmap.schemas.entities import Size
 from semmap.schemas.errors import BadFile, BadRequest, Refused, did_you_mean
-from semmap.schemas.lessons import LessonTold
+from semmap.schemas.exemplars import LessonTold
 from semmap.schemas.wording import few
 
 FILENAME = "lessons.npz"

@@ -62,7 +62,7 @@ def _bullet(entity: Entity) -> str:
 def _triples(title: str, sign: str, triples: tuple[Triple, ...]) -> str:
     if not triples:
         return ""
-    lines = [f"{sign} {v.spoken(triple)}" for triple in triples[:_LINES]]
+    lines = [f"{sign} {v.to_words(triple)}" for triple in triples[:_LINES]]
     if len(triples) > _LINES:
         lines.append(f"  ... and {len(triples) - _LINES} more")
     return "\n".join([f"**{title}** ({len(triples)})", "", "```", *lines, "```"])

@@ -1,1 +1,1 @@
-"""What perception learns from: simulated scenes, and the makers of what it ships. Part of no node."""
+"""Training of the shipped models of perception and language. It is not part of any node."""

@@ -1,6 +1,6 @@
-"""Twenty things at rest under perception's eyes: which relations go again that came.
+"""Noisy observations of twenty objects at rest: counts relations that appear and disappear.
 
-The looks are noisy; what becomes of them is decided by perception's own tracks and map updates.
+The observations pass through perception's tracks and map updates.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from semmap.schemas.perception import Observation
 
 LOOKS_A_SECOND = 2.0
 POSITION_M, SIZE_M = 0.004, 0.003
-"""Standard deviations of one look, whose mean the tracks make; two views are 3 mm off in the median."""
+"""Standard deviations of one observation, which tracks average; two views differ by 3 mm in the median."""
 _SEEN = Provenance(commit=1, stamp_ns=0, source="perception")
 
 

@@ -1,4 +1,4 @@
-"""The picture of foreign things, with some made here: each is on it once, and what came of it is counted."""
+"""The contact sheet of foreign things: each one is on it once, and the results are counted."""
 
 import json
 
@@ -35,7 +35,7 @@ def test_each_thing_is_on_a_table_once_and_none_in_another(things):
 def test_what_came_of_each_is_counted_and_shown_in_its_colour(things):
     picture, total = drawn(shipped(), things[:2], seed=1)
     assert total.total() == 2
-    assert not total["exact"]  # a box is no bottle
+    assert not total["exact"]  # a box is not a bottle
     pixels = np.asarray(picture)
     assert pixels.shape[1] % ACROSS == 0
     assert (pixels[:, -pixels.shape[1] // ACROSS :][:300] == 255).all()  # two tables, and no third

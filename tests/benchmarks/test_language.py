@@ -24,7 +24,7 @@ EXAMPLE = Example(
     WORDS,
     (Filled("Bringing", (1,), (Role("Theme", 2, 3, 3), Role("Beneficiary", 4, 5))),),
     (Thing("book1", "Book"),),
-    ((3, "book1"), (5, "nobody")),
+    ((3, "book1"), (5, "missing")),
 )
 THEME = Argument("Theme", "the book", (2, 3), 3, "book1")
 TO_ME = Argument("Beneficiary", "to me", (4, 5), 5)

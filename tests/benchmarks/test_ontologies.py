@@ -37,13 +37,13 @@ def test_a_folder_has_a_row_for_each_ontology(folder, tmp_path):
         assert sound[figure] >= 0
 
 
-def test_who_takes_too_long_is_told(folder):
+def test_a_timeout_is_reported(folder):
     found = ontologies.measured(folder / "below" / "sound.ttl", "owlrl", (), 0.01)
     assert found == {"owlrl_s": None, "owlrl_says": "more than 0.01 s"}
     assert "more than 0.01 s" in ontologies.line({"file": "f", "warnings": []} | found)
 
 
-def test_who_fails_is_told(folder):
+def test_a_failure_is_reported(folder):
     found = ontologies.measured(folder / "bad.ofn", "owlrl", (), 60.0)
     assert found["owlrl_s"] is None
     assert found["owlrl_says"].startswith("failed: ")

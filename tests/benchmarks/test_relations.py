@@ -1,8 +1,8 @@
 """What the benchmark of spatial relations counts, on a few scenes."""
 
-from benchmarks.relations.rightness import Counts, against_contacts, flat, inside_against_samples
+from benchmarks.relations.accuracy import Counts, against_contacts, flat, inside_against_samples
 from benchmarks.relations.speed import rooms
-from benchmarks.relations.watched import at_rest
+from benchmarks.relations.stability import at_rest
 from benchmarks.table import Row, as_json
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.relations.facts.contradictions import PROPERTIES, fact_of

@@ -11,7 +11,7 @@ from semmap.nodes.runtime.class_names import ClassNames
 from semmap.schemas import errors, keys
 from semmap.schemas.commands import Forget, Learn
 from semmap.schemas.entities import ClassInfo
-from semmap.schemas.lessons import ShownView
+from semmap.schemas.exemplars import ShownView
 from tests.perception_node.things import at, entity
 
 VIEW = ShownView(features=b"", size_m=(0.1, 0.1, 0.1))

@@ -94,7 +94,7 @@ def test_a_scene_with_a_fault_names_the_field(change, said):
         ),
         ({"at": [0, 0, 1], "look_at": [0, 0, 1]}, "look_at is the camera's own position"),
         ({"at": [0, 0, 1], "orientation": [1, 1, 0, 0]}, "has length 1.414; it must be 1"),
-        ({"at": [0, 0, 1], "look_at": [1, 0, 1], "fovy": 58}, "fovy is 58; it is an angle .* radians"),
+        ({"at": [0, 0, 1], "look_at": [1, 0, 1], "fovy": 58}, "fovy is 58; it must be from .* radians"),
         ({"at": [0, 0, 1], "look_at": [1, 0, 1], "name": "a/b"}, "name must be a valid name"),
         ({"at": [0, 0, 1], "lookat": [1, 0, 1]}, "no field 'lookat'; did you mean look_at"),
     ],

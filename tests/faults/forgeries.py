@@ -61,7 +61,7 @@ def forged_commit(ground: Ground) -> None:
                 seq=seq, stamp_ns=time.time_ns(), id=f"forged{seq}", source="scene", removed=gone, digest="00"
             )
             session.put(keys.COMMIT.key, codec.encode(commit))
-            session.put(keys.UNTOLD.key, codec.encode(Effects.of(commit)))
+            session.put(keys.COMMIT_EFFECTS.key, codec.encode(Effects.of(commit)))
         wait_for(lambda: name in {entity.name for entity in client.list("Bowl")}, "what was hidden is there")
 
         def is_removed() -> bool:
@@ -77,7 +77,7 @@ def commit_far_ahead(ground: Ground) -> None:
     """A forged commit with a number far ahead is searched for, and then forgotten."""
     with ground.client() as client, _stranger(ground) as session:
         commit = Commit(seq=10**12, stamp_ns=1, id="far", source="scene", digest="00")
-        session.put(keys.UNTOLD.key, codec.encode(Effects.of(commit)))
+        session.put(keys.COMMIT_EFFECTS.key, codec.encode(Effects.of(commit)))
         assert client.status().commit < 10**9
 
 

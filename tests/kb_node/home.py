@@ -7,7 +7,7 @@ from tempfile import TemporaryDirectory
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
-from semmap.ontology import HOUSEHOLD_TTL, stars
+from semmap.ontology import HOUSEHOLD_TTL, entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas.commits import Transaction
 from semmap.schemas.entities import Pose
@@ -103,7 +103,7 @@ def transaction(number, insert=(), retract=(), **fields):
 
 def chair(name="chair1", at=(1.0, 2.0, 0.0), **described):
     """Return the triples of a chair."""
-    return stars.star(name, v.dm("Chair"), pose=Pose(position_m=at), **described)
+    return entity_triples.describe(name, v.dm("Chair"), pose=Pose(position_m=at), **described)
 
 
 def state(semantic_map: SemanticMap):

@@ -12,7 +12,7 @@ from semmap.nodes.kb_node.entities import new_entities
 from semmap.nodes.kb_node.relations.facts.precomputation import Precomputation
 from semmap.nodes.kb_node.relations.facts.precompute_messages import PrecomputeResult
 from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commits import NewEntity, Statement, Transaction
@@ -52,7 +52,7 @@ def said(new, name="load"):
     triples = [
         triple
         for one in new
-        for triple in stars.star(
+        for triple in entity_triples.describe(
             one.name, v.iri(one.class_iri), pose=one.pose, size_m=one.size, preferred=one.ref
         )
     ]

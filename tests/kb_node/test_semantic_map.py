@@ -6,7 +6,7 @@ from msgspec import structs
 from semmap.nodes.kb_node.applier import Applier
 from semmap.nodes.kb_node.storage import conclusions_format
 from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import codec, errors
 from semmap.schemas.commits import Commit, Edit, NewEntity, Snapshot
@@ -179,14 +179,21 @@ def test_provenance_has_the_last_change(semantic_map):
     assert marks() == (1, 1, 1, 1)
     semantic_map.commit(
         transaction(
-            2, stars.position(CHAIR1, node, second), stars.position(CHAIR1, node, first), source="scene"
+            2,
+            entity_triples.position(CHAIR1, node, second),
+            entity_triples.position(CHAIR1, node, first),
+            source="scene",
         )
     )
     assert marks() == (2, 2, 1, 1)
     assert semantic_map.entity("chair1").pose_provenance.source == "scene"
-    semantic_map.commit(transaction(3, stars.size(CHAIR1, v.entity_iri("chair1_size"), (1.0, 1.0, 1.0))))
+    semantic_map.commit(
+        transaction(3, entity_triples.size(CHAIR1, v.entity_iri("chair1_size"), (1.0, 1.0, 1.0)))
+    )
     assert marks() == (3, 2, 3, 1)
-    semantic_map.commit(transaction(4, stars.preferred_reference(CHAIR1, v.entity_iri("r"), "stool")))
+    semantic_map.commit(
+        transaction(4, entity_triples.preferred_reference(CHAIR1, v.entity_iri("r"), "stool"))
+    )
     assert marks() == (4, 2, 3, 4)
     semantic_map.commit(
         transaction(5, [(CHAIR1, v.RDF_TYPE, v.dm("Door"))], [(CHAIR1, v.RDF_TYPE, v.dm("Chair"))])

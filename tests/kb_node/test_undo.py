@@ -2,7 +2,7 @@ import pytest
 
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.undo import undo
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commands import Undo
@@ -122,7 +122,7 @@ RESTS = {
     "moved since": lambda m: order(m, "chair1", A, B),
     "removed since": lambda m: m.commit(transaction(next(ids), (), chair("chair1"), reason="gone")),
     "given a size since": lambda m: m.commit(
-        transaction(next(ids), stars.size(CHAIR1, v.entity_iri("chair1_size"), (1.0, 1.0, 1.0)))
+        transaction(next(ids), entity_triples.size(CHAIR1, v.entity_iri("chair1_size"), (1.0, 1.0, 1.0)))
     ),
     "spoken of since": says(":chair2 dm:isLocatedIn :kitchen1 . :kitchen1 dm:near :chair1 ."),
     "shared since": says(":chair2 dm:hasPosition :chair1_coordinates ."),

@@ -32,14 +32,14 @@ from semmap.nodes.language import nouns
     ],
 )
 def test_one_and_several(noun, one, two):
-    assert (nouns.counted(1, noun), nouns.counted(2, noun)) == (one, two)
+    assert (nouns.with_count(1, noun), nouns.with_count(2, noun)) == (one, two)
 
 
 def test_numbers_and_lists():
-    assert [nouns.number(n, "thing") for n in (0, 1, 2)] == ["no things", "one thing", "2 things"]
-    assert nouns.listed([]) == ""
-    assert nouns.listed(["a cup"]) == "a cup"
-    assert nouns.listed(["a cup", "2 plates", "milk"]) == "a cup, 2 plates and milk"
+    assert [nouns.with_number_word(n, "thing") for n in (0, 1, 2)] == ["no things", "one thing", "2 things"]
+    assert nouns.enumerate_nouns([]) == ""
+    assert nouns.enumerate_nouns(["a cup"]) == "a cup"
+    assert nouns.enumerate_nouns(["a cup", "2 plates", "milk"]) == "a cup, 2 plates and milk"
 
 
 def test_the_verb_agrees():

@@ -1,4 +1,4 @@
-"""What there is to be named: classes by label, name and synonym, and what is above them."""
+"""The vocabulary: classes by label, name and synonym, and their superclasses."""
 
 from semmap.nodes.language.vocabulary import vocabulary
 from tests.language.household import LEXICON

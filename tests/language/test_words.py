@@ -132,7 +132,7 @@ def test_parts_of_speech_follow_from_the_words_around(text, kinds):
     assert " ".join(word.kind for word in tag(split(text), LEXICON)) == kinds
 
 
-def test_a_verb_that_nobody_knows_is_still_one():
+def test_an_unknown_verb_is_a_verb():
     word = tag(split("frobnicate the cup"), LEXICON)[0]
     assert (word.kind, word.lemma) == ("verb", "frobnicate")
     assert word.lemma not in LEXICON.frames

@@ -1,1 +1,1 @@
-"""Changes the code of a node a little, and shows whether the node's own tests notice: `make mutants`."""
+"""Mutation testing of a node's code with its own tests: `make mutants`."""

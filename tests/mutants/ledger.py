@@ -1,4 +1,4 @@
-"""What came of mutants, kept in a file: a run that was ended goes on where it stood."""
+"""The outcomes of mutants in a file, so that an interrupted run can be continued."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ class Ledger:
         self._outcomes: dict[str, str] = dict(json.loads(line) for line in lines)
 
     def find(self, mutant: Mutant, tests: OwnTests) -> str | None:
-        """Return what came of this mutant before these tests; None if it was not tried."""
+        """Return the outcome of a mutant with these tests, or None if it was not tried."""
         return self._outcomes.get(self._key(mutant, tests))
 
     def note(self, mutant: Mutant, tests: OwnTests, outcome: str) -> None:
-        """Keep what came of a mutant."""
+        """Store the outcome of a mutant."""
         with self._lock, self._path.open("a") as file:
             file.write(json.dumps([self._key(mutant, tests), outcome]) + "\n")
 

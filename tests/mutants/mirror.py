@@ -1,4 +1,4 @@
-"""Which tests a module's own are."""
+"""Maps a module to its own tests."""
 
 from __future__ import annotations
 

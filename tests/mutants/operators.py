@@ -1,4 +1,4 @@
-"""Which changes are made, of those that Cosmic Ray offers, and how each is described in a list."""
+"""The mutation operators of Cosmic Ray that are used, and their descriptions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is printed of the mutants that were tried."""
+"""The report on tested mutants."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tests.mutants.trial import BROKEN, KILLED, NO_TEST, SURVIVED, TIMEOUT
 
 @dataclass(frozen=True)
 class Tried:
-    """A mutant, the tests that it was tried against, and what came of it."""
+    """A mutant, its tests and its outcome."""
 
     mutant: Mutant
     tests: OwnTests

@@ -1,4 +1,4 @@
-"""Draws mutants of a part of the code: the same for the same code, number and seed."""
+"""Random sampling of mutants; reproducible for the same code, number and seed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which tests a module's own are."""
+"""The mapping of modules to their tests."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What is not changed, because no test of behaviour can notice it."""
+"""The parts of modules that are not mutated."""
 
 import pytest
 

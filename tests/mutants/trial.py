@@ -1,4 +1,4 @@
-"""Tries one mutant after another in copies of the checkout, which itself is never changed."""
+"""Runs the tests of mutants in copies of the checkout, which itself is not changed."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ _OUTCOMES: dict[int | None, str] = {0: SURVIVED, None: TIMEOUT}
 
 
 def _files(root: Path) -> list[str]:
-    """What git has, or would take, from the root of the checkout."""
+    """Return the files that git tracks or would add, from the root of the checkout."""
     listed = subprocess.run(
         ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
         cwd=root,

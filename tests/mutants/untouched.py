@@ -1,4 +1,4 @@
-"""The parts of a module that are not changed, because no test of behaviour can notice it."""
+"""The parts of a module that are not mutated, because no test of behaviour can detect it."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from rdflib import OWL, RDF, XSD, Graph, URIRef
 
-from benchmarks.relations.rightness import FLAT_BY_HAND
+from benchmarks.relations.accuracy import FLAT_BY_HAND
 from semmap.ontology import EMPTY_WORLD, FLAT_WORLD, vocabulary
 from tests.ontology.graphs import DM, MAP, local, named, read, superclasses
 

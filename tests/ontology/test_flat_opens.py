@@ -1,4 +1,4 @@
-"""Whatever opens in the flat opens all the way, and shuts again; nothing else is pushed about by it."""
+"""Every door and drawer in the flat opens and closes completely, without moving other bodies."""
 
 import math
 

@@ -210,7 +210,7 @@ def test_every_kind_of_axiom_is_there(tbox: Graph) -> None:
 @pytest.mark.parametrize(
     "word", ["Message", "Head", "Hair", "Garbage", "Mouse", "Wire", "Ruler", "Cover", "House"]
 )
-def test_words_of_speech_that_are_no_class(tbox: Graph, word: str) -> None:
+def test_synonyms_that_are_not_classes(tbox: Graph, word: str) -> None:
     assert named(word) not in classes(tbox)
 
 

@@ -8,7 +8,7 @@ import pytest
 from rdflib import OWL, RDF, Graph, URIRef
 from rdflib.term import Node
 
-from benchmarks.relations.rightness import FLAT_BY_HAND
+from benchmarks.relations.accuracy import FLAT_BY_HAND
 from semmap.nodes.kb_node.owlrl.closure_process import close
 from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
 from tests.ontology.graphs import DM, MAP, classes, forget_unused_classes, local, named, read

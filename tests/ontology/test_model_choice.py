@@ -1,4 +1,4 @@
-"""Which model of a class an entity has, by its name and its size."""
+"""Selection of an entity's model by name and size."""
 
 import msgspec
 import pytest

@@ -67,7 +67,7 @@ def test_every_escape_is_read(term: str, text: str) -> None:
 @pytest.mark.parametrize(
     "term", ["<urn:a>", "_:b", "plain", '"open', '"a"b"', r'"\x"', r'"\u12"', '"a"@', '"a"^^urn:d']
 )
-def test_what_is_no_literal_is_refused(term: str) -> None:
+def test_invalid_literals_are_rejected(term: str) -> None:
     with pytest.raises(ValueError, match="literal"):
         v.lexical(term)
 

@@ -1,4 +1,4 @@
-"""A call says what it is answered with: at run time, and to mypy."""
+"""Reply types of requests, at run time and for mypy."""
 
 from __future__ import annotations
 
@@ -49,8 +49,8 @@ def test_a_kind_of_a_call_is_answered_like_it():
 
 
 @pytest.mark.parametrize("kind", [Call, commands.Command])
-def test_what_is_no_particular_call_has_no_reply(kind):
-    with pytest.raises(TypeError, match="does not say what it is answered with"):
+def test_base_classes_have_no_reply_type(kind):
+    with pytest.raises(TypeError, match="has no reply type"):
         reply_type(kind)
 
 

@@ -1,4 +1,4 @@
-"""What was and what is, in words."""
+"""Changes of entities as text."""
 
 import pytest
 

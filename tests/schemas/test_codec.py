@@ -121,7 +121,7 @@ def test_a_bad_field_is_named_with_what_it_may_be(fields, text):
         (b'{"class": "Chair", "at": [1e999, 0, 0]}', f"at: the 1st {NUMBER}"),
     ],
 )
-def test_what_is_no_message_is_told_as_such(payload, text):
+def test_invalid_messages_are_reported(payload, text):
     with pytest.raises(errors.BadRequest) as caught:
         codec.decode(payload, Add)
     assert caught.value.text == f"malformed message: {text}"
@@ -139,7 +139,7 @@ def test_any_bytes_are_a_message_or_a_bad_request(payload, kind):
         codec.decode(payload, kind)
 
 
-def test_a_value_inside_a_list_is_told_by_its_place():
+def test_a_value_in_a_list_is_reported_by_its_position():
     with pytest.raises(errors.BadRequest, match="the 2nd: there is no field 'nmae'; did you mean name"):
         codec.decode(msgpack.packb([{"name": "a", "types": []}, {"nmae": "b"}]), tuple[Departed, ...])
     with pytest.raises(errors.BadRequest, match=r"the quaternion .* has length 0; it must be 1"):
@@ -214,7 +214,7 @@ def test_what_may_be_several_things_and_large_bounds_are_spelled_out(kind, field
     assert caught.value.text == f"malformed message: {text}"
 
 
-def test_a_number_that_is_too_large_is_told():
+def test_a_number_that_is_too_large_is_reported():
     with pytest.raises(errors.BadRequest, match="more than 64 bits"):
         codec.encode({"values": [10**40]})
 

@@ -68,7 +68,7 @@ def test_at_most_three_names_are_offered():
     assert errors.did_you_mean("chair", []) == ""
 
 
-def test_unknown_classes_are_told_with_their_nearest_and_their_individuals():
+def test_unknown_classes_are_reported_with_suggestions_and_individuals():
     text = errors.unknown_classes({"Chiar": ["c1"], "Xylophone": ["x1", "x2"]}, ["Chair", "Table"])
     assert text == (
         "unknown classes 'Chiar' (of c1; did you mean Chair?), 'Xylophone' (of x1, x2);"

@@ -1,4 +1,4 @@
-"""How far open a thing is, and how a map states it."""
+"""Openness and joint positions, and their properties in a map."""
 
 import pytest
 from msgspec import structs
@@ -47,7 +47,7 @@ def test_positions_are_read_as_they_are_written():
     assert joints.positions_of(text) == {"door": 0.123, "lid": 0.0}
 
 
-def test_what_is_no_position_is_passed_over():
+def test_malformed_positions_are_ignored():
     assert joints.positions_of("door=wide =1 lid 2 flap=0.5") == {"flap": 0.5}
 
 
@@ -72,7 +72,7 @@ def test_the_most_exact_statement_counts():
         ),
     ],
 )
-def test_joints_are_told_in_words(joint, said):
+def test_joints_as_text(joint, said):
     assert joints.in_words(joint) == said
 
 
@@ -96,7 +96,7 @@ def test_of_switches_and_of_all_else_the_most_exact_statement_counts():
     assert joints.stated(both, {"isSwitchedOn": False}) == {"light": 0.0}
 
 
-def test_what_is_said_of_switches_leaves_doors_as_they_are_made():
+def test_switch_assertions_do_not_affect_doors():
     ajar = structs.replace(DOOR, initial=0.2)
     assert joints.wanted([ajar, SWITCH], {"isSwitchedOn": True}) == {"door": 0.2, "light": -0.7}
     assert joints.wanted([ajar, SWITCH], {"openness": 1.0}) == {"door": 1.6, "light": 0.0}

@@ -25,7 +25,7 @@ def test_last_chunk():
     assert keys.last_chunk("add") == "add"
 
 
-def test_the_key_of_a_command_says_who_asks():
+def test_the_key_of_a_command_contains_the_identity():
     key = f"{keys.commands_as('bob')}/add"
     assert key == "semmap/as/bob/cmd/add"
     assert keys.asked_as(key) == "bob"
@@ -42,7 +42,7 @@ def test_the_key_of_a_command_says_who_asks():
         assert keys.asked_as(another) == ""
 
 
-def test_who_serves_a_command_serves_it_whoever_asks():
+def test_the_server_of_a_command_does_not_depend_on_the_identity():
     for verb in ("add", "sparql"):
         assert keys.servers(keys.commands_as("bob"), verb) == keys.servers(keys.CMD, verb)
     assert keys.servers(keys.CMD, "sparql") == ("kb_node", "coordinator")

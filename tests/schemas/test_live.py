@@ -37,7 +37,7 @@ def test_all_of_them_travel_together():
         {},
     ],
 )
-def test_what_is_no_pose_is_refused(fields):
+def test_invalid_poses_are_rejected(fields):
     with pytest.raises(errors.BadRequest):
         codec.decode(codec.encode(fields), LivePose).require_pose()
 

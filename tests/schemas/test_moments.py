@@ -66,7 +66,7 @@ def test_a_stamp_is_found_again_however_it_is_written(stamp_ns):
         assert moment.first_ns <= stamp_ns <= moment.last_ns, when
 
 
-def test_a_time_gets_the_offset_of_whoever_writes_it_and_stays_as_long(monkeypatch):
+def test_a_time_gets_the_local_offset_and_keeps_its_precision(monkeypatch):
     monkeypatch.setenv("TZ", "Asia/Tokyo")
     time.tzset()
     try:
@@ -80,14 +80,14 @@ def test_a_time_gets_the_offset_of_whoever_writes_it_and_stays_as_long(monkeypat
 
 
 @pytest.mark.parametrize("when", [None, 7, 3.5, "7", "20260301", "1772368200.5", "yesterday"])
-def test_what_is_no_time_of_day_stays(when):
+def test_other_texts_are_unchanged(when):
     assert with_offset(when) == when
 
 
 @pytest.mark.parametrize(
     "when", ["yesterday", "-1", "nan", "inf", "1e400", "2026-13-01", "now ", "-2026-03-01", math.inf, 1e300]
 )
-def test_what_is_no_moment_is_refused(when):
+def test_invalid_moments_are_rejected(when):
     with pytest.raises(
         errors.BadRequest, match="is neither a commit number nor a time like 2026-03-01T12:30"
     ):

@@ -43,7 +43,7 @@ def test_letters_of_every_script_make_a_name(name):
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_what_is_no_name_is_refused_in_one_sentence(name):
+def test_invalid_names_are_rejected_in_one_sentence(name):
     with pytest.raises(
         errors.BadRequest, match=r"name must be a valid name: up to 128 letters, digits, '_', '.'"
     ):
@@ -80,7 +80,7 @@ def test_a_plain_prefix_is_readable_in_a_key():
     assert keys.entity_key("soma:Color", "杯子") == "semmap/jena/entity/soma:Color/杯子"
 
 
-def test_escapes_of_an_iri_are_no_part_of_the_name():
+def test_escapes_of_an_iri_are_not_part_of_the_name():
     assert v.entity_name("<http://x#tazzin%C3%A0>") == "tazzinà"
 
 

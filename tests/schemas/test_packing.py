@@ -31,11 +31,11 @@ def test_a_file_packed_by_others_is_unpacked():
 @pytest.mark.parametrize(
     ("content", "text"),
     [
-        (gzip.compress(TEXT)[:-20], "map.ttl.gz ends too early to be unpacked"),
-        (gzip.compress(TEXT)[:10] + b"\xff" * 40, "map.ttl.gz cannot be unpacked: .*invalid"),
-        (b"\x1f\x8bnot at all", "map.ttl.gz cannot be unpacked: .*unknown compression method"),
-        (gzip.compress(b"0" * 30_000), "map.ttl.gz is larger than 0 MiB when it is unpacked"),
-        (gzip.compress(b"0" * 9_000) * 3, "map.ttl.gz is larger than 0 MiB when it is unpacked"),
+        (gzip.compress(TEXT)[:-20], "map.ttl.gz: the gzip data is truncated"),
+        (gzip.compress(TEXT)[:10] + b"\xff" * 40, "map.ttl.gz: cannot decompress: .*invalid"),
+        (b"\x1f\x8bnot at all", "map.ttl.gz: cannot decompress: .*unknown compression method"),
+        (gzip.compress(b"0" * 30_000), "map.ttl.gz: decompressed size exceeds 0 MiB"),
+        (gzip.compress(b"0" * 9_000) * 3, "map.ttl.gz: decompressed size exceeds 0 MiB"),
     ],
     ids=["cut", "damaged", "no gzip", "a bomb", "a bomb in pieces"],
 )
@@ -46,10 +46,10 @@ def test_what_cannot_be_unpacked_is_refused(monkeypatch, content, text):
 
 
 def test_one_in_a_great_many_pieces_is_refused_before_they_take_long():
-    with pytest.raises(BadFile, match="packed in more than 1,000 pieces"):
+    with pytest.raises(BadFile, match="more than 1,000 gzip members"):
         packing.unpacked(gzip.compress(b"") * 100_000, "bomb.gz")
 
 
 def test_little_does_not_become_very_much():
-    with pytest.raises(BadFile, match=r"is larger than 2\d MiB when it is unpacked"):
+    with pytest.raises(BadFile, match=r"decompressed size exceeds 2\d MiB"):
         packing.unpacked(gzip.compress(b"0" * (32 << 20)), "bomb.gz")

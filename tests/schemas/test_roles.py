@@ -1,4 +1,4 @@
-"""The table of roles says of every command who may ask for it."""
+"""The table of roles covers every command."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def test_every_command_has_a_row():
 
 
 def test_every_change_takes_more_than_a_viewer():
-    """Whatever is answered with a commit, and whatever moves the scene."""
+    """Commands that return a commit or move the scene."""
     changes = {verb for verb, kind in COMMANDS.items() if reply_type(kind) is Changed}
     assert changes
     for verb in changes | {"move", "pause", "step", "reset"}:
@@ -45,9 +45,9 @@ def test_who_may_change(command, allowed):
 
 def test_a_refusal_says_whose_word_it_takes():
     assert roles.refusal("viewer", Load(content=b"", tbox=True)) == (
-        "your certificate (viewer) may not load --tbox; that takes the role 'admin'"
+        "role 'viewer' of your certificate may not use 'load --tbox'; required role: 'admin'"
     )
-    assert "may change the map as perception" in roles.refusal("perception", Add(class_="Cup"))
+    assert "may not use the source operator; use perception" in roles.refusal("perception", Add(class_="Cup"))
 
 
 def test_what_is_not_in_the_table_is_for_nodes(monkeypatch):

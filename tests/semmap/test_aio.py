@@ -95,7 +95,7 @@ def test_a_commit_that_does_not_come_is_waited_for_so_long(endpoint):
     run(main())
 
 
-def test_whoever_waits_for_commits_is_told_of_the_end(endpoint):
+def test_an_iterator_of_commits_ends_with_the_session(endpoint):
     async def main():
         async with aio.connect(endpoint) as client:
             async with client.commits() as commits:
@@ -132,7 +132,7 @@ def test_a_query_that_is_none_is_refused(endpoint):
     run(main())
 
 
-def test_where_nobody_answers_it_says_so_at_once():
+def test_without_a_system_the_error_is_immediate():
     async def main():
         async with aio.connect(free_endpoint()):
             pass

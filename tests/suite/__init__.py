@@ -1,1 +1,1 @@
-"""What `make test` and `make test-flaky` do with pytest: run it in parts, and run tests again."""
+"""Implementation of `make test` and `make test-flaky`: run pytest in parts, and run tests again."""

@@ -1,4 +1,4 @@
-"""Tests that failed, as a run of pytest leaves them for whoever started it."""
+"""The failed tests of a pytest run, in a file for the process that started it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is printed of tests that were run many times."""
+"""Reports on tests that were run many times."""
 
 import pytest
 

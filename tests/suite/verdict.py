@@ -1,4 +1,4 @@
-"""What a run of the suite comes to, once the tests that failed and need processes have been run again."""
+"""The verdict on a run of the suite, after failed process tests have been run again."""
 
 from __future__ import annotations
 

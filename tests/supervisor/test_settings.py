@@ -109,7 +109,7 @@ def test_the_limit_of_recordings_is_an_age_or_a_size(limit):
 
 def test_only_a_router_by_itself_is_for_all_robots(tmp_path):
     said = {"data": str(tmp_path), "tbox": "t", "abox": None, "world": "w", "namespace": "*"}
-    with pytest.raises(errors.BadRequest, match="cannot name a robot"):
+    with pytest.raises(errors.BadRequest, match="is not a valid robot name"):
         codec.convert(said, Settings)
     shared = codec.convert({**said, "single": True}, Settings)
     assert (shared.namespace, shared.network("router").namespace) == ("*", "")

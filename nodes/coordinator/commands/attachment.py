@@ -8,10 +8,10 @@ from semmap.nodes.coordinator.commands.map_view import MapView
 from semmap.nodes.coordinator.commands.plausibility import require_carry
 from semmap.nodes.coordinator.kb_coroutines import KbCoroutine, ask
 from semmap.schemas import errors, wording
+from semmap.schemas.attachments import holder_of
 from semmap.schemas.bridge import LoadOf
 from semmap.schemas.commands import Attach, Detach
 from semmap.schemas.entities import Entity, Pose, rounded
-from semmap.schemas.grips import holder_of
 from semmap.schemas.replies import Changed
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 
 from semmap.schemas import errors, wording
+from semmap.schemas.attachments import carriers, grip_of, holder_of
 from semmap.schemas.entities import Entity, Pose, compose, orientation_from_yaw, relative
-from semmap.schemas.grips import bearers, grip_of, holder_of
 from semmap.schemas.scenes import Body
 
 PoseLookup = Callable[[str], Pose | None]
@@ -29,7 +29,7 @@ def require_attachable(
             raise errors.Refused(f"{entity.name} is a place; only objects can be attached to each other")
     if name == to:
         raise errors.Refused(f"{name} cannot be attached to itself")
-    if name in (above := bearers(to, entities)):
+    if name in (above := carriers(to, entities)):
         how = (
             "is attached to"
             if holder_of(holder) == name
@@ -56,7 +56,7 @@ def find_load(
 
     Raises Refused if the holder itself is among the supported objects.
     """
-    above = {holder.name, *bearers(holder.name, entities)}
+    above = {holder.name, *carriers(holder.name, entities)}
     for name in supported:
         if name in above:
             who = holder.name if name == holder.name else f"{name}, which carries {holder.name},"

@@ -11,9 +11,9 @@ from semmap.nodes.coordinator.free_places import FreePlaces
 from semmap.nodes.runtime import map_replica
 from semmap.nodes.runtime.class_names import ClassNames
 from semmap.schemas import errors
+from semmap.schemas.attachments import holder_of
 from semmap.schemas.commits import Effects, Snapshot
 from semmap.schemas.entities import Entity, Pose, Size, Vector
-from semmap.schemas.grips import holder_of
 from semmap.schemas.scenes import Body
 
 

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, NamedTuple
 
 from semmap.schemas import errors, polygons
+from semmap.schemas.attachments import GRASP_POSE, IS_GRASPED_BY, pose_text
 from semmap.schemas.commands import Add, Attach, Batch, Command, Detach, Set, Track, Unset, Update
 from semmap.schemas.commits import Edit, NewEntity, Statement, Transaction
 from semmap.schemas.entities import IDENTITY, ClassInfo, Entity, Pose, Size, Value, Vector
-from semmap.schemas.grips import GRASP_POSE, IS_GRASPED_BY, pose_text
 from semmap.schemas.scene_files import Described, pose_of
 
 _FEW: Final = 4

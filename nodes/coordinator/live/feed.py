@@ -19,8 +19,8 @@ from semmap.nodes.coordinator.scene.scene_view import SceneView
 from semmap.nodes.runtime.loop import Node
 from semmap.schemas import codec, errors, keys
 from semmap.schemas import live as messages
+from semmap.schemas.attachments import holder_of
 from semmap.schemas.entities import Entity, Live, Pose, Source, Tracking, rounded
-from semmap.schemas.grips import holder_of
 from semmap.schemas.replies import Changed
 
 _PERIOD_S = 0.1

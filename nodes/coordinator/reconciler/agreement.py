@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from semmap.nodes.coordinator.config import Thresholds, Truth
 from semmap.nodes.coordinator.reconciler.reconcile import Actions, is_displaced, joints_differ
+from semmap.schemas.attachments import holder_of
 from semmap.schemas.entities import Entity, Pose, angle_rad, distance_m
-from semmap.schemas.grips import holder_of
 from semmap.schemas.scenes import Body
 
 

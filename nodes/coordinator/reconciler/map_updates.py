@@ -24,9 +24,9 @@ from semmap.nodes.coordinator.reconciler.reconcile import (
 from semmap.nodes.coordinator.reconciler.rest_waits import RestWaits
 from semmap.nodes.coordinator.scene.scene_view import SceneView
 from semmap.schemas import errors, wording
+from semmap.schemas.attachments import holder_of
 from semmap.schemas.commands import Add
 from semmap.schemas.entities import rounded
-from semmap.schemas.grips import holder_of
 from semmap.schemas.replies import Changed
 from semmap.schemas.scenes import Body, GripOrder, JointOrder, Placement
 

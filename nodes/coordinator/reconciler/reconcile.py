@@ -24,8 +24,8 @@ from typing import NamedTuple
 
 from semmap.nodes.coordinator.config import Thresholds, Truth
 from semmap.schemas import errors
+from semmap.schemas.attachments import grip_of, holder_of
 from semmap.schemas.entities import Entity, Pose, angle_rad, distance_m
-from semmap.schemas.grips import grip_of, holder_of
 from semmap.schemas.joints import (
     IS_OPEN,
     IS_SWITCHED_ON,

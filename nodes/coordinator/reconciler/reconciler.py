@@ -35,9 +35,9 @@ from semmap.nodes.coordinator.reconciler.waiting_orders import WaitingOrders
 from semmap.nodes.coordinator.scene.scene_view import SceneView
 from semmap.nodes.runtime.futures import then
 from semmap.schemas import errors
+from semmap.schemas.attachments import holder_of
 from semmap.schemas.calls import Call
 from semmap.schemas.entities import BodyState, Entity
-from semmap.schemas.grips import holder_of
 from semmap.schemas.joints import is_on, openness
 from semmap.schemas.scenes import (
     BodiesMoved,

@@ -11,7 +11,7 @@ import msgspec
 from msgspec import Meta, Struct, field
 
 from semmap.schemas.entities import Angle, Probability, Size, Text, Value, Vector, Word
-from semmap.schemas.happenings import KeptRelation
+from semmap.schemas.map_history import KeptRelation
 from semmap.schemas.moments import When
 from semmap.schemas.relations import ViewPoint
 

@@ -132,14 +132,14 @@ def explain(client: Client, asked: a.Explain) -> Answer:
         steps = [
             {
                 "rule": step.rule,
-                "from": {"said": [v.spoken(triple) for triple in step.premises]},
+                "from": {"said": [v.to_words(triple) for triple in step.premises]},
                 "follows": {
-                    "said": "a contradiction" if step.conclusion is None else v.spoken(step.conclusion)
+                    "said": "a contradiction" if step.conclusion is None else v.to_words(step.conclusion)
                 },
             }
             for step in found.steps
         ]
-        asserted = {"said": [v.spoken(triple) for triple in found.support]}
+        asserted = {"said": [v.to_words(triple) for triple in found.support]}
         return {"because": said(found.text, "the reasoner"), "asserted": asserted}, steps
 
     return _paged(client, asked, None, read, of="steps")

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
-from semmap.nodes.extern.cli.output.sparql_formats import spoken
+from semmap.nodes.extern.cli.output.sparql_formats import format_term
 from semmap.nodes.extern.mcp.answers import metres, said, stands, when, who
 from semmap.nodes.extern.mcp.hints import translate_hints
 from semmap.ontology import vocabulary as v
 from semmap.schemas import changes
 from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Term
-from semmap.schemas.happenings import Difference
 from semmap.schemas.language import Candidate
+from semmap.schemas.map_history import Difference
 from semmap.schemas.relations import Described, Relation
 from semmap.schemas.replies import LoggedCommit
 from semmap.schemas.sparql import Row
@@ -139,7 +139,7 @@ def _value(term: Term | None) -> Any:
     if term is None:
         return None
     if not term.startswith('"'):
-        return spoken(term)
+        return format_term(term)
     kind, lexical = v.local_name(v.datatype_of(term)), v.lexical(term)
     if kind == "boolean":
         return lexical in ("true", "1")

@@ -93,7 +93,7 @@ def infer_all(given: InferenceInput) -> Inferred:
 def _to_reply(triples: Iterable[Triple], names: Mapping[Term, str]) -> Inferred:
     """Return the reply, without trivial facts."""
     triples = tuple(without_trivial(triples))
-    return Inferred(triples=triples, text=tuple(v.spoken(t, names) for t in triples))
+    return Inferred(triples=triples, text=tuple(v.to_words(t, names) for t in triples))
 
 
 def pair_measurer(

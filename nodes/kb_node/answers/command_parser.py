@@ -41,9 +41,9 @@ class Understanding:
         """
         words = split(query.text)
         if not words:
-            raise errors.BadRequest("there are no words in the text")
+            raise errors.BadRequest("the command contains no words")
         if len(words) > _MOST_WORDS:
-            raise errors.BadRequest(f"a command has at most {_MOST_WORDS} words; these are {len(words)}")
+            raise errors.BadRequest(f"the command has {len(words)} words; the maximum is {_MOST_WORDS}")
         found = shipped().understand(query.text, self._there(), query.language, self._finding.described)
         open_still = dict.fromkeys(
             argument.candidates

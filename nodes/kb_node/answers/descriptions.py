@@ -12,10 +12,10 @@ from semmap.nodes.kb_node.answers.sightings import Sightings
 from semmap.nodes.kb_node.relations.selection import resolve_single
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.language import nouns
-from semmap.nodes.language.telling import account
-from semmap.nodes.language.telling.account import Account
-from semmap.nodes.language.telling.inventory import Inventory
-from semmap.nodes.language.vocabulary import spoken
+from semmap.nodes.language.generation import summary
+from semmap.nodes.language.generation.inventory import Inventory
+from semmap.nodes.language.generation.summary import Summary
+from semmap.nodes.language.vocabulary import to_words
 from semmap.ontology.model_shapes import own_size_m
 from semmap.schemas import language
 from semmap.schemas.commands import Tell
@@ -48,19 +48,19 @@ class Descriptions:
             text=" ".join(words), words=len(words), left_out=told.left_out, commit=self._map.seq
         )
 
-    def _describe(self, name: str | None, most_words: int) -> Account:
+    def _describe(self, name: str | None, most_words: int) -> Summary:
         if name is None:
             is_large = len(self._map) > LARGEST
             inventory = self._inventories.numbers() if is_large else self._inventories.whole()
-            tell = account.of_large_map if is_large else account.of_map
+            tell = summary.summarize_large_map if is_large else summary.summarize_map
             return tell(inventory, list(self._problems(None)), most_words)
         entity = self._map.entity(name)
         inventory = self._inventories.around(entity)
         if entity.place:
             inside = {thing.name for part in inventory.parts_of(name) for thing in inventory.in_place(part)}
-            return account.of_place(inventory, name, list(self._problems({*inside, name})), most_words)
+            return summary.summarize_place(inventory, name, list(self._problems({*inside, name})), most_words)
         first, last = self._thing_sentences(entity, inventory), self._last_sentences(entity)
-        return account.of_thing(inventory, name, first, last, most_words)
+        return summary.summarize_thing(inventory, name, first, last, most_words)
 
     def _problems(self, about: Set[str] | None) -> Iterator[str]:
         """Yield a clause on each problem of these entities, or of all."""
@@ -86,12 +86,12 @@ class Descriptions:
             )
         if thing.place in inventory.places:
             where += f" in the {inventory.places[thing.place].noun} ({thing.place})"
-        yield f"{entity.name} is {nouns.counted(1, thing.noun)}{where}."
+        yield f"{entity.name} is {nouns.with_count(1, thing.noun)}{where}."
         called = [ref for ref in (entity.preferred_reference, *entity.alternative_references) if ref]
         if called and called != [thing.noun]:
             yield f"It is called {' or '.join(f'“{text}”' for text in called)}."
         if troubles := list(self._problems({entity.name})):
-            yield f"Not as it should be: {'; '.join(troubles).removeprefix(f'{entity.name}, ')}."
+            yield f"Problems: {'; '.join(troubles).removeprefix(f'{entity.name}, ')}."
         wrong = {(r.subject, r.relation, r.object) for r in self._now.find_denied()}
         known = {row.name: row for row in self._map.classes.property_table.rows()}
         for property_, stated in entity.properties.items():
@@ -115,10 +115,10 @@ class Descriptions:
 
 def _stated(row: PropertyInfo, stated: Stated) -> str:
     """Return a property as a sentence: `It is open.`, `Its main color is red.`, `Its serial number is 7.`."""
-    label = row.labels.get("en") or spoken(row.name).lower()
+    label = row.labels.get("en") or to_words(row.name).lower()
     if isinstance(stated, bool) and label.startswith("is "):
         return f"It {label}." if stated else f"It is not {label.removeprefix('is ')}."
-    values = nouns.listed(
+    values = nouns.enumerate_nouns(
         [_value(value, row) for value in (stated if isinstance(stated, tuple) else (stated,))]
     )
     if label.startswith("has "):

@@ -20,7 +20,7 @@ from semmap.schemas import errors, wording
 from semmap.schemas.changes import Change, between, removed
 from semmap.schemas.commands import Diff, WasWhen
 from semmap.schemas.entities import Entity
-from semmap.schemas.happenings import Difference, KeptRelation, Related, Spell, Spells
+from semmap.schemas.map_history import Difference, KeptRelation, Related, Spell, Spells
 from semmap.schemas.relations import RelationName
 
 _KEPT: Final[dict[RelationName, KeptRelation]] = {name: name for name in get_args(KeptRelation)}

@@ -70,4 +70,4 @@ def _inferred(semantic_map: SemanticMap, iris: Iterable[Term]) -> set[Triple]:
 
 
 def _spoken(triples: Iterable[Triple], names: Mapping[Term, str]) -> tuple[str, ...]:
-    return tuple(v.spoken(triple, names) for triple in sorted(triples))
+    return tuple(v.to_words(triple, names) for triple in sorted(triples))

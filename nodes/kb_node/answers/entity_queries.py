@@ -214,7 +214,7 @@ class CurrentState:
         relation = COMPUTED[fact[1]]
         name, other = v.entity_name(fact[0]), v.entity_name(fact[2])
         seen = explain_relation(self._map.places.space(), name, relation, other)
-        return (name, relation, other), v.spoken(fact) if seen is None else seen.text
+        return (name, relation, other), v.to_words(fact) if seen is None else seen.text
 
 
 class PastState:

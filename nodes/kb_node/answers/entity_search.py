@@ -14,11 +14,11 @@ from semmap.nodes.kb_node.relations.measuring.viewing import View
 from semmap.nodes.kb_node.relations.relation_cache import RelationCache
 from semmap.nodes.kb_node.relations.selection import is_in, is_on, resolve_single
 from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.nodes.language.finding import asking_back, telling
-from semmap.nodes.language.finding.finding import find
-from semmap.nodes.language.finding.known import Known
-from semmap.nodes.language.finding.missing import Missing, missing
-from semmap.nodes.language.finding.resolving import Resolver
+from semmap.nodes.language.reference_resolution import clarification, explanation
+from semmap.nodes.language.reference_resolution.map_index import MapIndex
+from semmap.nodes.language.reference_resolution.missing import Missing, missing
+from semmap.nodes.language.reference_resolution.resolution import find
+from semmap.nodes.language.reference_resolution.resolver import Resolver
 from semmap.schemas import errors
 from semmap.schemas.commands import Find
 from semmap.schemas.entities import Entity
@@ -42,7 +42,7 @@ class Finding:
     def __init__(self, semantic_map: SemanticMap) -> None:
         self._map = semantic_map
         self._classes: ClassTable | None = None
-        self._known: Known | None = None
+        self._known: MapIndex | None = None
         self._read: dict[str, Entity] = {}
         self._seq = -1
 
@@ -53,7 +53,7 @@ class Finding:
         around = RelationCache(space, self._view(query, space), self._map.derived_facts.left_out)
         with space.caching():
             answer = find(query.text, self.known(), around, asker)
-            found = telling.told(answer)
+            found = explanation.explain(answer)
         return SearchResult(structs.replace(found, seq=self._map.seq), missing(answer))
 
     def described(self, text: str) -> tuple[str, ...]:
@@ -86,13 +86,13 @@ class Finding:
         space = self._map.places.space()
         around = RelationCache(space, None, self._map.derived_facts.left_out)
         with space.caching():
-            return asking_back.question(names, Resolver(self.known(), around, language))
+            return clarification.clarifying_question(names, Resolver(self.known(), around, language))
 
-    def known(self) -> Known:
+    def known(self) -> MapIndex:
         """Return the search items after the last commit; unchanged entities are not read again."""
         if self._known is None or self._classes is not self._map.classes:
             self._classes, self._seq, self._read = self._map.classes, -1, {}
-            self._known = Known(terms(self._map.reasoner, self._map.classes))
+            self._known = MapIndex(terms(self._map.reasoner, self._map.classes))
         if self._seq != self._map.seq:
             there = {entity.name: entity for entity in self._map.entities()}
             changed = [entity for name, entity in there.items() if self._read.get(name) is not entity]

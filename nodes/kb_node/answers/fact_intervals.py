@@ -24,8 +24,8 @@ from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.ontology.model_shapes import own_size_m
+from semmap.schemas.attachments import IS_GRASPED_BY
 from semmap.schemas.entities import Entity, Pose, Size, Stated
-from semmap.schemas.grips import IS_GRASPED_BY
 from semmap.schemas.polygons import EXTENT
 
 _MARGIN_M = 1.5

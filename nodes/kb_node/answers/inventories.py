@@ -13,8 +13,8 @@ from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.language import nouns
-from semmap.nodes.language.telling.inventory import How, Inventory, Place, Thing
-from semmap.nodes.language.vocabulary import spoken
+from semmap.nodes.language.generation.inventory import How, Inventory, Place, Thing
+from semmap.nodes.language.vocabulary import to_words
 from semmap.ontology.model_shapes import own_size_m
 from semmap.schemas.entities import Entity
 from semmap.schemas.relations import RelationName
@@ -132,7 +132,7 @@ class Inventories:
         """Return the states of an entity from properties such as "is open": `open and switched on`."""
         labels = self.nouns.states
         stated = entity.properties.items()
-        return nouns.listed([labels[p] for p, is_so in stated if is_so is True and p in labels])
+        return nouns.enumerate_nouns([labels[p] for p, is_so in stated if is_so is True and p in labels])
 
 
 def _is_table(entity: Entity | None) -> bool:
@@ -164,7 +164,7 @@ class Nouns:
     def __init__(self, classes: ClassTable) -> None:
         rows = {row.name: row for row in classes.rows}
         self._labels = {
-            name: row.labels.get("en") or row.labels.get("") or spoken(name) for name, row in rows.items()
+            name: row.labels.get("en") or row.labels.get("") or to_words(name) for name, row in rows.items()
         }
         self._heads = {
             word.rpartition(" ")[2].lower()
@@ -180,7 +180,7 @@ class Nouns:
 
     def kind(self, entity: Entity) -> str:
         """Return the name of an entity's class."""
-        return self._labels.get(entity.class_) or spoken(entity.class_)
+        return self._labels.get(entity.class_) or to_words(entity.class_)
 
     def of(self, entity: Entity) -> str:
         """Return a singular noun phrase without article; labels that are not noun phrases are not used.

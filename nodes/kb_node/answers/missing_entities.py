@@ -13,7 +13,7 @@ from semmap.nodes.kb_node.relations.measuring.phrases import PHRASES
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
-from semmap.nodes.language.finding.missing import Missing
+from semmap.nodes.language.reference_resolution.missing import Missing
 from semmap.schemas import errors
 from semmap.schemas.commands import WasWhen
 

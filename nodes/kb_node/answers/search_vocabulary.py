@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
-from semmap.nodes.language.finding.known import Item, Terms
+from semmap.nodes.language.reference_resolution.map_index import Item, Terms
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import Entity
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.grouping import group_by_property
 from semmap.nodes.kb_node.reasoner import Reasoner
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.explanations import Term, Triple
@@ -109,7 +109,7 @@ def find_undescribed(
 
 def undescribed_note(found: Mapping[Term, Triple]) -> str:
     """Return one sentence on the undescribed individuals."""
-    few = ", ".join(f"{_called(term)} ({v.spoken(said)})" for term, said in [*found.items()][:_FEW])
+    few = ", ".join(f"{_called(term)} ({v.to_words(said)})" for term, said in [*found.items()][:_FEW])
     more = f" and {len(found) - _FEW} more" if len(found) > _FEW else ""
     return f"referenced but not described: {few}{more}"
 
@@ -201,6 +201,6 @@ def is_built_in(term: Term) -> bool:
 
 def _without(gone: set[Term], triples: list[Triple]) -> list[Triple]:
     """Return the triples without those about `gone` and about nodes that describe nothing else."""
-    edges = [(s, o) for s, p, o in triples if p in stars.STAR_PROPERTIES]
+    edges = [(s, o) for s, p, o in triples if p in entity_triples.DESCRIPTION_PROPERTIES]
     gone = gone.union({o for s, o in edges if s in gone} - {o for s, o in edges if s not in gone})
     return [(s, p, o) for s, p, o in triples if s not in gone and o not in gone]

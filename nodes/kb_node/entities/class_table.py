@@ -14,7 +14,7 @@ from semmap.nodes.kb_node.entities.property_names import PropertyNames
 from semmap.nodes.kb_node.entities.property_table import PropertyTable
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.relations.measuring import thresholds
-from semmap.ontology import prefixes, stars
+from semmap.ontology import entity_triples, prefixes
 from semmap.ontology import vocabulary as v
 from semmap.ontology.name_index import Named, NameIndex
 from semmap.schemas.entities import ClassInfo, Entity
@@ -61,7 +61,9 @@ class ClassTable:
         reasoner.words.disambiguate(self.prefixed)
         self.alignments: tuple[Alignment, ...] = alignments.find_for_namespaces(self.prefixes.values())
         """The alignments that apply to the TBox."""
-        self.edges = frozenset(stars.STAR_PROPERTIES).union(*(known.edges for known in self.alignments))
+        self.edges = frozenset(entity_triples.DESCRIPTION_PROPERTIES).union(
+            *(known.edges for known in self.alignments)
+        )
         """The properties that lead from an entity to the individuals that describe it."""
         self.entry_properties = frozenset[Term]().union(
             *(known.entry_properties for known in self.alignments)

@@ -14,14 +14,14 @@ from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.entities.fast_reading import Pattern, Patterns, read_regular
 from semmap.nodes.kb_node.progress import with_progress
 from semmap.nodes.kb_node.reasoner import Change, Reasoner
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commits import Commit, Departed
 from semmap.schemas.entities import Entity, Provenance
 from semmap.schemas.explanations import Term
 
-_COORDINATES = frozenset(stars.COORDINATE_PROPERTIES)
+_COORDINATES = frozenset(entity_triples.COORDINATE_PROPERTIES)
 
 
 class Reading(NamedTuple):

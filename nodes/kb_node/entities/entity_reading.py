@@ -12,14 +12,14 @@ from msgspec import structs
 from semmap.nodes.kb_node.entities import aligned_values
 from semmap.nodes.kb_node.entities.class_table import ClassTable, Kind
 from semmap.nodes.kb_node.reasoner import Reasoner
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.ontology.model_choice import chosen
 from semmap.schemas import errors, polygons
+from semmap.schemas.attachments import GRASPING
 from semmap.schemas.commits import Star
 from semmap.schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance, Size, Stated, Tracked
 from semmap.schemas.explanations import Term, Triple
-from semmap.schemas.grips import GRASPING
 from semmap.schemas.joints import OPENING, SWITCHING
 
 _NAME = re.compile(NAME_PATTERN)
@@ -288,8 +288,8 @@ def read_entity_triples(
     leaving: Set[Term],
     tbox: frozenset[Triple],
 ) -> Star:
-    """Return the triples about an entity as a message; see `entity_triples`. Raises Refused."""
-    own, incoming = entity_triples(reasoner, classes, iri, leaving, tbox)
+    """Return the triples about an entity as a message; see `find_entity_triples`. Raises Refused."""
+    own, incoming = find_entity_triples(reasoner, classes, iri, leaving, tbox)
     aside = reasoner.suppressed_about([iri]) if reasoner.has_suppressed else ()
     return Star(
         seq=seq,
@@ -302,7 +302,7 @@ def read_entity_triples(
     )
 
 
-def entity_triples(
+def find_entity_triples(
     reasoner: Reasoner, classes: ClassTable, iri: Term, leaving: Set[Term], tbox: frozenset[Triple]
 ) -> tuple[list[Triple], list[Triple]]:
     """Return the triples about an entity: its own, and those of others that refer to it.
@@ -313,7 +313,7 @@ def entity_triples(
     own = list(reasoner.asserted(iri))
     if not tbox.isdisjoint(own):
         raise errors.Refused(f"{v.local_name(iri)} is part of the TBox, which commands cannot change")
-    nodes = {o for _, p, o in own if p in stars.STAR_PROPERTIES} - leaving
+    nodes = {o for _, p, o in own if p in entity_triples.DESCRIPTION_PROPERTIES} - leaving
     for node in sorted(nodes):
         if all(user in leaving for user in find_users(reasoner, node)):
             own += [t for t in reasoner.asserted(node) if t not in tbox]
@@ -345,8 +345,8 @@ def find_users(reasoner: Reasoner, node: Term) -> Iterable[Term]:
     """Return the individuals that `node` describes; one that uses it twice occurs twice."""
     incoming = list(islice(reasoner.asserted(None, None, node), _FEW))
     if len(incoming) < _FEW:  # reading all is faster than a lookup for each property
-        return [s for s, p, _ in incoming if p in stars.STAR_PROPERTIES]
-    return (s for p in stars.STAR_PROPERTIES for s, _, _ in reasoner.asserted(None, p, node))
+        return [s for s, p, _ in incoming if p in entity_triples.DESCRIPTION_PROPERTIES]
+    return (s for p in entity_triples.DESCRIPTION_PROPERTIES for s, _, _ in reasoner.asserted(None, p, node))
 
 
 def _pose(about: About, iri: Term, nodes: Sequence[Term]) -> Pose | None:

@@ -17,7 +17,7 @@ from semmap.nodes.kb_node.entities.entity_reading import Objects
 from semmap.nodes.kb_node.entities.property_table import Property
 from semmap.nodes.kb_node.entities.property_values import is_same_value, to_text
 from semmap.nodes.kb_node.reasoner import Reasoner
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commits import Edit, NewEntity, Statement
@@ -53,7 +53,7 @@ class Draft:
         iris = [v.iri(entity.iri) for entity in leaving]
         together = frozenset(iris)
         for iri in iris:
-            own, incoming = entity_reading.entity_triples(
+            own, incoming = entity_reading.find_entity_triples(
                 self._reasoner, self._classes, iri, together, self._tbox
             )
             self.retract.update(dict.fromkeys(own))
@@ -64,7 +64,7 @@ class Draft:
         class_iri, iri = self._class(new.class_iri), v.entity_iri(new.name)
         suffix, number = "", 1
         while True:
-            triples = stars.star(
+            triples = entity_triples.describe(
                 new.name,
                 class_iri,
                 pose=new.pose,
@@ -120,13 +120,13 @@ class Draft:
         if edit.ref is not None and edit.ref != entity.preferred_reference:
             nodes = said.get(v.HAS_PREFERRED_REFERENCE, ())
             (node,) = self._references(entity, v.HAS_PREFERRED_REFERENCE, nodes, ["preferred_reference"])
-            self._insert(stars.preferred_reference(iri, node, edit.ref))
+            self._insert(entity_triples.preferred_reference(iri, node, edit.ref))
         if edit.alt is not None and edit.alt != entity.alternative_references:
             nodes = said.get(v.HAS_ALTERNATIVE_REFERENCE, ())
             names = [f"alternative_reference_{i}" for i in range(1, len(edit.alt) + 1)]
             found = self._references(entity, v.HAS_ALTERNATIVE_REFERENCE, nodes, names)
             for node, text in zip(found, edit.alt, strict=True):
-                self._insert(stars.alternative_reference(iri, node, text))
+                self._insert(entity_triples.alternative_reference(iri, node, text))
         if edit.conflict is not None and edit.conflict != entity.conflict:
             known = said.get(v.CONFLICTING_OBSERVATION, ())
             self._retract((iri, v.CONFLICTING_OBSERVATION, o) for o in known)
@@ -204,12 +204,12 @@ class Draft:
             return
         if said is not None:
             self._detach(said.nodes, said.words.path, said.words.position)
-        numbers = stars.COORDINATE_PROPERTIES
+        numbers = entity_triples.COORDINATE_PROPERTIES
         node = self._numbers(entity, v.HAS_POSITION, nodes, "coordinates", numbers)
         if list(nodes) == [node]:
-            self._insert(stars.coordinates(node, pose))
+            self._insert(entity_triples.coordinates(node, pose))
         else:
-            self._insert(stars.position(v.iri(entity.iri), node, pose))
+            self._insert(entity_triples.position(v.iri(entity.iri), node, pose))
 
     def _resize(self, entity: Entity, nodes: Sequence[Term], size_m: Size) -> None:
         iri, about = v.iri(entity.iri), self._reasoner.about
@@ -220,7 +220,7 @@ class Draft:
         if said is not None:
             self._detach(said.nodes, said.words.path, said.words.x)
         node = self._numbers(entity, v.HAS_SIZE, nodes, "size", v.SIZE_XYZ)
-        self._insert(stars.size(iri, node, size_m))
+        self._insert(entity_triples.size(iri, node, size_m))
 
     def _is_own_path(self, nodes: Sequence[Term]) -> bool:
         """Return whether the individuals between an entity and its pose or size describe nothing else."""

@@ -73,8 +73,8 @@ from semmap.schemas.commands import (
 from semmap.schemas.commits import Commit, Snapshot, Star
 from semmap.schemas.entities import ClassInfo, Entity, PropertyInfo
 from semmap.schemas.explanations import Explanation
-from semmap.schemas.happenings import Difference, Spells
 from semmap.schemas.language import Found
+from semmap.schemas.map_history import Difference, Spells
 from semmap.schemas.relations import Described, Relation
 from semmap.schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
 from semmap.schemas.sparql import SparqlResult, Watching

@@ -1,4 +1,4 @@
-"""What is known of a language before anything is learnt: words by class, verbs by frame, irregular forms."""
+"""The hand-written lexicon of a language: words by class, verbs by frame, irregular forms."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ class Lexicon:
     """The words of a language."""
 
     classes: dict[str, frozenset[str]]  # name of a class of words -> its words
-    frames: dict[str, tuple[str, ...]]  # verb, with its particle if it has one -> frames, as listed
+    frames: dict[str, tuple[str, ...]]  # verb, with its particle if any -> frames, as listed
     irregular: dict[str, str]  # form -> base form
     prepositions: tuple[tuple[str, ...], ...]  # of several words, longest first
     manner_ending: str
-    synonyms: dict[str, str]  # what is said -> class of the household TBox
+    synonyms: dict[str, str]  # word -> class of the household TBox
     numbers: dict[str, int]  # from two to ten
 
     def is_a(self, word: str, kind: str) -> bool:
-        """Whether a word is of a class, as the lexicon names it."""
+        """Return whether a word is in a word class of the lexicon."""
         return word in self.classes.get(kind, frozenset())
 
     def is_manner(self, word: str) -> bool:
-        """Whether it looks like an adverb of manner."""
+        """Return whether a word looks like an adverb of manner."""
         return word.endswith(self.manner_ending)
 
 
 @functools.cache
 def load(language: str = "english") -> Lexicon:
-    """The lexicon of a language, `english` or `italian`."""
+    """Return the lexicon of a language, `english` or `italian`."""
     table = tomllib.loads((resources.files(__package__) / f"{language}.toml").read_text("utf-8"))
     frames: dict[str, list[str]] = {}
     for frame, verbs in table["verbs"].items():

@@ -1,4 +1,4 @@
-"""What is known of Italian: expressions, verbs in the forms that commands have, clitics, told in English."""
+"""The Italian lexicon: expressions, verb forms used in commands, and clitics, with their English words."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ARTICULATED: Final = {
 }
 """Preposition and article in one word: `della` is `di` and `la`."""
 
-# Behind the stem: imperatives (tu, Lei, voi), present, infinitives (also before a clitic), past subjunctive.
+# Endings: imperatives (tu, Lei, voi), present, infinitives (also before a clitic), past subjunctive.
 _ENDINGS: Final = {
     "are": ("a", "i", "ate", "are", "ar", "assi"),
     "ere": ("i", "a", "e", "ete", "ere", "er", "essi"),
@@ -30,16 +30,16 @@ _ENDINGS: Final = {
 class Italian:
     """The words of Italian, in lower case."""
 
-    expressions: dict[tuple[str, ...], str]  # words -> English, words in parentheses not being said
+    expressions: dict[tuple[str, ...], str]  # words -> English; words in parentheses have no original
     relative: dict[str, str]
     verbs: dict[str, str]  # form -> English base form
     clitics: dict[str, str]  # -> English pronoun, "" for none
-    moving: frozenset[str]  # forms of verbs that say that the robot itself moves
+    moving: frozenset[str]  # forms of verbs for which the robot itself moves
     adjectives: dict[str, str]  # form -> English
     synonyms: dict[str, str]  # -> class of the household TBox
 
     def is_word(self, text: str) -> bool:
-        """Whether this is a word of the lexicon; nouns are the TBox's."""
+        """Return whether this is a word of the lexicon; nouns are in the TBox."""
         return (
             (text,) in self.expressions
             or text in self.verbs
@@ -52,7 +52,7 @@ class Italian:
 
 @functools.cache
 def italian() -> Italian:
-    """The Italian that ships."""
+    """Return the Italian lexicon."""
     table = tomllib.loads((resources.files(__package__) / "italian.toml").read_text("utf-8"))
     irregular: dict[str, list[str]] = table["irregular"]
     verbs: dict[str, str] = {}
@@ -64,23 +64,23 @@ def italian() -> Italian:
             if infinitive in table["moving"]["verbs"]:
                 moving |= forms
     return Italian(
-        {tuple(text.split()): english for english, said in table["words"].items() for text in said},
-        {text: english for english, said in table["relative"].items() for text in said},
+        {tuple(text.split()): english for english, words in table["words"].items() for text in words},
+        {text: english for english, words in table["relative"].items() for text in words},
         verbs,
         table["clitics"],
         frozenset(moving),
         {
             form: english
-            for english, said in table["adjectives"].items()
-            for adjective in said
+            for english, words in table["adjectives"].items()
+            for adjective in words
             for form in _inflected(adjective)
         },
-        {text: name for name, said in table["synonyms"].items() for text in said},
+        {text: name for name, words in table["synonyms"].items() for text in words},
     )
 
 
 def singulars(word: str) -> Iterator[str]:
-    """The word, and what it may be the plural of."""
+    """Yield the word itself and the possible singulars of it."""
     yield word
     for plural, singular in (
         ("chi", "co"), ("ghi", "go"), ("che", "ca"), ("ghe", "ga"), ("ci", "cio"), ("gi", "gio"),
@@ -103,7 +103,7 @@ def _forms(infinitive: str) -> Iterator[str]:
 
 
 def _inflected(adjective: str) -> Iterator[str]:
-    """Gender and number of an adjective; the same form for those that have none."""
+    """Yield the forms of an adjective in gender and number."""
     yield adjective
     stem = adjective[:-1]
     hard = "h" if stem.endswith(("c", "g")) else ""

@@ -1,1 +1,1 @@
-"""What is asked of a robot in words: frames, roles, and the entities they name."""
+"""Command understanding: semantic frames, their roles, and the entities that fill them."""

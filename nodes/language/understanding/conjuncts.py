@@ -1,4 +1,4 @@
-"""What *and* joins: each of the things that an argument lists, and each clause that leaves its verb out."""
+"""Coordination: the things that an argument lists, and the clauses that share one verb."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from semmap.nodes.language.understanding.referents import ANYTHING
 from semmap.nodes.language.understanding.sentence import Sentence
 
 Span = tuple[str, int, int]
-"""A slot, and the indices of the first and the last word that fill it."""
+"""A slot, and the indices of its first and last word."""
 
 _AND: Final = ("and", "or")
 _MOVED: Final = {  # prepositions, also of clauses without a verb: "the cup to the sink and the book to me"
@@ -25,10 +25,10 @@ _NOT_LISTED: Final = ("robot", "speaker")
 
 
 def clauses(s: Sentence, frame: str, verb: int, spans: Sequence[Span]) -> list[list[Span]]:
-    """What fills the slots of a verb, once for each clause, one thing a span.
+    """Return the slot fillers of the verb at index `verb` for each clause, one thing per span.
 
-    frame: its name; verb: index of its word. *Open the fridge and the oven* is one clause with two things;
-    *the cup from the desk and the plate from the table* behind one verb are two clauses.
+    *Open the fridge and the oven* is one clause with two things. *Take the cup from the desk and the plate
+    from the table* has two clauses.
     """
     if parallel := _parallel(s, verb):
         before = [span for span in spans if span[2] <= verb]
@@ -51,20 +51,20 @@ def clauses(s: Sentence, frame: str, verb: int, spans: Sequence[Span]) -> list[l
 
 
 def _purpose(s: Sentence, i: int) -> int | None:
-    """The last word of what something is for: *something to drink*."""
+    """Return the last word of a purpose: *something to drink*."""
     k = s.phrase_of[i] + 1
     if k >= len(s.phrases) or s.phrases[k].preposition not in ("to", "from"):
         return None
-    is_place = bool(s.meant[k]) and s.branches[k] in _BEARING
+    is_place = bool(s.candidates[k]) and s.branches[k] in _BEARING
     if is_place or s.words[s.phrases[k].last].kind not in ("noun", "adj"):
         return None
     return s.phrases[k].last if s.phrases[k].nominal == s.phrases[k].last else None
 
 
 def _moved(s: Sentence, slot: str, first: int, last: int, has_goal: bool) -> Iterator[Span]:
-    """A thing, and apart from it where it is moved: *the chair* | *to the window*.
+    """Yield a thing and, as a separate span, its goal: *the chair* | *to the window*.
 
-    Where something is brought and no goal is said, that is the room at the end: *the book* | *in the studio*.
+    If something is brought without a goal, the room at the end is the goal: *the book* | *in the studio*.
     """
     inside = range(s.phrase_of[first] + 1, s.phrase_of[last] + 1)
     to = next((k for k in inside if _MOVED.get(s.phrases[k].preposition) == "goal"), None)
@@ -78,7 +78,7 @@ def _moved(s: Sentence, slot: str, first: int, last: int, has_goal: bool) -> Ite
 
 
 def _parallel(s: Sentence, verb: int) -> list[tuple[int, int]]:
-    """The phrases behind a verb as pairs of a thing and where it is moved, two pairs or more; else none."""
+    """Return pairs of a thing and its goal or source after a verb, if there are at least two."""
     behind = [k for k in s.clause(verb) if s.phrases[k].kind != "particle"]
     if len(behind) < 5 or len(behind) % 3 != 2:
         return []
@@ -101,13 +101,13 @@ def _pair(s: Sentence, thing: int, where: int) -> Iterator[Span]:
 
 
 def _extended(s: Sentence, last: int, filled: set[int]) -> int:
-    """The end of a list that begins before `last`: *the kitchen* [*and the studio*]."""
+    """Return the end of a list that begins before `last`: *the kitchen* [*and the studio*]."""
     while True:
         k = s.phrase_of[last] + 1
         if k + 1 >= len(s.phrases) or s.words[s.phrases[k].first].text not in _AND:
             return last
         following = s.phrases[k + 1]
-        if not following.names or s.branches[k + 1] in _NOT_LISTED or not s.meant[k + 1]:
+        if not following.names or s.branches[k + 1] in _NOT_LISTED or not s.candidates[k + 1]:
             return last
         if following.kind == "pp" or filled & set(range(following.first, following.last + 1)):
             return last
@@ -117,7 +117,7 @@ def _extended(s: Sentence, last: int, filled: set[int]) -> int:
 
 
 def _parts(s: Sentence, first: int, last: int) -> Iterator[tuple[int, int]]:
-    """The things of a list: what stands between *and*, and where there is one, between noun phrases."""
+    """Yield the spans of the things in a list, separated by *and* or, before it, by phrase boundaries."""
     inside = range(s.phrase_of[first], s.phrase_of[last] + 1)
     joined = [k for k in inside if k + 1 in inside and _joins(s, k)]
     if not joined:
@@ -134,6 +134,6 @@ def _parts(s: Sentence, first: int, last: int) -> Iterator[tuple[int, int]]:
 
 
 def _joins(s: Sentence, k: int) -> bool:
-    """Whether phrase k is an *and* between two that name something."""
+    """Return whether phrase k is an *and* between two noun phrases."""
     word = s.words[s.phrases[k].first].text
     return word in _AND and s.phrases[k - 1].names and s.phrases[k + 1].names

@@ -1,6 +1,6 @@
-"""A sentence told with English words one by one, and what was understood of it told back in its own words.
+"""Word-by-word translation to English, and mapping of the result back to the original words.
 
-What was learnt of English so holds of a language of which there is nothing to learn from.
+So the models that were trained on English can be used for languages without a training corpus.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from semmap.schemas.language import Argument, Grounded, Language, Understood
 
 @dataclass(frozen=True, slots=True)
 class Glossed:
-    """An English word that stands for words of a sentence, counted from 1; first > last: nobody says it."""
+    """An English word for words `first` to `last` of a sentence, from 1; first > last: it has no original."""
 
     text: str
     first: int
     last: int
-    head: int  # the word that it is about
-    kind: PartOfSpeech | None = None  # where it is known
-    is_plural: bool = False  # which the English word does not tell
+    head: int  # the head of these words
+    kind: PartOfSpeech | None = None  # if it is known
+    is_plural: bool = False  # the original is plural, which the English word does not show
 
 
 @dataclass(frozen=True, slots=True)
 class Gloss:
-    """A sentence and the English words for it, which may stand in another order."""
+    """A sentence and its English words, possibly in another order."""
 
-    said: tuple[str, ...]
+    original: tuple[str, ...]
     words: tuple[Glossed, ...]
 
     @property
@@ -40,29 +40,31 @@ class Gloss:
 
     @property
     def kinds(self) -> tuple[PartOfSpeech | None, ...]:
-        """Their parts of speech, None where the words around are to tell."""
+        """Their parts of speech, None if the tagger has to determine them."""
         return tuple(word.kind for word in self.words)
 
-    def said_by_words(self, first: int, last: int) -> str:
-        """The sentence's own words for the English ones from index `first` to `last`."""
-        tokens = self._said_by(range(first + 1, last + 2))
-        return " ".join(self.said[tokens[0] - 1 : tokens[-1]]) if tokens else ""
+    def original_words(self, first: int, last: int) -> str:
+        """Return the original words for the English ones from index `first` to `last`."""
+        tokens = self._original_tokens(range(first + 1, last + 2))
+        return " ".join(self.original[tokens[0] - 1 : tokens[-1]]) if tokens else ""
 
-    def told_back(self, understood: Understood, language: Language) -> Understood:
-        """What was understood of the English words as of the sentence's own; what nobody said is left out."""
+    def map_back(self, understood: Understood, language: Language) -> Understood:
+        """Map a result for the English words back to the original words, without inserted words."""
         frames = tuple(
             replace(
                 frame,
-                verb=self._said_by(frame.verb),
-                arguments=tuple(told for a in frame.arguments if (told := self._argument(a)) is not None),
+                verb=self._original_tokens(frame.verb),
+                arguments=tuple(mapped for a in frame.arguments if (mapped := self._argument(a)) is not None),
             )
             for frame in understood.frames
         )
         groundings = {
-            token: found.entity for found in understood.groundings for token in self._said_by((found.token,))
+            token: found.entity
+            for found in understood.groundings
+            for token in self._original_tokens((found.token,))
         }
         return Understood(
-            self.said,
+            self.original,
             frames,
             tuple(Grounded(token, name) for token, name in sorted(groundings.items())),
             understood.unknown,
@@ -70,20 +72,20 @@ class Gloss:
             understood.mood,
         )
 
-    def _said_by(self, tokens: Sequence[int]) -> tuple[int, ...]:
+    def _original_tokens(self, tokens: Sequence[int]) -> tuple[int, ...]:
         words = (self.words[token - 1] for token in tokens)
         return tuple(sorted({n for word in words for n in range(word.first, word.last + 1)}))
 
     def _argument(self, argument: Argument) -> Argument | None:
-        said = self._said_by(range(argument.span[0], argument.span[1] + 1))
-        if not said:
+        tokens = self._original_tokens(range(argument.span[0], argument.span[1] + 1))
+        if not tokens:
             return None
-        first, last = said[0], said[-1]
+        first, last = tokens[0], tokens[-1]
         head = min(max(self.words[argument.head - 1].head, first), last)
         inside = self.words[argument.span[0] - 1 : argument.span[1]]
         return replace(
             argument,
-            text=" ".join(self.said[first - 1 : last]),
+            text=" ".join(self.original[first - 1 : last]),
             span=(first, last),
             head=head,
             ambiguous=argument.ambiguous and not any(word.is_plural for word in inside[:2]),

@@ -1,4 +1,4 @@
-"""Which entities of a map the words of a sentence mean."""
+"""Grounding: the entities of the map that the words of a sentence denote."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from dataclasses import dataclass
 
 from semmap.nodes.language.lexicon import Lexicon
 from semmap.nodes.language.phrases import Phrase
-from semmap.nodes.language.vocabulary import Vocabulary, spoken
-from semmap.nodes.language.words import Word, based
+from semmap.nodes.language.vocabulary import Vocabulary, to_words
+from semmap.nodes.language.words import Word, to_base_forms
 
-_TELLING = ("noun", "adj", "pron", "num")
+_CONTENT = ("noun", "adj", "pron", "num")
 
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """An entity as a listener knows it. at: metres, in the map; types: its inferred classes."""
+    """An entity with its labels, position `at` [m, map frame] and inferred classes `types`."""
 
     name: str
     class_name: str
@@ -30,16 +30,16 @@ Things = tuple[Thing, ...]
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """What there is to be spoken of, by what it is called."""
+    """The entities of the map by label and class."""
 
-    called: Mapping[str, Things]  # reference or class, as it is said and in base forms
+    by_label: Mapping[str, Things]  # label or class, as written and in base form
     of_class: Mapping[str, Things]  # class, its subclasses included
     only: Mapping[str, Things]  # class, without its subclasses
     vocabulary: Vocabulary
     things: Mapping[str, Thing]  # by name
 
     def kinds_of(self, name: str) -> frozenset[str]:
-        """The classes of the entity of that name, superclasses and inferred ones too; none for no entity."""
+        """Return the asserted and inferred classes of a named entity with their superclasses, or none."""
         thing = self.things.get(name)
         if thing is None:
             return frozenset()
@@ -49,7 +49,7 @@ class Scene:
 
 
 def scene(things: Iterable[Thing], known: Vocabulary, lexicon: Lexicon) -> Scene:
-    """The things of a map, to be looked up. The order in which they come and are named does not matter."""
+    """Return the index of a map's entities. The order of the entities does not matter."""
     named: dict[str, Thing] = {}
     called: dict[str, dict[Thing, None]] = {}
     of_class: dict[str, list[Thing]] = {}
@@ -57,10 +57,10 @@ def scene(things: Iterable[Thing], known: Vocabulary, lexicon: Lexicon) -> Scene
     for thing in things:
         named[thing.name] = thing
         for text in (*thing.references, thing.class_name):
-            said = spoken(text)
-            for form in (said, based(said, lexicon), said.replace(" ", "")):
+            words = to_words(text)
+            for form in (words, to_base_forms(words, lexicon), words.replace(" ", "")):
                 called.setdefault(form, {})[thing] = None
-        name = known.class_of(spoken(thing.class_name)) or thing.class_name
+        name = known.class_of(to_words(thing.class_name)) or thing.class_name
         only.setdefault(name, []).append(thing)
         for above in known.above.get(name, (name,)):
             of_class.setdefault(above, []).append(thing)
@@ -74,18 +74,18 @@ def scene(things: Iterable[Thing], known: Vocabulary, lexicon: Lexicon) -> Scene
 
 
 def distance(one: Thing, other: Thing) -> float:
-    """Metres between two things over the ground, infinite where a place is not known."""
+    """Return the horizontal distance of two things [m], infinite if a position is unknown."""
     if one.at is None or other.at is None:
         return math.inf
     return math.hypot(one.at[0] - other.at[0], one.at[1] - other.at[1])
 
 
-def called(text: str, among: Scene, lexicon: Lexicon) -> Things:
-    """The things that may be called so: by reference, class, subclass or superclass."""
-    base = based(text, lexicon)
+def find_by_label(text: str, among: Scene, lexicon: Lexicon) -> Things:
+    """Return the things that a text may denote: by label, class, subclass or superclass."""
+    base = to_base_forms(text, lexicon)
     for form in (text, base, text.replace(" ", ""), text.replace("-", "")):
-        if form in among.called:
-            return among.called[form]
+        if form in among.by_label:
+            return among.by_label[form]
     class_name = among.vocabulary.class_of(text) or among.vocabulary.class_of(base)
     if class_name is None:
         return ()
@@ -95,16 +95,17 @@ def called(text: str, among: Scene, lexicon: Lexicon) -> Things:
     return next((among.only[name] for name in above if name in among.only), ())
 
 
-def meant(phrase: Phrase, said: Sequence[Word], among: Scene, lexicon: Lexicon) -> Things:
-    """What a phrase may mean: by several of its words together, longest first, by its head, by the others."""
-    words = [i for i in range(phrase.nominal, phrase.last + 1) if said[i].kind in _TELLING]
-    for length in range(len(words), 1, -1):
-        for start in range(len(words) - length + 1):
-            found = called(" ".join(said[i].text for i in words[start : start + length]), among, lexicon)
+def find_candidates(phrase: Phrase, words: Sequence[Word], among: Scene, lexicon: Lexicon) -> Things:
+    """Return what a phrase may denote: by several words (longest first), its head, or any other word."""
+    content = [i for i in range(phrase.nominal, phrase.last + 1) if words[i].kind in _CONTENT]
+    for length in range(len(content), 1, -1):
+        for start in range(len(content) - length + 1):
+            text = " ".join(words[i].text for i in content[start : start + length])
+            found = find_by_label(text, among, lexicon)
             if found:
                 return found
-    for i in (phrase.head, *reversed(words)):
-        found = called(said[i].text, among, lexicon)
+    for i in (phrase.head, *reversed(content)):
+        found = find_by_label(words[i].text, among, lexicon)
         if found:
             return found
     return ()

@@ -1,4 +1,4 @@
-"""From a sentence and a map to frames, what fills their roles, and which entities are meant."""
+"""Converts a sentence to semantic frames, with arguments that are resolved to entities of the map."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Final
 
 import pycrfsuite
 
-from semmap.nodes.language import languages, lexicon
+from semmap.nodes.language import language_detection, lexicon
 from semmap.nodes.language.understanding import (
     conjuncts,
     grounding,
@@ -31,22 +31,22 @@ from semmap.nodes.language.words import PartOfSpeech, split
 from semmap.schemas import errors
 from semmap.schemas.language import Argument, Grounded, Language, SemanticFrame, Understood
 
-_LEAST: Final = 0.05  # a frame less probable than this is not looked at
-_WEIGHT_OF_ROLES: Final = 0.5  # of the roles' log-probability against the frame's
+_LEAST: Final = 0.05  # less probable frames are ignored
+_WEIGHT_OF_ROLES: Final = 0.5  # of the roles' log-probability relative to the frame's
 _DESCRIBED: Final = frozenset({"thing", "place", "beneficiary", "goal", "source", "path", "category", "area"})
 """The slots that entities fill."""
 Seen = Callable[[list[list[str]]], list[list[str]]]
 
 
 class Interpreter:
-    """Reads commands with what was learnt of a language. One thread at a time."""
+    """Interprets commands with trained sequence taggers. Not thread-safe."""
 
     def __init__(
         self, frames: str, roles: str, language: str = "english", seen: Seen = lambda features: features
     ) -> None:
-        """frames, roles: paths of the learnt taggers, as `make train-language` writes them.
+        """Load the taggers from the paths `frames` and `roles`, as `make train-language` writes them.
 
-        seen: what is left of the features of each word; the same as was given for learning.
+        `seen` filters the features of each word, as in training.
         """
         self._lexicon = lexicon.load(language)
         self._seen = seen
@@ -61,16 +61,16 @@ class Interpreter:
         language: Language | None = None,
         resolve: Resolve | None = None,
     ) -> Understood:
-        """The frames of a command, in the order of their verbs, with their arguments grounded in a map.
+        """Return the frames of a command, in the order of their verbs, with arguments grounded in a map.
 
-        language: what it is said in; without one its words tell. resolve: what the noun phrases describe, for
-        whoever sees the whole map; with it things that are listed are an argument each, and what is said of a
-        thing (*that is on the desk*) is no frame of its own. Without, all is as the corpus has it.
+        Without a `language`, it is detected. `resolve` resolves noun phrases in the whole map. With it, each
+        thing in a list becomes an argument, and a relative clause (*that is on the desk*) is not a frame.
+        Without it, the frames follow the conventions of the corpus.
         """
-        if (language or languages.language_of(text)) == "english":
+        if (language or language_detection.detect_language(text)) == "english":
             return self.read(split(text), scene, resolve=resolve)
-        told = italian.gloss(text, scene)
-        return told.told_back(self.read(told.texts, scene, told.kinds, resolve, told), "italian")
+        gloss = italian.gloss(text, scene)
+        return gloss.map_back(self.read(gloss.texts, scene, gloss.kinds, resolve, gloss), "italian")
 
     def read(
         self,
@@ -78,20 +78,20 @@ class Interpreter:
         scene: Scene,
         kinds: Sequence[PartOfSpeech | None] = (),
         resolve: Resolve | None = None,
-        told: Gloss | None = None,
+        gloss: Gloss | None = None,
     ) -> Understood:
-        """The same of lower-case English words.
+        """Interpret lower-case English words.
 
-        kinds: the parts of speech that are known. told: the sentence that the words stand for, if another.
+        `kinds` are the known parts of speech. `gloss` is the translation that the words come from, if any.
         """
         s = sentence(texts, scene, self._lexicon, kinds)
         mood = moods.mood(s)
         calls = self._calls(s) if texts and mood == "command" else []
         verbs = [_verb(s, first, last) for first, last, _ in calls]
         frames: list[SemanticFrame] = []
-        said = _words(s) if told is None else told.said_by_words
-        plural = frozenset(i for i, word in enumerate(told.words if told else ()) if word.is_plural)
-        look_up = None if resolve is None else Referents(s, scene.things.get, resolve, said, plural)
+        original = _words(s) if gloss is None else gloss.original_words
+        plural = frozenset(i for i, word in enumerate(gloss.words if gloss else ()) if word.is_plural)
+        look_up = None if resolve is None else Referents(s, scene.things.get, resolve, original, plural)
         for (first, last, found), verb in zip(calls, verbs, strict=True):
             name, spans = self._filled(s, verb, found, [other for other in verbs if other != verb])
             if look_up is None:
@@ -100,12 +100,12 @@ class Interpreter:
                 for clause in conjuncts.clauses(s, name, verb, spans):
                     frames.append(_frame(s, name, (first, last), clause, frames, scene, look_up))
         unknown = tuple(word.text for i, word in enumerate(s.words) if _is_unknown_verb(s, i))
-        if mood == "command" and not frames and not unknown:  # "stop" by itself
+        if mood == "command" and not frames and not unknown:  # "stop" alone
             unknown = tuple(word.text for word in s.words if word.kind == "verb")
         return Understood(tuple(texts), tuple(frames), _grounded(s, frames), unknown, mood=mood)
 
     def _calls(self, s: Sentence) -> list[tuple[int, int, list[tuple[float, str]]]]:
-        """Where frames are called for: first and last word, and the frames with their probabilities."""
+        """Return the words that evoke frames (first, last), with the frames' probabilities."""
         self._frames.set(self._seen(predicates.features(s)))
         labels = self._frames.tag()
         calls: list[tuple[int, int, list[tuple[float, str]]]] = []
@@ -124,7 +124,7 @@ class Interpreter:
     def _filled(
         self, s: Sentence, verb: int, found: list[tuple[float, str]], others: list[int]
     ) -> tuple[str, list[Span]]:
-        """The frame that together with its roles is the most probable, and what fills its slots."""
+        """Return the frame that is most probable together with its roles, and its slot fillers."""
         best: tuple[float, str, list[str]] | None = None
         for probability, name in found:
             self._roles.set(self._seen(roles.features(s, verb, name, others)))
@@ -135,13 +135,13 @@ class Interpreter:
             if best is None or score > best[0]:
                 best = (score, name, labels)
         if best is None:
-            raise errors.InternalError("no frame was tried")
+            raise errors.InternalError("a verb has no candidate frame")
         return best[1], _spans(best[2])
 
 
 @functools.cache
 def shipped(language: str = "english") -> Interpreter:
-    """The interpreter that comes with the package, learnt by `make train-language`."""
+    """Return the interpreter with the shipped taggers, which `make train-language` trains."""
     folder = resources.files("semmap.nodes.language") / "learnt"
     return Interpreter(
         str(folder / f"{language}_frames.crfsuite"), str(folder / f"{language}_roles.crfsuite"), language
@@ -157,12 +157,12 @@ def _is_new_verb(s: Sentence, i: int) -> bool:
 
 
 def _verb(s: Sentence, first: int, last: int) -> int:
-    """The word that the roles are seen from: of `there is` the latter."""
+    """Return the index of the verb that the roles relate to: in `there is`, the second word."""
     return last if s.words[first].text == "there" else first
 
 
 def _spans(labels: Sequence[str]) -> list[Span]:
-    """The runs of words with one label, `B-` beginning a new one."""
+    """Return the runs of words with the same label; `B-` begins a new run."""
     spans: list[Span] = []
     open_slot = ""
     for i, label in enumerate(labels):
@@ -212,8 +212,8 @@ def _frame(
         names = tuple(sorted(thing.name for thing in things))
         ambiguous = referents.means_one(s, k)
         if s.branches[k] == "pronoun" and not names:
-            said = s.words[head].text
-            names = pronouns.antecedent(said, s.phrases[k].preposition, name, role, before, scene)
+            pronoun = s.words[head].text
+            names = pronouns.antecedent(pronoun, s.phrases[k].preposition, name, role, before, scene)
             ambiguous = any(
                 names == a.candidates and a.ambiguous for frame in before for a in frame.arguments
             )
@@ -236,7 +236,7 @@ def _frame(
 
 
 def _head(s: Sentence, slot: str, first: int, last: int) -> int:
-    """The word that an argument is about: the head of its first phrase, of an angle the number."""
+    """Return the head of an argument: the head of its first phrase, or the number of an angle."""
     if slot == "angle":
         return next((i for i in range(first, last + 1) if s.words[i].kind == "num"), last)
     phrases = (s.phrases[k] for k in range(s.phrase_of[first], s.phrase_of[last] + 1))
@@ -245,57 +245,61 @@ def _head(s: Sentence, slot: str, first: int, last: int) -> int:
 
 
 def _number(s: Sentence, k: int) -> int | None:
-    """How many things a phrase speaks of, where a number says so."""
-    phrase, counted = s.phrases[k], s.lexicon.numbers
-    if s.branches[k] in ("", "measure", "pronoun") or not s.meant[k]:
+    """Return the number of things in a phrase, if it contains a numeral."""
+    phrase, number_words = s.phrases[k], s.lexicon.numbers
+    if s.branches[k] in ("", "measure", "pronoun") or not s.candidates[k]:
         return None
-    said = [w.text for w in s.words[phrase.nominal : phrase.head] if w.kind == "num"]
-    if len(said) != 1:
+    numerals = [w.text for w in s.words[phrase.nominal : phrase.head] if w.kind == "num"]
+    if len(numerals) != 1:
         return None
-    return int(said[0]) if said[0].isdecimal() and len(said[0]) < 4 else counted.get(said[0])
+    (numeral,) = numerals
+    return int(numeral) if numeral.isdecimal() and len(numeral) < 4 else number_words.get(numeral)
 
 
 def _opened(s: Sentence, frame: str, span: Span, scene: Scene) -> tuple[int, Things] | None:
-    """What is opened by its own door, and the word for it: *the door of the fridge* is none between rooms."""
+    """Return the thing that a door belongs to, and its word: *the door of the fridge*."""
     head = _head(s, *span)
     k = s.phrase_of[head]
     if frame != "Closure" or span[0] != "thing" or s.branches[k] != "Door":
         return None
-    word, things = head - 1, grounding.called(s.words[head - 1].text, scene, s.lexicon)  # "the fridge door"
+    word, things = (
+        head - 1,
+        grounding.find_by_label(s.words[head - 1].text, scene, s.lexicon),
+    )  # "the fridge door"
     if k + 1 < len(s.phrases) and s.phrases[k + 1].preposition == "of" and s.phrases[k + 1].last <= span[2]:
-        word, things = s.phrases[k + 1].head, s.meant[k + 1]
+        word, things = s.phrases[k + 1].head, s.candidates[k + 1]
     kinds = [scene.kinds_of(thing.name) for thing in things]
     opens = bool(kinds) and all("Openable_Thing" in kind and "Location" not in kind for kind in kinds)
     return (word, things) if opens else None
 
 
 def _like(s: Sentence, spans: Sequence[Span], span: Span) -> str:
-    """The noun that one thing has and the next goes without: *the blue cup and the red one*; "" for none."""
+    """Return the noun that an elliptical phrase omits (*the blue cup and the red one*), or ""."""
     slot, first, last = span
     alone = [word for word in s.words[first : last + 1] if word.kind not in ("det", "rel")]
     is_such = all(word.text in ("one", "ones") or s.lexicon.is_a(word.text, "adjective") for word in alone)
     before = [other for other in spans if other[0] == slot and other[2] < first]
-    if not alone or not is_such or not before or s.meant[s.phrase_of[last]]:
+    if not alone or not is_such or not before or s.candidates[s.phrase_of[last]]:
         return ""
     return s.words[_head(s, *before[-1])].text
 
 
 def _words(s: Sentence) -> Callable[[int, int], str]:
-    """The words from one index to another."""
+    """Return a function that joins the words from one index to another."""
     return lambda first, last: " ".join(word.text for word in s.words[first : last + 1])
 
 
 def _grounded(s: Sentence, frames: Sequence[SemanticFrame]) -> tuple[Grounded, ...]:
-    """For each word of an argument that names an entity which."""
-    told: dict[int, str] = {}
+    """Return the entity for each word of an argument that names one."""
+    named: dict[int, str] = {}
     heads = {argument.head: argument.entity for frame in frames for argument in frame.arguments}
     for frame in frames:
         for argument in frame.arguments:
             for i in range(argument.span[0] - 1, argument.span[1]):
                 phrase = s.phrases[s.phrase_of[i]]
                 if i >= phrase.nominal and s.words[i].kind in ("noun", "adj", "pron"):
-                    things: tuple[Thing, ...] = s.meant[s.phrase_of[i]]
+                    things: tuple[Thing, ...] = s.candidates[s.phrase_of[i]]
                     name = heads.get(phrase.head + 1) or (things[0].name if len(things) == 1 else None)
                     if name is not None:
-                        told[i + 1] = name
-    return tuple(Grounded(token, name) for token, name in sorted(told.items()))
+                        named[i + 1] = name
+    return tuple(Grounded(token, name) for token, name in sorted(named.items()))

@@ -1,4 +1,4 @@
-"""Italian told with English words: clitics and articles apart, verbs and nouns for what they are."""
+"""Translates Italian word by word to English, with clitics and articles separated."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from typing import Final, NamedTuple
 from semmap.nodes.language.lexicon.italian import ARTICULATED, Italian, italian, singulars
 from semmap.nodes.language.understanding.gloss import Gloss, Glossed
 from semmap.nodes.language.understanding.grounding import Scene
-from semmap.nodes.language.vocabulary import spoken
+from semmap.nodes.language.vocabulary import to_words
 from semmap.nodes.language.words import PartOfSpeech, plain
 
 _WORD: Final = re.compile(r"[^\W\d_]+'(?=\w)|po'|\d+(?:[.,]\d+)?|[^\W_]+(?:-[^\W_]+)*")
-_IS: Final = re.compile(r"(?<!\w)e'(?!\w)")  # è, as it is written where there is no such key
-_LONGEST: Final = 5  # words of an expression or of what a thing is called
+_IS: Final = re.compile(r"(?<!\w)e'(?!\w)")  # è, typed without the accent key
+_LONGEST: Final = 5  # words of an expression or a label
 _FIRST: Final = ("me", "te", "ce", "ve", "glie", "se")
 _SECOND: Final = ("lo", "la", "li", "le", "ne")
 _CLITICS: Final = {
     **{first + second: (first, second) for first in _FIRST for second in _SECOND},
     **{one: (one,) for one in ("mi", "ti", "ci", "vi", *_SECOND, "gli", "si")},
 }
-_SHORT: Final = ("da", "va", "fa", "sta")  # before these a clitic's consonant is doubled: dammi
+_SHORT: Final = ("da", "va", "fa", "sta")  # these double the consonant of a clitic: dammi
 _DETERMINERS: Final = ("the", "a", "this", "that", "my", "your", "his", "our", "their", "some", "no", "every")
 _POSSESSIVES: Final = ("my", "your", "his", "our", "their")
 _PLURAL: Final = ("i", "gli", "le")
@@ -31,29 +31,29 @@ _ENDING: Final = ("and", "then", "please", "to", "from", "in", "on", "with", "ne
 _OPENING: Final = (
     *("and", "or", "but", "then", "please", "robot", "sorry", "hey", "hello", "you", "not", "to", "okay"),
     *("would", "should", "while", "thanks", "now"),
-)  # behind these a clause begins
+)  # a clause begins after these
 
 
 def split(text: str) -> list[str]:
-    """The words of a text in lower case: `portamela` is `porta me la`, `dell'acqua` is `dell' acqua`."""
+    """Return the words of a text in lower case; `portamela` becomes `porta me la`."""
     return [token.removeprefix("-") for token in _tokens(text)]
 
 
 def gloss(text: str, scene: Scene) -> Gloss:
-    """A sentence with English words for it; nouns are looked up among what things and classes are called."""
+    """Return a sentence with its English words; nouns are labels of entities and classes."""
     tokens = _tokens(text)
     words = _Glossing(tokens, scene, italian()).words()
     return Gloss(tuple(token.removeprefix("-") for token in tokens), tuple(words))
 
 
 def share(text: str) -> int:
-    """How many words of a text are of the Italian lexicon."""
+    """Return the number of words of a text that are in the Italian lexicon."""
     known = italian()
     return sum(token.startswith("-") or known.is_word(token) for token in _tokens(text))
 
 
 def _tokens(text: str) -> list[str]:
-    """The words, clitics written behind a verb apart and beginning with `-`."""
+    """Return the words; clitics at the end of a verb are separate and begin with `-`."""
     known = italian()
     found: list[str] = []
     for word in _WORD.findall(_IS.sub("è", plain(text))):
@@ -66,7 +66,7 @@ def _tokens(text: str) -> list[str]:
 
 
 def _parted(word: str, opens: bool, known: Italian) -> tuple[str, tuple[str, ...]] | None:
-    """A verb and the clitics behind it, None for a word that is not such."""
+    """Split a verb and the clitics at its end; None for other words."""
     if known.is_word(word) and not (opens and word in ARTICULATED):
         return None
     for ending, clitics in sorted(_CLITICS.items(), key=lambda item: -len(item[0])):
@@ -79,7 +79,7 @@ def _parted(word: str, opens: bool, known: Italian) -> tuple[str, tuple[str, ...
 
 
 class _Piece(NamedTuple):
-    """A word, or a part of an articulated preposition. token: its index among the words."""
+    """A word, or a part of an articulated preposition; `token` is the index of the word."""
 
     text: str
     token: int
@@ -87,13 +87,13 @@ class _Piece(NamedTuple):
 
 
 class _Glossing:
-    """Reads the pieces from left to right."""
+    """Translates the pieces from left to right."""
 
     def __init__(self, tokens: Sequence[str], scene: Scene, known: Italian) -> None:
         self._tokens, self._scene, self._known = tokens, scene, known
         self._pieces = list(self._pieced())
         self._found: list[Glossed] = []
-        self._before_verb: list[Glossed] = []  # clitics that English says behind it
+        self._before_verb: list[Glossed] = []  # clitics that follow the verb in English
 
     def words(self) -> list[Glossed]:
         """The English words."""
@@ -112,13 +112,13 @@ class _Glossing:
                 yield _Piece(token, n)
 
     def _gives(self, n: int) -> bool:
-        """Whether a word is `dai` (give) and not `da i` (from the): an article or a clitic follows."""
+        """Return whether a word is `dai` (give) and not `da i` (from the): an article or clitic follows."""
         following = self._tokens[n + 1] if n + 1 < len(self._tokens) else ""
         article = self._known.expressions.get((following,), "") in _DETERMINERS
         return self._tokens[n] in self._known.verbs and (following.startswith("-") or article)
 
     def _read(self, i: int) -> int:
-        """Tell the next words in English. Returns how many pieces they are."""
+        """Translate the next words. Returns the number of pieces."""
         piece = self._pieces[i]
         if piece.is_clitic:
             self._clitic(i)
@@ -138,13 +138,13 @@ class _Glossing:
             self._adjective(english, i)
             return 1
         for length in range(min(_LONGEST + 2, len(self._pieces) - i), 0, -1):
-            said = tuple(p.text for p in self._pieces[i : i + length])
-            if said[-1] == "di" and self._counts(i + length):  # "a sinistra di 90 gradi" is by how much
+            words = tuple(p.text for p in self._pieces[i : i + length])
+            if words[-1] == "di" and self._counts(i + length):  # "a sinistra di 90 gradi" is by how much
                 if length == 1:
                     self._say("by", i, i, "prep")
                     return 1
-            elif said in self._known.expressions:
-                return self._expression(self._known.expressions[said], i, length)
+            elif words in self._known.expressions:
+                return self._expression(self._known.expressions[words], i, length)
         if piece.text in self._known.relative:
             self._say(self._known.relative[piece.text], i, i, "rel")
         elif english:
@@ -156,7 +156,7 @@ class _Glossing:
         return 1
 
     def _say(self, english: str, first: int, last: int, kind: PartOfSpeech | None) -> None:
-        """Add English words for pieces; what is in parentheses nobody said."""
+        """Add English words for pieces; words in parentheses have no original."""
         start, end = self._pieces[first].token + 1, self._pieces[last].token + 1
         for word in english.split():
             if word.startswith("("):
@@ -182,12 +182,12 @@ class _Glossing:
         return length
 
     def _counts(self, i: int) -> bool:
-        """Whether a number stands here."""
+        """Return whether piece i is a number."""
         text = self._pieces[i].text if i < len(self._pieces) else ""
         return text[:1].isdigit() or self._known.expressions.get((text,), "") in _NUMBERS
 
     def _is_partitive(self, i: int) -> bool:
-        """Whether `di` and an article begin an object: `prendi del latte`."""
+        """Return whether `di` and an article begin an object: `prendi del latte`."""
         joined = i + 1 < len(self._pieces) and self._pieces[i].token == self._pieces[i + 1].token
         before = self._found[-1] if self._found else None
         return joined and (
@@ -197,12 +197,12 @@ class _Glossing:
         )
 
     def _is_compound(self, i: int) -> bool:
-        """Whether `di` and an article stand between two nouns."""
+        """Return whether `di` and an article are between two nouns."""
         joined = i + 2 < len(self._pieces) and self._pieces[i].token == self._pieces[i + 1].token
         return joined and self._follows("noun") and self._called(i + 2, 1) is not None
 
     def _compound(self, i: int) -> int:
-        """Say the noun at a piece before the one that it tells more of. Returns how many pieces it is."""
+        """Add a modifying noun before the noun that it modifies. Returns the number of pieces."""
         lengths = range(min(_LONGEST, len(self._tokens) - self._pieces[i].token), 0, -1)
         length = next(n for n in lengths if self._called(i, n) is not None)
         pieces = self._noun(self._called(i, length) or "", i, length)
@@ -216,7 +216,7 @@ class _Glossing:
         return len(pieces)
 
     def _adjective(self, english: str, i: int) -> None:
-        """Say an adjective before its noun."""
+        """Add an adjective before its noun."""
         token = self._pieces[i].token + 1
         self._found.insert(len(self._found) - 1, Glossed(english, token, token, token, "adj"))
 
@@ -235,7 +235,7 @@ class _Glossing:
             (self._found if behind else self._before_verb).append(Glossed(english, token, token, token, kind))
 
     def _stands_before_verb(self, i: int) -> bool:
-        """Whether a clitic stands here by itself: `mi porti`, `lo prendi`."""
+        """Return whether piece i is a clitic before its verb: `mi porti`, `lo prendi`."""
         if self._pieces[i].text not in self._known.clitics:
             return False
         j = i + 1
@@ -250,7 +250,7 @@ class _Glossing:
         )
 
     def _is_verb(self, i: int) -> bool:
-        """Whether a verb stands here, and no noun or preposition that is written alike."""
+        """Return whether piece i is a verb, and not a noun or preposition with the same spelling."""
         text = self._pieces[i].text
         if text not in self._known.verbs or (i and self._pieces[i - 1].token == self._pieces[i].token):
             return False
@@ -276,7 +276,7 @@ class _Glossing:
         return bool(self._found) and self._found[-1].kind == kind
 
     def _ends(self, i: int) -> bool:
-        """Whether no noun follows: the sentence ends, or a preposition, conjunction or verb comes."""
+        """Return whether the noun phrase ends at piece i."""
         if i + 1 == len(self._pieces):
             return True
         following = self._pieces[i + 1]
@@ -288,7 +288,7 @@ class _Glossing:
         )
 
     def _called(self, i: int, length: int) -> str | None:
-        """What a thing or class is called by the words from a piece on, None if nothing is."""
+        """Return the label that the words from piece i on denote, or None."""
         token = self._pieces[i].token
         if i and self._pieces[i - 1].token == token:
             return None
@@ -298,9 +298,9 @@ class _Glossing:
         rest = " ".join(["", *words[1:]]).replace("' ", "'")
         for first in singulars(words[0]):
             text = first + rest
-            if text in self._scene.called:
+            if text in self._scene.by_label:
                 return text
             name = self._scene.vocabulary.class_of(text) or self._known.synonyms.get(text)
             if name is not None:
-                return spoken(name)
+                return to_words(name)
         return None

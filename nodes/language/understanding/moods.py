@@ -1,15 +1,15 @@
-"""What a sentence is said for: to have something done or known, to ask, or to tell what was."""
+"""The mood of a sentence: command, question or statement about the past."""
 
 from __future__ import annotations
 
 from semmap.nodes.language.understanding.sentence import Sentence
 from semmap.schemas.language import Mood
 
-_NOT_YET = ("adv", "conj", "neg")  # what may stand before the word that opens a question
+_NOT_YET = ("adv", "conj", "neg")  # words that may precede the first word of a question
 
 
 def mood(s: Sentence) -> Mood:
-    """Whether a sentence asks, or tells only of what was; otherwise it is a command."""
+    """Return whether a sentence is a question or only about the past; otherwise it is a command."""
     if _asks(s):
         return "question"
     verbs = [i for i, word in enumerate(s.words) if word.kind in ("verb", "aux")]
@@ -17,7 +17,7 @@ def mood(s: Sentence) -> Mood:
 
 
 def is_over(s: Sentence, i: int) -> bool:
-    """Whether the verb at i tells what somebody did or does, and so is not to be done."""
+    """Return whether the verb at i describes a past or habitual action, which is not a command."""
     word, is_a = s.words[i], s.lexicon.is_a
     if is_a(word.text, "past") or is_a(word.text, "perfect"):
         return True
@@ -50,7 +50,7 @@ def _asks(s: Sentence) -> bool:
     if verb is None:
         return True
     if opening.text == "why" and any(word.kind == "neg" for word in words[verb : verb + 3]):
-        return False  # "why don't you open the window" is a way to ask for it
-    if opening.text == "when":  # "when you are there, take the cup" has the verb behind somebody
+        return False  # "why don't you open the window" is a request
+    if opening.text == "when":  # in "when you are there, take the cup" the subject comes first
         return verb == start + 1
     return words[verb].kind != "verb"

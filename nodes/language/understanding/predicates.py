@@ -1,4 +1,4 @@
-"""What tells whether a word calls for a frame, and for which: features for the learnt tagger."""
+"""Features for the tagger that decides whether a word evokes a frame, and which one."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ _GOALS = ("to", "into", "onto", "towards")
 
 
 def features(s: Sentence) -> list[list[str]]:
-    """For each word what is seen of it."""
+    """Return the features of each word."""
     return [_of_word(s, i) for i in range(len(s.words))]
 
 
 def may_call(s: Sentence, i: int) -> bool:
-    """Whether the word at i can call for a frame at all."""
+    """Return whether the word at i can evoke a frame."""
     return s.words[i].kind in ("verb", "aux") or s.words[i].text == "there"
 
 
@@ -41,7 +41,7 @@ def _of_word(s: Sentence, i: int) -> list[str]:
 
 
 def _clause(s: Sentence, i: int) -> list[str]:
-    """What is seen of the verb's clause."""
+    """Return the features of the verb's clause."""
     after = s.clause(i)
     things = [k for k in after if s.phrases[k].kind == "np"]
     places = [k for k in after if s.phrases[k].kind == "pp"]

@@ -1,4 +1,4 @@
-"""What `it` and `them` stand for: the last thing acted on before that suits what is to be done with it."""
+"""Antecedents of `it` and `them`: the last object acted on that affords the requested action."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ _ACTED_ON: Final = (
 
 
 _FOR_OPENING: Final = dict.fromkeys(("Containing_object", "Container_portal"), "Openable_Thing")
-_WANTED: Final = {  # frame -> role -> class of the household TBox: what affords it
+_WANTED: Final = {  # frame -> role -> class of the household TBox with this affordance
     "Closure": _FOR_OPENING,
     "Change_operational_state": {"Device": "Switchable_Thing"},
 }
-_WHERE: Final = {  # preposition -> class of what is spoken of so
+_WHERE: Final = {  # preposition -> class of its object
     **dict.fromkeys(("in", "into", "inside", "out of"), "Containing_Thing"),
     **dict.fromkeys(("on", "onto", "on top of"), "Supporting_Thing"),
 }
@@ -34,13 +34,13 @@ _NEVER_CARRIED: Final = frozenset({"Location", "Connecting_Architecture"})
 def antecedent(
     pronoun: str, preposition: str, frame: str, role: str, before: Sequence[SemanticFrame], scene: Scene
 ) -> tuple[str, ...]:
-    """The names of the entities that a pronoun stands for, none for what has none.
+    """Return the names of the entities that a pronoun denotes, or none.
 
-    preposition: the words before the pronoun, "" for none. frame, role: what it fills. before: the frames of
-    the sentence so far; what fills the same frame is not meant (*put the pizza in it*). The last that was
-    acted on comes first, then the last of the others: the first that affords what is to be done is meant,
-    and the first of all where none does. Places are not carried. Several names are those that may be meant
-    where it was not clear before; of *them*, all that were acted on together.
+    `preposition` precedes the pronoun (or is ""), which fills `role` of `frame`. `before` are the earlier
+    frames of the sentence; fillers of the same frame are excluded (*put the pizza in it*). Candidates are
+    the objects acted on, the last first, then other fillers. The first one that affords the action is
+    chosen, or the first of all if none does. Places are never carried. Several names are returned if the
+    antecedent was ambiguous, and for *them*.
     """
     if pronoun not in _PRONOUNS:
         return ()
@@ -55,7 +55,7 @@ def antecedent(
 
 
 def _mentioned(before: Sequence[SemanticFrame], together: bool) -> Iterator[tuple[str, ...]]:
-    """What was spoken of, the last first; together: what one frame acts on, all at once."""
+    """Yield the entities mentioned before, the last first; `together` groups those of one frame."""
     for frame in reversed(before):
         acted_on = [names for a in frame.arguments if a.role in _ACTED_ON and (names := _names(a))]
         if together and len(acted_on) > 1:

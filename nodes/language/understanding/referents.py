@@ -1,4 +1,4 @@
-"""Which entities an argument means: what its noun phrase and all that is said of the thing fit together."""
+"""Resolves an argument to entities, by its noun phrase together with all modifiers."""
 
 from __future__ import annotations
 
@@ -10,45 +10,45 @@ from semmap.nodes.language.understanding.grounding import Thing, Things
 from semmap.nodes.language.understanding.sentence import Sentence
 
 Resolve = Callable[[str], tuple[str, ...]]
-"""The names of the entities that a description fits, none where that cannot be said."""
-Said = Callable[[int, int], str]
-"""The words from one index to another as they were said."""
+"""Returns the names of the entities that match a description, or none."""
+Original = Callable[[int, int], str]
+"""Returns the original words from one index to another."""
 
 _NOT_DESCRIBED: Final = ("robot", "speaker", "direction", "measure")
 _FROM: Final = ("from", "off", "out of", "off of")
 _WHERE_IT_IS: Final = ("on", "in")
-"""What is taken from somewhere is there."""
+"""The relations of an object to the place that it is taken from."""
 ANYTHING: Final = ("something", "anything")
 _NOT_LOOKED_UP: Final = (*_NOT_DESCRIBED, "pronoun")
 _NO_QUALITY: Final = ("det", "pron", "rel")
 
 
 class Referents:
-    """Looks up what the phrases of one sentence mean."""
+    """Resolves the phrases of one sentence."""
 
     def __init__(
         self,
         s: Sentence,
         things: Callable[[str], Thing | None],
         resolve: Resolve,
-        said: Said,
+        original: Original,
         plural: Set[int],
     ) -> None:
-        """things: an entity by name; resolve: asked for the words themselves and for the English ones.
+        """`things` returns an entity by name; `resolve` is called with original and with English words.
 
-        plural: the indices of the words that are in the plural though the English ones do not tell.
+        `plural` are the indices of English words whose originals are plural.
         """
         self._plural = plural
-        self._s, self._thing, self._resolve, self._said = s, things, resolve, said
+        self._s, self._thing, self._resolve, self._original = s, things, resolve, original
 
     def of(self, first: int, last: int, head: int, source: tuple[int, str] | None, like: str) -> Things:
-        """What the words from `first` to `last` mean; `head` is the one that they are about.
+        """Return the entities that the words from `first` to `last` denote; `head` is their head.
 
-        source: of the phrase that says where it is taken from the index, and what entity that is. like: the
-        noun of the thing that is named with it (*the blue cup and the red one*), "" for none.
+        `source` is the phrase (index and entity) that the object is taken from. `like` is the noun that an
+        elliptical phrase takes from the previous one (*the blue cup and the red one*), or "".
         """
         s, k = self._s, self._s.phrase_of[head]
-        phrase, meant = s.phrases[k], s.meant[k]
+        phrase, meant = s.phrases[k], s.candidates[k]
         is_one = means_one(s, k) and self._plural.isdisjoint(range(phrase.first, phrase.last + 1))
         is_any = s.words[head].text in ANYTHING and last > phrase.last
         if not phrase.names or s.branches[k] in (_NOT_DESCRIBED if like or is_any else _NOT_LOOKED_UP):
@@ -62,7 +62,7 @@ class Referents:
                 return both
         if is_any or (len(meant) == 1 and is_one):
             return meant
-        for text in (self._said(phrase.nominal, phrase.last), self._english(phrase.nominal, phrase.last)):
+        for text in (self._original(phrase.nominal, phrase.last), self._english(phrase.nominal, phrase.last)):
             found = self._fitting(text)
             both = tuple(thing for thing in found if thing in meant)
             if found and (not meant or both):
@@ -78,7 +78,7 @@ class Referents:
     def _with_modifiers(
         self, nominal: int, last: int, k: int, source: tuple[int, str] | None
     ) -> Iterator[str]:
-        """Descriptions with what is said of the thing besides its noun phrase, the most closely first."""
+        """Yield descriptions of the noun phrase with its modifiers, the most specific first."""
         s, end = self._s, self._s.phrases[k].last
         if source is not None and s.phrases[source[0]].preposition in _FROM:
             yield from (f"{self._english(nominal, end)} {where} {source[1]}" for where in _WHERE_IT_IS)
@@ -86,22 +86,22 @@ class Referents:
             if stop > end and s.words[s.phrases[k].head].text not in ANYTHING:
                 yield f"{self._english(nominal, end)} {self._by_name(end + 1, stop)}"
             if stop > end:
-                yield self._said(nominal, stop)
+                yield self._original(nominal, stop)
                 yield self._english(nominal, stop)
 
     def _by_name(self, first: int, last: int) -> str:
-        """English words with the name of an entity where only that is meant."""
+        """Return English words, with phrases that denote one entity replaced by its name."""
         s = self._s
         parts = []
         for k in range(s.phrase_of[first], s.phrase_of[last] + 1):
-            phrase, meant = s.phrases[k], s.meant[k]
+            phrase, meant = s.phrases[k], s.candidates[k]
             words = self._english(phrase.first, phrase.last)
             parts.append(f"{phrase.preposition} {meant[0].name}".strip() if len(meant) == 1 else words)
         return " ".join(parts)
 
 
 def means_one(s: Sentence, k: int) -> bool:
-    """Whether a phrase speaks of one thing that is known, and not of any or of several."""
+    """Return whether a phrase denotes one definite thing."""
     phrase = s.phrases[k]
     inside = s.words[phrase.nominal : phrase.last + 1]
     any_or_several = any(s.lexicon.is_a(word.text, "any_or_several") or word.kind == "num" for word in inside)
@@ -110,7 +110,7 @@ def means_one(s: Sentence, k: int) -> bool:
 
 
 def relative_end(s: Sentence, last: int) -> int:
-    """The last word of the clause that begins behind a word with *that*, *which*, *who*; else the word."""
+    """Return the last word of the relative clause after a word, or the word itself if there is none."""
     if last + 1 >= len(s.words) or s.words[last + 1].kind != "rel":
         return last
     verb = next((i for i in range(last + 2, len(s.words)) if s.words[i].kind in ("aux", "verb")), None)
@@ -121,7 +121,7 @@ def relative_end(s: Sentence, last: int) -> int:
 
 
 def is_relative(s: Sentence, verb: int) -> bool:
-    """Whether a verb says more of what was named just before: *the cup that is on the desk*."""
+    """Return whether a verb is in a relative clause: *the cup that is on the desk*."""
     before = [i for i in range(max(0, verb - 2), verb) if s.words[i].kind != "neg"]
     if s.words[verb].kind != "aux":
         return False
@@ -129,12 +129,12 @@ def is_relative(s: Sentence, verb: int) -> bool:
 
 
 def chosen(s: Sentence, first: int, last: int, k: int) -> Things:
-    """What phrase k may mean by its words alone; of several the nearest to what else is spoken of."""
-    things = s.meant[k]
+    """Return what phrase k may denote by its words alone; of several, the nearest to the other phrases."""
+    things = s.candidates[k]
     beside: Sequence[Thing] = [
-        s.meant[other][0]
+        s.candidates[other][0]
         for other in range(s.phrase_of[first], s.phrase_of[last] + 1)
-        if other != k and len(s.meant[other]) == 1
+        if other != k and len(s.candidates[other]) == 1
     ]
     if len(things) < 2 or not beside:
         return things

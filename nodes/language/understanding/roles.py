@@ -1,4 +1,4 @@
-"""What tells the part that a word plays in a frame: features for the learnt tagger."""
+"""Features for the tagger that assigns words to the slots of a frame."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from semmap.nodes.language.understanding.sentence import Sentence
 
 
 def features(s: Sentence, verb: int, frame: str, others: Sequence[int]) -> list[list[str]]:
-    """For each word what is seen of it, from a frame's verb. others: the words that call for other frames."""
+    """Return the features of each word relative to a frame's verb; `others` evoke other frames."""
     after = s.clause(verb)
     return [_of_word(s, i, verb, frame, others, after) for i in range(len(s.words))]
 

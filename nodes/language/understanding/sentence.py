@@ -1,4 +1,4 @@
-"""A sentence as far as it is understood before anything learnt is asked."""
+"""The analysis of a sentence before the trained taggers: words, phrases and candidate entities."""
 
 from __future__ import annotations
 
@@ -10,33 +10,33 @@ from semmap.nodes.language.lexicon import Lexicon
 from semmap.nodes.language.phrases import Phrase, phrases
 from semmap.nodes.language.understanding import grounding
 from semmap.nodes.language.understanding.grounding import Scene, Things
-from semmap.nodes.language.words import PartOfSpeech, Word, based, tag
+from semmap.nodes.language.words import PartOfSpeech, Word, tag, to_base_forms
 
-_MOST_PAIRS = 400  # of things, to be looked at for the nearest: a tenth of a millisecond
-_NEAR_M = 1.5  # of what is nearer, one says where it is by the other
+_MOST_PAIRS = 400  # pairs of things that are searched for the nearest; takes 0.1 ms
+_NEAR_M = 1.5  # people locate objects relative to others within this distance
 
 
 @dataclass(frozen=True, slots=True)
 class Sentence:
-    """Words, phrases, and what each phrase may mean in the map."""
+    """Words, phrases, and the candidate entities of each phrase."""
 
     words: Sequence[Word]
     phrases: Sequence[Phrase]
-    phrase_of: Sequence[int]  # for each word the index of its phrase
-    branches: Sequence[str]  # for each phrase what kind of thing it speaks of, "" for none
-    meant: Sequence[Things]  # for each phrase what it may mean
+    phrase_of: Sequence[int]  # the index of each word's phrase
+    branches: Sequence[str]  # the branch of the taxonomy of each phrase, or ""
+    candidates: Sequence[Things]  # the candidate entities of each phrase
     lexicon: Lexicon
 
     def near(self, one: int, other: int) -> Literal["near", "far", "unknown"]:
-        """Whether what two phrases mean is near each other over the ground; of several the nearest count."""
-        ones, others = self.meant[one], self.meant[other]
+        """Return whether the nearest entities of two phrases are close to each other on the floor."""
+        ones, others = self.candidates[one], self.candidates[other]
         if not 0 < len(ones) * len(others) <= _MOST_PAIRS:
             return "unknown"
         metres = min(grounding.distance(a, b) for a in ones for b in others)
         return "unknown" if metres == float("inf") else "near" if metres < _NEAR_M else "far"
 
     def clause(self, verb: int) -> range:
-        """The phrases that follow the verb at a word, up to the next verb or sentence."""
+        """Return the phrases after a verb, up to the next verb or clause."""
         start = end = self.phrase_of[verb] + 1
         while end < len(self.phrases):
             kind = self.phrases[end].kind
@@ -48,7 +48,7 @@ class Sentence:
         return range(start, end)
 
     def verb_frames(self, verb: int) -> tuple[str, ...]:
-        """The frames that the lexicon gives to the verb at a word, with its particle if it has one."""
+        """Return the frames of a verb in the lexicon, considering its particle."""
         lemma = self.words[verb].lemma
         for i in range(verb + 1, min(verb + 5, len(self.words))):
             if self.words[i].kind == "verb":
@@ -62,11 +62,13 @@ class Sentence:
 def sentence(
     texts: Sequence[str], scene: Scene, lexicon: Lexicon, kinds: Sequence[PartOfSpeech | None] = ()
 ) -> Sentence:
-    """Read a sentence. texts: its words in lower case; kinds: their parts of speech where they are known."""
+    """Analyse a sentence of lower-case words; `kinds` are the known parts of speech."""
     words = tag(texts, lexicon, kinds)
     found = phrases(words, lexicon)
     phrase_of = [k for k, phrase in enumerate(found) for _ in range(phrase.first, phrase.last + 1)]
-    meant = [grounding.meant(phrase, words, scene, lexicon) if phrase.names else () for phrase in found]
+    meant = [
+        grounding.find_candidates(phrase, words, scene, lexicon) if phrase.names else () for phrase in found
+    ]
     branches = [
         _branch(phrase, words, things, scene, lexicon) if phrase.names else ""
         for phrase, things in zip(found, meant, strict=True)
@@ -75,7 +77,7 @@ def sentence(
 
 
 def _branch(phrase: Phrase, words: Sequence[Word], things: Things, scene: Scene, lexicon: Lexicon) -> str:
-    """What kind of thing a phrase speaks of: a branch of the taxonomy, or a class of words of its head."""
+    """Return the kind of a phrase: a branch of the taxonomy, or the word class of its head."""
     head = words[phrase.head]
     for kind in ("robot", "speaker"):
         if lexicon.is_a(head.text, kind):
@@ -89,7 +91,7 @@ def _branch(phrase: Phrase, words: Sequence[Word], things: Things, scene: Scene,
     inside = words[phrase.nominal : phrase.last + 1]
     text = " ".join(word.text for word in inside if word.kind in ("noun", "adj"))
     known = scene.vocabulary
-    name = known.class_of(text) or known.class_of(based(text, lexicon)) or known.class_of(head.lemma)
+    name = known.class_of(text) or known.class_of(to_base_forms(text, lexicon)) or known.class_of(head.lemma)
     if name is None and things:
         name = known.class_of(things[0].class_name.lower()) or things[0].class_name
     return known.branch(name)

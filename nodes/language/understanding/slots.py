@@ -1,7 +1,7 @@
-"""What fills a role, told for all frames alike: the thing acted on is Taking's Theme and Attaching's Item.
+"""Slots: roles that several frames share, so that training examples of one frame apply to others.
 
-What is learnt of one frame so holds of others. A slot of a frame is a role of it; the roles are FrameNet's,
-as the Human Robot Interaction Corpus uses them.
+The slot *thing*, for example, is Taking's Theme and Attaching's Item. The roles are FrameNet's, as in the
+Human Robot Interaction Corpus.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ _ROLES: Final[dict[str, dict[str, str]]] = {
     "reason": {"": "Reason"},
     "unwanted": {"": "Unwanted_entity"},
 }
-# Roles that a slot's other words stand for: told apart again by what is spoken of (`role`).
+# Other roles of the corpus and their slots; `role` distinguishes them by the kind of filler.
 _ALSO: Final = {
     "Container_portal": "thing",
     "Cognizer": "agent",
@@ -63,7 +63,7 @@ _PORTALS: Final = ("Door", "Window", "Connecting_Architecture")
 
 
 def slot(frame: str, role: str) -> str:
-    """The slot that a role of a frame is. Raises KeyError for a role that nobody knows."""
+    """Return the slot of a frame's role. Raises KeyError for an unknown role."""
     for name, roles in _ROLES.items():
         if roles.get(frame) == role:
             return name
@@ -74,7 +74,7 @@ def slot(frame: str, role: str) -> str:
 
 
 def role(frame: str, slot: str, branch: str, verb: str) -> str:
-    """The role that a slot is in a frame. branch: what kind of thing fills it; verb: the base form."""
+    """Return the role of a slot in a frame, for a filler of the kind `branch` and a verb in base form."""
     if frame == "Closure" and slot == "thing" and branch in _PORTALS:
         return "Container_portal"
     if frame == "Locating" and slot == "agent" and verb != "find":

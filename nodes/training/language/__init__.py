@@ -1,1 +1,1 @@
-"""Learning to understand commands: the corpus, examples of our own, and what is learnt from both."""
+"""Training of command understanding: the corpus, generated examples, and the taggers."""

@@ -1,4 +1,4 @@
-"""Learn to understand commands from the files of HuRIC: `python -m semmap.nodes.training.language FOLDER`."""
+"""Train the taggers for commands on the HuRIC corpus: `python -m semmap.nodes.training.language FOLDER`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ TIMES_MADE: Final = 2  # how often each pattern of ours is drawn
 
 
 def main() -> None:
-    """Write what is learnt to where `semmap.nodes.language` looks for it."""
+    """Write the trained taggers to the folder of `semmap.nodes.language`."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path, help="the corpus: a folder of .hrc files")
     folder = parser.parse_args().folder

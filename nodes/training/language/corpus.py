@@ -1,4 +1,4 @@
-"""Commands with what they mean, as examples to learn from and to be scored by: files of the HuRIC corpus."""
+"""Annotated commands for training and evaluation: files of the HuRIC corpus."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from semmap.nodes.language.understanding.grounding import Thing
 
 
 class Role(NamedTuple):
-    """What fills a role: first and last word, and the one that it is about where that was said."""
+    """The filler of a role: first and last word, and the head if it is annotated."""
 
     name: str
     first: int
@@ -21,7 +21,7 @@ class Role(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Filled:
-    """A frame as an annotator saw it. Words count from 1."""
+    """An annotated frame. Words are counted from 1."""
 
     name: str
     verb: tuple[int, ...]
@@ -41,7 +41,7 @@ class Example:
 
 
 def read(folder: Path) -> list[Example]:
-    """The examples of all `.hrc` files under a folder, by name. Raises FileNotFoundError for none."""
+    """Return the examples of all `.hrc` files in a folder, by name. Raises FileNotFoundError for none."""
     paths = sorted(folder.rglob("*.hrc"), key=lambda path: path.stem)
     if not paths:
         raise FileNotFoundError(f"there are no .hrc files under {folder}")

@@ -1,4 +1,4 @@
-"""What things are called in the household TBox."""
+"""The vocabulary of the household TBox."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from semmap.nodes.language.vocabulary import Vocabulary, vocabulary
 
 @functools.cache
 def household(language: str = "english", *, synonyms: bool = True) -> Vocabulary:
-    """The classes of `household.ttl`, by their labels in all of its languages and by our synonyms."""
+    """Return the classes of `household.ttl` by their labels in all languages and our synonyms."""
     graph = rdflib.Graph().parse(str(resources.files("ontology") / "household.ttl"))
     classes = sorted(c for c in graph.subjects(RDF.type, OWL.Class) if isinstance(c, rdflib.URIRef))
     labels = [

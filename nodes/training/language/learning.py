@@ -1,4 +1,4 @@
-"""Fitting the two taggers of `semmap.nodes.language` to examples: linear-chain conditional random fields."""
+"""Training of the two taggers of `semmap.nodes.language`: linear-chain conditional random fields."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def learn(
 
 
 def _verb(s: Sentence, frame: Filled) -> int:
-    """The word that roles are seen from, as in `interpretation`."""
+    """Return the index of the verb that the roles relate to, as in `interpretation`."""
     first, last = frame.verb[0] - 1, frame.verb[-1] - 1
     return last if s.words[first].text == "there" else first
 

@@ -1,4 +1,4 @@
-"""Commands made from patterns of our own, with maps in which they make sense."""
+"""Commands generated from patterns, with matching maps."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _At = tuple[float, float, float]
 
 
 def examples(times: int, known: Vocabulary, language: str = "english", seed: int = 0) -> list[Example]:
-    """Every pattern of a language so many times, with other words; the same for the same seed."""
+    """Return examples of every pattern of a language, with random words; reproducible for a seed."""
     folder = resources.files(__package__)
     patterns = [
         line
@@ -36,7 +36,7 @@ def examples(times: int, known: Vocabulary, language: str = "english", seed: int
 
 
 class _Open(NamedTuple):
-    """A frame in the making."""
+    """A frame that is being built."""
 
     name: str
     verb: list[int]
@@ -44,7 +44,7 @@ class _Open(NamedTuple):
 
 
 class _Maker:
-    """Draws the words of patterns."""
+    """Samples the words of patterns."""
 
     def __init__(self, table: dict[str, list[str]], known: Vocabulary, language: str, seed: int) -> None:
         self._table = table
@@ -99,7 +99,7 @@ class _Maker:
         return Example(name, "made", tuple(words), filled, self._map(things))
 
     def _draw(self, token: str) -> tuple[list[str], str, bool]:
-        """The words for a token of a pattern, the name of what was drawn, and whether it is to be far off."""
+        """Return the words for a token of a pattern, the sampled entity, and whether it must be far away."""
         found = _DRAWN.fullmatch(token)
         if found is None:
             return [token], "", False

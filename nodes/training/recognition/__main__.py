@@ -1,4 +1,4 @@
-"""Learn to recognise things from renderings: `python -m semmap.nodes.training.recognition`."""
+"""Train object recognition on renderings: `python -m semmap.nodes.training.recognition`."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ from semmap.nodes.training.recognition.gathering import Gathered, gather
 from semmap.nodes.training.recognition.gradient_descent import Recipe
 from semmap.nodes.training.recognition.learn_familiar import learn_familiar
 from semmap.nodes.training.recognition.learn_joining import learn_joining
-from semmap.nodes.training.recognition.learn_novelty import Told, learn_novelty
+from semmap.nodes.training.recognition.learn_open_set import LabelledSamples, learn_novelty
 from semmap.nodes.training.recognition.natural_colours import unnatural
 from semmap.nodes.training.recognition.samples import NOTHING, Samples
 from semmap.nodes.training.scenes.families.table import FAMILIES
-from semmap.nodes.training.scenes.simulated_scenes import STRANGE, foreign_class
+from semmap.nodes.training.scenes.simulated_scenes import DISTRACTOR, foreign_class
 from semmap.nodes.training.segmentation.fit import trees_of
 from semmap.nodes.training.taxonomy import class_of_models, hierarchy
 
@@ -50,12 +50,12 @@ _ALL = Recipe((512, 256), rounds=12, dropped=(0.1, 0.3))
 _FAMILIAR = Recipe((512, 256), rounds=24, dropped=(0.05, 0.2))
 _COLOUR = Recipe((64,), dropped=(0.1, 0.1))
 _RECIPES = (_ONE_SORT, _ONE_SORT, _COLOUR, _ONE_SORT, _ONE_SORT, _ALL, _ALL, _ALL)
-"""How each of `VOTERS` learns."""
+"""The training parameters of each of `VOTERS`."""
 
 _SIDES = Recipe((128, 64), rounds=60, decay=1e-4)
 _MOST_SIDES = 60_000  # things teach where sides are
 _FARTHEST = 1.0
-"""A side that is off by more of the thing's size than this was not seen at all."""
+"""Sides with a larger error, relative to the object's size, count as unseen."""
 
 
 def learn(
@@ -84,8 +84,8 @@ def learn(
         for seed, (f, recipe) in enumerate(zip(voter_inputs(features), _RECIPES, strict=True))
     )
     weights = _calibrated(voters, [f[held] for f in features], target[held])
-    told = Told(features, target, strangers(samples.kind), held, classes, ancestors)
-    novelty = learn_novelty(told, _RECIPES, weights)
+    labelled = LabelledSamples(features, target, strangers(samples.kind), held, classes, ancestors)
+    novelty = learn_novelty(labelled, _RECIPES, weights)
     familiar = _familiar(things[things.scene % _HELD_OUT != 0], own, class_of, classes)
     sizes = _typical_sizes(samples, target, len(classes))
     expected = expected_sizes(vote(voters, weights, features), sizes)
@@ -110,7 +110,7 @@ def learn(
 def _familiar(
     things: Samples, own: Samples, class_of: Mapping[str, str], classes: Sequence[str]
 ) -> Perceptron:
-    """What knows our models by sight."""
+    """Train the recogniser of our own models."""
     seen = Samples.joined([things, own])
     leaf = np.searchsorted(classes, [class_of[kind] for kind in seen.kind])
     leaf = np.where(seen.as_modelled, leaf, len(classes))
@@ -118,8 +118,8 @@ def _familiar(
 
 
 def classes_of(gathered: Gathered) -> dict[str, str]:
-    """The class of each kind of things in the samples and pairs."""
-    class_of = class_of_models(MODELS) | {STRANGE: UNKNOWN, NOTHING: CLUTTER}
+    """Return the class of each kind in the samples and pairs."""
+    class_of = class_of_models(MODELS) | {DISTRACTOR: UNKNOWN, NOTHING: CLUTTER}
     for kind in {*gathered.things.kind.tolist(), *gathered.pairs.kinds.ravel().tolist()}:
         if (foreign := foreign_class(kind)) is not None:
             class_of[kind] = foreign[1] or UNKNOWN
@@ -127,7 +127,7 @@ def classes_of(gathered: Gathered) -> dict[str, str]:
 
 
 def strangers(kind: NDArray[np.str_]) -> NDArray[np.int64]:
-    """(N,) the number of the foreign thing that each is, by its kind (N,); -1 for our own."""
+    """Return (N,) numbers of foreign things by kind (N,); -1 for our own."""
     kinds, which = np.unique(kind, return_inverse=True)
     own = {family.kind for family in FAMILIES}
     foreign = np.array([foreign_class(kind) is not None and kind not in own for kind in kinds])
@@ -138,7 +138,7 @@ def strangers(kind: NDArray[np.str_]) -> NDArray[np.int64]:
 def _calibrated(
     voters: Sequence[Perceptron], features: Sequence[Numbers], target: NDArray[np.int64]
 ) -> Numbers:
-    """The weights of the votes that make the truth of held-out scenes likeliest."""
+    """Return the weights of the votes that maximise the likelihood of held-out scenes."""
     votes = log_votes(voters, features)
     rows = np.arange(len(target))
 
@@ -149,7 +149,7 @@ def _calibrated(
 
 
 def _typical_sizes(samples: Samples, target: NDArray[np.int64], count: int) -> Numbers:
-    """(count, 3) geometric means of long side, short side and height [m] of each leaf's things."""
+    """Return (count, 3) geometric means of long side, short side and height [m] for each leaf class."""
     measured = np.isfinite(samples.size_m[:, 0])
     long_short = np.sort(samples.size_m[:, :2], axis=1)[:, ::-1]
     logs = np.log(np.column_stack([long_short, samples.size_m[:, 2]]))
@@ -175,14 +175,14 @@ def _sides(samples: Samples, expected_m: Numbers) -> Perceptron:
 
 
 def main() -> None:
-    """Render, learn, and write what ships."""
+    """Render, train, and write the shipped model."""
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("--scenes", type=int, default=3300)
-    parser.add_argument("--heaps", type=int, default=480, help="to learn from which pieces are one thing")
-    parser.add_argument("--ours", type=int, default=1200, help="scenes of our models alone, as they are")
+    parser.add_argument("--heaps", type=int, default=480, help="scenes for learning what belongs together")
+    parser.add_argument("--ours", type=int, default=1200, help="scenes with our unmodified models only")
     parser.add_argument("--seed", type=int, default=101)
-    parser.add_argument("--foreign", type=Path, help="a folder of foreign things to learn from, too")
-    parser.add_argument("--parts", type=Path, help="a folder to keep the samples in, and to resume from")
+    parser.add_argument("--foreign", type=Path, help="a folder of foreign things for training")
+    parser.add_argument("--parts", type=Path, help="a folder for the samples, from which training can resume")
     parser.add_argument("--out", type=Path, default=SHIPPED)
     options = parser.parse_args()
     started = time.perf_counter()

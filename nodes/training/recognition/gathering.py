@@ -15,7 +15,7 @@ import numpy as np
 
 from semmap.nodes.training.recognition.neighbour_pairs import Pairs, pairs_of
 from semmap.nodes.training.recognition.samples import Samples, samples_of
-from semmap.nodes.training.scenes.arranging import Scene, heaps, own_scenes, training_scenes
+from semmap.nodes.training.scenes.arrangement import Scene, heaps, own_scenes, training_scenes
 from semmap.nodes.training.scenes.foreign_things import ForeignThing, foreign_things
 from semmap.nodes.training.scenes.simulated_scenes import Item, Shot, Stage
 

@@ -1,4 +1,4 @@
-"""Learn to know our own models by sight, and to tell that a thing is none of them."""
+"""Train the recognition of our own models, and the rejection of other things."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from numpy.typing import NDArray
 from semmap.nodes.perception_node.recognition.perceptron import Perceptron
 from semmap.nodes.training.recognition.fitting import Numbers, classifier
 from semmap.nodes.training.recognition.gradient_descent import Recipe
-from semmap.nodes.training.recognition.learn_novelty import far_off
+from semmap.nodes.training.recognition.learn_open_set import far_off
 
 _FAR = 0.05
-"""How many things such as there are none come to all that there are: they are none of our models."""
+"""The share of added outliers, which are not our models."""
 
 
 def learn_familiar(
     features: Sequence[Numbers], leaf: NDArray[np.int64], leaves: int, recipe: Recipe
 ) -> Perceptron:
-    """Scores (N, leaves + 1) from all features, of each sort (N, its own number).
+    """Train scores (N, leaves + 1) from all features, per sort (N, its number of features).
 
-    `leaf`: (N,) of which leaf's model it has the very form, `leaves` for none.
+    `leaf`: (N,) the leaf class whose model has exactly this form, `leaves` for none.
     """
     far = far_off(features, round(_FAR * len(leaf)), np.random.default_rng(0))
     seen = np.concatenate([np.concatenate(both) for both in zip(features, far, strict=True)], axis=1)

@@ -1,4 +1,4 @@
-"""What has its colour by nature, as fruit does, is not learnt from in another: a blue orange is a ball."""
+"""Excludes samples with unnatural colours: a blue orange would be learnt as an orange, but is a ball."""
 
 from __future__ import annotations
 
@@ -8,17 +8,16 @@ from scipy.spatial import KDTree
 
 from semmap.nodes.perception_node.recognition.features import MEAN_COLOUR
 from semmap.nodes.training.recognition.samples import Samples
-from semmap.nodes.training.scenes.drawing_lots import COLOURED
+from semmap.nodes.training.scenes.sampling import COLOURED
 
 _NEAR = 0.03
-"""How far its shares of red, green and blue may be from those of any of its like, as they are."""
+"""The maximum distance of colour shares (red, green, blue) from those of the unmodified models."""
 
 
 def unnatural(samples: Samples, own: Samples) -> NDArray[np.bool_]:
-    """(N,) whether each is of a kind that has its colours by nature, and was seen in others than `own` have.
+    """Return (N,) whether a sample of a naturally coloured kind has colours that `own` does not have.
 
-    A kind that is not among `own` may have the colours of any. Of what was seen without colours nothing is
-    known.
+    Kinds that are not in `own` can have the colours of any kind. Samples without colours are not excluded.
     """
     found = np.zeros(len(samples), bool)
     for kind in COLOURED:

@@ -62,7 +62,7 @@ def pairs_of(shot: Shot, items: Sequence[Item], rng: np.random.Generator) -> lis
 
 
 def _partly_joined(parts: Parts, owners: NDArray[np.int64], rng: np.random.Generator) -> list[Members]:
-    """The numbers of those that are together when each pair of one thing is joined or not by lot."""
+    """Return the groups after randomly joining pairs that belong to one thing."""
     count = len(parts.things)
     joined = np.zeros((count, count), bool)
     for a, b in near_pairs(parts.things):

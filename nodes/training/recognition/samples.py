@@ -1,4 +1,4 @@
-"""Things as perception cuts them out of simulated scenes, with the truth about each."""
+"""Segments of simulated scenes as perception creates them, with ground truth."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _PURE, _WHOLE = 0.7, 0.5
 _FEWEST = 40
 _CARRIER_M = 0.45
 _THIN_M, _OF_THIN_M = 0.035, 0.002
-"""What is no higher is cut out of its support as a whole, but for so much."""
+"""Objects up to this height are segmented as a whole, except for the lowest part of this height [m]."""
 _UNIT = np.ones(3)
 NOTHING = ""
 

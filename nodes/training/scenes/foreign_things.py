@@ -1,4 +1,4 @@
-"""Things that nobody here modelled, from a folder of data: meshes, upright, in metres."""
+"""Third-party objects from a folder of data: upright meshes in metres."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _LEARN = "train"
 
 @dataclass(frozen=True)
 class ForeignThing:
-    """A thing: its mesh, the classes that it may be said to be of, and whether it is of none (`new`).
+    """An object: its mesh, its acceptable classes, and whether it is of no known class (`new`).
 
-    `learnable`: what is learnt from it may be shipped.
+    `learnable` means that models trained on it may be shipped.
     """
 
     name: str
@@ -34,26 +34,26 @@ class ForeignThing:
 
 
 def foreign_things(folder: Path) -> list[ForeignThing]:
-    """The things that a folder's `things.json` tells of; none where there is no such file."""
+    """Return the objects in a folder's `things.json`, or none if there is no such file."""
     file = folder / "things.json"
     if not file.exists():
         return []
     return [
         ForeignThing(
-            name=told["name"],
-            mesh=folder / told["file"],
-            classes=tuple(told["classes"]),
-            new=told["new"],
-            size_m=tuple(told["size_m"]),
-            group=told["group"],
-            learnable=_LEARN in told["use"],
+            name=row["name"],
+            mesh=folder / row["file"],
+            classes=tuple(row["classes"]),
+            new=row["new"],
+            size_m=tuple(row["size_m"]),
+            group=row["group"],
+            learnable=_LEARN in row["use"],
         )
-        for told in json.loads(file.read_text())
+        for row in json.loads(file.read_text())
     ]
 
 
 def parts_of(thing: ForeignThing, size_m: Vec3, colour: Colour) -> Parts:
-    """Its parts at a size, all of one colour."""
+    """Return the parts at a size, all in one colour."""
     parts = stretched([replace(part, colour=colour) for part in _read(thing.mesh)], size_m)
     return keyed(parts, f"{thing.mesh}:{size_m}")
 
@@ -65,7 +65,7 @@ def _read(mesh: Path) -> Sequence[Part]:
 
 @lru_cache(maxsize=64)
 def texture_of(mesh: Path) -> Pattern | None:
-    """The colours that a thing has by its texture; None where it has none."""
+    """Return the colours of a mesh's texture, or None if it has no texture."""
     import trimesh  # takes a second
 
     vertices, colours = [], []

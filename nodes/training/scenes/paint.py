@@ -1,7 +1,7 @@
-"""Paint for things in pictures: what is learnt of a form is not to hang on the colour of our own models.
+"""Texture augmentation, so that shape recognition does not depend on the colours of our models.
 
-It is put on after a picture was taken, on the pixels of a thing, and keeps their light and shade. Patterns
-lie in the thing's own coordinates, so that all cameras see the same.
+Paint is applied to the pixels of an object in rendered images and keeps their shading. Patterns are defined
+in the object's coordinates, so that all cameras see the same.
 """
 
 from __future__ import annotations

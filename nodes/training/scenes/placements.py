@@ -1,4 +1,4 @@
-"""Where things find room on a table or a floor: loose, close to one another, pushed together."""
+"""Placement of objects on a table or floor: loose, close together, or pushed together."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Rectangle = tuple[float, float, float, float, float]
 
 
 def overlap(a: Rectangle, b: Rectangle, gap_m: float) -> bool:
-    """Whether two rectangles come nearer than `gap_m` to one another."""
+    """Return whether two rectangles are closer than `gap_m`."""
     offset = np.array([b[0] - a[0], b[1] - a[1]])
     if math.hypot(*offset) > (math.hypot(*a[2:4]) + math.hypot(*b[2:4])) / 2 + gap_m:
         return False
@@ -43,9 +43,9 @@ def spread(
     *,
     crowded: bool = False,
 ) -> list[Rectangle | None]:
-    """A free placement in an area around the origin for each thing, None where there is none left.
+    """Return a free placement around the origin for each thing, or None if there is no room.
 
-    Crowded things come as near to the others as `gap_m` lets them, or are pushed together.
+    Crowded things are as close to the others as `gap_m` allows, or are pushed together.
     """
     if crowded and rng.random() < _PUSHED:
         return _pushed(sizes, area_m, float(rng.uniform(0.0, 0.004)), rng)
@@ -70,7 +70,7 @@ def spread(
 def _pushed(
     sizes: Sequence[Vec3], area_m: tuple[float, float], gap_m: float, rng: np.random.Generator
 ) -> list[Rectangle | None]:
-    """Each comes from somewhere towards about the middle, until it meets another."""
+    """Move each thing from a random direction towards the middle until it touches another."""
     taken: list[Rectangle] = []
     placements: list[Rectangle | None] = []
     grid, square = float(rng.uniform(-math.pi, math.pi)), rng.random() < _SQUARE
@@ -96,7 +96,7 @@ def _until_it_touches(
     taken: Sequence[Rectangle],
     gap_m: float,
 ) -> Rectangle:
-    """Where a thing (extents, yaw) stops that comes along a way (2,): at a point (2,), or before another."""
+    """Return the position at which a moving thing (extents, yaw) stops: at the aim (2,) or before another."""
     x, y, yaw = thing
 
     def at(distance_m: float) -> Rectangle:

@@ -1,4 +1,4 @@
-"""Simulated scenes whose every pixel is known: things on a table and on the floor, seen by depth cameras."""
+"""Simulated scenes with ground truth per pixel: things on a table and on the floor, seen by depth cameras."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ from semmap.nodes.training.scenes.varieties import Form
 from semmap.schemas.entities import Pose, orientation_from_yaw
 from semmap.schemas.scenes import Body, BodyOrder
 
-STRANGE = "strange"
+DISTRACTOR = "strange"
 _FOREIGN = "@"
 _MASS_KG = 0.4
 
 
 def foreign_label(name: str, class_: str, *, new: bool) -> str:
-    """What a foreign thing is to be taken for: its class, or nothing known; it is told apart by its name."""
+    """Return the label of a foreign thing: its name with its class, or with no class if it is new."""
     return f"{name}{_FOREIGN}{'' if new else class_}"
 
 
 def foreign_class(label: str) -> tuple[str, str] | None:
-    """The name of a foreign thing and its class, empty for none; None for what is of our own making."""
+    """Return the name and class (or "") of a foreign thing, or None for our own models."""
     name, at, class_ = label.partition(_FOREIGN)
     return (name, class_) if at else None
 

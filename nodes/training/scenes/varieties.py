@@ -1,7 +1,7 @@
-"""What things of a class look like in homes beside our one model of it: other forms, and sizes from to.
+"""Varieties of classes with one model: other forms, and ranges of sizes.
 
-Sizes are those of common household things; a cuboid is learnt as a box only where it is not as large as a
-box of cereals, a carton of milk or a book would be.
+Sizes are those of common household objects. A cuboid is used as a box only if its size differs from a box of
+cereals, a carton of milk and a book.
 """
 
 from __future__ import annotations

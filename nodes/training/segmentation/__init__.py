@@ -1,1 +1,1 @@
-"""What teaches segmentation which patches are one object."""
+"""Training of segmentation: which patches belong to one object."""

@@ -1,4 +1,4 @@
-"""Learn to segment from renderings, and from recorded scenes where there are any."""
+"""Train segmentation on renderings, and on recorded scenes if given."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from semmap.nodes.training.segmentation.teach import learn, lessons, made_up
 
 
 def main() -> None:
-    """Render, learn, and write what ships."""
+    """Render, train, and write the shipped model."""
     parser = argparse.ArgumentParser(prog="python -m semmap.nodes.training.segmentation", description=__doc__)
     parser.add_argument("--piles", type=int, default=500, help="rendered scenes")
     parser.add_argument("--recorded", type=Path, metavar="DIR", help="PCD files with a field label")

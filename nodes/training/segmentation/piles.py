@@ -1,4 +1,4 @@
-"""Made-up scenes: things on a table, apart, side by side and on one another, seen by a depth camera."""
+"""Generated scenes: things on a table, apart, side by side and stacked, seen by a depth camera."""
 
 from __future__ import annotations
 

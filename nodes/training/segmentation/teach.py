@@ -1,4 +1,4 @@
-"""From scenes to a model."""
+"""Training of segmentation from scenes."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ _RECORDED_WEIGHT = 2.0
 
 
 class Lessons(NamedTuple):
-    """Everything to learn from: rows of made-up scenes, and those of each recorded scene with its name."""
+    """The training data: rows of generated scenes, and of each recorded scene with its name."""
 
     made: Rows
     recorded: tuple[tuple[str, Rows], ...]
 
 
 def made_up(count: int, rng: np.random.Generator) -> list[Example]:
-    """So many piles, rendered and taken apart."""
+    """Render piles and return their pairs of patches."""
     eye = Eye()
     return [example(*pile(rng, eye)) for _ in range(count)]
 
 
 def lessons(made: Iterable[Example], scenes: Iterable[Scene], rng: np.random.Generator) -> Lessons:
-    """The pairs of made-up and of recorded scenes.
+    """Return the pairs of generated and of recorded scenes.
 
-    Each scene gives those met on the right way, and those that a model meets that knows made-up scenes
-    only: so no recorded scene has a part in another one's rows.
+    Each scene contributes the pairs of a correct segmentation, and those that a model trained on generated
+    scenes encounters. So the rows of a recorded scene do not depend on other recorded scenes.
     """
     made = list(made)
     right = _some(joined([right_way(one, rng) for one in made]), _MADE_ROWS, rng)
@@ -52,7 +52,7 @@ def lessons(made: Iterable[Example], scenes: Iterable[Scene], rng: np.random.Gen
 
 
 def learn(of: Lessons, without: frozenset[str] = frozenset()) -> Trees:
-    """A model of all lessons but those of the recorded scenes `without`."""
+    """Train a model on all data except the recorded scenes `without`."""
     heard = [rows for name, rows in of.recorded if name not in without]
     counted = [rows._replace(weight=rows.weight * _RECORDED_WEIGHT) for rows in heard]
     return fit(joined([of.made, *counted]))

@@ -11,8 +11,8 @@ from msgspec import structs
 
 from semmap.nodes.coordinator.commands import attachment_rules
 from semmap.schemas import errors
+from semmap.schemas.attachments import pose_text
 from semmap.schemas.entities import Pose, compose, distance_m, orientation_from_yaw
-from semmap.schemas.grips import pose_text
 from tests.coordinator.reconciler.test_reconcile import body, entity, provenance
 
 HERE = Pose(position_m=(1.0, 2.0, 0.0))

@@ -7,8 +7,8 @@ from msgspec import structs
 
 from semmap.nodes.coordinator.reconciler.agreement import describe_displaced, describe_pending, find_displaced
 from semmap.nodes.coordinator.reconciler.reconcile import Actions
+from semmap.schemas.attachments import IS_GRASPED_BY
 from semmap.schemas.entities import Entity
-from semmap.schemas.grips import IS_GRASPED_BY
 from semmap.schemas.joints import Joint
 from semmap.schemas.scenes import Body
 from tests.coordinator.reconciler.test_reconcile import THRESHOLDS, at, body, entity, look

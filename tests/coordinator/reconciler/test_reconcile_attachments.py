@@ -5,9 +5,9 @@ from msgspec import structs
 
 from semmap.nodes.coordinator.commands import attachment_rules
 from semmap.nodes.coordinator.reconciler.reconcile import reconcile
+from semmap.schemas.attachments import grip_of, holder_of, pose_of_text, pose_text
 from semmap.schemas.entities import Pose, compose, relative
 from semmap.schemas.errors import Refused
-from semmap.schemas.grips import grip_of, holder_of, pose_of_text, pose_text
 from semmap.schemas.scenes import GripOrder
 from tests.coordinator.reconciler.test_reconcile import THRESHOLDS, at, body, entity, provenance
 

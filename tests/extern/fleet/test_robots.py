@@ -134,7 +134,7 @@ def test_a_namespace_where_nobody_is_names_the_robots(two_robots):
 
 @pytest.mark.parametrize("name", ["a/b", "*", "-x", "a b"])
 def test_what_no_robot_can_be_called(two_robots, name):
-    assert "cannot name a robot" in two_robots[0].cli("list", f"--namespace={name}", status=2)
+    assert "is not a valid robot name" in two_robots[0].cli("list", f"--namespace={name}", status=2)
 
 
 def test_robots_and_namespace_exclude_one_another(two_robots):

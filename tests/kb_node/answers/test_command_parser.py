@@ -4,7 +4,7 @@ import pytest
 
 from semmap.nodes.kb_node.answers.command_parser import Understanding
 from semmap.nodes.kb_node.answers.entity_search import Finding
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas.commands import Understand
 from semmap.schemas.commits import Transaction
@@ -17,7 +17,7 @@ def understanding(flat):
     _, _, top = flat.entity("bowl1").pose.position_m
     for colour, left in (("red", -0.3), ("blue", 0.3)):
         pose = Pose(position_m=(x + left, y + 0.1, top))
-        cup = stars.star(
+        cup = entity_triples.describe(
             f"{colour}cup", v.dm("Cup"), pose=pose, size_m=[0.08, 0.08, 0.1], preferred=f"{colour} cup"
         )
         flat.commit(Transaction(id=colour, source="operator", insert=tuple(cup)))

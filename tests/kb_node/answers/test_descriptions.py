@@ -109,7 +109,7 @@ def test_the_description_is_of_the_newest_commit(descriptions, room):
     room(2, edit=(Edit(name="cup1", conflict=MISSING), Edit(name="chair3", at=(1.9, 1.0, 0.0))))
     told = descriptions.describe(Tell())
     assert told.commit == 2
-    assert "Not as it should be: cup1, not seen where it should stand. The kitchen has" in told.text
+    assert "Problems: cup1, not seen where it should stand. The kitchen has" in told.text
     assert "with 3 chairs round it" in told.text
     assert (
         "Not as it should be: not seen where it should stand."

@@ -58,7 +58,7 @@ def answered(semantic_map, name, predicate, value):
 )
 def test_explain_returns_the_supporting_facts(furnished, name, predicate, value, support):
     explanation = explain_relation(furnished, name, predicate, value)
-    assert {v.spoken(triple) for triple in explanation.support} == support
+    assert {v.to_words(triple) for triple in explanation.support} == support
 
 
 @pytest.mark.parametrize(

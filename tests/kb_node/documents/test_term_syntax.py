@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from semmap.nodes.kb_node.documents.term_syntax import require_triples
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.entities import Pose
@@ -14,7 +14,9 @@ def test_terms_in_files_and_our_terms_are_valid():
     pose = Pose(position_m=(1e-7, -0.0, 1e3))
     require_triples(TBOX)
     require_triples(
-        stars.star("a", v.dm("Chair"), pose=pose, size_m=(1.0, 1.0, 1.0), preferred='è "\\\n\x01')
+        entity_triples.describe(
+            "a", v.dm("Chair"), pose=pose, size_m=(1.0, 1.0, 1.0), preferred='è "\\\n\x01'
+        )
     )
 
 

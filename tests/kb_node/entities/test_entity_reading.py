@@ -1,7 +1,7 @@
 import pytest
 
 from semmap.nodes.kb_node.entities import entity_reading
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.entities import Pose
@@ -31,7 +31,7 @@ def turned(w, x, y, z):
 
 def test_an_entity_is_read_back_as_written(semantic_map):
     pose = Pose(position_m=(1.5, -2.25, 0.0), orientation_wxyz=(0.6, 0.0, 0.0, 0.8))
-    star = stars.star(
+    star = entity_triples.describe(
         "chair1",
         v.dm("Chair"),
         pose=pose,

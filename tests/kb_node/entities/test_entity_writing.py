@@ -2,7 +2,7 @@
 
 import pytest
 
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commits import Edit, NewEntity, Transaction
@@ -103,7 +103,9 @@ def test_a_rejected_edit_changes_nothing(semantic_map, fields, error):
 
 def test_entities_of_the_tbox_cannot_be_placed(tmp_path):
     throne = [(v.entity_iri("chair1"), v.RDF_TYPE, v.dm("Chair"))]
-    throne += stars.position(*map(v.entity_iri, ("chair1", "spot")), Pose(position_m=(0.0, 0.0, 0.0)))
+    throne += entity_triples.position(
+        *map(v.entity_iri, ("chair1", "spot")), Pose(position_m=(0.0, 0.0, 0.0))
+    )
     semantic_map = home.new_map(tmp_path, [*home.TBOX, *throne])
     with pytest.raises(errors.Refused, match="TBox"):
         placed(semantic_map, at=(1.0, 0.0, 0.0))
@@ -125,7 +127,7 @@ def nodes_of(semantic_map, name, edge):
 def test_a_new_entity_has_all_its_triples(semantic_map):
     made = added(semantic_map, **WHOLE)
     assert set(made.inserted) == set(
-        stars.star(
+        entity_triples.describe(
             "chair1",
             v.dm("Chair"),
             pose=WHOLE["pose"],
@@ -225,7 +227,7 @@ def test_a_label_that_is_also_an_alias_stays_an_alias(semantic_map):
 
 def test_several_sizes_become_one(semantic_map):
     added(semantic_map, size=(1.0, 1.0, 1.0))
-    other = stars.size(v.entity_iri("chair1"), v.entity_iri("other"), (2.0, 2.0, 2.0))
+    other = entity_triples.size(v.entity_iri("chair1"), v.entity_iri("other"), (2.0, 2.0, 2.0))
     semantic_map.commit(transaction(1, other))
     edited(semantic_map, size=(3.0, 3.0, 3.0))
     assert semantic_map.entity("chair1").size_m == (3.0, 3.0, 3.0)

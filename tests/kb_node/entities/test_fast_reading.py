@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from semmap.nodes.kb_node.entities import entity_reading
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.entities import Pose
@@ -18,7 +18,7 @@ FLOAT = v.XSD_FLOAT
 
 
 def star(name, position=(1.0, 2.0, 3.0), **fields):
-    return stars.star(name, v.dm("Chair"), pose=Pose(position_m=position), **fields)
+    return entity_triples.describe(name, v.dm("Chair"), pose=Pose(position_m=position), **fields)
 
 
 def node(name, kind):

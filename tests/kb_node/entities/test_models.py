@@ -3,7 +3,7 @@
 import pytest
 
 from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commits import Edit, NewEntity, Statement, Transaction
@@ -22,7 +22,7 @@ def household(tmp_path):
 
 
 def put(semantic_map, name, class_, size_m=None):
-    star = stars.star(name, v.dm(class_), pose=HERE, size_m=size_m)
+    star = entity_triples.describe(name, v.dm(class_), pose=HERE, size_m=size_m)
     semantic_map.commit(home.transaction(f"put {name}", star))
     return semantic_map.entity(name)
 
@@ -107,7 +107,7 @@ def on(name, other):
 
 def test_objects_are_measured_against_the_new_model_of_their_support(household):
     put(household, "can1", "Can")
-    star = stars.star("apple1", v.dm("Apple"), pose=Pose(position_m=(1.0, 2.0, 0.12)))
+    star = entity_triples.describe("apple1", v.dm("Apple"), pose=Pose(position_m=(1.0, 2.0, 0.12)))
     household.commit(home.transaction("apple", star))
     assert household.reasoner.holds(on("apple1", "can1"))
     said(household, "can1", "flat_can")

@@ -5,7 +5,7 @@ from contextlib import nullcontext
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.handlers.changes import ChangeHandlers
 from semmap.nodes.kb_node.handlers.loading import LoadHandlers
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas.bridge import LoadDocument
 from semmap.schemas.entities import Pose
@@ -42,7 +42,7 @@ def loading(semantic_map, said):
 
 def test_a_load_counts_described_entities_and_not_those_with_changed_inferences(flat):
     said = []
-    star = stars.star("apple9", v.dm("Apple"), pose=Pose(position_m=(9.81, 0.34, 0.1)))
+    star = entity_triples.describe("apple9", v.dm("Apple"), pose=Pose(position_m=(9.81, 0.34, 0.1)))
     document = LoadDocument(
         id="1",
         source="file",

@@ -7,8 +7,8 @@ from msgspec import structs
 
 from semmap.nodes.kb_node.relations.contents import Contents
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.schemas.attachments import IS_GRASPED_BY
 from semmap.schemas.entities import Pose, carried, orientation_from_yaw
-from semmap.schemas.grips import IS_GRASPED_BY
 from tests.kb_node.relations.entities import PROVENANCE, ROOM, TABLE, TOP, thing
 
 TRAY = thing("tray1", (0.0, 0.0, TOP), "unheard of", size=(0.5, 0.4, 0.02))

@@ -17,7 +17,7 @@ from semmap.nodes.kb_node.sparql import readers
 from semmap.nodes.kb_node.sparql.queries import text
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.sparql.triples.consequences import inferred
-from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL, stars
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL, entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commands import Renew, Sparql, Watch
@@ -108,7 +108,7 @@ def iri(name):
 
 
 def chair(name):
-    return stars.star(name, v.dm("Chair"), pose=Pose(position_m=(1.0, 2.0, 0.0)))
+    return entity_triples.describe(name, v.dm("Chair"), pose=Pose(position_m=(1.0, 2.0, 0.0)))
 
 
 CHAIRS = "SELECT ?c { ?c a dm:Chair } ORDER BY ?c"

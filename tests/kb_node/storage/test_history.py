@@ -3,7 +3,7 @@ from datetime import datetime
 import pytest
 
 from semmap.nodes.kb_node.storage.history import HistoryReader
-from semmap.ontology import stars
+from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commands import History
@@ -16,7 +16,7 @@ TBOX_WITH_SINK = [*home.TBOX, *turtle(":sink a dm:Door .")]
 
 def move(number, name, before, after, **fields):
     node, iri = v.entity_iri(f"{name}_coordinates"), v.entity_iri(name)
-    there, here = (stars.position(iri, node, Pose(position_m=at)) for at in (before, after))
+    there, here = (entity_triples.position(iri, node, Pose(position_m=at)) for at in (before, after))
     return transaction(number, set(here) - set(there), set(there) - set(here), **fields)
 
 

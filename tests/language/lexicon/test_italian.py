@@ -41,7 +41,7 @@ def test_a_plural_may_be_of_its_singular(plural, singular):
     assert singular in singulars(plural)
 
 
-def test_too_short_a_word_is_no_plural():
+def test_a_very_short_word_is_not_a_plural():
     assert list(singulars("e")) == ["e"]
     assert list(singulars("ci")) == ["ci"]
 
@@ -73,10 +73,10 @@ def test_articles_in_prepositions_and_adjectives_are_words(word):
     assert italian().is_word(word)
 
 
-def test_a_noun_is_no_word_of_the_lexicon():
+def test_nouns_are_not_in_the_lexicon():
     assert not italian().is_word("frigorifero")
 
 
-def test_forms_of_verbs_of_motion_are_told_from_others():
+def test_verbs_of_motion_are_marked():
     assert {"vai", "vada"} & italian().moving
     assert "prendi" not in italian().moving

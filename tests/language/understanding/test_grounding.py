@@ -1,17 +1,17 @@
-"""Which things are meant."""
+"""Grounding of phrases in the entities of a map."""
 
 import math
 import random
 
 import pytest
 
-from semmap.nodes.language.understanding.grounding import Thing, called, distance
+from semmap.nodes.language.understanding.grounding import Thing, distance, find_by_label
 from semmap.nodes.language.understanding.interpretation import shipped
 from tests.language.household import LEXICON, THINGS, there
 
 
 def names(text, things=THINGS):
-    return sorted(thing.name for thing in called(text, there(things), LEXICON))
+    return sorted(thing.name for thing in find_by_label(text, there(things), LEXICON))
 
 
 @pytest.mark.parametrize(
@@ -71,4 +71,4 @@ def test_the_distance_is_over_the_ground_and_infinite_where_a_place_is_not_known
 def test_a_thing_has_its_classes_and_those_above():
     scene = there((Thing("pc1", "Computer", (), None, ("Heavy",)),))
     assert {"Computer", "Heavy"} <= scene.kinds_of("pc1")
-    assert scene.kinds_of("nobody") == frozenset()
+    assert scene.kinds_of("missing") == frozenset()

@@ -1,4 +1,4 @@
-"""Commands, read with what ships."""
+"""Interpretation of commands with the shipped taggers."""
 
 import random
 
@@ -203,7 +203,7 @@ def test_any_and_several_are_not_ambiguous(text, ambiguous):
     assert read(text, bottles).frames[0].arguments[0].ambiguous == ambiguous
 
 
-def test_whoever_sees_the_map_says_which():
+def test_noun_phrases_are_resolved_in_the_map():
     bottles = tuple(Thing(f"bottle{n}", "Bottle") for n in (1, 2, 3))
     asked = []
 
@@ -333,5 +333,5 @@ def test_the_order_of_the_map_does_not_matter():
 
 
 @pytest.mark.parametrize("text", ["", "please", "the the the", "of on to", "9 9 9", "and and", "you"])
-def test_what_is_no_command_is_no_frame(text):
+def test_other_moods_have_no_frames(text):
     assert read(text).frames == ()

@@ -1,10 +1,10 @@
-"""Italian commands, told with English words."""
+"""Italian commands and their word-by-word translation."""
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from semmap.nodes.language.languages import language_of
+from semmap.nodes.language.language_detection import detect_language
 from semmap.nodes.language.lexicon.italian import italian as lexicon
 from semmap.nodes.language.lexicon.italian import singulars
 from semmap.nodes.language.understanding import italian
@@ -53,7 +53,7 @@ def test_clitics_are_words_of_their_own(text, words):
         ("dai la bottiglia a me", "give the bottle to me"),
     ],
 )
-def test_words_are_told_in_english(text, english):
+def test_words_are_translated_to_english(text, english):
     told = italian.gloss(text, there())
     assert " ".join(word.text for word in told.words if word.first <= word.last) == english
 
@@ -100,14 +100,14 @@ def test_an_unknown_verb_is_said_to_be_unknown():
 
 
 @pytest.mark.parametrize("text", ["guarda daniel", "prendi", "portamela", "la tazza è sul tavolo", "vacci"])
-def test_italian_is_told_by_its_words(text):
-    assert language_of(text) == "italian"
+def test_italian_is_detected_by_its_words(text):
+    assert detect_language(text) == "italian"
 
 
 def test_english_commands_are_english():
     for example in made.examples(1, household()):
-        assert language_of(" ".join(example.words)) == "english", example.words
-    assert language_of("") == language_of("xyzzy") == "english"
+        assert detect_language(" ".join(example.words)) == "english", example.words
+    assert detect_language("") == detect_language("xyzzy") == "english"
 
 
 def test_a_language_may_be_said():

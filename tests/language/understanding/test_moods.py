@@ -1,4 +1,4 @@
-"""What sentences are said for."""
+"""Moods of sentences."""
 
 import pytest
 
@@ -24,7 +24,7 @@ from tests.language.household import there
         ("i put the bottle on the table", "past"),
     ],
 )
-def test_what_is_no_command_says_what_it_is(text, mood):
+def test_other_moods_are_detected(text, mood):
     understood = shipped().understand(text, there())
     assert (understood.frames, understood.mood) == ((), mood)
 

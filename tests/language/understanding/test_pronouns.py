@@ -1,4 +1,4 @@
-"""What pronouns stand for."""
+"""Antecedents of pronouns."""
 
 import pytest
 
@@ -30,8 +30,8 @@ def of_last(text, things=THINGS):
         ("open the fridge, take the milk and put it on the table", ["milk1", "table1"]),
         ("take the milk from the fridge and bring it to the kitchen", ["milk1", "kitchen1"]),
         ("open the oven and put the pizza in it", ["pizza1", "oven1"]),
-        ("go to the kitchen and take it", [None]),  # nobody carries a kitchen
-        ("take the milk and close it", ["milk1"]),  # nothing else may be meant
+        ("go to the kitchen and take it", [None]),  # places are not carried
+        ("take the milk and close it", ["milk1"]),  # the only candidate
         ("metti il latte nel frigo e chiudilo", ["fridge1"]),
     ],
 )

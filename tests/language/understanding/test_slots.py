@@ -36,6 +36,6 @@ def test_every_role_of_the_corpus_has_a_slot():
             assert all(slots.slot(frame, role) for role in roles.split(", ")), frame
 
 
-def test_a_role_that_nobody_knows_has_none():
+def test_an_unknown_role_has_no_slot():
     with pytest.raises(KeyError):
         slots.slot("Taking", "Colour")

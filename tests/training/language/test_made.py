@@ -26,7 +26,7 @@ def test_the_same_seed_draws_the_same():
     assert made.examples(1, household(), seed=2) != made.examples(1, household(), seed=3)
 
 
-def test_whoever_is_named_is_a_person():
+def test_named_people_are_persons():
     things = [thing for example in made.examples(2, household()) for thing in example.things]
     people = [thing for thing in things if "anna" in thing.references]
     assert people

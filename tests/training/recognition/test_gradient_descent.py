@@ -25,7 +25,7 @@ def square(target):
         pytest.param(Recipe((48, 24), 60, (0.05, 0.1), 64, 1e-2), id="deep, with all that is left to chance"),
     ],
 )
-def test_what_no_line_parts_is_told_apart(recipe):
+def test_classes_that_are_not_linearly_separable_are_learnt(recipe):
     told = classifier(POINTS, QUADRANT, 2, recipe)(POINTS).argmax(axis=1)
     assert (told == QUADRANT).mean() > 0.95
 
@@ -42,7 +42,7 @@ def test_a_class_that_is_never_named_is_never_likely():
     assert (scores[:, 1] < scores.max(axis=1) - 5).all()
 
 
-def test_a_number_is_told():
+def test_a_number_is_predicted():
     bent = np.abs(POINTS).sum(axis=1)
     told = regressor(POINTS, bent, SMALL)(POINTS)[:, 0]
     assert np.abs(told - bent).mean() < 0.05

@@ -8,7 +8,7 @@ LEAF = np.repeat([0, 1, NONE], 400)
 MIDDLES = np.array([(2.0, 0.0, 0.0), (0.0, 2.0, 0.0), (0.0, 0.0, 0.0)])
 
 
-def test_our_models_are_known_and_what_is_none_of_them_is_told():
+def test_our_models_are_recognised_and_others_rejected():
     rng = np.random.default_rng(0)
     seen = MIDDLES[LEAF] + rng.normal(0.0, 0.3, (len(LEAF), 3))
     known = learn_familiar([seen[:, :2], seen[:, 2:]], LEAF, NONE, Recipe((32,), rounds=40))

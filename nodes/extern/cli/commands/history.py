@@ -13,7 +13,7 @@ from semmap.nodes.extern.cli.common import TIME, print_json, print_lines, with_c
 from semmap.nodes.extern.cli.output import lines
 from semmap.nodes.extern.cli.shell_completion import entity_names
 from semmap.schemas import errors
-from semmap.schemas.happenings import KeptRelation
+from semmap.schemas.map_history import KeptRelation
 
 if TYPE_CHECKING:
     from semmap.nodes.extern.client import Client

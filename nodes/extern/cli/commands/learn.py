@@ -24,7 +24,7 @@ from semmap.nodes.extern.cli.output.tables import table
 from semmap.nodes.extern.cli.shell_completion import class_names, entity_names
 from semmap.nodes.runtime import extras
 from semmap.schemas import errors
-from semmap.schemas.lessons import LessonTold
+from semmap.schemas.exemplars import LessonTold
 from semmap.schemas.wording import counted
 
 if TYPE_CHECKING:

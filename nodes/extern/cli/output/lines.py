@@ -7,8 +7,8 @@ from datetime import date, datetime
 
 from semmap.schemas import wording
 from semmap.schemas.explanations import Explanation
-from semmap.schemas.happenings import Difference
 from semmap.schemas.language import Found
+from semmap.schemas.map_history import Difference
 from semmap.schemas.relations import Relation
 from semmap.schemas.replies import Changed, Inferred, LoggedCommit, Moved
 

@@ -22,11 +22,11 @@ from semmap.nodes.extern.phrasing import (
     size_text,
 )
 from semmap.schemas import wording
+from semmap.schemas.attachments import holder_of
 from semmap.schemas.changes import value_in_words
 from semmap.schemas.commits import Commit
 from semmap.schemas.entities import ClassInfo, Entity, PropertyInfo, Value
 from semmap.schemas.frames import Frame
-from semmap.schemas.grips import holder_of
 from semmap.schemas.joints import in_words
 from semmap.schemas.relations import Described, Relation
 from semmap.schemas.replies import SystemStatus

@@ -9,7 +9,7 @@ from semmap.nodes.drawing.neighbourhood import GraphNode, Kind, Neighbourhood
 from semmap.nodes.drawing.palette import GREY, colour_of
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import Entity
-from semmap.schemas.happenings import KeptRelation
+from semmap.schemas.map_history import KeptRelation
 from semmap.schemas.sparql import Row
 
 Relations = dict[str, tuple[tuple[str, str], ...]]

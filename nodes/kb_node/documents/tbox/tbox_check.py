@@ -18,7 +18,7 @@ from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner.entailment.explaining import empty_classes
 from semmap.nodes.kb_node.reasoner.tbox.profile import outside_rl
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
-from semmap.ontology import prefixes, stars
+from semmap.ontology import entity_triples, prefixes
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.entities import Pose
@@ -165,7 +165,9 @@ def _add_p50_ms(reasoner: Reasoner, classes: Sequence[Term]) -> float | None:
     took_s: list[float] = []
     began_s = time.monotonic()
     for i, class_ in enumerate(itertools.islice(itertools.cycle(classes), _ADDS + _WARM_UP)):
-        star = stars.star(f"x{i}", class_, pose=Pose(position_m=(float(i), 1.0, 0.5)), preferred=f"thing {i}")
+        star = entity_triples.describe(
+            f"x{i}", class_, pose=Pose(position_m=(float(i), 1.0, 0.5)), preferred=f"thing {i}"
+        )
         start_s = time.perf_counter()
         try:
             reasoner.apply(insert=star)

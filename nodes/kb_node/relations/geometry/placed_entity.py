@@ -6,8 +6,8 @@ from msgspec import Struct
 
 from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions, positions_of
 from semmap.ontology.model_shapes import own_size_m
+from semmap.schemas.attachments import holder_of
 from semmap.schemas.entities import Entity, Pose, Size
-from semmap.schemas.grips import holder_of
 from semmap.schemas.polygons import EXTENT
 
 

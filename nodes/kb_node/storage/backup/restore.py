@@ -52,7 +52,7 @@ def _write_journal(file: Path, new: Path, tell: Callable[[str], None]) -> tuple[
     rows = backups.read(file)
     opening = next(rows)
     if not isinstance(opening, Opening):
-        raise errors.BadFile(f"{file} does not begin with the opening of a backup")
+        raise errors.BadFile(f"{file}: the header of the backup is missing")
     try:
         with closing(sqlite3.connect(new)) as db:
             db.executescript(SCHEMA)

@@ -1,4 +1,4 @@
-"""What a language has for describing things: closed classes of words, orders, states, relations, synonyms."""
+"""The lexicon for descriptions: closed word classes, orders, states, relations, synonyms and wording."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from semmap.nodes.language.words import lemma
 Language = Literal["english", "italian"]
 LANGUAGES: Final[tuple[Language, ...]] = ("english", "italian")
 TAGS: Final[dict[Language, str]] = {"english": "en", "italian": "it"}
-"""Of the labels of a TBox."""
+"""The languages' tags in the labels of a TBox."""
 
 _TOKENS: Final[dict[Language, re.Pattern[str]]] = {
     "english": re.compile(r"n't\b|'s?\b|'|[^\W_]+?(?=n't\b)|[^\W_]+"),
@@ -25,81 +25,81 @@ _TOKENS: Final[dict[Language, re.Pattern[str]]] = {
 }
 _QUOTED: Final = re.compile(r"(?<!\w)'([^']*)'(?!\w)")
 _TYPED: Final = re.compile(r"e'(?!\w)")
-"""An accent that the keyboard has not: c'e', cos'e'."""
+"""An apostrophe typed instead of an accent: c'e', cos'e'."""
 _INFLECTED: Final = ("states", "sizes", "sides", "ordinals")
 _Words = tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Describing:
-    """The words of a language for describing things."""
+    """The words of a language that describe objects."""
 
     language: Language
     head_is_last: bool
-    senses: Mapping[_Words, Mapping[str, Any]]  # words as said -> kind of word -> what it stands for
-    stems: Mapping[_Words, Mapping[str, Any]]  # the same of words that agree with the noun, in base forms
-    longest: int  # words of one entry
+    senses: Mapping[_Words, Mapping[str, Any]]  # words as written -> kind of word -> value
+    stems: Mapping[_Words, Mapping[str, Any]]  # the same for inflected words, in base form
+    longest: int  # the number of words of the longest entry
     qualities: Mapping[str, tuple[str, ...]]  # label -> other words
     synonyms: Mapping[str, tuple[str, ...]]  # class -> other words
     pluralia: frozenset[str]
     content: frozenset[str]
     wording: Mapping[str, str]
     lemmas: Mapping[str, str]
-    articles: Mapping[str, str]  # how a noun is written, as a regular expression -> its definite article
-    those: Mapping[str, str]  # the same -> what stands for such a thing: the one, quello, quella
-    feminine: str  # how feminine nouns are written, as a regular expression
-    contractions: Mapping[str, str]  # a preposition with an article -> how the two are said
-    unmended: frozenset[str]  # words that describe nothing here, and are not another one mistyped
+    articles: Mapping[str, str]  # regular expression for nouns -> definite article
+    those: Mapping[str, str]  # regular expression for nouns -> pronoun: the one, quello, quella
+    feminine: str  # regular expression for feminine nouns
+    contractions: Mapping[str, str]  # preposition and article -> contracted form
+    never_corrected: frozenset[str]  # words that the spelling correction leaves unchanged
 
     def split(self, text: str) -> list[str]:
-        """The words of a text in lower case, without punctuation; hyphens and elisions separate words."""
+        """Return a text's words in lower case, without punctuation; hyphens and elisions separate words."""
         text = _QUOTED.sub(r"\1", _plain(text))
         if self.language == "italian":
             text = _TYPED.sub("è", text)
         return _TOKENS[self.language].findall(text)
 
     def base(self, word: str) -> str:
-        """A word without the ending that its number and gender give it."""
+        """Return a word without the ending for number and gender."""
         if word in self.pluralia:
             return word
         word = self.lemmas.get(word, word)
         return _stem(word) if self.language == "italian" else lemma(word, lexicon.load())
 
-    def counted(self, key: str) -> str:
-        """What one of them is where a plural may also be meant by the piece: glasses, a glass."""
+    def singular_of(self, key: str) -> str:
+        """Return the singular of an English plurale tantum that also is a plural: glasses, a glass."""
         return lemma(key, lexicon.load()) if key in self.pluralia and self.language == "english" else key
 
     def key(self, words: Iterator[str] | list[str] | _Words) -> str:
-        """Words in their base forms, by which a noun is looked up."""
+        """Return the key for looking up a noun: its words in base form."""
         return " ".join([self.base(word) for word in words])
 
-    def the(self, noun: str) -> str:
-        """A noun with its definite article; a proper name has none."""
+    def with_article(self, noun: str) -> str:
+        """Return a noun with its definite article; proper names have none."""
         if noun[:1].isupper():
             return noun
         return next(article for form, article in self.articles.items() if re.search(form, noun)) + noun
 
-    def that(self, noun: str) -> str:
-        """What stands for a thing of that noun: the one, quello, quella."""
-        return next(said for form, said in self.those.items() if re.search(form, noun))
+    def pronoun_for(self, noun: str) -> str:
+        """Return the pronoun for a noun: the one, quello, quella."""
+        return next(pronoun for form, pronoun in self.those.items() if re.search(form, noun))
 
-    def agreeing(self, adjective: str, noun: str) -> str:
-        """An adjective as it is beside a noun."""
-        ends_anew = adjective.endswith("o") and re.search(self.feminine, noun) is not None
-        return adjective[:-1] + "a" if ends_anew else adjective
+    def inflect(self, adjective: str, noun: str) -> str:
+        """Return an adjective in agreement with a noun."""
+        is_feminine = adjective.endswith("o") and re.search(self.feminine, noun) is not None
+        return adjective[:-1] + "a" if is_feminine else adjective
 
-    def contracted(self, text: str) -> str:
-        """A text as it is said: sul tavolo for su il tavolo."""
+    def contract(self, text: str) -> str:
+        """Return a text with contractions: sul tavolo for su il tavolo."""
         for apart, together in self.contractions.items():
             text = text.replace(apart, together)
         return text
 
     def has(self, word: str) -> bool:
-        """Whether it is a word of the language as it stands."""
-        return (word,) in self.senses or word in self.unmended
+        """Return whether a word form is in the lexicon."""
+        return (word,) in self.senses or word in self.never_corrected
 
     def sense(self, words: _Words) -> Mapping[str, Any]:
-        """What words together may be: kind of word to what it stands for."""
+        """Return the senses of an expression: kind of word to value."""
         exact = self.senses.get(words, {})
         return {**self.stems.get(tuple(map(self.base, words)), {}), **exact}
 
@@ -112,7 +112,7 @@ def _plain(text: str) -> str:
 
 
 def _stem(word: str) -> str:
-    """An Italian word without its last vowel: tazza and tazze, bianco and bianche, grigio and grigi."""
+    """Return an Italian word without its last vowel: tazza and tazze, bianco and bianche."""
     if len(word) <= 3 or word[-1] not in "aeio":
         return word
     stem = word[:-1]
@@ -121,7 +121,7 @@ def _stem(word: str) -> str:
 
 @functools.cache
 def load(language: Language) -> Describing:
-    """The words of a language."""
+    """Return the lexicon of a language."""
     table = tomllib.loads((resources.files(__package__) / f"{language}.toml").read_text("utf-8"))
     made = Describing(
         language=language,
@@ -139,7 +139,7 @@ def load(language: Language) -> Describing:
         those=table["that"],
         feminine=table["feminine"]["nouns"],
         contractions=table["contractions"],
-        unmended=frozenset(table["words"]["unmended"]),
+        never_corrected=frozenset(table["words"]["unmended"]),
     )
     senses: dict[_Words, dict[str, Any]] = {}
     stems: dict[_Words, dict[str, Any]] = {}

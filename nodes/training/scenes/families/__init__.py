@@ -1,5 +1,5 @@
-"""Families of things: each time it is drawn, another bottle, cup or pear, of other proportions and curves.
+"""Parametric families of objects: each sample is a bottle, cup or pear with other proportions and curves.
 
-A model that is only stretched keeps its profile: all its bottles have their shoulders at the same share of
-their height, and all its cups the same walls. What people make, and what grows, does not.
+Scaling one model would keep its profile: all bottles would have their shoulders at the same relative height,
+unlike real ones.
 """

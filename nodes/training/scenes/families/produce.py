@@ -7,76 +7,76 @@ import math
 import numpy as np
 
 from semmap.nodes.sim_node.models.parts import Colour, Parts
-from semmap.nodes.training.scenes.families.lots import Lots
+from semmap.nodes.training.scenes.families.random_values import RandomValues
 from semmap.nodes.training.scenes.solids import lathe, lump, smooth, tube
 
 
-def apple(lots: Lots, colour: Colour) -> Parts:
+def apple(draw: RandomValues, colour: Colour) -> Parts:
     """Dented above and below, hardly ever quite regular."""
-    radius = lots(0.03, 0.047)
-    z = radius * lots.even(1.55, 1.95)
-    dent = z * lots.even(0.05, 0.14)
+    radius = draw(0.03, 0.047)
+    z = radius * draw.even(1.55, 1.95)
+    dent = z * draw.even(0.05, 0.14)
     outside = smooth(
         [
             (0.0, 0.06 * z),
             (0.35 * radius, 0.0),
-            (radius * lots.even(0.75, 0.92), 0.15 * z),
+            (radius * draw.even(0.75, 0.92), 0.15 * z),
             (1.04 * radius, 0.5 * z),
-            (1.04 * radius, z * lots.even(0.65, 0.8)),
+            (1.04 * radius, z * draw.even(0.65, 0.8)),
             (0.6 * radius, 1.02 * z),
             (0.2 * radius, 1.02 * z),
             (0.0, z - dent),
         ],
         3,
     )
-    body = lathe(outside).lumpy(lots.even(0.0, 0.06), lots.rng).turned("x", lots.rng.normal(0.0, 0.12))
+    body = lathe(outside).lumpy(draw.even(0.0, 0.06), draw.rng).turned("x", draw.rng.normal(0.0, 0.12))
     parts = [body.part(colour)]
-    if lots.chance(0.4):
+    if draw.chance(0.4):
         parts.append(
             tube(np.array([(0.0, 0.0, z - dent), (0.003, 0.002, 1.06 * z)]), 0.0015).part((0.3, 0.2, 0.1))
         )
     return parts
 
 
-def pear(lots: Lots, colour: Colour) -> Parts:
+def pear(draw: RandomValues, colour: Colour) -> Parts:
     """It stands or lies."""
-    radius = lots(0.028, 0.045)
-    z = radius * lots.even(2.3, 3.2)
+    radius = draw(0.028, 0.045)
+    z = radius * draw.even(2.3, 3.2)
     outside = smooth(
         [
             (0.0, 0.03 * z),
             (0.5 * radius, 0.0),
             (1.03 * radius, 0.12 * z),
             (1.05 * radius, 0.45 * z),
-            (radius * lots.even(0.5, 0.72), z * lots.even(0.6, 0.72)),
-            (radius * lots.even(0.3, 0.5), 0.98 * z),
+            (radius * draw.even(0.5, 0.72), z * draw.even(0.6, 0.72)),
+            (radius * draw.even(0.3, 0.5), 0.98 * z),
             (0.0, z),
         ]
     )
-    body = lathe(outside).lumpy(lots.even(0.0, 0.07), lots.rng)
-    if lots.chance(0.3):
+    body = lathe(outside).lumpy(draw.even(0.0, 0.07), draw.rng)
+    if draw.chance(0.3):
         path = np.array([(0.0, 0.0, 0.97 * z), (0.003, 0.004, 1.1 * z)])
         stalk = [tube(path, 0.0018)]
     else:
         stalk = []
     solids = [body, *stalk]
-    if lots.chance(0.5):  # it lies
+    if draw.chance(0.5):  # it lies
         lean = math.pi / 2 + math.atan(0.25)
         solids = [solid.turned("y", lean) for solid in solids]
     return [solid.part(colour if n == 0 else (0.3, 0.2, 0.1)) for n, solid in enumerate(solids)]
 
 
-def orange(lots: Lots, colour: Colour) -> Parts:
+def orange(draw: RandomValues, colour: Colour) -> Parts:
     """Nearly a ball."""
-    size = lots(0.055, 0.1)
-    return [lump(size, size, size * lots.even(0.88, 1.0)).lumpy(lots.even(0.0, 0.05), lots.rng).part(colour)]
+    size = draw(0.055, 0.1)
+    return [lump(size, size, size * draw.even(0.88, 1.0)).lumpy(draw.even(0.0, 0.05), draw.rng).part(colour)]
 
 
-def lemon(lots: Lots, colour: Colour) -> Parts:
+def lemon(draw: RandomValues, colour: Colour) -> Parts:
     """It lies, a nipple at each end."""
-    radius = lots(0.023, 0.034)
-    long = radius * lots.even(2.5, 3.2)
-    nipple = radius * lots.even(0.15, 0.3)
+    radius = draw(0.023, 0.034)
+    long = radius * draw.even(2.5, 3.2)
+    nipple = radius * draw.even(0.15, 0.3)
     half = [
         (0.0, 0.0),
         (nipple, 0.01 * long),
@@ -85,13 +85,13 @@ def lemon(lots: Lots, colour: Colour) -> Parts:
         (1.05 * radius, 0.5 * long),
     ]
     outside = smooth([*half, *((r, long - z) for r, z in reversed(half[:-1]))])
-    return [lathe(outside).lumpy(0.03, lots.rng).turned("x", math.pi / 2).part(colour)]
+    return [lathe(outside).lumpy(0.03, draw.rng).turned("x", math.pi / 2).part(colour)]
 
 
-def other_fruit(lots: Lots, colour: Colour) -> Parts:
+def other_fruit(draw: RandomValues, colour: Colour) -> Parts:
     """Plums, peaches, kiwis, strawberries."""
-    radius = lots(0.017, 0.042)
-    if lots.chance(0.35):  # pointed
+    radius = draw(0.017, 0.042)
+    if draw.chance(0.35):  # pointed
         outside = smooth(
             [
                 (0.0, 0.0),
@@ -101,30 +101,30 @@ def other_fruit(lots: Lots, colour: Colour) -> Parts:
                 (0.0, 2.2 * radius),
             ]
         )
-        lean = lots.even(0.0, 2.0)
-        return [lathe(outside).lumpy(0.08, lots.rng).turned("x", lean).part(colour)]
-    long = radius * lots.even(1.8, 2.6)
+        lean = draw.even(0.0, 2.0)
+        return [lathe(outside).lumpy(0.08, draw.rng).turned("x", lean).part(colour)]
+    long = radius * draw.even(1.8, 2.6)
     return [
-        lump(2 * radius, long, 2 * radius * lots.even(0.85, 1.0))
-        .lumpy(lots.even(0.02, 0.08), lots.rng)
+        lump(2 * radius, long, 2 * radius * draw.even(0.85, 1.0))
+        .lumpy(draw.even(0.02, 0.08), draw.rng)
         .part(colour)
     ]
 
 
-def potato(lots: Lots, colour: Colour) -> Parts:
+def potato(draw: RandomValues, colour: Colour) -> Parts:
     """A lump."""
-    x = lots(0.04, 0.075)
+    x = draw(0.04, 0.075)
     return [
-        lump(x, x * lots(1.1, 1.9), x * lots.even(0.7, 0.95))
-        .lumpy(lots.even(0.08, 0.25), lots.rng)
+        lump(x, x * draw(1.1, 1.9), x * draw.even(0.7, 0.95))
+        .lumpy(draw.even(0.08, 0.25), draw.rng)
         .part(colour)
     ]
 
 
-def onion(lots: Lots, colour: Colour) -> Parts:
+def onion(draw: RandomValues, colour: Colour) -> Parts:
     """A bulb with a tip."""
-    radius = lots(0.025, 0.048)
-    z = radius * lots.even(1.6, 2.5)
+    radius = draw(0.025, 0.048)
+    z = radius * draw.even(1.6, 2.5)
     outside = smooth(
         [
             (0.0, 0.0),
@@ -136,4 +136,4 @@ def onion(lots: Lots, colour: Colour) -> Parts:
             (0.0, z),
         ]
     )
-    return [lathe(outside).lumpy(0.04, lots.rng).part(colour)]
+    return [lathe(outside).lumpy(0.04, draw.rng).part(colour)]

@@ -19,7 +19,6 @@ from semmap.nodes.training.scenes.families.containers import (
     wine_bottle,
 )
 from semmap.nodes.training.scenes.families.cookware import pan, pot, teapot
-from semmap.nodes.training.scenes.families.lots import Lots
 from semmap.nodes.training.scenes.families.produce import (
     apple,
     lemon,
@@ -29,11 +28,12 @@ from semmap.nodes.training.scenes.families.produce import (
     pear,
     potato,
 )
+from semmap.nodes.training.scenes.families.random_values import RandomValues
 from semmap.nodes.training.scenes.families.tableware import bowl, cup, glass, pitcher, plate, stem_glass
 from semmap.nodes.training.scenes.families.utensils import ladle, screwdriver, spatula, sponge
 from semmap.nodes.training.scenes.simulated_scenes import foreign_label
 
-Draw = Callable[[Lots, Colour], Parts]
+Draw = Callable[[RandomValues, Colour], Parts]
 
 
 class Family(NamedTuple):
@@ -44,8 +44,8 @@ class Family(NamedTuple):
 
 
 def drawn(family: Family, colour: Colour, rng: np.random.Generator) -> Parts:
-    """One of a family, upon the ground, in this colour and those that go with it."""
-    return keyed(family.draw(Lots(rng), colour), f"{family.kind} {rng.integers(1 << 62)}")
+    """Return a sample of a family on the ground, in this colour and matching ones."""
+    return keyed(family.draw(RandomValues(rng), colour), f"{family.kind} {rng.integers(1 << 62)}")
 
 
 FAMILIES: tuple[Family, ...] = (
@@ -77,4 +77,4 @@ FAMILIES: tuple[Family, ...] = (
     Family("screwdriver", screwdriver),
     Family(foreign_label("sponge", "Cleaner", new=False), sponge),
 )
-"""Those that differ most among themselves are there twice."""
+"""The families with the largest variation are listed twice."""

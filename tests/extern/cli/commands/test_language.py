@@ -139,7 +139,7 @@ def test_what_is_no_command_says_so(system, monkeypatch, capsys):
     assert (text, status) == ("", 2)
     assert "there are no words" in capsys.readouterr().err
     with system.client() as client:
-        with pytest.raises(errors.BadRequest, match="at most 200 words"):
+        with pytest.raises(errors.BadRequest, match="the maximum is 200"):
             client.understand("go " * 300)
         with pytest.raises(errors.BadRequest, match="1 to 1000 characters"):
             client.understand("go " * 10_000)
@@ -174,7 +174,7 @@ def test_what_is_ambiguous_is_asked_back_and_what_is_not_there_is_told(kitchen, 
     assert text.splitlines()[-1] == "Which one: the red cup or the blue one?"
     assert status == 0
     text, status = said(kitchen, monkeypatch, "find", "the green cup")
-    assert text.startswith("none of the 2 things called 'cup' fits 'green'\nnearest:\n")
+    assert text.startswith("none of the 2 things called 'cup' matches 'green'\nnearest:\n")
     assert status == 1
 
 
@@ -183,7 +183,7 @@ def test_what_is_ambiguous_is_asked_back_and_what_is_not_there_is_told(kitchen, 
     [
         ("🤖", "there are no words"),
         ("", "1 to 1000 characters"),
-        ("cup " * 100, "at most 60 words"),
+        ("cup " * 100, "the maximum is 60"),
         ("the cup that was on the table", "asks about the past"),
         ("the second cup from the left", "require a viewpoint"),
     ],

@@ -71,7 +71,7 @@ def test_turtle_is_for_graphs():
     ],
 )
 def test_terms_are_spoken(term, said):
-    assert formats.spoken(term) == said
+    assert formats.to_words(term) == said
 
 
 def test_news_tell_the_commit():

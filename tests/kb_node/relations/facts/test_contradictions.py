@@ -5,7 +5,7 @@ import math
 import pytest
 from msgspec import structs
 
-from benchmarks.relations.rightness import FLAT_BY_HAND
+from benchmarks.relations.accuracy import FLAT_BY_HAND
 from semmap.nodes.kb_node.answers import answers
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.relations.facts.contradictions import (

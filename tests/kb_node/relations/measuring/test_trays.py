@@ -21,7 +21,7 @@ def on_tray(x, above=0.0, model="cup"):
     return [TABLE, thing("tray1", (0.0, 0.0, TOP)), thing(f"{model}1", (x, 0.0, TOP + FLOOR_M + above))]
 
 
-def bearers(name, things):
+def carriers(name, things):
     space = Space([ROOM, *things])
     solid = space.solids[name]
     assert describe_unsupported(space, solid) is None
@@ -34,13 +34,13 @@ def bearers(name, things):
 def test_an_object_in_a_tray_is_not_on_the_table(x, above, model):
     """Also if its pose overlaps the rim or the floor within the tolerance."""
     things = on_tray(x, above, model)
-    assert bearers(f"{model}1", things) == ["tray1"]
+    assert carriers(f"{model}1", things) == ["tray1"]
     require_alike([ROOM, *things])
 
 
 def test_an_object_is_on_a_raised_tray():
     _, tray, cup = on_tray(0.11, 0.03)
-    assert bearers("cup1", [tray, cup]) == ["tray1"]
+    assert carriers("cup1", [tray, cup]) == ["tray1"]
 
 
 def test_a_board_across_the_rims_is_on_them():
@@ -56,7 +56,7 @@ def test_a_board_across_the_rims_is_on_them():
 
 def test_two_trays_at_one_spot_do_not_support_each_other():
     trays = [thing("tray1", (0.0, 0.0, TOP)), thing("tray2", (0.0, 0.0, TOP))]
-    assert [bearers(tray.name, [TABLE, *trays]) for tray in trays] == [["table1"], ["table1"]]
+    assert [carriers(tray.name, [TABLE, *trays]) for tray in trays] == [["table1"], ["table1"]]
 
 
 def held(entity, holder):

@@ -1,1 +1,0 @@
-"""Finding what a noun phrase describes: parsing it, resolving it against a map, and asking back."""

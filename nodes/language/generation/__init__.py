@@ -1,0 +1,1 @@
+"""Natural language generation: paragraphs about the contents of a map."""

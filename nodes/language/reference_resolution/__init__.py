@@ -1,0 +1,1 @@
+"""Reference resolution: parse a noun phrase, resolve it against the map, and ask for clarification."""

@@ -1,1 +1,0 @@
-"""Saying what a map holds in paragraphs that a person would write."""

@@ -1,0 +1,61 @@
+"""The history of a map: changes between two commits, and the intervals in which relations held."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from msgspec import Struct
+
+from semmap.schemas.changes import Change
+
+KeptRelation = Literal["isOn", "isInside", "isLocatedIn", "isAttachedTo"]
+"""The spatial relations that are known for every commit."""
+
+
+class Related(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A computed relation that holds only after the later commit (`came`) or only after the earlier one."""
+
+    subject: str
+    relation: KeptRelation
+    object: str
+    came: bool
+    text: str
+    """A text without the subject: `is no longer on table1`."""
+
+
+class Difference(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The changes between the map after commit `first` and after commit `last`, sorted by name.
+
+    The time stamps are those of the two commits, in nanoseconds since 1970.
+    """
+
+    first: int
+    last: int
+    first_ns: int
+    last_ns: int
+    changes: tuple[Change, ...]
+    relations: tuple[Related, ...]
+
+
+class Spell(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """An interval in which a relation held: from one commit until just before another, or until now.
+
+    `since` is 0 if it held before the history begins. Time stamps are nanoseconds since 1970.
+    """
+
+    since: int
+    since_ns: int
+    until: int | None = None
+    until_ns: int | None = None
+
+
+class Spells(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The intervals in which an entity was on, inside, in or attached to another, in order."""
+
+    subject: str
+    relation: KeptRelation
+    object: str
+    spells: tuple[Spell, ...]
+    total_s: float
+    """The total duration [s], by the time stamps of the commits."""
+    text: str
