@@ -200,7 +200,7 @@ def tour(t: Tour) -> None:
 
     t.heading("Asserted and computed relations: a move retracts outdated assertions; wrong ones are noted")
     t.do("set", "beer7", "isOn", "table1")
-    t.do("update", "beer7", "--at", "8.2", "1.6", "0", holds="taken back: beer7 was asserted to be on table1")
+    t.do("update", "beer7", "--at", "8.2", "1.6", "0", holds="retracted: beer7 was asserted to be on table1")
     t.do("set", "beer7", "isOn", "table1", holds="note: beer7 was asserted to be on table1; it stands")
     t.do("check", holds="note: beer7 was asserted to be on table1; it stands")
     t.do("update", "beer7", "--at", "8.0", "2.3", "0.76")

@@ -232,7 +232,7 @@ def test_asserted_locations_are_compared_with_the_geometry(session):
     moved = transaction("seen2", chair("sat", (60.0, 0.0, 0.0)), chair("sat", (51.0, 0.0, 0.0)))
     commit = ask(session, "commit", moved)
     (note,) = commit.notes
-    assert note.startswith("retracted: sat was said to be in k9; it stands 7.")
+    assert note.startswith("retracted: sat was asserted to be in k9; it stands 7.")
     away = ask(session, "get", Get(name="sat", where=True))
     assert (away.whereabouts, away.denied, away.properties) == ((), (), {})
     again = ask(session, "commit", transaction("seen3", [said]))

@@ -117,7 +117,7 @@ def test_a_move_retracts_assertions_that_the_geometry_denies(room):
     before = home.state(room)[1:]
     made = move(room, "cup1", (0.0, 2.0, 0.0))
     assert (v.entity_iri("cup1"), v.dm("isOn"), v.entity_iri("table1")) in made.retracted
-    assert stands(made.notes) == ["retracted: cup1 was said to be on table1; it stands"]
+    assert stands(made.notes) == ["retracted: cup1 was asserted to be on table1; it stands"]
     assert (said(room), said(room, "isLocatedIn")) == (set(), {("cup1", "kitchen1")})
     assert room.entity("cup1").properties == {"isLocatedIn": ("kitchen1",)}
     take_back(room)
@@ -128,7 +128,7 @@ def test_a_move_retracts_assertions_that_the_geometry_denies(room):
 def test_moving_the_support_retracts_them_and_inverse_assertions_too(room):
     say(room, "table1", "supports", "cup1")
     made = move(room, "table1", (-3.0, 0.0, 0.0))
-    assert stands(made.notes) == ["retracted: cup1 was said to be on table1; it stands"]
+    assert stands(made.notes) == ["retracted: cup1 was asserted to be on table1; it stands"]
     assert said(room, "supports") == set()
 
 
@@ -156,7 +156,7 @@ def test_an_assertion_against_the_geometry_is_kept_and_noted(room):
     assert not stays.notes
     assert said(room) == {("cup1", "table2")}
     made = move(room, "cup1", (-0.1, 0.0, TOP + 0.02))
-    assert made.notes[0].startswith("retracted: cup1 was said to be on table2")
+    assert made.notes[0].startswith("retracted: cup1 was asserted to be on table2")
     assert said(room) == set()
 
 
@@ -165,8 +165,8 @@ def test_assertions_of_the_same_commit_are_not_retracted(room):
     edit = Edit(name="cup1", at=(3.0, 3.0, 0.0), set=(Statement(property="isOn", values=("table2",)),))
     made = commit(room, edit=(edit,))
     assert stands(made.notes) == [
-        "retracted: cup1 was said to be on table1; it stands",
-        "cup1 was said to be on table2; it stands",
+        "retracted: cup1 was asserted to be on table1; it stands",
+        "cup1 was asserted to be on table2; it stands",
     ]
     assert said(room) == {("cup1", "table2")}
 
@@ -202,7 +202,7 @@ def test_a_dry_run_reports_it_and_changes_nothing(room):
     before = home.state(room)
     wanted = Transaction(id="dry", source="operator", edit=(Edit(name="cup1", at=(0.0, 2.0, 0.0)),))
     tried = dry_runs.dry_run(room, lambda: room.commit(wanted))
-    assert stands(tried.notes) == ["retracted: cup1 was said to be on table1; it stands"]
+    assert stands(tried.notes) == ["retracted: cup1 was asserted to be on table1; it stands"]
     assert home.state(room) == before
     assert said(room) == {("cup1", "table1")}
 
@@ -282,7 +282,7 @@ def test_undo_of_a_retraction_after_further_assertions(room):
     say(room, "cup1", "isOn", "table2")
     back = take_back(room, moved.seq)
     assert said(room) == {("cup1", "table1")}
-    assert stands(back.notes) == ["retracted: cup1 was said to be on table2; it stands"]
+    assert stands(back.notes) == ["retracted: cup1 was asserted to be on table2; it stands"]
 
 
 def test_carry(room):

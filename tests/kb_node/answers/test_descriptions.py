@@ -152,7 +152,7 @@ def test_denied_assertions_are_not_repeated(descriptions, room):
     said = Statement(property="isOn", values=("table1",))
     room(2, edit=(Edit(name="chair3", set=(said,)),))
     told = descriptions.describe(Tell(name="chair3")).text
-    assert "Not as it should be: chair3 was said to be on table1; it stands" in told
+    assert "Not as it should be: chair3 was asserted to be on table1; it stands" in told
     assert "It is on table1" not in told
 
 

@@ -234,4 +234,4 @@ def test_asserted_locations_in_other_vocabularies_are_compared_with_the_poses(ki
     cup = DRAWER.replace("drawer1", "cup1").replace("soma:Drawer", "soma:Cup").replace("1.4 0.9", "5.0 0.9")
     kitchen.commit(home.transaction(2, triples(cup + "map:cup1 soma:isOntopOf map:drawer1 .", "b")))
     (wrong,) = entity_queries.CurrentState(kitchen).entity(Get(name="cup1", where=True)).denied
-    assert wrong.text.startswith("cup1 was said to be on drawer1; it ")
+    assert wrong.text.startswith("cup1 was asserted to be on drawer1; it ")
