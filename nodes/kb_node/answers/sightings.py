@@ -11,7 +11,7 @@ from typing import Final
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.storage.history import HistoryReader, sighting
+from semmap.nodes.kb_node.storage.history import HistoryReader, make_sighting
 from semmap.schemas import wording
 from semmap.schemas.entities import Entity, Provenance
 from semmap.schemas.perception import DISPLACED, MISSING, Observations
@@ -37,12 +37,14 @@ class Sightings:
 
     def there(self, entity: Entity) -> Sighting:
         """Where an entity of the map is, as far as anybody knows."""
-        return self._told(sighting(entity, None), None)
+        return self._told(make_sighting(entity, None), None)
 
     def gone(self, name: str, entity: Entity | None) -> Sighting:
         """Where an entity was that was removed, or is seen to be gone. For any thread. Raises UnknownName."""
         if entity is not None:
-            return self._told(sighting(entity, None), self._past.in_conflict_since(entity), entity.conflict)
+            return self._told(
+                make_sighting(entity, None), self._past.in_conflict_since(entity), entity.conflict
+            )
         found = self._past.last_seen(name)
         by_sight = found.removed is not None and found.removed.source == "perception"
         return self._told(found, found.removed if by_sight else None)

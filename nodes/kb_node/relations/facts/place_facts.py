@@ -119,10 +119,10 @@ class Facts:
 
     def compute_steps(self) -> Iterator[None]:
         """Compute the facts. Updates between these steps first compute the facts that they affect."""
-        for some in parts(sort_by_place(list(self._waiting.values())), _STEP, _nothing):
+        for some in parts(sort_by_place(list(self._waiting.values())), _STEP, _ignore_progress):
             self._compute_waiting(solid for solid in some if self._waiting.get(solid.name) is solid)
             yield
-        for solids in parts(tuple(self.space.solids.values()), _STEP, _nothing):
+        for solids in parts(tuple(self.space.solids.values()), _STEP, _ignore_progress):
             for solid in solids:
                 solid.clear_cache()
             if len(solids) == _STEP:
@@ -164,7 +164,7 @@ class Facts:
     ) -> Iterator[None]:
         """Compute the facts of many solids, `step` at a time, and add differences to `gone` and `come`."""
         space = self.space
-        for some in parts(sort_by_place(solids) if len(solids) > step else solids, step, _nothing):
+        for some in parts(sort_by_place(solids) if len(solids) > step else solids, step, _ignore_progress):
             survey = Survey(space, some) if len(some) >= MANY else None
             with space.caching():
                 for kept in self._kept:
@@ -226,7 +226,7 @@ class Facts:
         gone: set[Fact] = set()
         come: set[Fact] = set()
         with space.caching(of_few=True):
-            concerned = self._affected(moved, (*fresh, *left))
+            concerned = self._find_affected(moved, (*fresh, *left))
             if len(concerned) < MANY:
                 for kept in self._kept:
                     kept.compute(space, concerned, gone, come)
@@ -248,7 +248,7 @@ class Facts:
         self.shifted = frozenset([solid.name for solid in shifted])
         return Changed(gone, come)
 
-    def _affected(self, moved: dict[str, None], solids: Sequence[Solid]) -> dict[str, None]:
+    def _find_affected(self, moved: dict[str, None], solids: Sequence[Solid]) -> dict[str, None]:
         """Return the names whose facts may change: moved ones, and neighbours of `solids`."""
         space, found = self.space, dict(moved)
         for kept in self._kept:
@@ -275,7 +275,7 @@ class Facts:
                     break
 
 
-def _nothing() -> None:
+def _ignore_progress() -> None:
     pass
 
 
