@@ -107,7 +107,7 @@ def _find_reason(space: Space, relation: RelationName, solid: Solid, other: Soli
         return None  # it may be attached or lean there
     made = measures.over(solid, other, limits)
     return (
-        f"it is over no surface of {other.name}"
+        f"it is not above any surface of {other.name}"
         if made is None
         else explain_measure(relation, solid, other, made)
     )

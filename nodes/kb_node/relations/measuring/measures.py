@@ -146,14 +146,14 @@ def _by_gap(pair: tuple[float, object, object]) -> float:
 
 def _compute_covered_share(upper: Solid, lower: Solid, height: float) -> float:
     """Return the share of a base over flat tops at this height."""
-    bearing = [p for p in lower.parts if p.has_flat_top and abs(p.high[2] - height) <= LOWEST_M]
-    for part in bearing:
+    supporting = [p for p in lower.parts if p.has_flat_top and abs(p.high[2] - height) <= LOWEST_M]
+    for part in supporting:
         if part.is_square and _is_rectangle_within(upper.bounds, (*part.low[:2], *part.high[:2])):
             return 1.0
-    if len(bearing) == len(upper.parts) == 1 and bearing[0].is_square and upper.parts[0].is_square:
-        return _compute_box_share(upper.parts[0], bearing[0])
+    if len(supporting) == len(upper.parts) == 1 and supporting[0].is_square and upper.parts[0].is_square:
+        return _compute_box_share(upper.parts[0], supporting[0])
     base = upper.base
-    tops = [part.projection for part in bearing]
+    tops = [part.projection for part in supporting]
     for top in tops:
         if covers(top, base):
             return 1.0
