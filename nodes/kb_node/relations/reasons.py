@@ -120,7 +120,8 @@ def _explain_not_on(space: Space, solid: Solid, other: Solid) -> str:
     if made is None:
         apart = measures.gap(solid, other)
         where = f"{format_length(apart)} apart" if apart > 0.0 else "touching or overlapping"
-        return f"it is not above any surface of {other.name} (they are {where}); it {describe_support(space, solid)}"
+        support = describe_support(space, solid)
+        return f"it is not above any surface of {other.name} (they are {where}); it {support}"
     where = f"its bottom is {format_height(made.gap_m)} the nearest surface of {other.name}"
     if abs(made.gap_m) > limits.gap_m:
         return f"{where}, at {format_length(made.height_m)} (isOn allows up to {format_length(limits.gap_m)})"
