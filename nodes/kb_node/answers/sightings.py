@@ -11,7 +11,7 @@ from typing import Final
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.storage.history import HistoryReader, sighting
+from semmap.nodes.kb_node.storage.history import HistoryReader, make_sighting
 from semmap.schemas import wording
 from semmap.schemas.entities import Entity, Provenance
 from semmap.schemas.perception import DISPLACED, MISSING, Observations
@@ -37,13 +37,13 @@ class Sightings:
 
     def describe_present(self, entity: Entity) -> Sighting:
         """Return where an entity of the map is, as far as is known."""
-        return self._describe(sighting(entity, None), None)
+        return self._describe(make_sighting(entity, None), None)
 
     def describe_removed(self, name: str, entity: Entity | None) -> Sighting:
         """Return where a removed or missing entity was. For any thread. Raises UnknownName."""
         if entity is not None:
             return self._describe(
-                sighting(entity, None), self._past.in_conflict_since(entity), entity.conflict
+                make_sighting(entity, None), self._past.in_conflict_since(entity), entity.conflict
             )
         found = self._past.last_seen(name)
         by_sight = found.removed is not None and found.removed.source == "perception"

@@ -45,7 +45,7 @@ class MaintenanceHandlers:
 
     def _compact(self, command: Compact) -> Compacted:
         keep_ns, journal = _age_ns(command.keep), self._journal
-        share = compaction.share(journal, keep_ns=keep_ns, now_ns=time.time_ns())
+        share = compaction.choose_range(journal, keep_ns=keep_ns, now_ns=time.time_ns())
         before = journal.size_bytes
         if share.commits and not command.dry_run:
             compaction.compact(journal, HistoryReader(journal), share.last)

@@ -35,11 +35,13 @@ def explain_absence(space: Space, relation: RelationName, solid: Solid, other: S
     if solid is other:
         return "an object has no relation to itself"
     if relation == "isLocatedIn":
-        return _why_not_in(space, solid, other)
+        return _explain_not_in(space, solid, other)
     if relation == "isBetween":
         return "isBetween needs two other objects; semmap relations NAME lists what an object is between"
     if relation in SIDES:
-        if support := _rests(space, solid, other) or _by_way_of(space, solid, other):
+        if support := _describe_direct_support(space, solid, other) or _explain_indirect_support(
+            space, solid, other
+        ):
             return f"{support}; side relations are not defined between an object and its support"
         found = [
             phrase_relation(side.relation).removeprefix("is ") for side in list_intrinsic_sides(solid, other)
@@ -54,27 +56,27 @@ def explain_absence(space: Space, relation: RelationName, solid: Solid, other: S
             return f"the size of {one.name} is unknown"
     match relation:
         case "isOn":
-            return _why_not_on(space, solid, other)
+            return _explain_not_on(space, solid, other)
         case "isInside":
-            return _why_not_inside(space, solid, other)
+            return _explain_not_inside(space, solid, other)
         case "isAttachedTo":
-            return _why_not_attached(space, solid, other)
+            return _explain_not_attached(space, solid, other)
         case "touches":
-            return _why_not_touching(space, solid, other)
-    if relation != "isNextTo" and (rests := _rests(space, solid, other)):
+            return _explain_not_touching(space, solid, other)
+    if relation != "isNextTo" and (rests := _describe_direct_support(space, solid, other)):
         return rests
     match relation:
         case "isUnder":
-            return _why_not_beneath(space, solid, other)
+            return _explain_not_beneath(space, solid, other)
         case "isAbove":
-            return _why_not_beneath(space, other, solid)
+            return _explain_not_beneath(space, other, solid)
         case "isNextTo":
-            return _why_not_next_to(space, solid, other)
+            return _explain_not_next_to(space, solid, other)
     made = measures.near(solid, other, space.limits)
     return "they are apart" if made is None else explain_measure("isNear", solid, other, made)
 
 
-def _rests(space: Space, solid: Solid, other: Solid) -> str | None:
+def _describe_direct_support(space: Space, solid: Solid, other: Solid) -> str | None:
     """Return the clause that one of two objects is on or inside the other, or None."""
     for upper, lower, subject, object_ in (
         (solid, other, "it", other.name),
@@ -108,8 +110,8 @@ def stands_on_floor(space: Space, solid: Solid) -> bool:
     return abs(solid.bottom - place[0].bottom) <= space.limits.gap_m
 
 
-def _why_not_on(space: Space, solid: Solid, other: Solid) -> str:
-    if (by := _by_way_of(space, solid, other)) is not None:
+def _explain_not_on(space: Space, solid: Solid, other: Solid) -> str:
+    if (by := _explain_indirect_support(space, solid, other)) is not None:
         return by
     limits = space.limits
     if not other.supports:
@@ -118,9 +120,8 @@ def _why_not_on(space: Space, solid: Solid, other: Solid) -> str:
     if made is None:
         apart = measures.gap(solid, other)
         where = f"{format_length(apart)} apart" if apart > 0.0 else "touching or overlapping"
-        return (
-            f"it is over no surface of {other.name} (they are {where}); it {describe_support(space, solid)}"
-        )
+        support = describe_support(space, solid)
+        return f"it is not above any surface of {other.name} (they are {where}); it {support}"
     where = f"its bottom is {format_height(made.gap_m)} the nearest surface of {other.name}"
     if abs(made.gap_m) > limits.gap_m:
         return f"{where}, at {format_length(made.height_m)} (isOn allows up to {format_length(limits.gap_m)})"
@@ -128,17 +129,17 @@ def _why_not_on(space: Space, solid: Solid, other: Solid) -> str:
         return (
             f"{where}, but only {made.share:.0%} of its base is over it; it {describe_support(space, solid)}"
         )
-    return f"{where}, but {_passed_over(space, solid, other) or f'it {describe_support(space, solid)}'}"
+    return f"{where}, but {_explain_crowd(space, solid, other) or f'it {describe_support(space, solid)}'}"
 
 
-def _passed_over(space: Space, solid: Solid, other: Solid) -> str | None:
+def _explain_crowd(space: Space, solid: Solid, other: Solid) -> str | None:
     """Return the clause that `other` was not considered as a support because of a crowd, or None."""
     if not space.is_crowded(solid) or other in space.supporters_around(solid):
         return None
     return f"too many objects are here to compare all of them, and {other.name} is not among the largest"
 
 
-def _by_way_of(space: Space, solid: Solid, other: Solid) -> str | None:
+def _explain_indirect_support(space: Space, solid: Solid, other: Solid) -> str | None:
     """Return the clause that `other` supports or contains the solid, directly or not, or None."""
     container, supports, _ = space.spatial_relations(solid)
     if container is not None and container[0] is other:
@@ -153,26 +154,26 @@ def _by_way_of(space: Space, solid: Solid, other: Solid) -> str | None:
             below = [lower for lower, _ in (*filter(None, (container,)), *supports)]
             if other in below:
                 chain = [support] if upper is support else [support, upper]
-                return f"it {_clause(space, solid, chain, other)}"
+                return f"it {_format_chain(space, solid, chain, other)}"
             waiting += [lower for lower in below if lower not in seen]
             seen.update(below)
     return None
 
 
-def _clause(space: Space, solid: Solid, chain: list[Solid], other: Solid) -> str:
+def _format_chain(space: Space, solid: Solid, chain: list[Solid], other: Solid) -> str:
     first, last = chain[0], chain[-1]
-    text = f"is {_how(space, solid, first)} {first.name}, which"
+    text = f"is {_choose_preposition(space, solid, first)} {first.name}, which"
     if last is not first:
         text += f" is supported by {last.name}, which"
-    return f"{text} is {_how(space, last, other)} {other.name}"
+    return f"{text} is {_choose_preposition(space, last, other)} {other.name}"
 
 
-def _how(space: Space, solid: Solid, support: Solid) -> str:
+def _choose_preposition(space: Space, solid: Solid, support: Solid) -> str:
     container = space.spatial_relations(solid).container
     return "inside" if container is not None and container[0] is support else "on"
 
 
-def _why_not_inside(space: Space, solid: Solid, other: Solid) -> str:
+def _explain_not_inside(space: Space, solid: Solid, other: Solid) -> str:
     if not other.hollows:
         return f"{other.name} has no known hollow"
     if solid.volume >= other.volume:
@@ -185,12 +186,12 @@ def _why_not_inside(space: Space, solid: Solid, other: Solid) -> str:
         least = f"isInside requires at least {space.limits.inside_share:.0%}"
         return f"{explain_measure('isInside', solid, other, made)} ({least})"
     return (
-        _passed_over(space, solid, other)
+        _explain_crowd(space, solid, other)
         or f"it {describe_support(space, solid)}, which is the smaller hollow"
     )
 
 
-def _why_not_in(space: Space, solid: Solid, other: Solid) -> str:
+def _explain_not_in(space: Space, solid: Solid, other: Solid) -> str:
     if not other.is_place:
         return f"{other.name} is not a place"
     if solid.is_place:
@@ -209,7 +210,7 @@ def _why_not_in(space: Space, solid: Solid, other: Solid) -> str:
     return explain_measure("isLocatedIn", solid, other, made)
 
 
-def _why_not_attached(space: Space, solid: Solid, other: Solid) -> str:
+def _explain_not_attached(space: Space, solid: Solid, other: Solid) -> str:
     support = describe_support(space, solid)
     if support != _UNSUPPORTED:
         return f"it {support}, so it is not attached to a side"
@@ -223,14 +224,14 @@ def _why_not_attached(space: Space, solid: Solid, other: Solid) -> str:
     return f"only {made.share:.0%} of its height is against {other.name}"
 
 
-def _why_not_touching(space: Space, solid: Solid, other: Solid) -> str:
+def _explain_not_touching(space: Space, solid: Solid, other: Solid) -> str:
     apart, limit = measures.gap(solid, other), format_length(space.limits.contact_m)
     if apart > space.limits.contact_m:
         return f"they are {format_length(apart)} apart (touches allows up to {limit})"
     return f"no part of one is within {limit} of a part of the other, although their boxes are"
 
 
-def _why_not_beneath(space: Space, lower: Solid, upper: Solid) -> str:
+def _explain_not_beneath(space: Space, lower: Solid, upper: Solid) -> str:
     limits = space.limits
     made = measures.beneath(lower, upper, limits)
     if made is not None:
@@ -244,9 +245,9 @@ def _why_not_beneath(space: Space, lower: Solid, upper: Solid) -> str:
     return f"no part of {upper.name} is above the top of {lower.name}, at {format_length(lower.top)}"
 
 
-def _why_not_next_to(space: Space, solid: Solid, other: Solid) -> str:
+def _explain_not_next_to(space: Space, solid: Solid, other: Solid) -> str:
     near = measures.near(solid, other, space.limits)
-    if rests := _rests(space, solid, other):
+    if rests := _describe_direct_support(space, solid, other):
         return rests
     if near is None or not near.holds:
         return "they are apart" if near is None else explain_measure("isNear", solid, other, near)

@@ -66,7 +66,9 @@ def list_relations(space: Space, query: Relations, *, is_fixed: bool = False) ->
         view = View.of(viewer) if viewer is not None else View.at(*query.viewpoint or (0.0, 0.0, 0.0, 0.0))
         found = list(list_relations_from_view(space, query.name, view, viewer))
         reported = (
-            {query.other} if query.other is not None else _nearest(space, query.name, found, query.viewer)
+            {query.other}
+            if query.other is not None
+            else _select_nearest(space, query.name, found, query.viewer)
         )
         for relation in found:
             if relation.object in reported or relation.relation == "isVisibleFrom":
@@ -79,7 +81,7 @@ def list_relations_of(space: Space, name: str, *, is_fixed: bool = False) -> Ite
     What it supports or contains is reported from the other object: `isOn` or `isInside` with this one as
     the object.
     """
-    solid = _solid(space, name)
+    solid = _require_solid(space, name)
     yield from (found := list(list_locations(space, name)))
     if solid.is_place:
         return
@@ -94,16 +96,16 @@ def list_relations_of(space: Space, name: str, *, is_fixed: bool = False) -> Ite
     nearby = sorted(nearby, key=lambda other: (measures.gap(solid, other), other.name))
     for other in nearby:
         if other.name not in known:
-            holding = (relation for relation in _beside(space, solid, other) if relation.holds)
+            holding = (relation for relation in _list_pair_relations(space, solid, other) if relation.holds)
             is_content = other.name in above
             yield from _drop_implied_near(r for r in holding if not (is_content and r.relation == "touches"))
     near = [other for other in nearby if other.name not in known and not other.is_place][:_NEIGHBOURS_BETWEEN]
     pairs = sorted(combinations(near, 2), key=lambda pair: measures.gap(*pair))
     amid = (pair for pair in pairs if solid in find_between(space, *pair))
-    yield from (_between(solid, *pair) for pair in islice(amid, _MOST_BETWEEN))
+    yield from (_make_between(solid, *pair) for pair in islice(amid, _MOST_BETWEEN))
 
 
-def _nearest(space: Space, name: str, sides: Iterable[Relation], viewer: str | None) -> set[str]:
+def _select_nearest(space: Space, name: str, sides: Iterable[Relation], viewer: str | None) -> set[str]:
     """Return the viewer and the nearest neighbours, for which sides are reported."""
     others = {side.object for side in sides if side.object in space.solids and side.object != viewer}
     solid = space.solids[name]
@@ -118,7 +120,7 @@ def _drop_implied_near(relations: Iterable[Relation]) -> Iterator[Relation]:
     return (relation for relation in found if not (is_next and relation.relation == "isNear"))
 
 
-def _between(solid: Solid, one: Solid, other: Solid) -> Relation:
+def _make_between(solid: Solid, one: Solid, other: Solid) -> Relation:
     first, second = sorted((one.name, other.name))
     apart = measures.gap(one, other)
     return Relation(
@@ -150,7 +152,7 @@ def list_locations(space: Space, name: str) -> Iterator[Relation]:
 
 def list_relations_between(space: Space, name: str, other_name: str) -> Iterator[Relation]:
     """Yield all relations that can be measured between two objects, also negative ones."""
-    solid, other = _solid(space, name), _solid(space, other_name)
+    solid, other = _require_solid(space, name), _require_solid(space, other_name)
     if solid is other:
         raise errors.BadRequest(f"{name} has no relation to itself; name two different objects")
     wanted: tuple[RelationName, ...] = ("isLocatedIn",) if other.is_place else ("isOn", "isInside")
@@ -161,12 +163,12 @@ def list_relations_between(space: Space, name: str, other_name: str) -> Iterator
     ]
     if not other.is_place and not any(relation.relation == "isOn" for relation in found):
         found.insert(0, _make_negative(space, "isOn", solid, other))
-    found += _beside(space, solid, other)
+    found += _list_pair_relations(space, solid, other)
     if not other.is_place and not any(relation.relation == "touches" for relation in found):
         found += filter(None, (_find_implied_touch(space, solid, other),))
     yield from found
     if not (solid.is_place or other.is_place):
-        yield from (_between(third, solid, other) for third in find_between(space, solid, other))
+        yield from (_make_between(third, solid, other) for third in find_between(space, solid, other))
 
 
 def _find_implied_touch(space: Space, solid: Solid, other: Solid) -> Relation | None:
@@ -247,7 +249,7 @@ def list_relations_from_view(space: Space, name: str, view: View, viewer: Solid 
 
     Side relations to its supports and contents are left out: a cup on a desk is not right of the desk.
     """
-    solid = _solid(space, name)
+    solid = _require_solid(space, name)
     if solid.is_place:
         return
     below = find_supporters(space, solid)
@@ -279,7 +281,7 @@ def list_relations_from_view(space: Space, name: str, view: View, viewer: Solid 
     )
 
 
-def _beside(space: Space, solid: Solid, other: Solid) -> Iterator[Relation]:
+def _list_pair_relations(space: Space, solid: Solid, other: Solid) -> Iterator[Relation]:
     if is_separate(space, solid, other) and (made := measure_attachment(space, solid, other)) is not None:
         yield _make_relation(space, "isAttachedTo", solid, other, made)
     for relation, measure in measure_pair(space, solid, other):
@@ -305,7 +307,7 @@ def _make_relation(
     )
 
 
-def _solid(space: Space, name: str) -> Solid:
+def _require_solid(space: Space, name: str) -> Solid:
     try:
         return space.solids[name]
     except KeyError:

@@ -38,15 +38,15 @@ def select_entities(
     candidates: Iterable[Entity],
     left_out: Set[Fact] = frozenset(),
 ) -> list[Entity]:
-    """Return those of `entities` that satisfy `where`, nearest first if that is requested.
+    """Return the entities among `entities` that satisfy `where`, nearest first if that is requested.
 
     Words are resolved among `candidates`. Facts in `left_out` do not count. Raises UnknownName, BadRequest,
     and Refused if nothing can be on or in the targets.
     """
     require_complete(where)
-    those = resolve_words(where, tuple(candidates))
-    require_possible(space, those, where.within)
-    return filter_entities(space, entities, where, those, left_out)
+    targets = resolve_words(where, tuple(candidates))
+    require_possible(space, targets, where.within)
+    return filter_entities(space, entities, where, targets, left_out)
 
 
 def require_complete(where: Where) -> None:
@@ -59,83 +59,89 @@ def require_complete(where: Where) -> None:
         raise errors.BadRequest("nearest and to (--nearest N, --to NAME) go together: the N nearest to NAME")
 
 
-def require_possible(space: Space, those: Targets, within_m: float | None = None) -> None:
+def require_possible(space: Space, targets: Targets, within_m: float | None = None) -> None:
     """Raise Refused if nothing can be on, in or near any of the targets."""
-    _require_bearing(_placed(space, those.on, "on"))
-    _require_holding(_placed(space, those.in_, "in"))
-    near = _placed(space, those.near, "near")
+    _require_supporting(_find_placed(space, targets.on, "on"))
+    _require_containing(_find_placed(space, targets.in_, "in"))
+    near = _find_placed(space, targets.near, "near")
     if near and within_m is None and all(solid.is_place for solid in near):
         raise errors.Refused(
-            f"{_are_places(near)}: near holds between objects only; use in (--in) for what is in there, or"
-            " give a distance (--near PLACE --within M)"
+            f"{_describe_places(near)}: near holds between objects only; use in (--in) for what is in"
+            " there, or give a distance (--near PLACE --within M)"
         )
 
 
-def _placed(space: Space, names: Iterable[str] | None, how: str) -> list[Solid]:
-    """Return the solids of those targets that have a position, by name. Raises Refused if none has one."""
+def _find_placed(space: Space, names: Iterable[str] | None, how: str) -> list[Solid]:
+    """Return the solids of the targets that have a position, by name. Raises Refused if none has one."""
     if names is None:
         return []
     found = [space.solids[name] for name in sorted(names) if name in space.solids]
     if not found:
-        has = "has" if len(those := sorted(names)) == 1 else "have"
-        raise errors.Refused(f"{wording.few(those, 5)} {has} no position, so what is {how} there is unknown")
+        has = "has" if len(unplaced := sorted(names)) == 1 else "have"
+        raise errors.Refused(
+            f"{wording.few(unplaced, 5)} {has} no position, so what is {how} there is unknown"
+        )
     return found
 
 
-def _require_bearing(solids: Sequence[Solid]) -> None:
+def _require_supporting(solids: Sequence[Solid]) -> None:
     if not solids:
         return
     if all(solid.is_place for solid in solids):
-        raise errors.Refused(f"{_are_places(solids)}: objects are in a place, not on it; use in (--in)")
+        raise errors.Refused(f"{_describe_places(solids)}: objects are in a place, not on it; use in (--in)")
     if not any(solid.has_parts for solid in solids):
         raise errors.Refused(
-            f"the size of {_few(solids)} is unknown, so what is on it is unknown; set a size:"
+            f"the size of {_format_names(solids)} is unknown, so what is on it is unknown; set a size:"
             " semmap update NAME --size X Y Z"
         )
 
 
-def _require_holding(solids: Sequence[Solid]) -> None:
+def _require_containing(solids: Sequence[Solid]) -> None:
     if not solids or any(solid.hollows or (solid.is_place and solid.is_measured) for solid in solids):
         return
     if all(solid.is_place for solid in solids):
-        raise errors.Refused(f"the extent of {_few(solids)} is unknown, so what is in there is unknown")
-    raise errors.Refused(f"nothing can be in {_few(solids)}: it has no known hollow and is not a place")
+        raise errors.Refused(
+            f"the extent of {_format_names(solids)} is unknown, so what is in there is unknown"
+        )
+    raise errors.Refused(
+        f"nothing can be in {_format_names(solids)}: it has no known hollow and is not a place"
+    )
 
 
-def _few(solids: Sequence[Solid]) -> str:
+def _format_names(solids: Sequence[Solid]) -> str:
     return wording.few([solid.name for solid in solids], 5)
 
 
-def _are_places(solids: Sequence[Solid]) -> str:
-    return f"{_few(solids)} {'is a place' if len(solids) == 1 else 'are places'}"
+def _describe_places(solids: Sequence[Solid]) -> str:
+    return f"{_format_names(solids)} {'is a place' if len(solids) == 1 else 'are places'}"
 
 
 def filter_entities(
     space: Space,
     entities: Sequence[Entity],
     where: Where,
-    those: Targets,
+    targets: Targets,
     left_out: Set[Fact] = frozenset(),
 ) -> list[Entity]:
-    """Return those of `entities` that satisfy `where`. Facts in `left_out` do not count."""
+    """Return the entities among `entities` that satisfy `where`. Facts in `left_out` do not count."""
     found = [entity for entity in entities if entity.name in space.solids]
-    if those.on is not None:
-        carriers = those.on
+    if targets.on is not None:
+        carriers = targets.on
         found = [e for e in found if is_on(space, space.solids[e.name], carriers, left_out)]
-    if those.in_ is not None:
-        holders = those.in_
+    if targets.in_ is not None:
+        holders = targets.in_
         found = [e for e in found if is_in(space, space.solids[e.name], holders, left_out)]
-    if (others := _ends(space, where.near, those.near)) is not None:
-        is_near = _within(where.within) if where.within is not None else partial(are_near, space)
+    if (others := _find_ends(space, where.near, targets.near)) is not None:
+        is_near = _make_distance_test(where.within) if where.within is not None else partial(are_near, space)
         found = [
             e for e in found if any(is_near(space.solids[e.name], o) for o in others if o.name != e.name)
         ]
-    if (targets := _ends(space, where.to, those.to)) is not None and where.nearest is not None:
-        found = _nearest(space, found, targets, where)
+    if (ends := _find_ends(space, where.to, targets.to)) is not None and where.nearest is not None:
+        found = _select_nearest(space, found, ends, where)
     return found
 
 
-def _ends(space: Space, word: str | None, names: Iterable[str] | None) -> list[Solid] | None:
+def _find_ends(space: Space, word: str | None, names: Iterable[str] | None) -> list[Solid] | None:
     """Return the solids of the targets by name, or a point if the word is a position."""
     if word is not None and (at := position_in(word)) is not None:
         point = PlacedEntity(name="", iri="", pose=Pose(position_m=at), size_m=_POINT, place=False, model="")
@@ -236,11 +242,11 @@ def is_in(space: Space, solid: Solid, holders: Set[str], left_out: Set[Fact]) ->
     return False
 
 
-def _within(metres: float) -> Callable[[Solid, Solid], bool]:
+def _make_distance_test(metres: float) -> Callable[[Solid, Solid], bool]:
     return lambda solid, other: not solid.is_place and measures.gap(solid, other) <= metres
 
 
-def _nearest(space: Space, found: list[Entity], targets: list[Solid], where: Where) -> list[Entity]:
+def _select_nearest(space: Space, found: list[Entity], targets: list[Solid], where: Where) -> list[Entity]:
     """Return the entities nearest to the targets by the distance of their boxes, without places."""
     to = {target.name for target in targets}
     if not targets:

@@ -62,7 +62,7 @@ def describe_unsupported(space: Space, solid: Solid) -> Relation | None:
     floor_m = solid.bottom - (0.0 if place is None else place[0].bottom)
     if place is None and abs(floor_m) <= space.limits.gap_m:
         return None  # assumed to be the ground
-    if (nearest := _nearest_surface(space, solid, floor_m)) is not None:
+    if (nearest := _find_nearest_surface(space, solid, floor_m)) is not None:
         other, made = nearest
         reason = f"its bottom is {format_height(made.gap_m)} a surface of {other.name}"
         if made.gap_m <= space.limits.gap_m:
@@ -77,7 +77,7 @@ def describe_unsupported(space: Space, solid: Solid) -> Relation | None:
     return _make_relation(solid, f"{solid.name} is on nothing: {reason}", floor_m)
 
 
-def _nearest_surface(space: Space, solid: Solid, floor_m: float) -> Found | None:
+def _find_nearest_surface(space: Space, solid: Solid, floor_m: float) -> Found | None:
     """Return the surface nearest to the bottom of an object, or None if the floor is nearer."""
     found: Found | None = None
     nearest = abs(floor_m)

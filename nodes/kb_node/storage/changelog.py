@@ -34,16 +34,18 @@ class Changelog:
     def of(self, commit: Commit, only: str | None = None) -> tuple[Change, ...]:
         """Return the changes of the first entities that `commit` touched, or of `only` one."""
         changes: list[Change] = []
-        stated = _stated(commit)
+        stated = _collect_changes(commit)
         changed = [entity for entity in commit.changed if only in (None, entity.name)][:FEW]
         for entity in changed:
             was = self._before(entity.name, commit.seq)
             if was is None:
                 changes += between(None, entity)
             else:
-                changes += between(_bare(was), _bare(entity))
+                changes += between(_without_properties(was), _without_properties(entity))
                 properties = stated.get(v.iri(entity.iri), ())
-                changes += of_properties(entity.name, (_in_full(*one, was, entity) for one in properties))
+                changes += of_properties(
+                    entity.name, (_complete_values(*one, was, entity) for one in properties)
+                )
             self._known[entity.name] = entity
         for gone in commit.removed:
             self._known[gone.name] = None
@@ -71,12 +73,12 @@ class Changelog:
         return self._commits[seq]
 
 
-def _bare(entity: Entity) -> Entity:
+def _without_properties(entity: Entity) -> Entity:
     """Return an entity without properties, which older commits lack. Their triples are used instead."""
     return structs.replace(entity, properties={})
 
 
-def _stated(commit: Commit) -> dict[Term, list[tuple[str, Stated | None, Stated | None]]]:
+def _collect_changes(commit: Commit) -> dict[Term, list[tuple[str, Stated | None, Stated | None]]]:
     """Return the properties of each individual, with old and new values."""
     if len(commit.retracted) + len(commit.inserted) > FEW * 50:
         return {}
@@ -91,7 +93,7 @@ def _stated(commit: Commit) -> dict[Term, list[tuple[str, Stated | None, Stated 
     return found_changes
 
 
-def _in_full(
+def _complete_values(
     name: str, gone: Stated | None, come: Stated | None, was: Entity, now: Entity
 ) -> tuple[str, Stated | None, Stated | None]:
     """Return a property with all its old and new values if they are known, else the changed ones."""

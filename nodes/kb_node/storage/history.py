@@ -41,20 +41,20 @@ class HistoryReader:
         """
         if query.name is not None:
             self._require_known(query.name)
-        seqs = self._of_span(query)
+        seqs = self._list_span(query)
         beginning = self._journal.beginning.seq
         shown = [seq for seq in seqs if seq > beginning]
         if beginning in seqs and (query.name is None or query.name in self.initial_entities()):
             shown.insert(0, beginning)
         changes = Changelog(self._journal, self.initial_entities)
         return tuple(
-            _beginning(self._journal)
+            _describe_beginning(self._journal)
             if seq == beginning
-            else _logged(commit := self._journal.commit(seq), changes.of(commit, query.name))
+            else _to_logged_commit(commit := self._journal.commit(seq), changes.of(commit, query.name))
             for seq in shown[-query.limit :]
         )
 
-    def _of_span(self, query: History) -> Sequence[int]:
+    def _list_span(self, query: History) -> Sequence[int]:
         """Return the numbers of the requested commits, in order."""
         since, until = (None if when is None else read_moment(when) for when in (query.since, query.until))
         first = since.commit if since is not None and since.commit is not None else 0
@@ -127,9 +127,9 @@ class HistoryReader:
             commit = self._journal.commit(seq)
             entity = _entities_after(commit).get(name)
             if entity is not None:
-                return sighting(entity, removed)
+                return make_sighting(entity, removed)
             removed = commit.provenance
-        return sighting(self.initial_entities()[name], removed)
+        return make_sighting(self.initial_entities()[name], removed)
 
     def in_conflict_since(self, entity: Entity) -> Provenance:
         """Return the commit that stated the current conflict of an entity."""
@@ -203,7 +203,7 @@ def _at(stamp_ns: int) -> str:
     return f" at {datetime.fromtimestamp(stamp_ns / 1e9):%Y-%m-%d %H:%M:%S}"
 
 
-def _beginning(journal: Journal) -> LoggedCommit:
+def _describe_beginning(journal: Journal) -> LoggedCommit:
     """Return the start of a compacted history, represented as a commit."""
     there = journal.beginning
     return LoggedCommit(
@@ -231,12 +231,12 @@ def _entities_after(commit: Commit) -> dict[str, Entity]:
     return {entity.name: entity for entity in commit.changed}
 
 
-def sighting(entity: Entity, removed: Provenance | None) -> Sighting:
+def make_sighting(entity: Entity, removed: Provenance | None) -> Sighting:
     """Return the last pose of an entity, and what removed it."""
     return Sighting(name=entity.name, pose=entity.pose, provenance=entity.pose_provenance, removed=removed)
 
 
-def _logged(commit: Commit, changes: tuple[Change, ...]) -> LoggedCommit:
+def _to_logged_commit(commit: Commit, changes: tuple[Change, ...]) -> LoggedCommit:
     return LoggedCommit(
         seq=commit.seq,
         stamp_ns=commit.stamp_ns,

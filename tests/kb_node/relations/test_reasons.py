@@ -40,7 +40,7 @@ def told(name, relation, other):
         ("apple1", "isOn", "table1", "it is inside bowl1, which is on table1"),
         ("cup1", "isOn", "table1", "it is on tray1, which is on table1"),
         ("milk1", "isOn", "fridge1", "it is inside fridge1, and an object inside another is not also on it"),
-        ("cup1", "isOn", "cup2", "it is over no surface of cup2"),
+        ("cup1", "isOn", "cup2", "it is not above any surface of cup2"),
         ("cup3", "isOn", "table1", "cm above the nearest surface of table1"),
         ("box1", "isOn", "table1", "cm below the nearest surface of table1"),
         ("cup1", "isOn", "kitchen1", "kitchen1 is a place"),

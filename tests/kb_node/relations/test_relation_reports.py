@@ -42,7 +42,7 @@ def test_neighbours():
 def test_negative_relations_of_a_pair_are_listed():
     other = told("cup1", other="cup2")
     assert not other["isOn", "cup2"].holds
-    assert "it is over no surface of cup2" in other["isOn", "cup2"].text
+    assert "it is not above any surface of cup2" in other["isOn", "cup2"].text
     assert not told("cup1", other="corner1")["isLocatedIn", "corner1"].holds
 
 

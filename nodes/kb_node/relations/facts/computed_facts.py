@@ -85,7 +85,7 @@ class ComputedFacts:
         moved: list[Entity] = []
         for entity in now.values():
             was = before(entity.name)
-            if was is None or not _stays(was, entity):
+            if was is None or not _is_unchanged(was, entity):
                 moved.append(entity)
             if was is not None and was.iri != entity.iri:
                 reborn.append(entity.name)
@@ -148,7 +148,7 @@ class ComputedFacts:
         if relation not in self._properties:
             return False
         fact = (v.entity_name(s), relation, v.entity_name(o))
-        return self.facts.holds(fact) and _are((known(fact[0]), known(fact[2])), (s, o))
+        return self.facts.holds(fact) and _match_iris((known(fact[0]), known(fact[2])), (s, o))
 
     def _find_denied(
         self,
@@ -196,7 +196,7 @@ class ComputedFacts:
         if fact is None or triple not in self._asserted.get(fact[0], ()):
             return False
         ends = (triple[0], triple[2]) if fact[0] == v.entity_name(triple[0]) else (triple[2], triple[0])
-        if not _are((known(fact[0]), known(fact[2])), ends):
+        if not _match_iris((known(fact[0]), known(fact[2])), ends):
             return False
         return find_contradiction(self.facts.space, fact) is not None
 
@@ -205,7 +205,7 @@ def _filter_locations(triples: Iterable[Triple]) -> list[Triple]:
     return [triple for triple in triples if triple[1] in PROPERTIES and fact_of(triple) is not None]
 
 
-def _are(entities: tuple[Entity | None, Entity | None], iris: tuple[Term, Term]) -> bool:
+def _match_iris(entities: tuple[Entity | None, Entity | None], iris: tuple[Term, Term]) -> bool:
     """Return whether two entities have these IRIs."""
     return all(e is not None and v.iri(e.iri) == iri for e, iri in zip(entities, iris, strict=True))
 
@@ -214,6 +214,6 @@ def _names(triple: Triple) -> tuple[str, str]:
     return v.entity_name(triple[0]), v.entity_name(triple[2])
 
 
-def _stays(was: Entity, now: Entity) -> bool:
+def _is_unchanged(was: Entity, now: Entity) -> bool:
     """Return whether nothing changed on which relations depend, only a label or a property."""
     return was.pose == now.pose and PlacedEntity.of(was) == PlacedEntity.of(now)

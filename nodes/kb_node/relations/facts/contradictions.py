@@ -62,7 +62,7 @@ def find_contradiction(space: Space, fact: Fact) -> Relation | None:
     elif solid is None or other is None or not other.is_measured:
         return None
     else:
-        reason = _against(space, relation, solid, other)
+        reason = _find_reason(space, relation, solid, other)
     if reason is None:
         return None
     phrase = PHRASES[relation].replace("is ", "to be ", 1)
@@ -77,7 +77,7 @@ def find_contradiction(space: Space, fact: Fact) -> Relation | None:
     )
 
 
-def _against(space: Space, relation: RelationName, solid: Solid, other: Solid) -> str | None:
+def _find_reason(space: Space, relation: RelationName, solid: Solid, other: Solid) -> str | None:
     limits = space.limits
     if relation == "isLocatedIn":
         made = measures.within(solid, other, limits)
@@ -99,7 +99,7 @@ def _against(space: Space, relation: RelationName, solid: Solid, other: Solid) -
     if apart > limits.gap_m:
         return _describe_distance(solid, apart)
     if relation == "isInside":
-        share = _share_within_box(solid, other, limits.gap_m)
+        share = _compute_share_within_box(solid, other, limits.gap_m)
         return f"{share:.0%} of its volume is within it" if share < limits.inside_share else None
     carrier = space.spatial_relations(solid)
     has_support = bool(carrier.supports) or carrier.container is not None
@@ -107,7 +107,7 @@ def _against(space: Space, relation: RelationName, solid: Solid, other: Solid) -
         return None  # it may be attached or lean there
     made = measures.over(solid, other, limits)
     return (
-        f"it is over no surface of {other.name}"
+        f"it is not above any surface of {other.name}"
         if made is None
         else explain_measure(relation, solid, other, made)
     )
@@ -125,7 +125,7 @@ def _find_supporters(space: Space, solid: Solid) -> set[Solid]:
     return found
 
 
-def _share_within_box(inner: Solid, outer: Solid, margin_m: float) -> float:
+def _compute_share_within_box(inner: Solid, outer: Solid, margin_m: float) -> float:
     """Return the share of a volume within the box of another solid, because its hollow may be unknown."""
     x, y, z = (extent / 2 + margin_m for extent in outer.size)
     points = [outer.to_own(point) for point in inner.samples]

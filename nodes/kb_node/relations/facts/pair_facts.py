@@ -126,7 +126,7 @@ class PairFacts:
         if not self._support_states and (self._whole or self._some):
             with space.caching():
                 self._support_states = {
-                    n: self._support_state(s) for n, s in space.solids.items() if self._takes_part(s)
+                    n: self._get_support_state(s) for n, s in space.solids.items() if self._is_included(s)
                 }
         names: dict[str, None] = {}
         for name in removed:
@@ -145,23 +145,23 @@ class PairFacts:
         with space.caching():
             for solid in moved:
                 for other in space.counted_around(solid):
-                    if self._takes_part(other) and self._support_states.get(
+                    if self._is_included(other) and self._support_states.get(
                         other.name
-                    ) != self._support_state(other):
+                    ) != self._get_support_state(other):
                         names[other.name] = None
             for name in names:
                 now = space.solids.get(name)
-                if now is None or not self._takes_part(now):
+                if now is None or not self._is_included(now):
                     self._support_states.pop(name, None)
                 else:
-                    self._support_states[name] = self._support_state(now)
+                    self._support_states[name] = self._get_support_state(now)
         return self._compute(names, moved)
 
-    def _takes_part(self, solid: Solid) -> bool:
+    def _is_included(self, solid: Solid) -> bool:
         """Return whether an object is in any pair."""
         return not solid.is_place and self.space.counts(solid)
 
-    def _support_state(self, solid: Solid) -> _SupportState:
+    def _get_support_state(self, solid: Solid) -> _SupportState:
         container, supports, _ = self.space.spatial_relations(solid)
         return container and container[0].name, frozenset(support.name for support, _ in supports)
 
@@ -179,9 +179,9 @@ class PairFacts:
             for name in tuple(names):
                 solid = space.solids.get(name)
                 others = dict.fromkeys(self._pairs.get(name, ()))
-                if solid is not None and self._takes_part(solid):
+                if solid is not None and self._is_included(solid):
                     for near in space.counted_around(solid, space.limits.near_most_m):
-                        if self._takes_part(near):
+                        if self._is_included(near):
                             others[near.name] = None
                 for other in others:
                     pair = (name, other) if name < other else (other, name)
@@ -207,12 +207,12 @@ class PairFacts:
             if solid.is_place:
                 continue
             around = space.counted_around(solid, space.limits.near_most_m)
-            ends = [end for end in around if self._takes_part(end)]
+            ends = [end for end in around if self._is_included(end)]
             for at, one in enumerate(ends):
                 for other in ends[at + 1 :]:
                     if not _may_be_beside(space, one, other):
                         continue
-                    if measures.overlap(solid.bounds, _both(one.bounds, other.bounds)):
+                    if measures.overlap(solid.bounds, _unite(one.bounds, other.bounds)):
                         yield (one.name, other.name) if one.name < other.name else (other.name, one.name)
 
     def _measure(
@@ -221,7 +221,7 @@ class PairFacts:
         solid, other = self.space.solids.get(name), self.space.solids.get(other_name)
         if solid is None or other is None or not _may_be_beside(self.space, solid, other):
             return ()
-        if not (self._takes_part(solid) and self._takes_part(other)):
+        if not (self._is_included(solid) and self._is_included(other)):
             return ()
         wanted = _ALL if name in self._some or other_name in self._some else more or self._whole
         if not wanted:
@@ -263,7 +263,7 @@ def _may_be_beside(space: Space, one: Solid, other: Solid) -> bool:
     return measures.overlap(one.bounds, other.bounds, reach)
 
 
-def _both(one: Bounds, other: Bounds) -> Bounds:
+def _unite(one: Bounds, other: Bounds) -> Bounds:
     return (
         min(one[0], other[0]), min(one[1], other[1]), max(one[2], other[2]), max(one[3], other[3]),
     )  # fmt: skip

@@ -40,7 +40,7 @@ class PairProperties:
                 implied[s].add((o, True))
                 implied[o].add((s, True))
         self._implications: dict[RelationName, frozenset[_Implication]] = {
-            relation: _closed(implied, relation, declared) for relation in MIRRORED
+            relation: _compute_closure(implied, relation, declared) for relation in MIRRORED
         }
         self.sources: dict[Term, frozenset[RelationName]] = {
             property_: frozenset(
@@ -74,7 +74,7 @@ class PairProperties:
         )
 
 
-def _closed(
+def _compute_closure(
     implied: dict[Term, set[_Implication]], relation: RelationName, declared: Set[Term]
 ) -> frozenset[_Implication]:
     own, mirrored = v.dm(relation), v.dm(MIRRORED[relation])

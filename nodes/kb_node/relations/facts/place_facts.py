@@ -48,7 +48,7 @@ class Facts:
 
     def __init__(self, limits: Thresholds | None = None, rules: Sequence[Rule] = RULES) -> None:
         self.space = Space(limits=limits)
-        self._kept = [_RuleFacts(rule) for rule in rules]
+        self._rule_facts = [_RuleFacts(rule) for rule in rules]
         self._margin_m = max(rule.margin_m(self.space.limits) for rule in rules)
         self._in_turn: Iterator[Solid] = iter(())
         self._to_clear = 0
@@ -58,48 +58,52 @@ class Facts:
         self.shifted: frozenset[str] = frozenset()
         """Objects that the last update made count, or no longer count, because of others in a crowd."""
 
-    def set_precomputation(self, ahead: Precomputation) -> None:
-        """Use the result of `ahead` in the next update, which adds the expected entities."""
-        self._precomputation = ahead
+    def set_precomputation(self, precomputation: Precomputation) -> None:
+        """Use the result of `precomputation` in the next update, which adds the expected entities."""
+        self._precomputation = precomputation
 
     def discard_precomputation(self) -> None:
         """Stop the precomputation, because the expected update does not come."""
-        ahead, self._precomputation = self._precomputation, None
-        if ahead is not None:
-            ahead.discard()
+        precomputation, self._precomputation = self._precomputation, None
+        if precomputation is not None:
+            precomputation.discard()
 
     def by_rule(self) -> tuple[FactsByName, ...]:
         """Return all facts, by rule and name."""
-        return tuple(kept.of for kept in self._kept)
+        return tuple(rule_facts.of for rule_facts in self._rule_facts)
 
     def __iter__(self) -> Iterator[Fact]:
         """Yield all facts."""
-        for kept in self._kept:
-            yield from kept.all()
+        for rule_facts in self._rule_facts:
+            yield from rule_facts.all()
 
     def holds(self, fact: Fact) -> bool:
         """Return whether a fact holds."""
         name, relation, other = fact
-        return any((relation, other) in kept.of.get(name, ()) for kept in self._kept)
+        return any((relation, other) in rule_facts.of.get(name, ()) for rule_facts in self._rule_facts)
 
     def of(self, name: str) -> Iterator[About]:
         """Yield the facts of an object. Of several supports the most important one comes first."""
-        for kept in self._kept:
-            yield from kept.of.get(name, ())
+        for rule_facts in self._rule_facts:
+            yield from rule_facts.of.get(name, ())
 
     def about(self, name: str) -> set[str]:
         """Return the subjects of the facts about an object."""
-        return {other for kept in self._kept for other in kept.about.get(name, ())}
+        return {other for rule_facts in self._rule_facts for other in rule_facts.about.get(name, ())}
 
     def with_contents(self, names: Iterable[str]) -> set[str]:
         """Return these objects, and everything on, inside or in them, at any depth."""
         found = set(names)
         waiting = list(found)
-        bearing = [kept for kept in self._kept if not _CONTAINING.isdisjoint(kept.rule.relations)]
+        containing = [
+            rule_facts
+            for rule_facts in self._rule_facts
+            if not _CONTAINING.isdisjoint(rule_facts.rule.relations)
+        ]
         while waiting:
             name = waiting.pop()
-            for kept in bearing:
-                for above in kept.about.get(name, ()):
+            for rule_facts in containing:
+                for above in rule_facts.about.get(name, ()):
                     if above not in found:
                         found.add(above)
                         waiting.append(above)
@@ -119,10 +123,10 @@ class Facts:
 
     def compute_steps(self) -> Iterator[None]:
         """Compute the facts. Updates between these steps first compute the facts that they affect."""
-        for some in split_batches(sort_by_place(list(self._waiting.values())), _STEP, _nothing):
+        for some in split_batches(sort_by_place(list(self._waiting.values())), _STEP, _ignore_progress):
             self._compute_waiting(solid for solid in some if self._waiting.get(solid.name) is solid)
             yield
-        for solids in split_batches(tuple(self.space.solids.values()), _STEP, _nothing):
+        for solids in split_batches(tuple(self.space.solids.values()), _STEP, _ignore_progress):
             for solid in solids:
                 solid.clear_cache()
             if len(solids) == _STEP:
@@ -164,19 +168,19 @@ class Facts:
     ) -> Iterator[None]:
         """Compute the facts of many solids, `step` at a time, and add differences to `gone` and `come`."""
         space = self.space
-        for some in split_batches(sort_by_place(solids) if len(solids) > step else solids, step, _nothing):
+        for some in split_batches(sort_by_place(solids) if len(solids) > step else solids, step, _ignore_progress):
             survey = Survey(space, some) if len(some) >= MANY else None
             with space.caching():
-                for kept in self._kept:
+                for rule_facts in self._rule_facts:
                     if survey is None:
-                        kept.compute(space, [solid.name for solid in some], gone, come)
+                        rule_facts.compute(space, [solid.name for solid in some], gone, come)
                     else:
-                        kept.set_facts(space, some, kept.rule.of_many(survey), gone, come)
+                        rule_facts.set_facts(space, some, rule_facts.rule.of_many(survey), gone, come)
             yield
 
     def _take_precomputed(self, came: Iterable[Entity | PlacedEntity]) -> Sequence[FactsByName] | None:
-        ahead, self._precomputation = self._precomputation, None
-        return None if ahead is None else ahead.facts(came)
+        precomputation, self._precomputation = self._precomputation, None
+        return None if precomputation is None else precomputation.facts(came)
 
     def clear_caches(self) -> None:
         """Clear the caches of some solids in turn, more than updates touched.
@@ -226,35 +230,37 @@ class Facts:
         gone: set[Fact] = set()
         come: set[Fact] = set()
         with space.caching(of_few=True):
-            concerned = self._affected(moved, (*fresh, *left))
+            concerned = self._find_affected(moved, (*fresh, *left))
             if len(concerned) < MANY:
-                for kept in self._kept:
-                    kept.compute(space, concerned, gone, come)
+                for rule_facts in self._rule_facts:
+                    rule_facts.compute(space, concerned, gone, come)
         if len(concerned) >= MANY:
             objects = self._find_objects(concerned)
             if len(objects) < len(concerned):
                 left_over = concerned.keys() - {solid.name for solid in objects}
-                for kept in self._kept:
-                    kept.compute(space, left_over, gone, come)
+                for rule_facts in self._rule_facts:
+                    rule_facts.compute(space, left_over, gone, come)
             if (found := self._take_precomputed(changed)) is None:
                 for _ in self._compute_in_steps(objects, gone, come, _MOST_AT_ONCE):
                     pass
             else:
-                for kept, of in zip(self._kept, found, strict=True):
-                    kept.set_facts(space, objects, [of.get(solid.name, ()) for solid in objects], gone, come)
+                for rule_facts, of in zip(self._rule_facts, found, strict=True):
+                    rule_facts.set_facts(
+                        space, objects, [of.get(solid.name, ()) for solid in objects], gone, come
+                    )
         self._to_clear = min(self._to_clear + _CLEARED_PER_CHANGE * len(moved), len(space.solids))
         if self._to_clear > _MOST_TO_CLEAR:
             self.clear_caches()
         self.shifted = frozenset([solid.name for solid in shifted])
         return Changed(gone, come)
 
-    def _affected(self, moved: dict[str, None], solids: Sequence[Solid]) -> dict[str, None]:
+    def _find_affected(self, moved: dict[str, None], solids: Sequence[Solid]) -> dict[str, None]:
         """Return the names whose facts may change: moved ones, and neighbours of `solids`."""
         space, found = self.space, dict(moved)
-        for kept in self._kept:
-            if kept.about:
+        for rule_facts in self._rule_facts:
+            if rule_facts.about:
                 for name in moved:
-                    found.update(kept.about.get(name, ()))
+                    found.update(rule_facts.about.get(name, ()))
         if found.keys() >= space.solids.keys():
             return found
         if len(solids) >= MANY:
@@ -269,13 +275,13 @@ class Facts:
         for other in space.around(solid, self._margin_m):
             if other.is_place or other.name in found:
                 continue
-            for kept in self._kept:
-                if kept.rule.concerns(space, solid, other):
+            for rule_facts in self._rule_facts:
+                if rule_facts.rule.concerns(space, solid, other):
                     found[other.name] = None
                     break
 
 
-def _nothing() -> None:
+def _ignore_progress() -> None:
     pass
 
 

@@ -1,6 +1,6 @@
 """The relations that are stored as facts: a table, with a row for those computed together.
 
-A new relation is a new row. Its facts must depend only on the solids around an object, so that a restart,
+A new relation is a new row. Its facts must depend only on the solids around an object. Then a restart,
 another order of commits, or a past state gives the same facts.
 """
 

@@ -22,22 +22,22 @@ def cross(a: Floats, b: Floats) -> Floats:
     return found
 
 
-def spanned(u: Floats, v: Floats) -> Floats:
+def compute_areas(u: Floats, v: Floats) -> Floats:
     """Return (N,) areas of parallelograms."""
     found: Floats = 4.0 * np.abs(cross(u, v))
     return found
 
 
-def along(vectors: Floats, u: Floats, v: Floats) -> tuple[Floats, Floats]:
+def decompose(vectors: Floats, u: Floats, v: Floats) -> tuple[Floats, Floats]:
     """Return vectors as multiples of `u` and `v`, or NaN if these are parallel."""
     whole = cross(u, v)
     whole = np.where(np.abs(whole) > _LEAST_AREA, whole, np.nan)
     return cross(vectors, v) / whole, cross(u, vectors) / whole
 
 
-def reach(middle: Floats, a: Floats, b: Floats, u: Floats, v: Floats) -> tuple[Floats, Floats]:
+def compute_extents(middle: Floats, a: Floats, b: Floats, u: Floats, v: Floats) -> tuple[Floats, Floats]:
     """Return how far a parallelogram of half sides `a` and `b` extends from the origin, in `u` and `v`."""
-    (s, t), (a_s, a_t), (b_s, b_t) = (along(vectors, u, v) for vectors in (middle, a, b))
+    (s, t), (a_s, a_t), (b_s, b_t) = (decompose(vectors, u, v) for vectors in (middle, a, b))
     return np.abs(s) + np.abs(a_s) + np.abs(b_s), np.abs(t) + np.abs(a_t) + np.abs(b_t)
 
 
@@ -59,14 +59,14 @@ def bounds_around(middle: Floats, u: Floats, v: Floats) -> Floats:
     return np.concatenate([middle - half, middle + half], axis=1)
 
 
-def common(one: Floats, other: Floats) -> Floats:
+def compute_intersections(one: Floats, other: Floats) -> Floats:
     """Return the areas of the intersections of bounds."""
     both = np.minimum(one[:, 2:], other[:, 2:]) - np.maximum(one[:, :2], other[:, :2])
     found: Floats = np.maximum(both, 0.0).prod(axis=1)
     return found
 
 
-def doubt(position: Floats, areas: Floats) -> Floats:
+def compute_uncertainty(position: Floats, areas: Floats) -> Floats:
     """Return the margin within which shares of areas are not clear. It grows far from the origin."""
     found: Floats = GUARD + 1e-14 * np.abs(position[:, :2]).sum(axis=1) ** 2 / areas
     return found

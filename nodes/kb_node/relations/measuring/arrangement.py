@@ -30,7 +30,7 @@ def measure_next_to(space: Space, one: Solid, other: Solid) -> Measure | None:
         return None
     if not _share_support(space, one, other):
         return made._replace(holds=False, share=0.0)
-    is_free = next(_in_between(space, one, other), None) is None
+    is_free = next(_iterate_between(space, one, other), None) is None
     return made if is_free else made._replace(holds=False, share=0.5)
 
 
@@ -49,10 +49,10 @@ def _share_support(space: Space, one: Solid, other: Solid) -> bool:
 
 def find_between(space: Space, one: Solid, other: Solid) -> list[Solid]:
     """Return the objects on the strip that joins two others, at their height, ordered by name."""
-    return sorted(_in_between(space, one, other), key=lambda solid: solid.name)
+    return sorted(_iterate_between(space, one, other), key=lambda solid: solid.name)
 
 
-def _in_between(space: Space, one: Solid, other: Solid) -> Iterator[Solid]:
+def _iterate_between(space: Space, one: Solid, other: Solid) -> Iterator[Solid]:
     strip = hull([*one.outline, *other.outline])
     low, high = max(one.bottom, other.bottom), min(one.top, other.top)
     apart = measures.gap(one, other)
@@ -78,7 +78,7 @@ def measure_attachment(space: Space, solid: Solid, other: Solid) -> Measure | No
 
     None if it is not beside the other one, or is supported.
     """
-    made = _against(space, solid, other)
+    made = _measure_against(space, solid, other)
     return None if made is None or is_supported(space, solid) else made
 
 
@@ -94,14 +94,14 @@ def find_attachments(space: Space, solid: Solid) -> Iterator[Solid]:
         if other.top > solid.bottom
         and other.bottom < highest
         and not other.is_place
-        and (made := _against(space, solid, other))
+        and (made := _measure_against(space, solid, other))
         and made.holds
     ]
     if found and not is_supported(space, solid):
         yield from sorted(found, key=lambda other: other.name)
 
 
-def _against(space: Space, solid: Solid, other: Solid) -> Measure | None:
+def _measure_against(space: Space, solid: Solid, other: Solid) -> Measure | None:
     limits = space.limits
     if solid is other or solid.is_place or other.is_place or not solid.is_measured:
         return None

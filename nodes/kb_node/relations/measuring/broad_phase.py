@@ -49,10 +49,10 @@ class Cells:
             self.low[rows, 0][owner] + turn // np.maximum(deep, 1),
             self.low[rows, 1][owner] + turn % np.maximum(deep, 1),
         )
-        return key(x, y), rows[owner]
+        return cell_key(x, y), rows[owner]
 
 
-def key(x: Ints, y: Ints) -> Ints:
+def cell_key(x: Ints, y: Ints) -> Ints:
     """Return one number for a cell."""
     return (x << 32) + y
 
@@ -109,7 +109,7 @@ class BroadPhase:
         kept, counts = np.ones(len(self._keys), dtype=bool), np.zeros(len(self._solids), dtype=bool)
         for cell in self._grid.crowds:
             if cell is not None:
-                at = key(*np.array(cell)[:, None])
+                at = cell_key(*np.array(cell)[:, None])
                 (begin,), (end,) = np.searchsorted(self._keys, at), np.searchsorted(self._keys, at + 1)
                 there = self._owner[begin:end]
                 counts[self._counted(cell, there)] = True
@@ -131,7 +131,7 @@ class BroadPhase:
             one, other = np.divmod(joined, max(len(self._solids), 1))
         else:
             first = np.maximum(cells.low[one], self._low[other])
-            is_first = key(first[:, 0], first[:, 1]) == keys
+            is_first = cell_key(first[:, 0], first[:, 1]) == keys
             one, other = one[is_first], other[is_first]
         if len(self._large):
             by, large = (

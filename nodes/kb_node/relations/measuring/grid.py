@@ -34,13 +34,13 @@ class Grid:
         cells = _cells(solid.bounds)
         if cells is None:
             self._large[solid] = None
-            self._crowd(_LARGE, self._large, solid)
+            self._add_to_crowd(_LARGE, self._large, solid)
             return
         for cell in cells:
             there = self._cells.setdefault(cell, {})
             there[solid] = None
             if len(there) > crowds.MOST:
-                self._crowd(cell, there, solid)
+                self._add_to_crowd(cell, there, solid)
 
     def add_to(self, cell: Cell, solids: Sequence[Solid]) -> None:
         """Add solids to a cell that all of them cover. `add` does this for all cells of one solid."""
@@ -54,9 +54,9 @@ class Grid:
         for solid in solids:
             there[solid] = None
             if len(there) > crowds.MOST:
-                self._crowd(cell, there, solid)
+                self._add_to_crowd(cell, there, solid)
 
-    def _crowd(self, cell: Cell | None, there: dict[Solid, None], solid: Solid) -> None:
+    def _add_to_crowd(self, cell: Cell | None, there: dict[Solid, None], solid: Solid) -> None:
         """Record a new solid in a cell that may be a crowd."""
         crowd = self.crowds.get(cell)
         if crowd is not None:
@@ -97,7 +97,7 @@ class Grid:
         x0, y0, x1, y1 = x0 - margin_m, y0 - margin_m, x1 + margin_m, y1 + margin_m
         return [
             solid
-            for solid in self._filed(_cells((x0, y0, x1, y1)))
+            for solid in self._find_solids(_cells((x0, y0, x1, y1)))
             if (its := solid.bounds)[0] <= x1
             and its[2] >= x0
             and its[1] <= y1
@@ -166,13 +166,13 @@ class Grid:
         ]
         reported: list[tuple[int, Cell, bool]] = []
         for count, cell, is_large in sorted(found):
-            if not any(_adjoin(cell, other) and is_large == large for _, other, large in reported):
+            if not any(_are_adjacent(cell, other) and is_large == large for _, other, large in reported):
                 reported.append((count, cell, is_large))
         return [
             crowds.describe_crowd(-count, None if large else cell, CELL_M) for count, cell, large in reported
         ]
 
-    def _filed(self, cells: list[Cell] | None) -> Iterable[Solid]:
+    def _find_solids(self, cells: list[Cell] | None) -> Iterable[Solid]:
         """Yield the solids in these cells, once each, or all solids for None."""
         if cells is not None and len(cells) == 1 and not self._large:
             return self._cells.get(cells[0], ())
@@ -183,7 +183,7 @@ class Grid:
         return found
 
 
-def _adjoin(one: Cell, other: Cell) -> bool:
+def _are_adjacent(one: Cell, other: Cell) -> bool:
     return abs(one[0] - other[0]) <= 1 and abs(one[1] - other[1]) <= 1
 
 

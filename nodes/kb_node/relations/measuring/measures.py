@@ -74,7 +74,7 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
     if not pairs:
         return None
     if len(pairs) > 1:
-        pairs.sort(key=_least)
+        pairs.sort(key=_by_gap)
     best: Measure | None = None
     leaning: Measure | None = None
     for least, part, other in pairs:
@@ -96,7 +96,7 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
         return leaning
     if not (is_flat and upper.is_upright):
         return best
-    share = _covered(upper, lower, best.height_m)
+    share = _compute_covered_share(upper, lower, best.height_m)
     if share <= 0.0:
         return None
     best = best._replace(share=share)
@@ -117,7 +117,7 @@ def _within_rim(
     for height in tops:
         gap = upper.bottom - height
         if height < rim.height_m - LOWEST_M and gap <= rim.limit:
-            share = _covered(upper, lower, height)
+            share = _compute_covered_share(upper, lower, height)
             if share >= limits.base_share:
                 return Measure(True, gap, share, height, rim.limit)
     return None
@@ -140,20 +140,20 @@ def is_in_open_hollow(lower: Solid, upper: Solid, made: Measure) -> bool:
     return False
 
 
-def _least(pair: tuple[float, object, object]) -> float:
+def _by_gap(pair: tuple[float, object, object]) -> float:
     return pair[0]
 
 
-def _covered(upper: Solid, lower: Solid, height: float) -> float:
+def _compute_covered_share(upper: Solid, lower: Solid, height: float) -> float:
     """Return the share of a base over flat tops at this height."""
-    bearing = [p for p in lower.parts if p.has_flat_top and abs(p.high[2] - height) <= LOWEST_M]
-    for part in bearing:
-        if part.is_square and _is_amid(upper.bounds, (*part.low[:2], *part.high[:2])):
+    supporting = [p for p in lower.parts if p.has_flat_top and abs(p.high[2] - height) <= LOWEST_M]
+    for part in supporting:
+        if part.is_square and _is_rectangle_within(upper.bounds, (*part.low[:2], *part.high[:2])):
             return 1.0
-    if len(bearing) == len(upper.parts) == 1 and bearing[0].is_square and upper.parts[0].is_square:
-        return _share_of_box(upper.parts[0], bearing[0])
+    if len(supporting) == len(upper.parts) == 1 and supporting[0].is_square and upper.parts[0].is_square:
+        return _compute_box_share(upper.parts[0], supporting[0])
     base = upper.base
-    tops = [part.projection for part in bearing]
+    tops = [part.projection for part in supporting]
     for top in tops:
         if covers(top, base):
             return 1.0
@@ -161,7 +161,7 @@ def _covered(upper: Solid, lower: Solid, height: float) -> float:
     return min(1.0, sum(area(clipped(base, top)) for top in tops) / whole) if whole > 0.0 else 0.0
 
 
-def _share_of_box(upper: Convex, lower: Convex) -> float:
+def _compute_box_share(upper: Convex, lower: Convex) -> float:
     """Return the share of an axis-aligned box that is over another one, seen from above."""
     (x0, y0, _), (x1, y1, _) = upper.low, upper.high
     (a0, b0, _), (a1, b1, _) = lower.low, lower.high
@@ -208,16 +208,16 @@ def inside(inner: Solid, outer: Solid, limits: Thresholds) -> Measure | None:
         return None
     if inner.volume >= outer.volume or not overlap(inner.bounds, outer.bounds):
         return None
-    share = max([_share_in(inner, outer, hollow) for hollow in outer.hollows])
+    share = max([_compute_share_in(inner, outer, hollow) for hollow in outer.hollows])
     return Measure(share >= limits.inside_share, share=share, limit=limits.inside_share)
 
 
 def hollow_around(inner: Solid, outer: Solid) -> Interior:
     """Return the hollow of `outer` that contains most of the volume. `outer` must have one."""
-    return max(outer.hollows, key=lambda hollow: _share_in(inner, outer, hollow))
+    return max(outer.hollows, key=lambda hollow: _compute_share_in(inner, outer, hollow))
 
 
-def _share_in(inner: Solid, outer: Solid, hollow: Interior) -> float:
+def _compute_share_in(inner: Solid, outer: Solid, hollow: Interior) -> float:
     (x0, y0, z0), (x1, y1, z1) = hollow.low, hollow.high
     if not (inner.is_level and outer.is_level):
         points = inner.samples
@@ -267,14 +267,14 @@ def within(solid: Solid, place: Solid, limits: Thresholds, *, also_places: bool 
     if not place.bottom - limits.gap_m <= height <= place.top + limits.gap_m:
         return Measure(False, share=0.0, limit=limit)
     if place.form.region is not None:
-        share = _share_in_region(solid, place, place.form.region)
+        share = _compute_share_in_region(solid, place, place.form.region)
     elif not solid.is_measured:
         share = float(contains(place.outline, solid.position[:2]))
     elif not overlap(solid.bounds, place.bounds):
         share = 0.0
     elif solid.form.region is not None:
         share = solid.form.region.shared(place.outline, solid.position[:2]) / max(solid.footprint, 1e-9)
-    elif (place.form.is_square and _is_amid(solid.bounds, place.bounds)) or covers(
+    elif (place.form.is_square and _is_rectangle_within(solid.bounds, place.bounds)) or covers(
         place.outline, solid.outline
     ):
         share = 1.0
@@ -283,7 +283,7 @@ def within(solid: Solid, place: Solid, limits: Thresholds, *, also_places: bool 
     return Measure(share >= limit, share=share, limit=limit)
 
 
-def _share_in_region(solid: Solid, place: Solid, region: Region) -> float:
+def _compute_share_in_region(solid: Solid, place: Solid, region: Region) -> float:
     """Return the share of a footprint, or of a position without a size, that a polygon covers."""
     x, y, _ = place.position
     if not solid.is_measured:
@@ -304,26 +304,26 @@ def gap(one: Solid, other: Solid) -> float:
     Open doors and drawers count as parts of their own.
     """
     if one.form.joints or other.form.joints:
-        return min(_gap_of_pieces(a, b) for a in _pieces(one) for b in _pieces(other))
+        return min(_compute_piece_gap(a, b) for a in _list_pieces(one) for b in _list_pieces(other))
     up = max(0.0, one.bottom - other.top, other.bottom - one.top)
     if one.is_place or other.is_place:
-        return math.hypot(_apart_in_plan(one, other), up)
+        return math.hypot(_compute_plan_gap(one, other), up)
     return math.hypot(distance(one.outline, other.outline), up)
 
 
-def _pieces(solid: Solid) -> Iterator[_Piece]:
+def _list_pieces(solid: Solid) -> Iterator[_Piece]:
     """Yield the box, and the parts that stand open."""
     yield solid.outline, solid.bottom, solid.top
     for part in solid.open_parts:
         yield part.projection, part.low[2], part.high[2]
 
 
-def _gap_of_pieces(one: _Piece, other: _Piece) -> float:
+def _compute_piece_gap(one: _Piece, other: _Piece) -> float:
     (outline, bottom, top), (its, low, high) = one, other
     return math.hypot(distance(outline, its), max(0.0, bottom - high, low - top))
 
 
-def _apart_in_plan(one: Solid, other: Solid) -> float:
+def _compute_plan_gap(one: Solid, other: Solid) -> float:
     """Return the horizontal distance of a place, which may be a polygon, and a solid [m]."""
     for place, solid in ((one, other), (other, one)):
         if (region := place.form.region) is not None:
@@ -367,7 +367,7 @@ def beneath(lower: Solid, upper: Solid, limits: Thresholds) -> Measure | None:
     return Measure(share >= limits.beneath_share, height - lower.top, share, height, limits.beneath_share)
 
 
-def _is_amid(one: Bounds, other: Bounds) -> bool:
+def _is_rectangle_within(one: Bounds, other: Bounds) -> bool:
     """Return whether one axis-aligned rectangle is within another."""
     return one[0] >= other[0] and one[1] >= other[1] and one[2] <= other[2] and one[3] <= other[3]
 

@@ -55,7 +55,7 @@ class Space:
 
     def put_all(self, entities: Iterable[Entity | PlacedEntity]) -> Iterator[list[Solid]]:
         """Add or replace many entities in steps, and yield the solids of each step."""
-        for some in split_batches(entities, _STEP, _nothing):
+        for some in split_batches(entities, _STEP, _ignore_progress):
             if len(some) < MANY:
                 yield [solid for entity in some if (solid := self.put(entity)) is not None]
                 continue
@@ -322,7 +322,7 @@ class SpaceCache:
         self._space.cache = None
 
 
-def _nothing() -> None:
+def _ignore_progress() -> None:
     pass
 
 

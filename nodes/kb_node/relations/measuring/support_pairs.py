@@ -10,7 +10,7 @@ from semmap.nodes.kb_node.relations.geometry.columns import Columns
 from semmap.nodes.kb_node.relations.geometry.convex import DEEPEST_M
 from semmap.nodes.kb_node.relations.geometry.form_columns import Bools, Floats, FormColumns, Ints
 from semmap.nodes.kb_node.relations.geometry.forms import LOWEST_M
-from semmap.nodes.kb_node.relations.geometry.planar import GUARD, along, are_on_top, reach
+from semmap.nodes.kb_node.relations.geometry.planar import GUARD, are_on_top, compute_extents, decompose
 from semmap.nodes.kb_node.relations.measuring.broad_phase import repeat_rows, starts_run
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 
@@ -41,7 +41,7 @@ class _Meeting(NamedTuple):
     slack: Floats
     """How far the parts are within the limit of comparison [m]."""
 
-    def nearer(self, slack: Floats) -> _Meeting:
+    def restrict(self, slack: Floats) -> _Meeting:
         """Return the pairs that remain within the limit after it is reduced to `slack`."""
         slack = np.minimum(self.slack, slack)
         kept = slack > -GUARD
@@ -58,7 +58,9 @@ def find_supports(columns: Columns, one: Ints, other: Ints, limits: Thresholds) 
     may = (columns.bottom[one] - columns.top[other] < limits.gap_m + GUARD) & ((step > -GUARD) | ~is_level)
     one, other, step, is_level = one[may], other[may], step[may], is_level[may]
     parts = columns.forms.parts
-    meeting = _meeting(columns, one, other, np.clip(step, limits.contact_m, limits.gap_m), is_level, limits)
+    meeting = _find_meeting_parts(
+        columns, one, other, np.clip(step, limits.contact_m, limits.gap_m), is_level, limits
+    )
     is_first = starts_run(meeting.pair)
     begins = np.flatnonzero(is_first)
     pair = meeting.pair[begins]
@@ -70,16 +72,16 @@ def find_supports(columns: Columns, one: Ints, other: Ints, limits: Thresholds) 
     lower = meeting.lower
     u, v, is_disc = parts.u[lower], parts.v[lower], parts.is_disc[lower]
     over = meeting.offset - parts.centre[lower]
-    meets_top = are_on_top(*along(over + parts.lowest[meeting.upper], u, v), is_disc)
+    meets_top = are_on_top(*decompose(over + parts.lowest[meeting.upper], u, v), is_disc)
     plain = (meeting.slack > GUARD) & (meeting.above > GUARD - DEEPEST_M) & meets_top
     form = columns.form[one[meeting.pair]]
     forms = columns.forms
     low, high = forms.base[form, :2], forms.base[form, 2:]
     a, b = np.zeros_like(low), np.zeros_like(low)
     a[:, 0], b[:, 1] = ((high - low) / 2).T
-    carries = are_on_top(*reach(over + (low + high) / 2, a, b, u, v), is_disc)
+    carries = are_on_top(*compute_extents(over + (low + high) / 2, a, b, u, v), is_disc)
     # An object whose base centre is over the top is balanced there, whatever its share.
-    carries |= are_on_top(*along(over + _middle_of_base(forms)[form], u, v), is_disc)
+    carries |= are_on_top(*decompose(over + _compute_base_centres(forms)[form], u, v), is_disc)
     carries &= parts.low[meeting.upper, 2] - forms.bottom[form] < LOWEST_M - 2.0 * GUARD
 
     holds = np.logical_and.reduceat(plain | ~is_nearest, begins)
@@ -91,7 +93,7 @@ def find_supports(columns: Columns, one: Ints, other: Ints, limits: Thresholds) 
     return SupportPairs(one, other, holds, gap)
 
 
-def _meeting(
+def _find_meeting_parts(
     columns: Columns, one: Ints, other: Ints, most: Floats, is_level: Bools, limits: Thresholds
 ) -> _Meeting:
     """Return the pairs of parts that `measures.on` compares, with the greatest height `most` above one."""
@@ -104,17 +106,17 @@ def _meeting(
     up = offset[:, 2]
     above = up + parts.low[upper, 2] - parts.high[lower, 2]
     found = _Meeting(pair, upper, lower, offset[:, :2], above, most[pair] - above)
-    found = found.nearer(np.where(is_level[pair], above + limits.gap_m, np.inf))
+    found = found.restrict(np.where(is_level[pair], above + limits.gap_m, np.inf))
     upper, lower, offset = found.upper, found.lower, found.offset
     up = (columns.position[one, 2] - columns.position[other, 2])[found.pair]
     beside = np.minimum(
         offset + parts.high[upper, :2] - parts.low[lower, :2],
         parts.high[lower, :2] - offset - parts.low[upper, :2],
     )
-    return found.nearer(np.minimum(beside.min(axis=1), up + parts.high[upper, 2] - parts.low[lower, 2]))
+    return found.restrict(np.minimum(beside.min(axis=1), up + parts.high[upper, 2] - parts.low[lower, 2]))
 
 
-def _middle_of_base(forms: FormColumns) -> Floats:
+def _compute_base_centres(forms: FormColumns) -> Floats:
     """Return the (F, 2) centre of a base of one box or cylinder, else NaN."""
     found = np.full((len(forms.footing), 2), np.nan)
     stands_on_one = forms.footing >= 0

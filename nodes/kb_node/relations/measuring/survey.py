@@ -45,7 +45,7 @@ class Survey:
         count = len(subjects)
         self._space: Final = space
         self._limits: Final = space.limits
-        self._columns: Final = Columns(_with_around(space, subjects))
+        self._columns: Final = Columns(_with_neighbours(space, subjects))
         self.solids: Final[Sequence[Solid]] = self._columns.solids
         """The subjects, followed by the solids around them. Rows below refer to it."""
         self.holders: Final = space.holders
@@ -96,7 +96,7 @@ class Survey:
             one, other = one[may_support], other[may_support]
         return one, other, unknown
 
-    def _take_smallest(
+    def _store_smallest(
         self, into: Ints, one: Ints, other: Ints, size: Callable[[Solid], tuple[float, str]]
     ) -> None:
         """Store the smallest of the containers of each row."""
@@ -123,14 +123,16 @@ class Survey:
 
         u, v = forms.u[its], forms.v[its]
         middle = columns.position[one, :2] - columns.position[other, :2]
-        s, t = planar.along(middle, u, v)
+        s, t = planar.decompose(middle, u, v)
         a, b = forms.u[form], forms.v[form]
         inside = np.where(
-            is_point, planar.are_within(s, t), planar.are_within(*planar.reach(middle, a, b, u, v))
+            is_point, planar.are_within(s, t), planar.are_within(*planar.compute_extents(middle, a, b, u, v))
         )
-        area = planar.spanned(a, b)
-        share = np.minimum(1.0, planar.common(columns.bounds[one], columns.bounds[other]) / area)
-        doubt = planar.doubt(columns.position[one], area)
+        area = planar.compute_areas(a, b)
+        share = np.minimum(
+            1.0, planar.compute_intersections(columns.bounds[one], columns.bounds[other]) / area
+        )
+        doubt = planar.compute_uncertainty(columns.position[one], area)
         is_exact = forms.is_square[form] & forms.is_square[its]
         inside |= ~is_point & is_exact & (share > limits.place_share + doubt)
         out |= np.where(
@@ -140,11 +142,11 @@ class Survey:
         for k in np.flatnonzero(~inside & ~(sure & out)).tolist():
             made = measures.within(self.solids[one[k]], self.solids[other[k]], limits)
             inside[k] = made is not None and made.holds
-        self._take_smallest(
+        self._store_smallest(
             self.place, one[inside], other[inside], lambda solid: (solid.footprint, solid.name)
         )
 
-    def _floor(self) -> tuple[Floats, Bools]:
+    def _compute_floor_heights(self) -> tuple[Floats, Bools]:
         """Return (S,) the height above the floor of the place, and whether there is a place."""
         bottom, has_place = self._columns.bottom, self.place != NO_ROW
         return bottom[: len(self.place)] - np.where(has_place, bottom[self.place], 0.0), has_place
@@ -186,28 +188,28 @@ class Survey:
         height = np.minimum(base + lid, z + forms.size[form, 2]) - np.maximum(base + floor, z)
         middle = columns.position[j, :2] + forms.hollows.centre[hollow]
         u, v, a, b = forms.hollows.u[hollow], forms.hollows.v[hollow], forms.u[form], forms.v[form]
-        area = planar.spanned(a, b)
-        shared = planar.common(columns.bounds[i], planar.bounds_around(middle, u, v))
+        area = planar.compute_areas(a, b)
+        shared = planar.compute_intersections(columns.bounds[i], planar.bounds_around(middle, u, v))
         deep = np.maximum(height, 0.0) / columns.volume[i]
         most = np.minimum(area, shared) * deep
-        covers = planar.are_within(*planar.reach(columns.position[i, :2] - middle, a, b, u, v))
+        covers = planar.are_within(*planar.compute_extents(columns.position[i, :2] - middle, a, b, u, v))
         is_exact = forms.is_square[form] & forms.is_square[its]
         least = np.where(is_exact, most, np.where(covers, area * deep, 0.0))
         begins = np.cumsum(count) - count
         most, least = np.maximum.reduceat(most, begins), np.maximum.reduceat(least, begins)
-        doubt = planar.doubt(columns.position[one], area[begins])
+        doubt = planar.compute_uncertainty(columns.position[one], area[begins])
         sure = columns.is_sure[other]
         inside = sure & (least > limits.inside_share + doubt)
         for k in np.flatnonzero(~inside & ~(sure & (most < limits.inside_share - doubt))).tolist():
             made = measures.inside(self.solids[one[k]], self.solids[other[k]], limits)
             inside[k] = made is not None and made.holds
-        self._take_smallest(
+        self._store_smallest(
             self.container, one[inside], other[inside], lambda solid: (solid.volume, solid.name)
         )
 
     def _find_supports(self, one: Ints, other: Ints, gap: Floats) -> None:
         """Find the nearest support below, including the floor of the place."""
-        floor, has_place = self._floor()
+        floor, has_place = self._compute_floor_heights()
         asked = np.zeros(len(floor), dtype=bool)
         asked[one] = True
         on_floor = np.flatnonzero(asked & has_place & (np.abs(floor) < self._limits.gap_m + GUARD))
@@ -253,7 +255,7 @@ class Survey:
 
     def _find_attachments(self, one: Ints, other: Ints) -> None:
         """Store the attachments of solids without a support."""
-        floor, has_place = self._floor()
+        floor, has_place = self._compute_floor_heights()
         away = np.abs(floor) - self._limits.gap_m
         is_borne = (self.container != NO_ROW) | (self.support != NO_ROW) | (has_place & (away < -GUARD))
         may_be_borne = self.is_open | (has_place & (np.abs(away) <= GUARD))
@@ -264,7 +266,7 @@ class Survey:
             self.hangs_on.setdefault(row, []).append(its)
 
 
-def _with_around(space: Space, subjects: Sequence[Solid]) -> Sequence[Solid]:
+def _with_neighbours(space: Space, subjects: Sequence[Solid]) -> Sequence[Solid]:
     """Return the subjects, followed by the solids that may be beside them."""
     if 2 * len(subjects) > len(space.solids):
         return list(dict.fromkeys(chain(subjects, space.solids.values())))

@@ -45,7 +45,7 @@ class Thresholds(Struct, frozen=True, kw_only=True):
         return math.cos(math.radians(self.steepest_deg))
 
 
-class Annotated(NamedTuple):
+class AnnotatedThreshold(NamedTuple):
     """The annotation that holds a threshold, and its upper bound."""
 
     property: str
@@ -55,16 +55,16 @@ class Annotated(NamedTuple):
 
 
 ANNOTATIONS: Final = (
-    Annotated("isOn", "greatestGap", "gap_m", 1.0),
-    Annotated("isOn", "leastShare", "base_share", 1.0),
-    Annotated("isOn", "steepestNormal", "steepest_deg", 89.0),
-    Annotated("touches", "greatestGap", "contact_m", 1.0),
-    Annotated("isInside", "leastShare", "inside_share", 1.0),
-    Annotated("isLocatedIn", "leastShare", "place_share", 1.0),
-    Annotated("isUnder", "leastShare", "beneath_share", 1.0),
-    Annotated("isNear", "greatestGap", "near_most_m", 100.0),
-    Annotated("isNear", "greatestGapToSize", "near_share", 100.0),
-    Annotated("isAttachedTo", "greatestGap", "attached_m", 1.0),
+    AnnotatedThreshold("isOn", "greatestGap", "gap_m", 1.0),
+    AnnotatedThreshold("isOn", "leastShare", "base_share", 1.0),
+    AnnotatedThreshold("isOn", "steepestNormal", "steepest_deg", 89.0),
+    AnnotatedThreshold("touches", "greatestGap", "contact_m", 1.0),
+    AnnotatedThreshold("isInside", "leastShare", "inside_share", 1.0),
+    AnnotatedThreshold("isLocatedIn", "leastShare", "place_share", 1.0),
+    AnnotatedThreshold("isUnder", "leastShare", "beneath_share", 1.0),
+    AnnotatedThreshold("isNear", "greatestGap", "near_most_m", 100.0),
+    AnnotatedThreshold("isNear", "greatestGapToSize", "near_share", 100.0),
+    AnnotatedThreshold("isAttachedTo", "greatestGap", "attached_m", 1.0),
 )
 
 
@@ -78,11 +78,11 @@ def read_thresholds(values: Callable[[Term, Term], Iterable[Term]]) -> Threshold
     for about in ANNOTATIONS:
         found = sorted(values(v.dm(about.property), v.dm(about.annotation)))
         if found:
-            found_values[about.field] = _number(about, v.lexical(found[0]))
+            found_values[about.field] = _parse_number(about, v.lexical(found[0]))
     return Thresholds(**found_values)
 
 
-def _number(about: Annotated, text: str) -> float:
+def _parse_number(about: AnnotatedThreshold, text: str) -> float:
     try:
         value = float(text)
     except ValueError:

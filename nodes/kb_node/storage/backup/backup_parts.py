@@ -39,14 +39,14 @@ class Position(NamedTuple):
     def read(cls, text: str) -> Position:
         """Parse the text from `format`. Raises BadRequest."""
         try:
-            place = cls._make(map(int, text.split(".")))
+            position = cls._make(map(int, text.split(".")))
         except (ValueError, TypeError):
-            place = None
-        if place is None or not 0 <= place.kind < len(_KINDS):
+            position = None
+        if position is None or not 0 <= position.kind < len(_KINDS):
             raise errors.BadRequest(
                 f"invalid position of a backup part: '{text}'; leave it out to start a backup"
             )
-        return place
+        return position
 
     def format(self) -> str:
         """Return it as text."""
@@ -59,24 +59,24 @@ def read_part(journal: Journal, at: str, *, size: int = PART_BYTES) -> BackupPar
     Raises Refused if the history was compacted meanwhile, BadRequest.
     """
     if at:
-        place, content = Position.read(at), list[bytes]()
+        position, content = Position.read(at), list[bytes]()
     else:
-        opening = _opening(journal)  # commits continue, so the last one is fixed here
-        place = Position(journal.beginning.seq, opening.last, 0, -1, 0)
+        opening = _make_opening(journal)  # commits continue, so the last one is fixed here
+        position = Position(journal.beginning.seq, opening.last, 0, -1, 0)
         content = [MAGIC, framed(opening)]
-    if place.begins != journal.beginning.seq:
+    if position.begins != journal.beginning.seq:
         raise errors.Refused("the history was compacted during the backup; start the backup again")
     filled = 0
-    for following, piece in _pieces(journal, place, size):
+    for following, piece in _iterate_pieces(journal, position, size):
         content.append(framed(piece))
         filled += len(piece.content)
         if filled >= size:
             return BackupPart(content=b"".join(content), next=following.format())
-    content.append(framed(End(last=place.last)))
+    content.append(framed(End(last=position.last)))
     return BackupPart(content=b"".join(content))
 
 
-def _opening(journal: Journal) -> Opening:
+def _make_opening(journal: Journal) -> Opening:
     last = journal.last
     map_id, begun_ns = journal.origin()
     return Opening(
@@ -90,20 +90,20 @@ def _opening(journal: Journal) -> Opening:
     )
 
 
-def _pieces(journal: Journal, place: Position, size: int) -> Iterator[tuple[Position, Piece]]:
+def _iterate_pieces(journal: Journal, position: Position, size: int) -> Iterator[tuple[Position, Piece]]:
     """Yield the pieces from a position on, each with the position after it."""
-    for number in range(place.kind, len(_KINDS)):
+    for number in range(position.kind, len(_KINDS)):
         kind = _KINDS[number]
-        begun = number == place.kind
-        seq = place.seq if begun else -1
-        rows = _stored(journal, kind, after=seq - bool(begun and place.offset), until=place.last)
+        begun = number == position.kind
+        seq = position.seq if begun else -1
+        rows = _iterate_rows(journal, kind, after=seq - bool(begun and position.offset), until=position.last)
         for row in rows:
-            start = place.offset if begun and row.seq == place.seq else 0
+            start = position.offset if begun and row.seq == position.seq else 0
             while True:
                 content = row.body[start : start + size]
                 start += size
                 more = start < len(row.body)
-                following = place._replace(kind=number, seq=row.seq, offset=start if more else 0)
+                following = position._replace(kind=number, seq=row.seq, offset=start if more else 0)
                 piece = Piece(
                     kind=kind, seq=row.seq, id=row.id, digest=row.digest, content=content, more=more
                 )
@@ -112,7 +112,7 @@ def _pieces(journal: Journal, place: Position, size: int) -> Iterator[tuple[Posi
                     break
 
 
-def _stored(journal: Journal, kind: Kind, *, after: int, until: int) -> Iterator[Row]:
+def _iterate_rows(journal: Journal, kind: Kind, *, after: int, until: int) -> Iterator[Row]:
     """Yield the rows of one kind with numbers after `after` and up to `until`, in order."""
     after = max(after, journal.beginning.seq) if kind == "commit" else after
     while True:

@@ -33,7 +33,7 @@ class _Changes(Struct):
     inserted: tuple[Triple, ...] = ()
 
 
-def share(journal: Journal, *, keep_ns: int, now_ns: int) -> CompactedRange:
+def choose_range(journal: Journal, *, keep_ns: int, now_ns: int) -> CompactedRange:
     """Return the commits older than `keep_ns`, before the first younger one.
 
     Stamps in the future, from a wrong clock, are ignored. The last commit is always kept.
@@ -75,10 +75,10 @@ def collect_asserted(journal: Journal, seq: int) -> set[Triple]:
         *rdf.parse(journal.tbox(start.seq), f"the first TBox in {journal.path}"),
     }
     terms: dict[str, str] = {}
-    share = terms.setdefault
+    intern = terms.setdefault
     for changes in journal.decode_partially(_Changes):
         if changes.seq > seq:
             break
         asserted.difference_update(changes.retracted)
-        asserted.update((share(s, s), share(p, p), share(o, o)) for s, p, o in changes.inserted)
+        asserted.update((intern(s, s), intern(p, p), intern(o, o)) for s, p, o in changes.inserted)
     return asserted

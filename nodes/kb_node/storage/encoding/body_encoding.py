@@ -27,16 +27,16 @@ def encode(message: Any, *, compressed_from: int) -> bytes:
 
 def decode(body: bytes, kind: Any) -> Any:
     """Return the message of type `kind` in `body`. Raises BadRequest if it is damaged."""
-    return codec.decode(_unfolded(body) if body[:1] == _DENSE else body, kind)
+    return codec.decode(_decompress(body) if body[:1] == _DENSE else body, kind)
 
 
-def _unfolded(body: bytes) -> bytes:
-    unfolding = zlib.decompressobj()
+def _decompress(body: bytes) -> bytes:
+    decompressor = zlib.decompressobj()
     try:
-        content = unfolding.decompress(body, LARGEST)
+        content = decompressor.decompress(body, LARGEST)
     except zlib.error as error:
         raise BadRequest(f"{codec.MALFORMED}it is not valid MessagePack, JSON or zlib: {error}") from None
-    if not unfolding.eof:
-        reason = f"is larger than {LARGEST >> 20} MB" if unfolding.unconsumed_tail else "ends too early"
+    if not decompressor.eof:
+        reason = f"is larger than {LARGEST >> 20} MB" if decompressor.unconsumed_tail else "ends too early"
         raise BadRequest(f"{codec.MALFORMED}it {reason}")
     return content

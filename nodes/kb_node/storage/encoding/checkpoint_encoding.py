@@ -134,16 +134,16 @@ def _frames_of_triples(triples: Iterable[Triple], progress: Callable[[], None]) 
         before = len(known)
         numbers = array("I", [number(term, len(known)) for term in chain.from_iterable(part)])
         new_terms = list(islice(reversed(known), len(known) - before))[::-1]
-        yield msgpack.encode(_Triples(new_terms, _in_order(numbers).tobytes()))
+        yield msgpack.encode(_Triples(new_terms, _to_little_endian(numbers).tobytes()))
 
 
 def _numbers(content: bytes) -> array[int]:
     numbers = array("I")
     numbers.frombytes(content)
-    return _in_order(numbers)
+    return _to_little_endian(numbers)
 
 
-def _in_order(numbers: array[int]) -> array[int]:
+def _to_little_endian(numbers: array[int]) -> array[int]:
     if numbers.itemsize != 4:
         raise errors.InternalError("integers of this machine do not have 32 bits")
     if sys.byteorder == "big":

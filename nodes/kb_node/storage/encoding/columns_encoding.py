@@ -76,7 +76,7 @@ def restore(stored: StoredColumns, progress: Callable[[], None]) -> Columns:
         for frame in decompress_frames(frames):
             progress()
             column.frombytes(frame)
-        columns.append(_in_order(column))
+        columns.append(_to_little_endian(column))
     kind, places, subject, predicate, object_, *links = columns
     return Columns(
         schema=head.schema,
@@ -105,10 +105,10 @@ def _columns(columns: Columns) -> Iterable[array[int]]:
 
 def _frames(column: array[int]) -> Iterator[bytes]:
     for start in range(0, len(column), _NUMBERS):
-        yield _in_order(column[start : start + _NUMBERS]).tobytes()
+        yield _to_little_endian(column[start : start + _NUMBERS]).tobytes()
 
 
-def _in_order(numbers: array[int]) -> array[int]:
+def _to_little_endian(numbers: array[int]) -> array[int]:
     """Convert to 32 bits, little-endian. The given column must not be used afterwards."""
     if numbers.itemsize != 4:
         raise errors.InternalError("integers of this machine do not have 32 bits")

@@ -40,8 +40,8 @@ class EarlyBody:
         self._is_active = True
         self._deflate = zlib.compressobj(body_encoding.COMPRESSION_LEVEL)
         self._executor = ThreadPoolExecutor(1)
-        beginning = chain([_header(_MAP, len(_FIELDS))], _encoded(commit, _BEGINNING))
-        self._head = self._executor.submit(self._compressed, beginning)
+        beginning = chain([_header(_MAP, len(_FIELDS))], _encode_fields(commit, _BEGINNING))
+        self._head = self._executor.submit(self._compress, beginning)
         self._without = self._deflate
         """The compressor state after the head only."""
         self._changed: Sequence[Entity] | None = None
@@ -50,11 +50,11 @@ class EarlyBody:
     def expect(self, commit: Commit) -> None:
         """Encode the entities that the commit is likely to change."""
         self._changed = commit.changed
-        self._middle = self._executor.submit(self._expected, _encoded(commit, _CHANGED))
+        self._middle = self._executor.submit(self._encode_expected, _encode_fields(commit, _CHANGED))
 
     def finish(self, commit: Commit) -> Future[bytes]:
         """Return the whole body, now that the effects are known."""
-        whole = self._executor.submit(self._whole, commit)
+        whole = self._executor.submit(self._encode_whole, commit)
         self._executor.shutdown(wait=False)
         return whole
 
@@ -62,18 +62,18 @@ class EarlyBody:
         """Stop the encoding, because the commit was aborted."""
         self._is_active = False
 
-    def _expected(self, changed: Iterator[bytes]) -> bytes:
+    def _encode_expected(self, changed: Iterator[bytes]) -> bytes:
         self._without = self._deflate.copy()
-        return self._compressed(changed)
+        return self._compress(changed)
 
-    def _whole(self, commit: Commit) -> bytes:
+    def _encode_whole(self, commit: Commit) -> bytes:
         if commit.changed is self._changed:
             begun = self._head.result() + self._middle.result()
-            return begun + self._compressed(_encoded(commit, _OTHERS)) + self._deflate.flush()
+            return begun + self._compress(_encode_fields(commit, _OTHERS)) + self._deflate.flush()
         self._deflate = self._without
-        return self._head.result() + self._compressed(_encoded(commit, _EFFECTS)) + self._deflate.flush()
+        return self._head.result() + self._compress(_encode_fields(commit, _EFFECTS)) + self._deflate.flush()
 
-    def _compressed(self, pieces: Iterator[bytes]) -> bytes:
+    def _compress(self, pieces: Iterator[bytes]) -> bytes:
         found = bytearray()
         for piece in pieces:
             if not self._is_active:
@@ -103,7 +103,7 @@ def _header(codes: tuple[int, int], count: int) -> bytes:
     return bytes([long + size // 4]) + count.to_bytes(size, "big")
 
 
-def _encoded(commit: Commit, names: Sequence[str]) -> Iterator[bytes]:
+def _encode_fields(commit: Commit, names: Sequence[str]) -> Iterator[bytes]:
     """Yield these fields, each after its name. A long list is encoded in pieces."""
     for name in names:
         value: Any = getattr(commit, name)
@@ -112,9 +112,9 @@ def _encoded(commit: Commit, names: Sequence[str]) -> Iterator[bytes]:
             yield codec.encode(value)
             continue
         yield _header(_ARRAY, len(value))
-        for piece in split_batches(value, _PIECE, _nothing):
+        for piece in split_batches(value, _PIECE, _ignore_progress):
             yield codec.encode(piece)[len(_header(_ARRAY, len(piece))) :]
 
 
-def _nothing() -> None:
+def _ignore_progress() -> None:
     pass

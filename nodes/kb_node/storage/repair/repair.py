@@ -56,7 +56,7 @@ def repair(data: Path, tell: Callable[[str], None] = lambda text: None, *, tbox:
                 else "nothing is damaged"
             )
             return f"{found} in {data}: the map continues from commit {damaged.last}"
-        salvage_run = _Salvage(damaged, new, _first_tbox(damaged, tbox), tell)
+        salvage_run = _Salvage(damaged, new, _read_first_tbox(damaged, tbox), tell)
         last = salvage_run.write()
     finally:
         damaged.close()
@@ -82,7 +82,9 @@ def _open(path: Path) -> tuple[Journal, bool]:
             return _open(path)[0], True
         if _pad_truncated_file(path):
             return _open(path)
-        raise errors.Refused(f"{_reason(error)}; start a new map with --fresh (this one is kept)") from None
+        raise errors.Refused(
+            f"{_get_reason(error)}; start a new map with --fresh (this one is kept)"
+        ) from None
 
 
 def _pad_truncated_file(path: Path) -> bool:
@@ -119,14 +121,14 @@ def _is_sound(journal: Journal, progress: Callable[[], None]) -> bool:
     return True
 
 
-def _first_tbox(damaged: Journal, instead: Path | None) -> bytes:
+def _read_first_tbox(damaged: Journal, instead: Path | None) -> bytes:
     """Return the initial TBox (N-Triples), or its replacement."""
     try:
         return damaged.tbox(damaged.beginning.seq)
     except errors.Refused as error:
         if instead is None:
             raise errors.Refused(
-                f"{_reason(error)}: the TBox that the map started with cannot be read; provide it with"
+                f"{_get_reason(error)}: the TBox that the map started with cannot be read; provide it with"
                 f" --tbox FILE, or start a new map with --fresh (the damaged file is kept)"
             ) from None
     triples = ontology_files.gather([instead], {}).triples
@@ -134,7 +136,7 @@ def _first_tbox(damaged: Journal, instead: Path | None) -> bytes:
     return rdf.serialise(triples, "ntriples")
 
 
-def _reason(error: errors.Refused) -> str:
+def _get_reason(error: errors.Refused) -> str:
     """Return the problem of an error without the next step."""
     return error.text.partition("; ")[0]
 
@@ -193,13 +195,13 @@ class _Salvage:
         if known and self._checkpoint is not None:
             its = "its" if len(known) == 1 else "their"
             parts.append(
-                f"{_damaged(known)}; {its} changes were restored from the checkpoint after commit"
+                f"{_format_damaged(known)}; {its} changes were restored from the checkpoint after commit"
                 f" {self._checkpoint.seq}"
             )
         if gone:
-            parts.append(f"{_damaged(gone)} and left out")
+            parts.append(f"{_format_damaged(gone)} and left out")
         if unfit := [seq for seq in self._unfit if seq > self._restored_until]:
-            parts.append(f"also left out because of missing changes: {_numbers(unfit)}")
+            parts.append(f"also left out because of missing changes: {_format_numbers(unfit)}")
         return "; ".join(parts) or "all commits are intact"
 
     def _begin(self, journal: Journal) -> None:
@@ -281,11 +283,11 @@ class _Salvage:
             return None
 
 
-def _damaged(seqs: list[int]) -> str:
-    return f"{_numbers(seqs)} {'is' if len(seqs) == 1 else 'are'} damaged"
+def _format_damaged(seqs: list[int]) -> str:
+    return f"{_format_numbers(seqs)} {'is' if len(seqs) == 1 else 'are'} damaged"
 
 
-def _numbers(seqs: list[int]) -> str:
+def _format_numbers(seqs: list[int]) -> str:
     """Return a text such as `commits 3, 5 to 9 and 12`."""
     runs: list[list[int]] = []
     for seq in seqs:

@@ -69,7 +69,7 @@ def many(count):
 
 def kept(facts):
     """Return the stored facts, in their order, by subject and by object."""
-    return [(one.of, {name: set(about) for name, about in one.about.items()}) for one in facts._kept]
+    return [(one.of, {name: set(about) for name, about in one.about.items()}) for one in facts._rule_facts]
 
 
 def require_alike(entities, limits=None):

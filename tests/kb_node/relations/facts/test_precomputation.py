@@ -84,7 +84,7 @@ def state(facts):
     return (
         set(facts),
         facts.by_rule(),
-        [{name: set(of) for name, of in kept.about.items()} for kept in facts._kept],
+        [{name: set(of) for name, of in kept.about.items()} for kept in facts._rule_facts],
         set(facts.space.solids),
     )
 

@@ -85,7 +85,7 @@ def test_the_range_depends_on_stamps(semantic_map, day):
     journal = semantic_map._journal
 
     def older(days):
-        return compaction.share(journal, keep_ns=int(days * DAY_NS), now_ns=time.time_ns())
+        return compaction.choose_range(journal, keep_ns=int(days * DAY_NS), now_ns=time.time_ns())
 
     day(10.5)
     assert older(30) == (0, 0)
@@ -102,7 +102,7 @@ def test_stamps_in_the_future_are_ignored(tmp_path, day):
         day(stamped)
         semantic_map.commit(transaction(number, chair(f"chair{number}")))
     day(10)
-    share = compaction.share(semantic_map._journal, keep_ns=4 * DAY_NS, now_ns=time.time_ns())
+    share = compaction.choose_range(semantic_map._journal, keep_ns=4 * DAY_NS, now_ns=time.time_ns())
     assert share == (3, 3)  # commit 4 is young, so whatever came after it stays
     home.close(semantic_map)
 
