@@ -181,7 +181,8 @@ def test_what_cannot_be_held_is_refused(held, words, why):
 
 def test_what_is_held_is_neither_moved_nor_left_behind(held):
     why = "cup1 is held by tray1; to put it elsewhere, first: semmap detach cup1"
-    with pytest.raises(errors.Refused, match=why):
+    in_scene = "cup1 is attached to tray1; to move it, first run: semmap detach cup1"
+    with pytest.raises(errors.Refused, match=in_scene):
         held.move("cup1", at=(1.0, 1.0, 0.0))
     with pytest.raises(errors.Refused, match=why):
         held.update("cup1", at=(1.0, 1.0, 0.0))
