@@ -239,7 +239,7 @@ def _parts(entity: Entity, solid: Solid, opened: set[str], colour: Colour) -> li
         return [ball((0.08, 0.08, 0.08), (0.0, 0.0, 0.04), _NOWHERE)]
     if not entity.model:
         return [box(solid.size, (0.0, 0.0, solid.size[2] / 2), colour)]
-    parts = [part for part in build(entity.model, entity.size_m).parts if part.role is not Role.FELT]
+    parts = [part for part in build(entity.model, entity.size_m).parts if part.role is not Role.COLLISION]
     if entity.name in opened and not any(inner.open for inner in shapes()[entity.model].interiors):
         return _cut_open(entity)
     return [part for part in parts if entity.name not in opened or not _fills(part, entity.model)]
@@ -257,10 +257,12 @@ def _fills(part: Part, model: str) -> bool:
 
 def _cut_open(entity: Entity) -> list[Part]:
     """Return the walls and boards of a closed thing without its front."""
-    felt = [part for part in build(entity.model, entity.size_m).parts if part.role is not Role.SEEN]
-    x = max(float(part.centre[0] + part.reach()[0]) for part in felt)
-    behind = [part for part in felt if part.centre[0] + part.reach()[0] < x - 0.03 or part.reach()[0] > 0.05]
-    seen = [part.colour for part in build(entity.model, entity.size_m).parts if part.role is Role.SEEN]
+    colliding = [part for part in build(entity.model, entity.size_m).parts if part.role is not Role.VISUAL]
+    x = max(float(part.centre[0] + part.reach()[0]) for part in colliding)
+    behind = [
+        part for part in colliding if part.centre[0] + part.reach()[0] < x - 0.03 or part.reach()[0] > 0.05
+    ]
+    seen = [part.colour for part in build(entity.model, entity.size_m).parts if part.role is Role.VISUAL]
     return [Part(p.shape, p.half, p.centre, seen[0], p.turn) for p in behind]
 
 

@@ -258,8 +258,8 @@ class World:
     def extent(self) -> tuple[Floats, Floats]:
         """Return lowest and highest corner, each (3,) [m], of the box around all bodies but outliers."""
         obstacles = self._engine.obstacles()
-        felt = np.isfinite(obstacles.body_low).all(axis=1)
-        return bulk(obstacles.body_low[felt], obstacles.body_high[felt])
+        colliding = np.isfinite(obstacles.body_low).all(axis=1)
+        return bulk(obstacles.body_low[colliding], obstacles.body_high[colliding])
 
     def walls(self) -> tuple[Outline, ...]:
         """Return the outlines of the world's static geometry, seen from above."""

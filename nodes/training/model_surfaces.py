@@ -44,7 +44,7 @@ def library_models() -> dict[str, list[str]]:
 def surface_of(model: Model) -> ModelSurface:
     """Points that are evenly spread over what is seen of a model, and their outward normals."""
     rng = np.random.default_rng(1)
-    parts = [part for part in model.parts if part.role is not Role.FELT]
+    parts = [part for part in model.parts if part.role is not Role.COLLISION]
     points, normals, owners = _drawn(parts, _TRIES * POINTS, rng)
     seen = np.ones(len(points), bool)
     for number, part in enumerate(parts):

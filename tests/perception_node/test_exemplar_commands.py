@@ -78,7 +78,7 @@ def test_what_is_seen_is_shown_listed_and_forgotten(asked, things):
     assert (told.number, told.class_, told.views, told.shown) == (1, "Cup", 1, "entity thing1")
     assert asked(Learned()) == (told,)
     assert ExemplarStore(asked.path, shipped()).exemplars == (told,)
-    (lesson,) = asked.learnt[-1].shown.exemplars
+    (lesson,) = asked.learnt[-1].exemplars.exemplars
     assert lesson.views[0] == pytest.approx(exemplar_view_of(things[0], shipped()).features, rel=1e-6)
     (again,) = [
         thing
@@ -100,15 +100,15 @@ def test_views_from_elsewhere_are_shown(asked, things):
 
 def test_a_class_that_perception_never_learnt_has_what_the_map_has_above_it(asked, things):
     asked(Learn(class_="Gizmo", views=(view_message(exemplar_view_of(things[0], shipped())),)))
-    assert asked.learnt[-1].shown.exemplars[0].ancestors == ()
+    assert asked.learnt[-1].exemplars.exemplars[0].ancestors == ()
     asked(Learn(class_="Cup", entity="thing1"))
-    assert asked.learnt[-1].shown.exemplars[1].ancestors == shipped().ancestors["Cup"]
+    assert asked.learnt[-1].exemplars.exemplars[1].ancestors == shipped().ancestors["Cup"]
 
 
 @pytest.mark.parametrize(
     ("call", "error", "said"),
     [
-        (Learn(class_="Cup", entity="cup9"), errors.Refused, "does not see cup9 now; it sees thing1"),
+        (Learn(class_="Cup", entity="cup9"), errors.Refused, "cup9 is not visible .* visible are: thing1"),
         (Forget(number=4), errors.Refused, "no exemplar with number 4; none is stored"),
         (Learn(class_="Object", entity="thing1"), errors.BadRequest, "name a more specific class"),
         (

@@ -220,7 +220,7 @@ BAD = {
     "millimetres": ({"depth_m": 1500.0}, NOTHING),
     "too large": (
         {"width": 4000, "height": 3000, "intrinsics": (3000.0, 0, 2000.0, 0, 3000.0, 1500.0, 0, 0, 1)},
-        "of 4000 x 3000 pixels, one of 6 x 6 is used",
+        "4000 x 3000 pixels reduced by a factor of 6",
     ),
 }
 

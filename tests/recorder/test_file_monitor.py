@@ -79,13 +79,13 @@ from semmap.nodes.recorder.recording import open_recording
 
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 with open_recording(Path(sys.argv[1]), None) as recording:
-    growth = FileMonitor(recording.path)
+    monitor = FileMonitor(recording.path)
     resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, resource.RLIM_INFINITY))
     for _ in range(60):
         recording.note(os.urandom(100_000).hex())
         time.sleep(0.75)  # longer than what is recorded takes to reach a file
-        if find_problem := file_monitor.find_problem(recording.logged):
-            print(find_problem, flush=True)
+        if problem := monitor.find_problem(recording.logged):
+            print(problem, flush=True)
             break
 """
 

@@ -29,7 +29,7 @@ class Facets(NamedTuple):
 @lru_cache(maxsize=512)
 def surface_of(model: Model) -> Surface:
     """Return all visible parts of a model, in its own frame: the bottom centre, z up."""
-    seen = [part for part in model.parts if part.role is not Role.FELT]
+    seen = [part for part in model.parts if part.role is not Role.COLLISION]
     pieces = [facets(part) for part in seen]
     counts = [len(piece.points) for piece in pieces]
     colours = np.repeat(np.array([part.colour for part in seen]), counts, axis=0)

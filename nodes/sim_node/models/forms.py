@@ -16,11 +16,11 @@ from semmap.nodes.sim_node.models.parts import (
     Vec3,
     about,
     box,
-    felt,
+    collision,
     pill,
     product,
     rod,
-    seen,
+    visual,
 )
 
 WHITE: Colour = (0.93, 0.93, 0.91)
@@ -50,8 +50,8 @@ def legs(x: float, y: float, height: float, thick: float, colour: Colour) -> Par
     a, b = (x - thick) / 2, (y - thick) / 2
     corners = [(sx * a, sy * b, height / 2) for sx in (-1, 1) for sy in (-1, 1)]
     return [
-        *seen(box((thick, thick, height), corner, colour) for corner in corners),
-        *felt(pill(thick / 2, height, corner, colour) for corner in corners),
+        *visual(box((thick, thick, height), corner, colour) for corner in corners),
+        *collision(pill(thick / 2, height, corner, colour) for corner in corners),
     ]
 
 
@@ -62,12 +62,12 @@ def slab(x: float, y: float, bottom: float, top: float, colour: Colour) -> Part:
 
 def solid(x: float, y: float, bottom: float, top: float) -> Parts:
     """Return an invisible box that collides in place of finer parts."""
-    return felt(slab(x, y, bottom, top, GREY))
+    return collision(slab(x, y, bottom, top, GREY))
 
 
 def front(x: float, y: float, z: float, centre: tuple[float, float], colour: Colour, *, deep: float) -> Parts:
     """Return a panel of width y and height z, with its outer face at depth x and its centre at (y, z)."""
-    return seen(box((deep, y, z), (x - deep / 2, centre[0], centre[1]), colour))
+    return visual(box((deep, y, z), (x - deep / 2, centre[0], centre[1]), colour))
 
 
 def closed_box(
@@ -90,7 +90,10 @@ def closed_box(
             for share in boards
         ),
     ]
-    return [*seen(box(size, centre, colour)), *felt(shifted(walls, x=centre[0], y=centre[1], z=centre[2]))]
+    return [
+        *visual(box(size, centre, colour)),
+        *collision(shifted(walls, x=centre[0], y=centre[1], z=centre[2])),
+    ]
 
 
 def hollow_box(x: float, y: float, z: float, wall: float, colour: Colour) -> Parts:
@@ -144,7 +147,7 @@ def turned(profile: Sequence[tuple[float, float]], colour: Colour, *, steps: int
                     (radius, radius, (high - low) / 2),
                     (0, 0, (low + high) / 2),
                     colour,
-                    role=Role.SEEN,
+                    role=Role.VISUAL,
                 )
             )
     return discs

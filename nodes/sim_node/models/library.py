@@ -18,7 +18,7 @@ from semmap.nodes.sim_node.models.parts import (
     Vec3,
     bounds,
     box,
-    felt,
+    collision,
     inertial,
     quarter_turned,
 )
@@ -131,7 +131,7 @@ def assemble(name: str, parts: Sequence[Part], mass_kg: float, notes: tuple[str,
     mass_kg = min(max(mass_kg, 0.002), 5000.0)
     frame = [part for part in parts if part.joint is None]
     joints = dict.fromkeys(part.joint for part in parts if part.joint is not None)
-    share = mass_kg / sum(part.volume for part in parts if part.role is not Role.SEEN)
+    share = mass_kg / sum(part.volume for part in parts if part.role is not Role.VISUAL)
     leaves = tuple(_leaf(joint, [part for part in parts if part.joint == joint], share) for joint in joints)
     return Model(
         name=name,
@@ -160,7 +160,7 @@ def _torque(joint: Joint, weighed: Inertial) -> float:
 
 def _weighed(parts: Sequence[Part], density: float) -> Inertial:
     """Return the inertia of colliding parts; without any, of a gram at the visible parts."""
-    volume = sum(part.volume for part in parts if part.role is not Role.SEEN)
+    volume = sum(part.volume for part in parts if part.role is not Role.VISUAL)
     if volume == 0.0:
-        parts = felt(parts)
+        parts = collision(parts)
     return inertial(parts, max(density * volume, 0.001))

@@ -163,8 +163,8 @@ def _shape(model: mujoco.MjModel, geom: int) -> Shape | None:
 def _part(model: mujoco.MjModel, data: mujoco.MjData, geom: int, shape: Shape) -> Part:
     rgba = model.mat_rgba[model.geom_matid[geom]] if model.geom_matid[geom] >= 0 else model.geom_rgba[geom]
     colour: Colour = _vec3(rgba[:3])
-    role = Role.BOTH if model.geom_contype[geom] | model.geom_conaffinity[geom] else Role.SEEN
-    role = Role.FELT if rgba[3] == 0.0 and role is Role.BOTH else role
+    role = Role.BOTH if model.geom_contype[geom] | model.geom_conaffinity[geom] else Role.VISUAL
+    role = Role.COLLISION if rgba[3] == 0.0 and role is Role.BOTH else role
     position, rotation = data.geom_xpos[geom], data.geom_xmat[geom].reshape(3, 3)
     if shape is Shape.MESH:
         vertices, faces = _mesh_of(model, int(model.geom_dataid[geom]))

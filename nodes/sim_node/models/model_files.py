@@ -46,7 +46,7 @@ def read_model(path: Path, size_m: Vec3 | None, version: int) -> Model:
         raise ModelError(f"model file {path} is larger than {_LARGEST_FILE_BYTES >> 20} MB")
     try:
         parts, density, notes = _read_meshes(path) if path.suffix in MESHES else read_mjcf(path)
-        if all(part.role is Role.SEEN for part in parts):
+        if all(part.role is Role.VISUAL for part in parts):
             raise ModelError("it contains no colliding geometry")
         if size_m is not None:
             parts = stretched(parts, size_m)

@@ -33,8 +33,8 @@ class Role(Enum):
     """The purpose of a part."""
 
     BOTH = "both"  # visible and colliding
-    SEEN = "seen"  # visible, does not collide
-    FELT = "felt"  # invisible, collides in place of visible parts
+    VISUAL = "visual"  # visible, does not collide
+    COLLISION = "collision"  # invisible, collides in place of visible parts
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,14 +148,14 @@ def mesh(vertices: Floats, faces: NDArray[np.int32], colour: Colour, role: Role 
     return Part(Shape.MESH, _vec3(half), _vec3(middle), colour, role=role, mesh=triangles)
 
 
-def seen(parts: Part | Iterable[Part]) -> Parts:
+def visual(parts: Part | Iterable[Part]) -> Parts:
     """Return the parts as visual parts."""
-    return _with_role(parts, Role.SEEN)
+    return _with_role(parts, Role.VISUAL)
 
 
-def felt(parts: Part | Iterable[Part]) -> Parts:
+def collision(parts: Part | Iterable[Part]) -> Parts:
     """Return the parts as invisible collision parts."""
-    return _with_role(parts, Role.FELT)
+    return _with_role(parts, Role.COLLISION)
 
 
 def _with_role(parts: Part | Iterable[Part], role: Role) -> Parts:
@@ -257,7 +257,7 @@ def inertial(parts: Iterable[Part], mass_kg: float) -> Inertial:
     Products of inertia are omitted: the models are nearly symmetric, and MuJoCo is fastest for a body whose
     frame is its centre of mass with diagonal inertia.
     """
-    solid = [part for part in parts if part.role is not Role.SEEN]
+    solid = [part for part in parts if part.role is not Role.VISUAL]
     volumes = np.array([part.volume for part in solid])
     masses = mass_kg * volumes / volumes.sum()
     centres = np.array([part.centre for part in solid])

@@ -51,14 +51,16 @@ def shape_of(model: Model) -> ModelShape:
     step = max(x, y) / CELLS
     xs = np.arange(-x / 2 + step / 2, x / 2, step)
     ys = np.arange(-y / 2 + step / 2, y / 2, step)
-    solid = [part for part in model.parts if part.role is not Role.SEEN]
+    solid = [part for part in model.parts if part.role is not Role.VISUAL]
     walls = [(part, _cut(_as_thick_as(step, part), xs, ys)) for part in model.parts]
 
     def hollows(joints: Collection[str | None], least: float = LEAST_VOLUME) -> list[Interior]:
         """Return the interiors between the parts of these joints."""
         some = [(part.role, cut) for part, cut in walls if (part.joint and part.joint.name) in joints]
-        seen, felt = ([cut for role, cut in some if role is not out] for out in (Role.FELT, Role.SEEN))
-        return _together(*(_interiors(one, xs, ys, step, z, least) for one in (seen, felt)))
+        seen, colliding = (
+            [cut for role, cut in some if role is not out] for out in (Role.COLLISION, Role.VISUAL)
+        )
+        return _together(*(_interiors(one, xs, ys, step, z, least) for one in (seen, colliding)))
 
     names = [leaf.joint.name for leaf in model.leaves]
     interiors = hollows([None, *names])
@@ -71,7 +73,7 @@ def shape_of(model: Model) -> ModelShape:
     surfaces = _surfaces([_cut(part, xs, ys) for part in solid], xs, ys, step)
     leaves = []
     for leaf in model.leaves:
-        own = [_cut(part, xs, ys) for part in leaf.parts if part.role is not Role.SEEN]
+        own = [_cut(part, xs, ys) for part in leaf.parts if part.role is not Role.VISUAL]
         tops = _surfaces(own, xs, ys, step) if own else []
         trays = hollows([leaf.joint.name], LEAST_TRAY) if leaf.joint.kind == "slide" else []
         leaves.append(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from semmap.nodes.sim_node.models.facets import facets
 from semmap.nodes.sim_node.models.parts import Floats, Mesh, Part, Shape
-from semmap.nodes.sim_node.physics.build import FELT_GROUP
+from semmap.nodes.sim_node.physics.build import COLLISION_GROUP
 from semmap.schemas.scenes import Surface
 
 _SHAPES = {
@@ -86,7 +86,7 @@ def _part(model: mujoco.MjModel, geom: int) -> Part | None:
     """Return a geom in its own frame; None if it is not drawn."""
     shape = _SHAPES.get(mujoco.mjtGeom(model.geom_type[geom]))
     red, green, blue, alpha = _rgba(model, geom)
-    if shape is None or alpha == 0.0 or model.geom_group[geom] >= FELT_GROUP:
+    if shape is None or alpha == 0.0 or model.geom_group[geom] >= COLLISION_GROUP:
         return None
     a, b, c = (float(value) for value in model.geom_size[geom])
     match mujoco.mjtGeom(model.geom_type[geom]):

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.sim_node.bodies import BodyRecord, Floats, pose_of
-from semmap.nodes.sim_node.physics.build import FELT_GROUP, IMPEDANCE
+from semmap.nodes.sim_node.physics.build import COLLISION_GROUP, IMPEDANCE
 from semmap.nodes.sim_node.physics.joint_texts import (
     CLOSED_TEXT,
     ENDS,
@@ -163,7 +163,7 @@ def _add_net(spec: mujoco.MjSpec, model: mujoco.MjModel, data: mujoco.MjData) ->
             type=mujoco.mjtGeom.mjGEOM_PLANE,
             size=[0, 0, 0.1],
             pos=[0, 0, low[2]],
-            group=FELT_GROUP,
+            group=COLLISION_GROUP,
             contype=1,
             conaffinity=1,
         )

@@ -113,7 +113,7 @@ def clear_slot(model: mujoco.MjModel, data: mujoco.MjData, slot: BodySlot) -> No
     model.name_bodyadr[body] = model.nnames - 1  # the end of the last name; names are read-only
     geoms = slice(slot.geom, slot.geom + slot.geoms)
     model.geom_contype[geoms] = model.geom_conaffinity[geoms] = 0
-    model.geom_group[geoms] = build.FELT_GROUP
+    model.geom_group[geoms] = build.COLLISION_GROUP
     model.body_contype[body] = model.body_conaffinity[body] = 0
     data.xfrc_applied[body] = 0.0
     if not slot.static:

@@ -24,8 +24,8 @@ _GEOM = {
     Shape.CAPSULE: mujoco.mjtGeom.mjGEOM_CAPSULE,
     Shape.MESH: mujoco.mjtGeom.mjGEOM_MESH,
 }
-_GROUP = {Role.BOTH: 0, Role.SEEN: 2, Role.FELT: 3}
-FELT_GROUP = _GROUP[Role.FELT]
+_GROUP = {Role.BOTH: 0, Role.VISUAL: 2, Role.COLLISION: 3}
+COLLISION_GROUP = _GROUP[Role.COLLISION]
 """The geom group that is invisible to cameras."""
 
 _JOINT = {"hinge": mujoco.mjtJoint.mjJNT_HINGE, "slide": mujoco.mjtJoint.mjJNT_SLIDE}
@@ -198,7 +198,7 @@ def _geom_size(part: Part) -> list[float]:
 
 def mask_of(part: Part) -> tuple[int, int]:
     """Return contype and conaffinity of a part."""
-    return (0, 0) if part.role is Role.SEEN else (1, 1)
+    return (0, 0) if part.role is Role.VISUAL else (1, 1)
 
 
 def set_standing(spec: mujoco.MjSpec, record: BodyRecord, pose: Pose) -> None:

@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from semmap.nodes.sim_node.physics.build import FELT_GROUP
+from semmap.nodes.sim_node.physics.build import COLLISION_GROUP
 from semmap.nodes.sim_node.vision.view import View
 
 _NEAR_M, _FAR_M = 0.05, 200.0
@@ -52,7 +52,7 @@ class Offscreen:
     def __init__(self, gl: Any) -> None:
         self._gl = gl
         self._option = mujoco.MjvOption()
-        self._option.geomgroup[FELT_GROUP] = 0
+        self._option.geomgroup[COLLISION_GROUP] = 0
         self._assets: tuple[float, ...] = ()
         self._context: mujoco.MjrContext | None = None
         self._scene: mujoco.MjvScene | None = None

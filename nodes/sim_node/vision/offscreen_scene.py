@@ -79,8 +79,8 @@ class OffscreenScene:
     def extent(self) -> tuple[Floats, Floats]:
         """Return lowest and highest corner, each (3,) [m], of the box around all bodies but outliers."""
         obstacles = self._engine.obstacles()
-        felt = np.isfinite(obstacles.body_low).all(axis=1)
-        return bulk(obstacles.body_low[felt], obstacles.body_high[felt])
+        colliding = np.isfinite(obstacles.body_low).all(axis=1)
+        return bulk(obstacles.body_low[colliding], obstacles.body_high[colliding])
 
     def view(
         self, width: int, height: int, *, camera: str = "", box: tuple[Vector, Vector] | None = None

@@ -7,14 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.sim_node.bodies import Floats
-from semmap.nodes.sim_node.physics.build import FELT_GROUP
+from semmap.nodes.sim_node.physics.build import COLLISION_GROUP
 from semmap.nodes.sim_node.vision.view import View, pixel_rays
 
 _SKY_LOW, _SKY_HIGH = np.array([0.90, 0.93, 0.96]), np.array([0.60, 0.74, 0.88])
 _LIGHT_M = np.array([-3.0, -5.0, 12.0])  # from the centre of the visible points
 _AMBIENT, _HEAD, _LAMP, _SHADOW = 0.30, 0.18, 0.48, 0.55
 
-_VISIBLE = np.array([group != FELT_GROUP for group in range(6)], dtype=np.uint8)
+_VISIBLE = np.array([group != COLLISION_GROUP for group in range(6)], dtype=np.uint8)
 
 
 def raycast(

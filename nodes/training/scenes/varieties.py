@@ -22,7 +22,7 @@ from semmap.nodes.sim_node.models.catalogue.other_forms import (
 )
 from semmap.nodes.sim_node.models.forms import shade, slab
 from semmap.nodes.sim_node.models.model_table import MODELS
-from semmap.nodes.sim_node.models.parts import Colour, Parts, Vec3, box, seen
+from semmap.nodes.sim_node.models.parts import Colour, Parts, Vec3, box, visual
 
 Form = Callable[[float, float, float, Colour], Parts]
 """Builds a thing of given depth, width and height [m]."""
@@ -52,10 +52,10 @@ def any_size(variety: Variety, rng: np.random.Generator) -> Vec3:
 
 
 def carton(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A closed cuboid with its flaps seen."""
+    """A closed cuboid with visible flaps."""
     return [
         slab(x, y, 0.0, z, colour),
-        *seen(box((0.97 * x, 0.97 * y, 0.001), (0.0, 0.0, z), shade(colour, 0.9))),
+        *visual(box((0.97 * x, 0.97 * y, 0.001), (0.0, 0.0, z), shade(colour, 0.9))),
     ]
 
 

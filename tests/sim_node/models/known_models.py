@@ -37,7 +37,7 @@ def differences(name: str) -> list[str]:
 
 def _in_shape(model: Model, known: ModelShape) -> list[str]:
     """Compare with the knowledge base: size, collision geometry, and motion of doors and drawers."""
-    solid = [part for part in model.parts if part.role is not Role.SEEN]
+    solid = [part for part in model.parts if part.role is not Role.VISUAL]
     found = []
     if not np.allclose(model.size_m, known.size_m, atol=_WITHIN_M):
         found.append(f"{model.name} measures {model.size_m}, not {known.size_m}")
@@ -80,7 +80,7 @@ def _in_surface(model: Model, known: ModelSurface | None) -> list[str]:
     """
     if known is None:
         return []
-    visible = [part for part in model.parts if part.role is not Role.FELT]
+    visible = [part for part in model.parts if part.role is not Role.COLLISION]
     away = np.min([outside_m(known.points, part) for part in visible], axis=0)
     slack_m = _FLAT * max(model.size_m)
     off = int(np.count_nonzero(np.abs(away) > slack_m))

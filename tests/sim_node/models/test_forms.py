@@ -8,7 +8,16 @@ import numpy as np
 import pytest
 
 from semmap.nodes.sim_node.models import forms
-from semmap.nodes.sim_node.models.parts import Joint, Role, Shape, bounds, box, felt, moving, rotation_matrix
+from semmap.nodes.sim_node.models.parts import (
+    Joint,
+    Role,
+    Shape,
+    bounds,
+    box,
+    collision,
+    moving,
+    rotation_matrix,
+)
 
 RED = (0.5, 0.2, 0.0)
 
@@ -24,7 +33,7 @@ def test_a_shade_is_darker_or_lighter_and_never_more_than_full():
 
 def test_legs_stand_in_the_corners_and_are_felt_as_pills_inside_what_is_seen():
     parts = forms.legs(1.0, 0.6, 0.7, 0.1, RED)
-    for role, shape in ((Role.SEEN, Shape.BOX), (Role.FELT, Shape.CAPSULE)):
+    for role, shape in ((Role.VISUAL, Shape.BOX), (Role.COLLISION, Shape.CAPSULE)):
         own = [part for part in parts if part.role is role]
         assert {part.shape for part in own} == {shape}
         assert np.array(sorted(part.centre for part in own)) == pytest.approx(
@@ -38,21 +47,21 @@ def test_a_slab_lies_between_two_heights_and_a_solid_is_only_felt():
         np.array([(-0.5, -0.3, 0.2), (0.5, 0.3, 0.5)])
     )
     (stand_in,) = forms.solid(1.0, 0.6, 0.2, 0.5)
-    assert stand_in.role is Role.FELT
+    assert stand_in.role is Role.COLLISION
     assert corners([stand_in]) == pytest.approx(np.array([(-0.5, -0.3, 0.2), (0.5, 0.3, 0.5)]))
 
 
 def test_the_outer_face_of_a_front_is_at_its_depth():
     (panel,) = forms.front(0.3, 0.4, 0.6, (0.1, 0.5), RED, deep=0.02)
-    assert panel.role is Role.SEEN
+    assert panel.role is Role.VISUAL
     assert corners([panel]) == pytest.approx(np.array([(0.28, -0.1, 0.2), (0.3, 0.3, 0.8)]))
 
 
 def test_a_closed_box_is_one_to_the_eye_and_six_walls_with_room_to_the_touch():
     size, centre = (0.8, 1.0, 2.0), (0.1, 0.2, 1.0)
     parts = forms.closed_box(size, centre, RED)
-    (outside,) = (part for part in parts if part.role is Role.SEEN)
-    walls = [part for part in parts if part.role is Role.FELT]
+    (outside,) = (part for part in parts if part.role is Role.VISUAL)
+    walls = [part for part in parts if part.role is Role.COLLISION]
     box_ = np.array([(-0.3, -0.3, 0.0), (0.5, 0.7, 2.0)])
     assert corners([outside]) == pytest.approx(box_)
     assert corners(walls) == pytest.approx(box_)
@@ -131,7 +140,7 @@ def test_a_ring_of_staves_is_closed_and_leans_from_one_radius_to_the_other(radii
 
 def test_a_turned_profile_is_a_stack_of_discs_through_its_points():
     discs = forms.turned([(0.1, 0.0), (0.1, 0.2), (0.3, 0.6)], RED, steps=4)
-    assert {part.role for part in discs} == {Role.SEEN}
+    assert {part.role for part in discs} == {Role.VISUAL}
     assert {part.shape for part in discs} == {Shape.CYLINDER}
     assert {(part.centre[0], part.centre[1]) for part in discs} == {(0, 0)}
     rows = [(part.half[0], part.half[1], part.centre[2], part.half[2]) for part in discs]
@@ -155,7 +164,7 @@ def test_what_is_shifted_takes_its_joint_along():
     assert part.centre == (0.1, 0.2, 0.3)
     assert part.joint.anchor == (1.1, 2.2, 3.3)
     assert part.joint.axis == (1.0, 0.0, 0.0)
-    (plain,) = forms.shifted(felt(box((1, 1, 1), (0, 0, 0), RED)), z=-1.0)
+    (plain,) = forms.shifted(collision(box((1, 1, 1), (0, 0, 0), RED)), z=-1.0)
     assert plain.centre == (0, 0, -1.0)
     assert plain.joint is None
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from semmap.nodes.sim_node.models.library import ModelError, assemble, build, check_size
-from semmap.nodes.sim_node.models.parts import Joint, Role, bounds, box, moving, seen
+from semmap.nodes.sim_node.models.parts import Joint, Role, bounds, box, moving, visual
 from semmap.nodes.sim_node.models.variety_table import KINDS
 
 HOUSEHOLD = Path(__file__).parents[3] / "ontology" / "household.ttl"
@@ -39,13 +39,13 @@ def test_a_model_fills_its_size_from_the_bottom_centre_up(name):
 @pytest.mark.parametrize("name", KINDS)
 def test_what_is_felt_is_no_bigger_than_what_is_seen(name):
     parts = build(name, None).parts
-    felt = [part for part in parts if part.role is not Role.SEEN]
-    low, high = bounds([part for part in parts if part.role is not Role.FELT])
-    felt_low, felt_high = bounds(felt)
-    assert (felt_low >= low - 0.006).all()
-    assert (felt_high <= high + 0.006).all()
-    assert felt_low[2] == pytest.approx(0.0, abs=0.004)
-    assert len(felt) <= 40
+    colliding = [part for part in parts if part.role is not Role.VISUAL]
+    low, high = bounds([part for part in parts if part.role is not Role.COLLISION])
+    colliding_low, colliding_high = bounds(colliding)
+    assert (colliding_low >= low - 0.006).all()
+    assert (colliding_high <= high + 0.006).all()
+    assert colliding_low[2] == pytest.approx(0.0, abs=0.004)
+    assert len(colliding) <= 40
 
 
 @pytest.mark.parametrize(
@@ -93,7 +93,7 @@ def hinged(axis=(0.0, 1.0, 0.0), *, kind="hinge", friction=0.0, anchor=(0.0, 0.0
     joint = Joint("lid", kind, anchor, axis, (0.0, 1.0), friction=friction)
     lid = moving(joint, box((1.0, 1.0, 0.1), (0.5, 0.0, 1.05), RED))
     return assemble(
-        "box", [box((1.0, 1.0, 1.0), (0.0, 0.0, 0.5), RED), *(seen(lid) if seen_only else lid)], 11.0
+        "box", [box((1.0, 1.0, 1.0), (0.0, 0.0, 0.5), RED), *(visual(lid) if seen_only else lid)], 11.0
     )
 
 

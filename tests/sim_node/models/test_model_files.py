@@ -76,8 +76,8 @@ def test_mjcf_brings_its_bodies_and_their_joints(folder):
     toy = Models(folder)("toy", None)
     (leaf,) = toy.leaves
     assert (leaf.joint.name, leaf.joint.range, leaf.joint.closed) == ("joint", None, None)
-    assert [part.role for part in leaf.parts] == [Role.SEEN]
-    assert [part.role for part in toy.parts] == [Role.BOTH, Role.BOTH, Role.SEEN]
+    assert [part.role for part in leaf.parts] == [Role.VISUAL]
+    assert [part.role for part in toy.parts] == [Role.BOTH, Role.BOTH, Role.VISUAL]
     assert toy.size_m == pytest.approx((0.3, 0.4, 0.4), abs=0.001)
     assert toy.parts[0].colour == (1.0, 0.0, 0.0)
 

@@ -22,7 +22,7 @@ from semmap.nodes.sim_node.models.parts import (
     ball,
     bounds,
     box,
-    felt,
+    collision,
     inertial,
     mesh,
     moved,
@@ -32,7 +32,7 @@ from semmap.nodes.sim_node.models.parts import (
     quarter_turned,
     rod,
     rotation_matrix,
-    seen,
+    visual,
 )
 
 RED = (1.0, 0.0, 0.0)
@@ -106,8 +106,8 @@ def test_a_mesh_stands_where_its_corners_are_and_reaches_as_far():
 def test_one_part_or_several_become_decoration_or_a_stand_in():
     parts = [box((1, 1, 1), (0, 0, 0), RED), ball((1, 1, 1), (0, 0, 0), RED)]
     assert [part.role for part in parts] == [Role.BOTH, Role.BOTH]
-    assert [part.role for part in seen(parts)] == [Role.SEEN, Role.SEEN]
-    assert [part.role for part in felt(parts[0])] == [Role.FELT]
+    assert [part.role for part in visual(parts)] == [Role.VISUAL, Role.VISUAL]
+    assert [part.role for part in collision(parts[0])] == [Role.COLLISION]
 
 
 def test_a_quarter_turn_takes_the_front_to_the_right_with_joints_and_all():
@@ -158,7 +158,7 @@ def test_the_box_around_parts_has_all_of_each():
 
 def test_the_inertia_of_two_boxes_adds_up_by_steiner_s_theorem():
     parts = [box((0.2, 0.2, 0.2), (0.0, 0.0, 0.0), RED), box((0.2, 0.2, 0.2), (1.0, 0.0, 0.0), RED)]
-    whole = inertial([*parts, *seen(box((9, 9, 9), (5, 5, 5), RED))], 4.0)
+    whole = inertial([*parts, *visual(box((9, 9, 9), (5, 5, 5), RED))], 4.0)
     assert whole.mass_kg == 4.0
     assert whole.centre_m == pytest.approx((0.5, 0.0, 0.0))
     own = 2.0 / 12.0 * (0.2**2 + 0.2**2)

@@ -8,7 +8,7 @@ import pytest
 
 from semmap.nodes.sim_node.models.forms import hollow_box, slab
 from semmap.nodes.sim_node.models.library import assemble, build
-from semmap.nodes.sim_node.models.parts import UPRIGHT, about, ball, box, mesh, pill, product, rod, seen
+from semmap.nodes.sim_node.models.parts import UPRIGHT, about, ball, box, mesh, pill, product, rod, visual
 from semmap.nodes.sim_node.models.spaces import _cut, shape_of
 from semmap.nodes.sim_node.models.variety_table import KINDS
 from semmap.nodes.sim_node.models.write_shapes import as_json, library_shapes
@@ -169,9 +169,9 @@ def test_what_lacks_a_wall_or_its_floor_holds_nothing():
 
 def test_what_is_only_seen_is_a_wall_too_and_carries_nothing():
     parts = walled(0.6)
-    (inside,) = shape(slab(1.0, 1.2, 0.0, 0.05, RED), *seen(parts[1:])).interiors
+    (inside,) = shape(slab(1.0, 1.2, 0.0, 0.05, RED), *visual(parts[1:])).interiors
     assert inside.open
-    (top,) = shape(slab(1.0, 1.2, 0.0, 0.05, RED), *seen(slab(0.5, 0.5, 0.05, 0.6, RED))).surfaces
+    (top,) = shape(slab(1.0, 1.2, 0.0, 0.05, RED), *visual(slab(0.5, 0.5, 0.05, 0.6, RED))).surfaces
     assert top.height == pytest.approx(0.05)
 
 

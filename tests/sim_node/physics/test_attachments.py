@@ -138,7 +138,7 @@ def test_what_cannot_be_held_is_told(world, name, holder, why):
 
 def test_who_is_held_cannot_be_moved_by_itself(world):
     held(world, "cup1", "tray1")
-    why = "cup1 is attached to tray1; to move it, first run: semmap detach cup1"
+    why = "cup1 is attached to tray1; to move it, first: semmap detach cup1"
     assert world.move([hand("cup1", pose(1.0, 1.0))]).failed == {"cup1": why}
 
 

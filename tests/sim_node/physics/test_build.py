@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from semmap.nodes.sim_node.models.library import build as library_model
-from semmap.nodes.sim_node.models.parts import Role, Shape, ball, box, felt, mesh, pill, rod, seen
+from semmap.nodes.sim_node.models.parts import Role, Shape, ball, box, collision, mesh, pill, rod, visual
 from semmap.nodes.sim_node.order_validation import validate_spawn
 from semmap.nodes.sim_node.physics import build
 from tests.sim_node.orders import order, pose
@@ -64,8 +64,8 @@ def test_what_is_only_seen_does_not_collide_and_what_is_only_felt_is_seen_by_no_
     model, made = compiled(order("table1", "table", pose(0.0, 0.0)))
     for geom, part in enumerate(made["table1"][1].frame):
         masks = (model.geom_contype[geom], model.geom_conaffinity[geom])
-        assert masks == ((0, 0) if part.role is Role.SEEN else (1, 1))
-        assert (model.geom_group[geom] == build.FELT_GROUP) == (part.role is Role.FELT)
+        assert masks == ((0, 0) if part.role is Role.VISUAL else (1, 1))
+        assert (model.geom_group[geom] == build.COLLISION_GROUP) == (part.role is Role.COLLISION)
         assert model.geom_rgba[geom] == pytest.approx([*part.colour, 1.0])
 
 
@@ -285,5 +285,5 @@ def test_controls_of_other_actuators_are_not_taken_over():
 
 def test_decoration_collides_with_nothing_and_a_stand_in_does():
     part = box((1, 1, 1), (0, 0, 0), RED)
-    masks = [build.mask_of(one) for one in (part, *seen(part), *felt(part))]
+    masks = [build.mask_of(one) for one in (part, *visual(part), *collision(part))]
     assert masks == [(1, 1), (0, 0), (1, 1)]

@@ -23,16 +23,16 @@ def snapshot():
 
 
 @pytest.fixture
-def studio(request):
-    studios = []
+def renderer(request):
+    renderers = []
 
     def make(*, wanted=True, **config):
-        studios.append(VideoRenderer(CameraConfig(**RAYS | config), lambda: wanted))
-        return studios[-1]
+        renderers.append(VideoRenderer(CameraConfig(**RAYS | config), lambda: wanted))
+        return renderers[-1]
 
     yield make
-    for studio in studios:
-        studio.close()
+    for renderer in renderers:
+        renderer.close()
 
 
 def test_segments_are_numbers_of_bodies_by_name():
@@ -43,8 +43,8 @@ def test_segments_are_numbers_of_bodies_by_name():
     assert numbers.dtype == np.uint16
 
 
-def test_a_camera_gives_rgb_depth_and_segments_of_one_moment(studio, snapshot):
-    planes = studio(segments=True).planes(snapshot, "overview")
+def test_a_camera_gives_rgb_depth_and_segments_of_one_moment(renderer, snapshot):
+    planes = renderer(segments=True).planes(snapshot, "overview")
     assert [frame.encoding for frame, _ in planes] == ["rgb8", "depth32f", "segments16"]
     assert [plane.shape for _, plane in planes] == [(12, 16, 3), (12, 16), (12, 16)]
     for frame, _ in planes:
@@ -59,20 +59,20 @@ def test_a_camera_gives_rgb_depth_and_segments_of_one_moment(studio, snapshot):
 
 
 @pytest.mark.parametrize("how", [{"segments": False}, {"segments": True, "wanted": False}])
-def test_segments_are_not_made_unless_they_are_asked_for_and_wanted(studio, snapshot, how):
-    planes = studio(**how).planes(snapshot, "overview")
+def test_segments_are_not_made_unless_they_are_asked_for_and_wanted(renderer, snapshot, how):
+    planes = renderer(**how).planes(snapshot, "overview")
     assert [frame.encoding for frame, _ in planes] == ["rgb8", "depth32f"]
 
 
-def test_depth_has_noise_if_that_is_asked_for(studio, snapshot):
-    (_, exact) = studio().planes(snapshot, "overview")[1]
-    (_, again) = studio().planes(snapshot, "overview")[1]
-    (_, noisy) = studio(noise=True).planes(snapshot, "overview")[1]
+def test_depth_has_noise_if_that_is_asked_for(renderer, snapshot):
+    (_, exact) = renderer().planes(snapshot, "overview")[1]
+    (_, again) = renderer().planes(snapshot, "overview")[1]
+    (_, noisy) = renderer(noise=True).planes(snapshot, "overview")[1]
     assert (exact == again).all()
     assert (exact != noisy).any()
 
 
-def test_a_film_has_the_planes_of_all_cameras(studio, snapshot):
+def test_a_film_has_the_planes_of_all_cameras(renderer, snapshot):
     published, done = [], threading.Event()
 
     def publish(plane):
@@ -80,14 +80,14 @@ def test_a_film_has_the_planes_of_all_cameras(studio, snapshot):
         if len(published) == 2:
             done.set()
 
-    studio().render_cameras(lambda: snapshot, publish)
+    renderer().render_cameras(lambda: snapshot, publish)
     assert done.wait(60.0)
     assert published == ["rgb8", "depth32f"]
 
 
-def test_no_frame_is_begun_while_the_last_is_being_made_and_then_the_next_one_is(studio, snapshot):
+def test_no_frame_is_begun_while_the_last_is_being_made_and_then_the_next_one_is(renderer, snapshot):
     begun, go_on = [], threading.Event()
-    one = studio()
+    one = renderer()
 
     def publish(plane):
         assert go_on.wait(60.0)
@@ -105,22 +105,22 @@ def test_no_frame_is_begun_while_the_last_is_being_made_and_then_the_next_one_is
     assert len(begun) == 2
 
 
-def test_what_failed_of_one_frame_is_told_with_the_next(studio, snapshot):
+def test_what_failed_of_one_frame_is_told_with_the_next(renderer, snapshot):
     def publish(plane):
         raise RuntimeError("no subscriber")
 
-    one = studio()
+    one = renderer()
     one.render_cameras(lambda: snapshot, publish)
     assert isinstance(one._rendering.exception(60.0), RuntimeError)
     with pytest.raises(RuntimeError, match="no subscriber"):
         one.render_cameras(lambda: snapshot, publish)
 
 
-def test_a_picture_for_people_is_a_png(studio, snapshot):
+def test_a_picture_for_people_is_a_png(renderer, snapshot):
     view = overview(np.array([-1.0, -1.0, 0.0]), np.ones(3), 16, 12)
-    plain = studio().render_picture(snapshot, view).result(60.0).png
+    plain = renderer().render_picture(snapshot, view).result(60.0).png
     assert plain.startswith(b"\x89PNG")
-    labelled = studio().render_picture(snapshot, view, {"box1": np.array([0.0, 0.0, 0.5])}).result(60.0).png
+    labelled = renderer().render_picture(snapshot, view, {"box1": np.array([0.0, 0.0, 0.5])}).result(60.0).png
     assert labelled != plain
 
 

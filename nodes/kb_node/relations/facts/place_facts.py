@@ -168,7 +168,9 @@ class Facts:
     ) -> Iterator[None]:
         """Compute the facts of many solids, `step` at a time, and add differences to `gone` and `come`."""
         space = self.space
-        for some in split_batches(sort_by_place(solids) if len(solids) > step else solids, step, _ignore_progress):
+        for some in split_batches(
+            sort_by_place(solids) if len(solids) > step else solids, step, _ignore_progress
+        ):
             survey = Survey(space, some) if len(some) >= MANY else None
             with space.caching():
                 for rule_facts in self._rule_facts:

@@ -31,11 +31,11 @@ from semmap.nodes.sim_node.models.parts import (
     about,
     ball,
     box,
-    felt,
+    collision,
     moving,
     pill,
     rod,
-    seen,
+    visual,
 )
 
 
@@ -55,7 +55,7 @@ def case(
 
 def knobs(x: float, y: float, height: float, count: int, radius: float) -> Parts:
     """A row of knobs on a front."""
-    return seen(
+    return visual(
         rod(radius, 0.02, (x / 2 - 0.01, y * ((i + 0.5) / count - 0.5), height), BLACK, ALONG_X)
         for i in range(count)
     )
@@ -92,14 +92,14 @@ def fridge(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 def oven(x: float, y: float, z: float, colour: Colour) -> Parts:
     """Hobs on top, a row of knobs, a dark glass door with a rail."""
-    hobs = seen(
+    hobs = visual(
         rod(0.11 * y * (1 + 0.25 * i), 0.012, (0.22 * x * i, 0.23 * y * j, z - 0.006), DARK)
         for i in (-1, 1)
         for j in (-1, 1)
     )
     hole = (-0.4 * y, 0.4 * y, 0.2 * z, 0.7 * z)
     glass = box((0.02, 0.86 * y, 0.55 * z), (x / 2 - 0.03, 0, 0.45 * z), SCREEN)
-    rail = seen(rod(0.012, 0.76 * y, (x / 2 - 0.012, 0, 0.69 * z), STEEL, ALONG_Y))
+    rail = visual(rod(0.012, 0.76 * y, (x / 2 - 0.012, 0, 0.69 * z), STEEL, ALONG_Y))
     return [
         *framed_box(
             (x - 0.04, y, z - 0.006), (-0.02, 0, (z - 0.006) / 2), colour, hole, boards=(0.4,), depth=0.9
@@ -116,11 +116,11 @@ def stove(x: float, y: float, z: float, colour: Colour) -> Parts:
     burners = [(0.24 * x * i, 0.24 * y * j) for i in (-1, 1) for j in (-1, 1)]
     return [
         slab(x, y, 0, deck, colour),
-        *seen(rod(0.13 * y, 0.6 * deck, (px, py, 1.15 * deck), BLACK) for px, py in burners),
-        *seen(rod(0.06 * y, deck, (px, py, 1.3 * deck), GREY) for px, py in burners),
-        *seen(box((0.4 * x, 0.012, 0.2 * deck), (px, py, 0.93 * z), DARK) for px, py in burners),
-        *seen(box((0.012, 0.4 * y, 0.2 * deck), (px, py, 0.93 * z), DARK) for px, py in burners),
-        *seen(
+        *visual(rod(0.13 * y, 0.6 * deck, (px, py, 1.15 * deck), BLACK) for px, py in burners),
+        *visual(rod(0.06 * y, deck, (px, py, 1.3 * deck), GREY) for px, py in burners),
+        *visual(box((0.4 * x, 0.012, 0.2 * deck), (px, py, 0.93 * z), DARK) for px, py in burners),
+        *visual(box((0.012, 0.4 * y, 0.2 * deck), (px, py, 0.93 * z), DARK) for px, py in burners),
+        *visual(
             rod(0.025, 0.3 * deck, (0.46 * x, 0.1 * y * i, 1.15 * deck), STEEL)
             for i in (-1.5, -0.5, 0.5, 1.5)
         ),
@@ -133,10 +133,10 @@ def dishwasher(x: float, y: float, z: float, colour: Colour) -> Parts:
     hole = (-0.46 * y, 0.46 * y, 0.1 * z, 0.94 * z)
     door = [
         box((0.03, 0.97 * y, 0.74 * z), (x / 2 - 0.035, 0, 0.45 * z), colour),
-        *seen(box((0.03, 0.97 * y, 0.12 * z), (x / 2 - 0.035, 0, 0.91 * z), DARK)),
-        *felt(box((0.03, 0.97 * y, 0.15 * z), (x / 2 - 0.035, 0, 0.895 * z), DARK)),
-        *seen(box((0.02, 0.7 * y, 0.025), (x / 2 - 0.01, 0, 0.78 * z), STEEL)),
-        *seen(
+        *visual(box((0.03, 0.97 * y, 0.12 * z), (x / 2 - 0.035, 0, 0.91 * z), DARK)),
+        *collision(box((0.03, 0.97 * y, 0.15 * z), (x / 2 - 0.035, 0, 0.895 * z), DARK)),
+        *visual(box((0.02, 0.7 * y, 0.025), (x / 2 - 0.01, 0, 0.78 * z), STEEL)),
+        *visual(
             box((0.004, 0.05 * y, 0.02), (x / 2 - 0.016, y * i, 0.91 * z), (0.3, 0.9, 0.4))
             for i in (0.2, 0.3)
         ),
@@ -165,22 +165,22 @@ def washing_machine(x: float, y: float, z: float, colour: Colour) -> Parts:
         *framed_box((x - 0.04, y, z), (-0.02, 0, z / 2), colour, (-half, half, middle - half, middle + half)),
         *moving(
             joint,
-            [ring, *seen(ball((0.05, 1.9 * porthole, 1.9 * porthole), (x / 2 - 0.03, 0, middle), SCREEN))],
+            [ring, *visual(ball((0.05, 1.9 * porthole, 1.9 * porthole), (x / 2 - 0.03, 0, middle), SCREEN))],
         ),
         *front(x / 2 - 0.03, 0.96 * y, 0.13 * z, (0, 0.91 * z), shade(colour, 0.75), deep=0.01),
-        *seen(rod(0.045, 0.03, (x / 2 - 0.02, 0.25 * y, 0.91 * z), STEEL, ALONG_X)),
+        *visual(rod(0.045, 0.03, (x / 2 - 0.02, 0.25 * y, 0.91 * z), STEEL, ALONG_X)),
         *front(x / 2 - 0.025, 0.25 * y, 0.08 * z, (-0.3 * y, 0.91 * z), LIGHT, deep=0.01),
     ]
 
 
 def microwave(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A wide dark window, and buttons at the right."""
-    buttons = seen(
+    buttons = visual(
         box((0.008, 0.03, 0.12 * z), (x / 2 - 0.012, 0.40 * y + 0.022 * side, (0.2 + 0.18 * row) * z), GREY)
         for row in range(3)
         for side in (-1, 1)
     )
-    handle = seen(box((0.02, 0.02, 0.7 * z), (x / 2 - 0.01, 0.24 * y, 0.5 * z), STEEL))
+    handle = visual(box((0.02, 0.02, 0.7 * z), (x / 2 - 0.01, 0.24 * y, 0.5 * z), STEEL))
     return [
         *framed_box((x - 0.02, y, z), (-0.01, 0, z / 2), colour, (-0.45 * y, 0.2 * y, 0.12 * z, 0.88 * z)),
         *side_door(
@@ -204,12 +204,14 @@ def kettle(x: float, y: float, z: float, colour: Colour) -> Parts:
     return [
         column(0.95 * radius, 0, 0.06 * z, BLACK),
         *body,
-        *felt(column(0.86 * radius, 0.06 * z, 0.85 * z, colour)),
-        *seen(column(0.7 * radius, 0.85 * z, 0.92 * z, BLACK)),
-        *seen(ball((0.03, 0.03, 0.1 * z), (0, 0, 0.95 * z), BLACK)),
-        *seen(box((0.25 * radius, 0.5 * radius, 0.09 * z), (0, radius, 0.72 * z), colour, about("x", 0.7))),
-        *seen(pill(0.014, 0.62 * z, (0, grip, 0.5 * z), BLACK)),
-        *seen(box((0.025, 0.5 * radius, 0.03), (0, grip + 0.2 * radius, h * z), BLACK) for h in (0.23, 0.78)),
+        *collision(column(0.86 * radius, 0.06 * z, 0.85 * z, colour)),
+        *visual(column(0.7 * radius, 0.85 * z, 0.92 * z, BLACK)),
+        *visual(ball((0.03, 0.03, 0.1 * z), (0, 0, 0.95 * z), BLACK)),
+        *visual(box((0.25 * radius, 0.5 * radius, 0.09 * z), (0, radius, 0.72 * z), colour, about("x", 0.7))),
+        *visual(pill(0.014, 0.62 * z, (0, grip, 0.5 * z), BLACK)),
+        *visual(
+            box((0.025, 0.5 * radius, 0.03), (0, grip + 0.2 * radius, h * z), BLACK) for h in (0.23, 0.78)
+        ),
     ]
 
 
@@ -217,13 +219,13 @@ def toaster(x: float, y: float, z: float, colour: Colour) -> Parts:
     """Two slots with bread, a lever at the end."""
     return [
         slab(x, 0.94 * y, 0.04 * z, 0.88 * z, colour),
-        *felt(slab(0.9 * x, 0.85 * y, 0, 0.04 * z, BLACK)),
-        *seen(slab(0.85 * x, 0.85 * y, 0, 0.06 * z, BLACK)),
-        *seen(box((0.14 * x, 0.7 * y, 0.02), (0.2 * x * s, 0, 0.875 * z), BLACK) for s in (-1, 1)),
-        *seen(
+        *collision(slab(0.9 * x, 0.85 * y, 0, 0.04 * z, BLACK)),
+        *visual(slab(0.85 * x, 0.85 * y, 0, 0.06 * z, BLACK)),
+        *visual(box((0.14 * x, 0.7 * y, 0.02), (0.2 * x * s, 0, 0.875 * z), BLACK) for s in (-1, 1)),
+        *visual(
             box((0.09 * x, 0.5 * y, 0.3 * z), (0.2 * x * s, 0, 0.85 * z), (0.85, 0.62, 0.32)) for s in (-1, 1)
         ),
-        *seen(box((0.2 * x, 0.05 * y, 0.08 * z), (0, 0.475 * y, 0.6 * z), BLACK)),
+        *visual(box((0.2 * x, 0.05 * y, 0.08 * z), (0, 0.475 * y, 0.6 * z), BLACK)),
     ]
 
 
@@ -237,10 +239,10 @@ def coffee_machine(x: float, y: float, z: float, colour: Colour) -> Parts:
         box((back, y, 0.7 * z), (-(x - back) / 2, 0, 0.43 * z), colour),
         slab(x, y, 0.74 * z, z, shade(colour, 1.3)),
         rod(jug, 0.38 * z, place, (0.25, 0.15, 0.1)),
-        *seen(rod(0.8 * jug, 0.05 * z, (place[0], 0, 0.5 * z), BLACK)),
-        *seen(box((0.02, 0.02, 0.24 * z), (x / 2 - 0.01, 0, 0.3 * z), BLACK)),
-        *seen(rod(0.5 * jug, 0.08 * z, (place[0], 0, 0.7 * z), BLACK)),
-        *seen(box((0.006, 0.1, 0.04), (x / 2, 0, 0.88 * z), (0.4, 0.8, 0.5))),
+        *visual(rod(0.8 * jug, 0.05 * z, (place[0], 0, 0.5 * z), BLACK)),
+        *visual(box((0.02, 0.02, 0.24 * z), (x / 2 - 0.01, 0, 0.3 * z), BLACK)),
+        *visual(rod(0.5 * jug, 0.08 * z, (place[0], 0, 0.7 * z), BLACK)),
+        *visual(box((0.006, 0.1, 0.04), (x / 2, 0, 0.88 * z), (0.4, 0.8, 0.5))),
     ]
 
 
@@ -248,14 +250,14 @@ def boiler(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A tank on the wall, rounded above and below, with pipes and a dial."""
     radius = min(x, y) / 2
     return [
-        *seen(column(radius, 0.22 * z, 0.88 * z, colour)),
-        *felt(column(radius, 0, z, colour)),
-        *seen(ball((2 * radius, 2 * radius, 0.24 * z), (0, 0, h * z), colour) for h in (0.22, 0.88)),
-        *seen(
+        *visual(column(radius, 0.22 * z, 0.88 * z, colour)),
+        *collision(column(radius, 0, z, colour)),
+        *visual(ball((2 * radius, 2 * radius, 0.24 * z), (0, 0, h * z), colour) for h in (0.22, 0.88)),
+        *visual(
             rod(0.012, 0.14 * z, (0, 0.3 * radius * s, 0.07 * z), c)
             for s, c in ((-1, (0.7, 0.2, 0.2)), (1, STEEL))
         ),
-        *seen(rod(0.25 * radius, 0.02, (radius, 0, 0.36 * z), DARK, ALONG_X)),
+        *visual(rod(0.25 * radius, 0.02, (radius, 0, 0.36 * z), DARK, ALONG_X)),
     ]
 
 
@@ -282,16 +284,16 @@ def iron(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A pointed sole towards +y, with a handle above."""
     sole = 0.1 * z
     return [
-        *seen(box((x, 0.6 * y, sole), (0, -0.2 * y, sole / 2), STEEL)),
-        *felt(slab(0.8 * x, 0.9 * y, 0, sole, STEEL)),
-        *seen(ball((x, 0.78 * y, 1.6 * sole), (0, 0.11 * y, 0.8 * sole), STEEL)),
-        *seen(ball((0.85 * x, 0.7 * y, 0.7 * z), (0, -0.05 * y, 0.36 * z), colour)),
-        *seen(box((0.7 * x, 0.4 * y, 0.4 * z), (0, -0.28 * y, 0.3 * z), colour)),
-        *seen(box((0.25 * x, 0.6 * y, 0.14 * z), (0, -0.1 * y, 0.93 * z), DARK)),
-        *seen(
+        *visual(box((x, 0.6 * y, sole), (0, -0.2 * y, sole / 2), STEEL)),
+        *collision(slab(0.8 * x, 0.9 * y, 0, sole, STEEL)),
+        *visual(ball((x, 0.78 * y, 1.6 * sole), (0, 0.11 * y, 0.8 * sole), STEEL)),
+        *visual(ball((0.85 * x, 0.7 * y, 0.7 * z), (0, -0.05 * y, 0.36 * z), colour)),
+        *visual(box((0.7 * x, 0.4 * y, 0.4 * z), (0, -0.28 * y, 0.3 * z), colour)),
+        *visual(box((0.25 * x, 0.6 * y, 0.14 * z), (0, -0.1 * y, 0.93 * z), DARK)),
+        *visual(
             box((0.25 * x, 0.1 * y, 0.5 * z), (0, 0.19 * y * s - 0.12 * y, 0.7 * z), DARK) for s in (-1, 1)
         ),
-        *felt(box((0.6 * x, 0.6 * y, z - sole), (0, -0.15 * y, (z + sole) / 2), DARK)),
+        *collision(box((0.6 * x, 0.6 * y, z - sole), (0, -0.15 * y, (z + sole) / 2), DARK)),
     ]
 
 
@@ -300,11 +302,11 @@ def vacuum_cleaner(x: float, y: float, z: float, colour: Colour) -> Parts:
     drum = 0.34 * z
     return [
         rod(drum / 2, 0.55 * x, (-0.2 * x, 0, 0.55 * drum), colour, ALONG_X),
-        *seen(rod(0.4 * drum, 0.06, (-0.3 * x, 0.45 * y * s, 0.4 * drum), DARK, ALONG_Y) for s in (-1, 1)),
-        *seen(ball((0.5 * drum,) * 3, (0.08 * x, 0, 0.6 * drum), DARK)),
-        *seen(rod(0.016, 0.98 * z, (0.32 * x, 0, 0.5 * z), STEEL, about("y", -0.12))),
-        *seen(pill(0.02, 0.72 * z, (0.14 * x, 0, 0.63 * z), BLACK, about("y", 0.32))),  # the hose
-        *seen(box((0.12, 0.9 * y, 0.04), (0.4 * x, 0, 0.02), DARK)),
+        *visual(rod(0.4 * drum, 0.06, (-0.3 * x, 0.45 * y * s, 0.4 * drum), DARK, ALONG_Y) for s in (-1, 1)),
+        *visual(ball((0.5 * drum,) * 3, (0.08 * x, 0, 0.6 * drum), DARK)),
+        *visual(rod(0.016, 0.98 * z, (0.32 * x, 0, 0.5 * z), STEEL, about("y", -0.12))),
+        *visual(pill(0.02, 0.72 * z, (0.14 * x, 0, 0.63 * z), BLACK, about("y", 0.32))),  # the hose
+        *visual(box((0.12, 0.9 * y, 0.04), (0.4 * x, 0, 0.02), DARK)),
         *solid(0.95 * x, 0.9 * y, 0, 0.1 * z),
     ]
 
@@ -313,12 +315,12 @@ def fan(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A standing fan: foot, stem, and blades in a cage facing +x."""
     radius = min(y / 2, 0.3 * z)
     hub: Vec3 = (0, 0, z - radius)
-    blades = seen(
+    blades = visual(
         box((0.02, 0.35 * radius, 1.6 * radius), hub, shade(colour, 1.2), about("x", i * 1.047))
         for i in range(3)
     )
     angles = [i * math.pi / 6 for i in range(12)]
-    rim = seen(
+    rim = visual(
         box(
             (0.22 * x, 0.53 * radius, 0.012),
             (0, 0.96 * radius * math.sin(angle), hub[2] + 0.96 * radius * math.cos(angle)),
@@ -332,8 +334,8 @@ def fan(x: float, y: float, z: float, colour: Colour) -> Parts:
         column(0.02, 0.02, z - radius, GREY),
         *blades,
         *rim,
-        *seen(ball((0.4 * x, 0.3 * radius, 0.3 * radius), hub, colour)),
-        *felt(rod(radius, 0.3 * x, hub, STEEL, ALONG_X)),
+        *visual(ball((0.4 * x, 0.3 * radius, 0.3 * radius), hub, colour)),
+        *collision(rod(radius, 0.3 * x, hub, STEEL, ALONG_X)),
     ]
 
 
@@ -342,9 +344,9 @@ def heater(x: float, y: float, z: float, colour: Colour) -> Parts:
     ribs = max(4, min(14, round(y / 0.07)))
     pitch = y / ribs
     return [
-        *seen(box((x, 0.7 * pitch, z), (0, pitch * (i + 0.5) - y / 2, z / 2), colour) for i in range(ribs)),
-        *felt(slab(x, 0.97 * y, 0, z, colour)),
-        *seen(rod(0.2 * x, 0.98 * y, (0, 0, h * z), shade(colour, 0.8), ALONG_Y) for h in (0.1, 0.9)),
+        *visual(box((x, 0.7 * pitch, z), (0, pitch * (i + 0.5) - y / 2, z / 2), colour) for i in range(ribs)),
+        *collision(slab(x, 0.97 * y, 0, z, colour)),
+        *visual(rod(0.2 * x, 0.98 * y, (0, 0, h * z), shade(colour, 0.8), ALONG_Y) for h in (0.1, 0.9)),
     ]
 
 
@@ -353,6 +355,6 @@ def air_conditioner(x: float, y: float, z: float, colour: Colour) -> Parts:
     return [
         box((x - 0.02, y, z), (-0.01, 0, z / 2), colour),
         *front(x / 2, 0.98 * y, 0.62 * z, (0, 0.66 * z), shade(colour, 1.1), deep=0.02),
-        *seen(box((0.03, 0.85 * y, 0.03), (x / 2 - 0.02, 0, h * z), DARK) for h in (0.12, 0.24)),
-        *seen(box((0.006, 0.02, 0.02), (x / 2, 0.4 * y, 0.5 * z), (0.2, 0.8, 0.3))),
+        *visual(box((0.03, 0.85 * y, 0.03), (x / 2 - 0.02, 0, h * z), DARK) for h in (0.12, 0.24)),
+        *visual(box((0.006, 0.02, 0.02), (x / 2, 0.4 * y, 0.5 * z), (0.2, 0.8, 0.3))),
     ]

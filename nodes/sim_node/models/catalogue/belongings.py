@@ -28,11 +28,11 @@ from semmap.nodes.sim_node.models.parts import (
     about,
     ball,
     box,
-    felt,
+    collision,
     pill,
     product,
     rod,
-    seen,
+    visual,
 )
 
 
@@ -57,7 +57,7 @@ def keys(x: float, y: float, z: float, colour: Colour) -> Parts:
         )
     ]
     hoop = shifted(ring((0.22 * x, 0.22 * x), 0.4 * z, z, 0.03 * x, STEEL, count=12), x=-0.28 * x)
-    return [*seen(blades), *seen(hoop), *felt(slab(0.95 * x, 0.8 * y, 0, z, colour))]
+    return [*visual(blades), *visual(hoop), *collision(slab(0.95 * x, 0.8 * y, 0, z, colour))]
 
 
 def glasses(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -79,17 +79,17 @@ def glasses(x: float, y: float, z: float, colour: Colour) -> Parts:
         )
     ]
     bridge = box((0.05 * x, 0.14 * y, 0.1 * z), (0.45 * x, 0, 1.3 * radius), colour)
-    return [*seen(lenses), *seen(bridge), *felt(slab(x, 0.9 * y, 0, 0.8 * z, colour))]
+    return [*visual(lenses), *visual(bridge), *collision(slab(x, 0.9 * y, 0, 0.8 * z, colour))]
 
 
 def wristwatch(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A dial on a strap laid out flat."""
     return [
         slab(x, 0.55 * y, 0, 0.5 * z, colour),
-        *seen(rod(0.5 * y, 0.9 * z, (0, 0, 0.5 * z), BRASS)),
-        *seen(rod(0.42 * y, 0.1 * z, (0, 0, 0.96 * z), PAPER)),
-        *seen(box((0.3 * y, 0.04 * y, 0.05 * z), (0.13 * y, 0, z), BLACK)),
-        *seen(box((0.04 * y, 0.22 * y, 0.05 * z), (0, 0.1 * y, z), BLACK)),
+        *visual(rod(0.5 * y, 0.9 * z, (0, 0, 0.5 * z), BRASS)),
+        *visual(rod(0.42 * y, 0.1 * z, (0, 0, 0.96 * z), PAPER)),
+        *visual(box((0.3 * y, 0.04 * y, 0.05 * z), (0.13 * y, 0, z), BLACK)),
+        *visual(box((0.04 * y, 0.22 * y, 0.05 * z), (0, 0.1 * y, z), BLACK)),
     ]
 
 
@@ -97,10 +97,10 @@ def wallet(x: float, y: float, z: float, colour: Colour) -> Parts:
     """Folded leather with notes that peep out."""
     return [
         slab(x, y, 0, 0.42 * z, colour),
-        *seen(slab(0.96 * x, 0.96 * y, 0.42 * z, 0.6 * z, PAPER)),
+        *visual(slab(0.96 * x, 0.96 * y, 0.42 * z, 0.6 * z, PAPER)),
         slab(x, y, 0.58 * z, z, shade(colour, 1.2)),
-        *seen(box((0.3 * x, 0.2 * y, 0.5 * z), (0.42 * x, 0, 0.6 * z), shade(colour, 0.7))),
-        *seen(box((0.4 * x, 0.7 * y, 0.003), (-0.14 * x, 0, 0.52 * z), (0.5, 0.7, 0.5))),
+        *visual(box((0.3 * x, 0.2 * y, 0.5 * z), (0.42 * x, 0, 0.6 * z), shade(colour, 0.7))),
+        *visual(box((0.4 * x, 0.7 * y, 0.003), (-0.14 * x, 0, 0.52 * z), (0.5, 0.7, 0.5))),
     ]
 
 
@@ -108,12 +108,12 @@ def clothes(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A shirt laid flat: body, sleeves, a neckline at -x."""
     return [
         box((x, 0.56 * y, z), (0, 0, z / 2), colour),
-        *seen(
+        *visual(
             box((0.42 * x, 0.3 * y, 0.9 * z), (-0.3 * x, 0.33 * y * s, z / 2), colour, about("z", 0.5 * s))
             for s in (-1, 1)
         ),
-        *seen(rod(0.11 * y, 0.004, (-0.48 * x, 0, z), shade(colour, 0.5))),
-        *seen(rod(0.01, 0.003, (x * (-0.25 + 0.16 * i), 0, z), WHITE) for i in range(4)),
+        *visual(rod(0.11 * y, 0.004, (-0.48 * x, 0, z), shade(colour, 0.5))),
+        *visual(rod(0.01, 0.003, (x * (-0.25 + 0.16 * i), 0, z), WHITE) for i in range(4)),
     ]
 
 
@@ -123,8 +123,8 @@ def hat(x: float, y: float, z: float, colour: Colour) -> Parts:
     return [
         column(radius, 0, 0.08 * z, colour),
         *turned([(0.6 * radius, 0.08 * z), (0.5 * radius, z)], colour, steps=5),
-        *seen(column(0.62 * radius, 0.1 * z, 0.28 * z, DARK)),
-        *felt(column(0.55 * radius, 0.08 * z, z, colour)),
+        *visual(column(0.62 * radius, 0.1 * z, 0.28 * z, DARK)),
+        *collision(column(0.55 * radius, 0.08 * z, z, colour)),
     ]
 
 
@@ -141,8 +141,8 @@ def shoes(x: float, y: float, z: float, colour: Colour) -> Parts:
         )
     ]
     return [
-        *seen(pair),
-        *felt(box((0.96 * x, 0.36 * y, 0.8 * z), (0, 0.27 * y * s, 0.4 * z), colour) for s in (-1, 1)),
+        *visual(pair),
+        *collision(box((0.96 * x, 0.36 * y, 0.8 * z), (0, 0.27 * y * s, 0.4 * z), colour) for s in (-1, 1)),
     ]
 
 
@@ -161,12 +161,12 @@ def umbrella(x: float, y: float, z: float, colour: Colour) -> Parts:
     ]
     crook = [(-0.40 * x, 0.0), (-0.47 * x, 0.02 * y), (-0.49 * x, 0.25 * y), (-0.45 * x, 0.44 * y)]
     return [
-        *seen(pleats),
-        *seen(rod(1.06 * middle, 0.02 * x, (-0.1 * x, 0, middle), DARK, ALONG_X)),
-        *seen(rod(0.008, 0.12 * x, (0.44 * x, 0, middle), STEEL, ALONG_X)),
-        *seen(rod(0.008, 0.22 * x, (-0.31 * x, 0, middle), STEEL, ALONG_X)),
-        *seen(_segment(start, end, middle, wood) for start, end in pairwise(crook)),
-        *felt(box((0.9 * x, 0.6 * z, z), (0, 0, middle), colour)),
+        *visual(pleats),
+        *visual(rod(1.06 * middle, 0.02 * x, (-0.1 * x, 0, middle), DARK, ALONG_X)),
+        *visual(rod(0.008, 0.12 * x, (0.44 * x, 0, middle), STEEL, ALONG_X)),
+        *visual(rod(0.008, 0.22 * x, (-0.31 * x, 0, middle), STEEL, ALONG_X)),
+        *visual(_segment(start, end, middle, wood) for start, end in pairwise(crook)),
+        *collision(box((0.9 * x, 0.6 * z, z), (0, 0, middle), colour)),
     ]
 
 
@@ -195,7 +195,7 @@ def sphere(x: float, y: float, z: float, colour: Colour) -> Parts:
     ]
     return [
         ball((x, y, z), (0, 0, z / 2), colour),
-        *seen(
+        *visual(
             ball((0.3 * x, 0.3 * y, 0.3 * z), (0.38 * x * i, 0.38 * y * j, z / 2 + 0.38 * z * k), BLACK)
             for i, j, k in spots
         ),

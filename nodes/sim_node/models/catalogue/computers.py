@@ -26,7 +26,7 @@ from semmap.nodes.sim_node.models.parts import (
     box,
     moving,
     rod,
-    seen,
+    visual,
 )
 
 
@@ -35,8 +35,10 @@ def monitor(x: float, y: float, z: float, colour: Colour) -> Parts:
     low = 0.28 * z
     return [
         box((0.15 * x, y, z - low), (0.1 * x, 0, (z + low) / 2), colour),
-        *seen(box((0.02 * x, 0.95 * y, 0.92 * (z - low)), (0.18 * x, 0, (z + low) / 2), (0.20, 0.45, 0.70))),
-        *seen(box((0.01 * x, 0.5 * y, 0.3 * z), (0.195 * x, -0.1 * y, 0.7 * z), WHITE)),
+        *visual(
+            box((0.02 * x, 0.95 * y, 0.92 * (z - low)), (0.18 * x, 0, (z + low) / 2), (0.20, 0.45, 0.70))
+        ),
+        *visual(box((0.01 * x, 0.5 * y, 0.3 * z), (0.195 * x, -0.1 * y, 0.7 * z), WHITE)),
         box((0.1 * x, 0.1 * y, 0.5 * z), (-0.05 * x, 0, 0.27 * z), STEEL),
         box((x, 0.42 * y, 0.03 * z), (0, 0, 0.015 * z), STEEL),
     ]
@@ -52,16 +54,16 @@ def computer(x: float, y: float, z: float, colour: Colour) -> Parts:
         *front(x / 2, 0.7 * y, 0.008 * z, (0, 0.885 * z), DARK, deep=0.004),
         *front(x / 2, 0.12 * y, 0.018 * z, (0.28 * y, 0.855 * z), DARK, deep=0.004),
         *front(x / 2 - 0.001, 0.8 * y, 0.06 * z, (0, 0.78 * z), GREY, deep=0.004),
-        *seen(rod(0.11 * y, 0.004, (face, 0, 0.66 * z), STEEL, ALONG_X)),
-        *seen(rod(0.07 * y, 0.006, (face, 0, 0.66 * z), (0.3, 0.7, 0.95), ALONG_X)),
-        *seen(
+        *visual(rod(0.11 * y, 0.004, (face, 0, 0.66 * z), STEEL, ALONG_X)),
+        *visual(rod(0.07 * y, 0.006, (face, 0, 0.66 * z), (0.3, 0.7, 0.95), ALONG_X)),
+        *visual(
             box((0.004, 0.10 * y, 0.02 * z), (face + 0.001, 0.2 * y * s, 0.56 * z), BLACK) for s in (-1, 1)
         ),
-        *seen(
+        *visual(
             box((0.004, 0.7 * y, 0.015 * z), (face + 0.001, 0, (0.08 + 0.06 * i) * z), BLACK)
             for i in range(7)
         ),
-        *seen(
+        *visual(
             box((0.03 * x, 0.002, 0.22 * z), ((-0.15 + 0.08 * i) * x, -y / 2 + 0.0009, 0.6 * z), BLACK)
             for i in range(4)
         ),
@@ -83,7 +85,7 @@ def laptop(x: float, y: float, z: float, colour: Colour) -> Parts:
     )
     screen = [
         box((0.02 * x, y, 0.98 * z), lid, colour, about("y", tilt)),
-        *seen(
+        *visual(
             box(
                 (0.004, 0.93 * y, 0.84 * z),
                 (lid[0] + 0.013 * x, 0, lid[2] + 0.01 * z),
@@ -94,15 +96,15 @@ def laptop(x: float, y: float, z: float, colour: Colour) -> Parts:
     ]
     return [
         slab(x * 0.86, y, 0, deck, colour),
-        *seen(box((0.4 * x, 0.88 * y, 0.002), (-0.08 * x, 0, deck), DARK)),
-        *seen(box((0.16 * x, 0.34 * y, 0.002), (0.28 * x, 0, deck), shade(colour, 0.8))),
+        *visual(box((0.4 * x, 0.88 * y, 0.002), (-0.08 * x, 0, deck), DARK)),
+        *visual(box((0.16 * x, 0.34 * y, 0.002), (0.28 * x, 0, deck), shade(colour, 0.8))),
         *moving(joint, screen),
     ]
 
 
 def keyboard(x: float, y: float, z: float, colour: Colour) -> Parts:
     """Rows of keys on a plate."""
-    keys = seen(
+    keys = visual(
         box(
             (0.15 * x, (0.5 * y if row == 4 else 0.052 * y), 0.5 * z),
             (x * (0.4 - 0.2 * (4 - row)), y * place, 0.75 * z),
@@ -119,10 +121,10 @@ def router(x: float, y: float, z: float, colour: Colour) -> Parts:
     body = 0.22 * z
     return [
         slab(x, y, 0, body, colour),
-        *seen(
+        *visual(
             rod(0.012 * z + 0.003, 0.9 * z, (-0.42 * x, side * 0.38 * y, 0.55 * z), DARK) for side in (-1, 1)
         ),
-        *seen(
+        *visual(
             box((0.004, 0.02, 0.2 * body), (x / 2, y * (0.08 * i - 0.2), body / 2), (0.3, 0.9, 0.4))
             for i in range(6)
         ),
@@ -133,8 +135,8 @@ def smartphone(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A slate with a bright screen and a lens."""
     return [
         slab(x, y, 0, z, colour),
-        *seen(box((0.93 * x, 0.9 * y, 0.001), (0, 0, z), (0.20, 0.42, 0.65))),
-        *seen(
+        *visual(box((0.93 * x, 0.9 * y, 0.001), (0, 0, z), (0.20, 0.42, 0.65))),
+        *visual(
             box((0.14 * x, 0.2 * y, 0.001), (-0.3 * x + 0.2 * x * i, 0.22 * y * j, z + 0.0005), WHITE)
             for i in range(4)
             for j in (-1, 1)
@@ -146,8 +148,8 @@ def tablet(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A big slate with a wide border and a button."""
     return [
         slab(x, y, 0, z, colour),
-        *seen(box((0.8 * x, 0.86 * y, 0.001), (-0.02 * x, 0, z), (0.30, 0.55, 0.75))),
-        *seen(rod(0.035 * x, 0.001, (0.44 * x, 0, z), GREY)),
+        *visual(box((0.8 * x, 0.86 * y, 0.001), (-0.02 * x, 0, z), (0.30, 0.55, 0.75))),
+        *visual(rod(0.035 * x, 0.001, (0.44 * x, 0, z), GREY)),
     ]
 
 
@@ -155,8 +157,8 @@ def printer(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A box with paper behind and a tray in front."""
     return [
         box((0.7 * x, y, 0.7 * z), (-0.05 * x, 0, 0.35 * z), colour),
-        *seen(box((0.02, 0.6 * y, 0.45 * z), (-0.34 * x, 0, 0.77 * z), WHITE, about("y", -0.25))),
-        *seen(box((0.25 * x, 0.65 * y, 0.03), (0.37 * x, 0, 0.2 * z), DARK)),
-        *seen(box((0.3 * x, 0.55 * y, 0.008), (0.33 * x, 0, 0.23 * z), WHITE)),
-        *seen(box((0.5 * x, 0.9 * y, 0.02), (-0.05 * x, 0, 0.7 * z), DARK)),
+        *visual(box((0.02, 0.6 * y, 0.45 * z), (-0.34 * x, 0, 0.77 * z), WHITE, about("y", -0.25))),
+        *visual(box((0.25 * x, 0.65 * y, 0.03), (0.37 * x, 0, 0.2 * z), DARK)),
+        *visual(box((0.3 * x, 0.55 * y, 0.008), (0.33 * x, 0, 0.23 * z), WHITE)),
+        *visual(box((0.5 * x, 0.9 * y, 0.02), (-0.05 * x, 0, 0.7 * z), DARK)),
     ]

@@ -29,7 +29,7 @@ from semmap.nodes.sim_node.models.parts import (
     moving,
     pill,
     rod,
-    seen,
+    visual,
 )
 
 
@@ -37,8 +37,8 @@ def crate(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A cardboard box, closed, with tape across the lid."""
     return [
         slab(x, y, 0, z, colour),
-        *seen(slab(0.14 * x, y + 0.001, 0.85 * z, z + 0.001, (0.85, 0.78, 0.60))),
-        *seen(box((x + 0.001, 0.25 * y, 0.16 * z), (0, 0.2 * y, 0.35 * z), PAPER)),
+        *visual(slab(0.14 * x, y + 0.001, 0.85 * z, z + 0.001, (0.85, 0.78, 0.60))),
+        *visual(box((x + 0.001, 0.25 * y, 0.16 * z), (0, 0.2 * y, 0.35 * z), PAPER)),
     ]
 
 
@@ -59,10 +59,10 @@ def cardboard_box(x: float, y: float, z: float, colour: Colour) -> Parts:
             range=(0.0, math.radians(210.0)),
             friction=0.02,
         )
-        flaps += moving(joint, [board, *seen(tape)])
+        flaps += moving(joint, [board, *visual(tape)])
     return [
         *hollow_box(x, y, z - wall - GAP_M, wall, colour),
-        *seen(box((0.001, 0.25 * y, 0.16 * z), (x / 2, 0.2 * y, 0.35 * z), PAPER)),
+        *visual(box((0.001, 0.25 * y, 0.16 * z), (x / 2, 0.2 * y, 0.35 * z), PAPER)),
         *flaps,
     ]
 
@@ -72,8 +72,8 @@ def bag(x: float, y: float, z: float, colour: Colour) -> Parts:
     body = 0.74 * z
     return [
         slab(x, y, 0, body, colour),
-        *seen(slab(0.86 * x, 0.94 * y, body, body + 0.004, shade(colour, 0.5))),
-        *seen(
+        *visual(slab(0.86 * x, 0.94 * y, body, body + 0.004, shade(colour, 0.5))),
+        *visual(
             part
             for s in (-1, 1)
             for part in (
@@ -89,10 +89,10 @@ def backpack(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A rounded sack with a pocket in front and straps behind."""
     return [
         box((0.55 * x, 0.96 * y, 0.82 * z), (-0.05 * x, 0, 0.41 * z), colour),
-        *seen(ball((0.55 * x, 0.96 * y, 0.4 * z), (-0.05 * x, 0, 0.8 * z), colour)),
-        *seen(box((0.24 * x, 0.72 * y, 0.36 * z), (0.34 * x, 0, 0.25 * z), shade(colour, 0.75))),
-        *seen(box((0.01, 0.6 * y, 0.012), (0.23 * x, 0, 0.62 * z), BRASS)),
-        *seen(
+        *visual(ball((0.55 * x, 0.96 * y, 0.4 * z), (-0.05 * x, 0, 0.8 * z), colour)),
+        *visual(box((0.24 * x, 0.72 * y, 0.36 * z), (0.34 * x, 0, 0.25 * z), shade(colour, 0.75))),
+        *visual(box((0.01, 0.6 * y, 0.012), (0.23 * x, 0, 0.62 * z), BRASS)),
+        *visual(
             pill(0.06 * x, 0.7 * z, (-0.42 * x, 0.28 * y * s, 0.45 * z), shade(colour, 0.5)) for s in (-1, 1)
         ),
     ]
@@ -103,7 +103,7 @@ def suitcase(x: float, y: float, z: float, colour: Colour) -> Parts:
     low, high = 0.05 * z, 0.78 * z
     middle, tall = (low + high) / 2, high - low
     ribs = {
-        side: seen(
+        side: visual(
             box((0.07 * x, 0.06 * y, 0.92 * tall), (side * 0.465 * x, y * k, middle), shade(colour, 1.25))
             for k in (-0.3, -0.1, 0.1, 0.3)
         )
@@ -133,8 +133,8 @@ def suitcase(x: float, y: float, z: float, colour: Colour) -> Parts:
             for i in (-1, 1)
             for j in (-1, 1)
         ),
-        *seen(rod(0.01, z - high, (-0.3 * x, 0.2 * y * s, (z + high) / 2), STEEL) for s in (-1, 1)),
-        *seen(box((0.03, 0.46 * y, 0.025), (-0.3 * x, 0, z - 0.0125), BLACK)),
+        *visual(rod(0.01, z - high, (-0.3 * x, 0.2 * y * s, (z + high) / 2), STEEL) for s in (-1, 1)),
+        *visual(box((0.03, 0.46 * y, 0.025), (-0.3 * x, 0, z - 0.0125), BLACK)),
     ]
 
 
@@ -143,10 +143,10 @@ def case(x: float, y: float, z: float, colour: Colour) -> Parts:
     body = 0.84 * z
     return [
         slab(x, y, 0, body, colour),
-        *seen(box((1.02 * x, 1.002 * y, 0.02), (0, 0, 0.6 * body), shade(colour, 0.6))),
-        *seen(box((0.01, 0.05 * y, 0.06 * z), (x / 2, 0.3 * y * s, 0.62 * body), BRASS) for s in (-1, 1)),
-        *seen(box((0.25 * x, 0.03, z - body), (0, 0.15 * y * s, (z + body) / 2), DARK) for s in (-1, 1)),
-        *seen(box((0.3 * x, 0.36 * y, 0.03), (0, 0, z - 0.015), DARK)),
+        *visual(box((1.02 * x, 1.002 * y, 0.02), (0, 0, 0.6 * body), shade(colour, 0.6))),
+        *visual(box((0.01, 0.05 * y, 0.06 * z), (x / 2, 0.3 * y * s, 0.62 * body), BRASS) for s in (-1, 1)),
+        *visual(box((0.25 * x, 0.03, z - body), (0, 0.15 * y * s, (z + body) / 2), DARK) for s in (-1, 1)),
+        *visual(box((0.3 * x, 0.36 * y, 0.03), (0, 0, z - 0.015), DARK)),
     ]
 
 
@@ -168,7 +168,7 @@ def bin_(x: float, y: float, z: float, colour: Colour) -> Parts:
     return [
         column(0.78 * radius, 0, 0.03 * z, colour),
         *ring((0.8 * radius, 0.98 * radius), 0.01 * z, rim, 0.006, colour),
-        *seen(ring((radius, radius), 0.88 * z, rim, 0.012, shade(colour, 0.7))),
+        *visual(ring((radius, radius), 0.88 * z, rim, 0.012, shade(colour, 0.7))),
         *moving(joint, cover),
     ]
 
@@ -180,7 +180,7 @@ def bucket(x: float, y: float, z: float, colour: Colour) -> Parts:
     corners = [
         (0.95 * radius * math.cos(a), rim + rise * math.sin(a)) for a in (math.pi * i / 8 for i in range(9))
     ]
-    bail = seen(
+    bail = visual(
         box(
             (0.008, 0.008, math.hypot(y1 - y0, z1 - z0) + 0.004),
             (0, (y0 + y1) / 2, (z0 + z1) / 2),
@@ -192,7 +192,7 @@ def bucket(x: float, y: float, z: float, colour: Colour) -> Parts:
     return [
         column(0.7 * radius, 0, 0.03 * z, colour),
         *ring((0.72 * radius, 0.98 * radius), 0.01 * z, rim, 0.006, colour),
-        *seen(ring((radius, radius), 0.93 * rim, rim, 0.01, shade(colour, 0.8))),
+        *visual(ring((radius, radius), 0.93 * rim, rim, 0.01, shade(colour, 0.8))),
         *bail,
     ]
 
@@ -204,7 +204,7 @@ def basket(x: float, y: float, z: float, colour: Colour) -> Parts:
     outer = [
         part
         for band in range(bands)
-        for part in seen(
+        for part in visual(
             box((size_x, size_y, 0.3 * z / bands), (px, py, z * (band + 0.5) / bands), shade(colour, 0.72))
             for size_x, size_y, px, py in (
                 (0.004, y, x / 2, 0.0),
@@ -214,5 +214,5 @@ def basket(x: float, y: float, z: float, colour: Colour) -> Parts:
             )
         )
     ]
-    grips = seen(box((0.3 * x, 0.02, 0.06 * z), (0, (y / 2 + 0.004) * s, 0.88 * z), DARK) for s in (-1, 1))
+    grips = visual(box((0.3 * x, 0.02, 0.06 * z), (0, (y / 2 + 0.004) * s, 0.88 * z), DARK) for s in (-1, 1))
     return [*hollow, *outer, *grips]

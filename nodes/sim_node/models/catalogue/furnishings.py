@@ -12,10 +12,10 @@ from semmap.nodes.sim_node.models.parts import (
     Parts,
     ball,
     box,
-    felt,
+    collision,
     pill,
     rod,
-    seen,
+    visual,
 )
 
 
@@ -41,10 +41,10 @@ def board(x: float, y: float, z: float, colour: Colour) -> Parts:
     ]
     return [
         box((0.6 * x, y, z), (-0.2 * x, 0, z / 2), colour),
-        *seen(box((0.02 * x + 0.002, 0.95 * y, 0.92 * z), (0.1 * x, 0, 0.5 * z), WHITE)),
-        *seen([*curve, *lines, *pens]),
-        *seen(box((0.9 * x, 0.5 * y, 0.02), (0.05 * x, 0, 0.02), GREY)),
-        *seen(box((0.03, 0.10, 0.03), (0.25 * x, 0.2 * y, 0.045), (0.95, 0.80, 0.25))),
+        *visual(box((0.02 * x + 0.002, 0.95 * y, 0.92 * z), (0.1 * x, 0, 0.5 * z), WHITE)),
+        *visual([*curve, *lines, *pens]),
+        *visual(box((0.9 * x, 0.5 * y, 0.02), (0.05 * x, 0, 0.02), GREY)),
+        *visual(box((0.03, 0.10, 0.03), (0.25 * x, 0.2 * y, 0.045), (0.95, 0.80, 0.25))),
     ]
 
 
@@ -53,9 +53,9 @@ def clock(x: float, y: float, z: float, colour: Colour) -> Parts:
     radius = min(y, z) / 2
     return [
         rod(radius, 0.9 * x, (-0.05 * x, 0, z / 2), colour, ALONG_X),
-        *seen(rod(0.88 * radius, 0.05 * x, (0.42 * x, 0, z / 2), PAPER, ALONG_X)),
-        *seen(box((0.05 * x, 0.05 * radius, 0.7 * radius), (0.47 * x, 0, z / 2 + 0.3 * radius), BLACK)),
-        *seen(box((0.05 * x, 0.5 * radius, 0.06 * radius), (0.47 * x, 0.22 * radius, z / 2), BLACK)),
+        *visual(rod(0.88 * radius, 0.05 * x, (0.42 * x, 0, z / 2), PAPER, ALONG_X)),
+        *visual(box((0.05 * x, 0.05 * radius, 0.7 * radius), (0.47 * x, 0, z / 2 + 0.3 * radius), BLACK)),
+        *visual(box((0.05 * x, 0.5 * radius, 0.06 * radius), (0.47 * x, 0.22 * radius, z / 2), BLACK)),
     ]
 
 
@@ -70,17 +70,20 @@ def pillow(x: float, y: float, z: float, colour: Colour) -> Parts:
         box((x - 2 * radius, y - 2 * radius, 2 * radius), (0, 0, z / 2), border),
         ball((0.96 * x, 0.96 * y, 0.96 * z), (0, 0, z / 2), colour),
     ]
-    return [*seen([*edges, *inside]), *felt(box((0.9 * x, 0.9 * y, z), (0, 0, z / 2), colour))]
+    return [*visual([*edges, *inside]), *collision(box((0.9 * x, 0.9 * y, z), (0, 0, z / 2), colour))]
 
 
 def cushion(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A pillow that a button holds together."""
     return [
         *pillow(x, y, z, colour),
-        *seen(ball((0.09 * x, 0.09 * x, 0.08 * z), (0, 0, 0.96 * z), shade(colour, 0.6))),
+        *visual(ball((0.09 * x, 0.09 * x, 0.08 * z), (0, 0, 0.96 * z), shade(colour, 0.6))),
     ]
 
 
 def rug(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A flat rug with a border."""
-    return [slab(x, y, 0, z, colour), *seen(slab(0.86 * x, 0.9 * y, 0.5 * z, z + 0.001, shade(colour, 1.4)))]
+    return [
+        slab(x, y, 0, z, colour),
+        *visual(slab(0.86 * x, 0.9 * y, 0.5 * z, z + 0.001, shade(colour, 1.4))),
+    ]

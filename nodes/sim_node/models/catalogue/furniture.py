@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from semmap.nodes.sim_node.models.forms import DARK, STEEL, WHITE, column, legs, shade, slab
 from semmap.nodes.sim_node.models.openings import cabinet_box, pull_out, wall_of
-from semmap.nodes.sim_node.models.parts import ALONG_X, Colour, Parts, ball, box, rod, seen
+from semmap.nodes.sim_node.models.parts import ALONG_X, Colour, Parts, ball, box, rod, visual
 
 
 def chair(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -51,7 +51,7 @@ def bench(x: float, y: float, z: float, colour: Colour) -> Parts:
 def table(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A top on four legs, with an apron under it."""
     thick = min(0.04, z / 4)
-    apron = seen(slab(0.86 * x, 0.9 * y, z - thick - min(0.07, z / 6), z - thick, shade(colour, 0.8)))
+    apron = visual(slab(0.86 * x, 0.9 * y, z - thick - min(0.07, z / 6), z - thick, shade(colour, 0.8)))
     return [
         slab(x, y, z - thick, z, colour),
         *legs(0.94 * x, 0.94 * y, z - thick, 0.06, shade(colour, 0.85)),
@@ -74,7 +74,7 @@ def desk(x: float, y: float, z: float, colour: Colour) -> Parts:
             (0.45 * x - deep / 2, left, (0.17 + 0.3 * row) * z),
             colour,
             panel=(0.86 * block, 0.24 * z),
-            face=seen(rod(0.012, 0.03, (0.45 * x + 0.02, left, (0.17 + 0.3 * row) * z), STEEL, ALONG_X)),
+            face=visual(rod(0.012, 0.03, (0.45 * x + 0.02, left, (0.17 + 0.3 * row) * z), STEEL, ALONG_X)),
         )
     ]
     posts = [
@@ -94,13 +94,13 @@ def bed(x: float, y: float, z: float, colour: Colour) -> Parts:
     pillows = [
         part
         for side in (-1, 1)
-        for part in seen(ball((0.4, 0.38 * y, 0.14), (-x / 2 + 0.32, side * 0.24 * y, lying + 0.03), WHITE))
+        for part in visual(ball((0.4, 0.38 * y, 0.14), (-x / 2 + 0.32, side * 0.24 * y, lying + 0.03), WHITE))
     ]
     return [
         box((x, y, 0.6 * deck), (0, 0, 0.7 * deck), colour),
         *legs(x, y, 0.4 * deck, 0.07, colour),
         box((x - 0.06, 0.97 * y, lying - deck), (0.02, 0, (deck + lying) / 2), WHITE),
-        *seen(box((0.62 * x, 0.985 * y, 0.05), (0.17 * x, 0, lying - 0.01), (0.35, 0.45, 0.65))),
+        *visual(box((0.62 * x, 0.985 * y, 0.05), (0.17 * x, 0, lying - 0.01), (0.35, 0.45, 0.65))),
         box((0.05, y, z - deck), (-(x - 0.05) / 2, 0, (z + deck) / 2), colour),
         *pillows,
     ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from semmap.nodes.sim_node.models.forms import BLACK, BRASS, DARK, column, turned
-from semmap.nodes.sim_node.models.parts import Colour, Parts, ball, felt, seen
+from semmap.nodes.sim_node.models.parts import Colour, Parts, ball, collision, visual
 
 
 def lamp(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -15,7 +15,7 @@ def lamp(x: float, y: float, z: float, colour: Colour) -> Parts:
         column(0.8 * radius, 0, foot, DARK),
         column(max(0.05 * radius, 0.008), foot, z - 0.02, BRASS),
         *turned([(radius, shade_low), (0.6 * radius, z)], colour, steps=10),
-        *felt(column(0.85 * radius, shade_low, z, colour)),
+        *collision(column(0.85 * radius, shade_low, z, colour)),
     ]
 
 
@@ -28,9 +28,9 @@ def hanging_lamp(x: float, y: float, z: float, colour: Colour) -> Parts:
             colour,
             steps=5,
         ),
-        *felt(column(0.8 * radius, 0, 0.45 * z, colour)),
-        *seen(ball((0.5 * radius, 0.5 * radius, 0.2 * z), (0, 0, 0.1 * z), (1.0, 0.95, 0.7))),
-        *seen(column(0.012, 0.45 * z, z, DARK)),
+        *collision(column(0.8 * radius, 0, 0.45 * z, colour)),
+        *visual(ball((0.5 * radius, 0.5 * radius, 0.2 * z), (0, 0, 0.1 * z), (1.0, 0.95, 0.7))),
+        *visual(column(0.012, 0.45 * z, z, DARK)),
     ]
 
 
@@ -40,6 +40,6 @@ def candle(x: float, y: float, z: float, colour: Colour) -> Parts:
     return [
         column(radius, 0, 0.06 * z, BRASS),
         column(0.5 * radius, 0.06 * z, 0.8 * z, colour),
-        *seen(column(0.05 * radius, 0.8 * z, 0.86 * z, BLACK)),
-        *seen(ball((0.28 * radius, 0.28 * radius, 0.16 * z), (0, 0, 0.92 * z), (1.0, 0.75, 0.2))),
+        *visual(column(0.05 * radius, 0.8 * z, 0.86 * z, BLACK)),
+        *visual(ball((0.28 * radius, 0.28 * radius, 0.16 * z), (0, 0, 0.92 * z), (1.0, 0.75, 0.2))),
     ]

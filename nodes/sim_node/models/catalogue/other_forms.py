@@ -19,11 +19,11 @@ from semmap.nodes.sim_node.models.parts import (
     about,
     ball,
     box,
-    felt,
+    collision,
     moving,
     pill,
     rod,
-    seen,
+    visual,
 )
 
 
@@ -47,12 +47,12 @@ def packet(x: float, y: float, z: float, colour: Colour) -> Parts:
         )
         middle = side * (y / 4 + GAP_M / 2)
         board = box((x, wide, wall), (0.0, middle, z - wall / 2), shade(colour, 0.9))
-        flaps += moving(joint, [board, *seen(box((0.6 * x, 0.6 * wide, thin), (0.0, middle, z), PAPER))])
+        flaps += moving(joint, [board, *visual(box((0.6 * x, 0.6 * wide, thin), (0.0, middle, z), PAPER))])
     return [
         *hollow_box(x, y, body, wall, colour),
-        *seen(box((thin, 0.9 * y, 0.3 * body), (s * x / 2, 0.0, 0.68 * body), PAPER) for s in (-1, 1)),
-        *seen(box((thin, 0.9 * y, 0.12 * body), (s * x / 2, 0.0, 0.2 * body), dark) for s in (-1, 1)),
-        *seen(box((0.7 * x, thin, 0.4 * body), (0.0, s * y / 2, 0.5 * body), dark) for s in (-1, 1)),
+        *visual(box((thin, 0.9 * y, 0.3 * body), (s * x / 2, 0.0, 0.68 * body), PAPER) for s in (-1, 1)),
+        *visual(box((thin, 0.9 * y, 0.12 * body), (s * x / 2, 0.0, 0.2 * body), dark) for s in (-1, 1)),
+        *visual(box((0.7 * x, thin, 0.4 * body), (0.0, s * y / 2, 0.5 * body), dark) for s in (-1, 1)),
         *flaps,
     ]
 
@@ -61,11 +61,11 @@ def standing_book(x: float, y: float, z: float, colour: Colour) -> Parts:
     """Upright, its spine with a title in front."""
     board = min(0.003, 0.15 * y)
     return [
-        *seen(box((x, board, z), (0.0, s * (y - board) / 2, z / 2), colour) for s in (-1, 1)),
-        *seen(box((0.96 * x, y - 2 * board, 0.97 * z), (0.0, 0.0, z / 2), PAPER)),
-        *seen(box((0.05 * x, y, z), (0.475 * x, 0.0, z / 2), colour)),
-        *seen(box((0.001, 0.6 * y, 0.4 * z), (x / 2, 0.0, 0.6 * z), shade(colour, 1.8))),
-        *felt(slab(x, y, 0.0, z, colour)),
+        *visual(box((x, board, z), (0.0, s * (y - board) / 2, z / 2), colour) for s in (-1, 1)),
+        *visual(box((0.96 * x, y - 2 * board, 0.97 * z), (0.0, 0.0, z / 2), PAPER)),
+        *visual(box((0.05 * x, y, z), (0.475 * x, 0.0, z / 2), colour)),
+        *visual(box((0.001, 0.6 * y, 0.4 * z), (x / 2, 0.0, 0.6 * z), shade(colour, 1.8))),
+        *collision(slab(x, y, 0.0, z, colour)),
     ]
 
 
@@ -73,7 +73,7 @@ def plain_ball(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A ball with a seam."""
     return [
         ball((x, y, z), (0.0, 0.0, z / 2), colour),
-        *seen(rod(0.503 * min(x, y), 0.02 * z, (0.0, 0.0, z / 2), shade(colour, 0.6), about("x", 0.6))),
+        *visual(rod(0.503 * min(x, y), 0.02 * z, (0.0, 0.0, z / 2), shade(colour, 0.6), about("x", 0.6))),
     ]
 
 
@@ -94,7 +94,7 @@ def flat_bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
     return [
         slab(*middle, 0.0, body, colour),
         *(part for end in ends for part in end),
-        *seen(ball((0.9 * x, 0.9 * y, 0.34 * z), (0.0, 0.0, 0.70 * z), colour)),
+        *visual(ball((0.9 * x, 0.9 * y, 0.34 * z), (0.0, 0.0, 0.70 * z), colour)),
         column(cap, body, z, shade(colour, 0.5)),
     ]
 
@@ -107,10 +107,10 @@ def spray_bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
         [
             column(radius, 0.0, 0.55 * z, colour),
             *turned([(radius, 0.55 * z), (neck, 0.78 * z)], colour, steps=6),
-            *felt(column(neck, 0.55 * z, 0.8 * z, colour)),
+            *collision(column(neck, 0.55 * z, 0.8 * z, colour)),
             column(neck, 0.76 * z, 0.86 * z, dark),
-            *seen(box((x - 0.6 * radius, 0.7 * neck, 0.12 * z), (x / 2 - radius / 2, 0.0, 0.93 * z), dark)),
-            *seen(
+            *visual(box((x - 0.6 * radius, 0.7 * neck, 0.12 * z), (x / 2 - radius / 2, 0.0, 0.93 * z), dark)),
+            *visual(
                 box(
                     (0.2 * radius, 0.5 * neck, 0.16 * z),
                     (0.9 * radius, 0.0, 0.80 * z),
@@ -130,7 +130,7 @@ def drink_can(x: float, y: float, z: float, colour: Colour) -> Parts:
         column(radius, 0.06 * z, 0.9 * z, colour),
         *turned([(0.8 * radius, 0.0), (radius, 0.06 * z)], colour, steps=3),
         *turned([(radius, 0.9 * z), (0.8 * radius, z)], colour, steps=3),
-        *felt(column(0.9 * radius, 0.0, z, colour)),
+        *collision(column(0.9 * radius, 0.0, z, colour)),
     ]
 
 
@@ -138,7 +138,7 @@ def tumbler(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A cup without a handle, wider at the top, with a floor."""
     radius, wall = min(x, y) / 2, 0.07 * min(x, y) / 2
     shell = glass(x, y, z, colour)
-    return [*shell, *seen(column(0.76 * radius, 0.0, 2 * wall, shade(colour, 0.8)))]
+    return [*shell, *visual(column(0.76 * radius, 0.0, 2 * wall, shade(colour, 0.8)))]
 
 
 def wine_glass(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -149,7 +149,7 @@ def wine_glass(x: float, y: float, z: float, colour: Colour) -> Parts:
         column(0.9 * radius, 0.0, 0.02 * z, colour),
         column(0.1 * radius, 0.0, 0.5 * z, colour),
         *turned(bowl, colour, steps=6),
-        *felt(column(0.9 * radius, 0.5 * z, z, colour)),
+        *collision(column(0.9 * radius, 0.5 * z, z, colour)),
     ]
 
 
@@ -159,12 +159,12 @@ def teapot(x: float, y: float, z: float, colour: Colour) -> Parts:
     body = (2 * radius, 2 * radius, 0.82 * z)
     return [
         ball(body, (0.0, 0.0, 0.41 * z), colour),
-        *seen(pill(0.16 * radius, 0.24 * y, (0.0, 0.5 * y - 0.1 * y, 0.55 * z), colour, about("x", -0.7))),
-        *seen(pill(0.12 * radius, 0.45 * z, (0.0, 0.1 * radius - 0.5 * y, 0.5 * z), colour)),
-        *seen(rod(0.1 * radius, 0.2 * y, (0.0, -0.38 * y, 0.66 * z), colour, about("x", math.pi / 2))),
-        *seen(rod(0.1 * radius, 0.2 * y, (0.0, -0.38 * y, 0.32 * z), colour, about("x", math.pi / 2))),
-        *seen(column(0.5 * radius, 0.75 * z, 0.88 * z, shade(colour, 0.9))),
-        *seen(ball((0.3 * radius, 0.3 * radius, 0.14 * z), (0.0, 0.0, 0.93 * z), colour)),
+        *visual(pill(0.16 * radius, 0.24 * y, (0.0, 0.5 * y - 0.1 * y, 0.55 * z), colour, about("x", -0.7))),
+        *visual(pill(0.12 * radius, 0.45 * z, (0.0, 0.1 * radius - 0.5 * y, 0.5 * z), colour)),
+        *visual(rod(0.1 * radius, 0.2 * y, (0.0, -0.38 * y, 0.66 * z), colour, about("x", math.pi / 2))),
+        *visual(rod(0.1 * radius, 0.2 * y, (0.0, -0.38 * y, 0.32 * z), colour, about("x", math.pi / 2))),
+        *visual(column(0.5 * radius, 0.75 * z, 0.88 * z, shade(colour, 0.9))),
+        *visual(ball((0.3 * radius, 0.3 * radius, 0.14 * z), (0.0, 0.0, 0.93 * z), colour)),
     ]
 
 
@@ -175,7 +175,7 @@ def skillet(x: float, y: float, z: float, colour: Colour) -> Parts:
     return [
         *shifted([column(0.9 * radius, 0.0, 0.12 * z, colour)], x=side),
         *shifted(turned([(0.86 * radius, 0.1 * z), (radius, 0.85 * z)], shade(colour, 1.2), steps=4), x=side),
-        *seen(
+        *visual(
             pill(
                 0.09 * radius,
                 x - 2 * radius,
@@ -189,4 +189,4 @@ def skillet(x: float, y: float, z: float, colour: Colour) -> Parts:
 
 def steady_teapot(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A teapot on an invisible colliding foot."""
-    return [*teapot(x, y, z, colour), *felt(column(0.25 * min(x, 0.62 * y), 0.0, 0.2 * z, colour))]
+    return [*teapot(x, y, z, colour), *collision(column(0.25 * min(x, 0.62 * y), 0.0, 0.2 * z, colour))]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from semmap.nodes.sim_node.models.forms import DARK
-from semmap.nodes.sim_node.models.parts import Colour, Parts, about, ball, box, felt, pill, seen
+from semmap.nodes.sim_node.models.parts import Colour, Parts, about, ball, box, collision, pill, visual
 
 
 def figure(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -13,18 +13,18 @@ def figure(x: float, y: float, z: float, colour: Colour) -> Parts:
     torso_radius = 0.3 * y
     limbs = []
     for side in (-1, 1):
-        limbs += seen(pill(0.17 * y, hip, (0, side * 0.19 * y, hip / 2), (0.2, 0.25, 0.4)))
-        limbs += seen(
+        limbs += visual(pill(0.17 * y, hip, (0, side * 0.19 * y, hip / 2), (0.2, 0.25, 0.4)))
+        limbs += visual(
             pill(
                 0.11 * y, 0.42 * z, (0, side * 0.39 * y, shoulder - 0.19 * z), skin, about("x", side * -0.12)
             )
         )
-        limbs += seen(box((0.9 * x, 0.24 * y, 0.05 * z), (0.02, side * 0.19 * y, 0.025 * z), DARK))
+        limbs += visual(box((0.9 * x, 0.24 * y, 0.05 * z), (0.02, side * 0.19 * y, 0.025 * z), DARK))
     return [
         *limbs,
-        *seen(pill(torso_radius, shoulder - hip + 0.12 * z, (0, 0, (shoulder + hip) / 2), colour)),
-        *seen(pill(0.09 * y, 0.12 * z, (0, 0, 0.85 * z), skin)),
-        *seen(ball((0.11 * z, 0.1 * z, head), (0, 0, z - head / 2), skin)),
-        *seen(ball((0.115 * z, 0.105 * z, 0.07 * z), (-0.008, 0, z - 0.034 * z), (0.25, 0.17, 0.1))),
-        *felt(box((0.8 * x, 0.9 * y, z), (0.02, 0, z / 2), colour)),
+        *visual(pill(torso_radius, shoulder - hip + 0.12 * z, (0, 0, (shoulder + hip) / 2), colour)),
+        *visual(pill(0.09 * y, 0.12 * z, (0, 0, 0.85 * z), skin)),
+        *visual(ball((0.11 * z, 0.1 * z, head), (0, 0, z - head / 2), skin)),
+        *visual(ball((0.115 * z, 0.105 * z, 0.07 * z), (-0.008, 0, z - 0.034 * z), (0.25, 0.17, 0.1))),
+        *collision(box((0.8 * x, 0.9 * y, z), (0.02, 0, z / 2), colour)),
     ]

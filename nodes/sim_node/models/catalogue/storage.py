@@ -24,10 +24,10 @@ from semmap.nodes.sim_node.models.parts import (
     about,
     ball,
     box,
-    felt,
+    collision,
     product,
     rod,
-    seen,
+    visual,
 )
 
 
@@ -67,7 +67,7 @@ def _with_doors(x: float, y: float, z: float, colour: Colour, *, foot: float, pa
                 deep=0.004,
             )
         ]
-        knob = seen(ball((0.03,) * 3, (x / 2 - 0.002, side * 0.03, z * 0.52), BRASS))
+        knob = visual(ball((0.03,) * 3, (x / 2 - 0.002, side * 0.03, z * 0.52), BRASS))
         doors += side_door(
             name,
             (0.012, leaf, tall),
@@ -148,7 +148,7 @@ def drawer(x: float, y: float, z: float, colour: Colour) -> Parts:
             (x / 2 - 0.032 - 0.47 * (case[0] - wall), 0, height),
             colour,
             panel=(0.92 * y, 0.86 * pitch),
-            face=seen(box((0.02, 0.3 * y, 0.02), (x / 2 - 0.01, 0, height), STEEL)),
+            face=visual(box((0.02, 0.3 * y, 0.02), (x / 2 - 0.01, 0, height), STEEL)),
         )
     body = cabinet_box(case, (-0.016, 0, z / 2), colour)
     return [*body, *pulled]
@@ -158,7 +158,7 @@ def bedstand(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A small table with one drawer and an open shelf."""
     deck = 0.03
     panel = front(x / 2, 0.86 * y, 0.26 * z, (0, 0.78 * z), shade(colour, 1.2), deep=0.012)
-    knob = seen(ball((0.03,) * 3, (x / 2 - 0.002, 0, 0.78 * z), BRASS))
+    knob = visual(ball((0.03,) * 3, (x / 2 - 0.002, 0, 0.78 * z), BRASS))
     return [
         *closed_box((x - 0.012, y, 0.4 * z), (-0.006, 0, 0.8 * z), colour),
         *legs(x - 0.02, y, 0.6 * z, 0.035, shade(colour, 0.8)),
@@ -197,11 +197,11 @@ def clothes_rack(x: float, y: float, z: float, colour: Colour) -> Parts:
         for side in (-1, 1)
         for turn in (-1, 1)
     ]
-    lines = seen(
+    lines = visual(
         rod(0.006, 0.96 * y, (offset * x, 0, 0.985 * z), STEEL, ALONG_Y)
         for offset in (-0.4, -0.2, 0, 0.2, 0.4)
     )
-    feet = felt(rod(0.012, 0.98 * y, (side * lean, 0, 0.012), colour, ALONG_Y) for side in (-1, 1))
+    feet = collision(rod(0.012, 0.98 * y, (side * lean, 0, 0.012), colour, ALONG_Y) for side in (-1, 1))
     rails = [box((x, 0.02, 0.02), (0, side * 0.48 * y, z - 0.01), colour) for side in (-1, 1)]
     return [*frames, *lines, *feet, *rails]
 
@@ -209,7 +209,7 @@ def clothes_rack(x: float, y: float, z: float, colour: Colour) -> Parts:
 def coat_rack(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A pole on four feet with a crown of pegs and a coat."""
     spread = [box((x, 0.04, 0.03), (0, 0, 0.015), colour), box((0.04, y, 0.03), (0, 0, 0.015), colour)]
-    pegs = seen(
+    pegs = visual(
         rod(
             0.009,
             0.22,
@@ -219,7 +219,7 @@ def coat_rack(x: float, y: float, z: float, colour: Colour) -> Parts:
         )
         for a in (i * math.pi / 3 for i in range(6))
     )
-    coat = seen(ball((0.16, 0.30, 0.42 * z), (0.12, 0, 0.68 * z), (0.30, 0.36, 0.30)))
+    coat = visual(ball((0.16, 0.30, 0.42 * z), (0.12, 0, 0.68 * z), (0.30, 0.36, 0.30)))
     return [*spread, column(0.022, 0.03, z, colour), *pegs, *coat]
 
 
@@ -227,7 +227,7 @@ def shoe_rack(x: float, y: float, z: float, colour: Colour) -> Parts:
     """Two slanting shelves between sides, with shoes on them."""
     sides = [box((x, 0.02, z), (0, side * (y - 0.02) / 2, z / 2), colour) for side in (-1, 1)]
     decks = [box((x, y - 0.04, 0.02), (0, 0, height * z), shade(colour, 1.2)) for height in (0.12, 0.55)]
-    pairs = seen(
+    pairs = visual(
         ball((0.75 * x, 0.09, 0.10), (0, y * k, (height + 0.12) * z), tone)
         for height in (0.12, 0.55)
         for k, tone in ((-0.32, DARK), (-0.17, DARK), (0.1, (0.6, 0.2, 0.2)), (0.25, (0.6, 0.2, 0.2)))

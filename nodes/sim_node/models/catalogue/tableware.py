@@ -21,10 +21,10 @@ from semmap.nodes.sim_node.models.parts import (
     about,
     ball,
     box,
-    felt,
+    collision,
     pill,
     rod,
-    seen,
+    visual,
 )
 
 
@@ -34,9 +34,9 @@ def cup(x: float, y: float, z: float, colour: Colour) -> Parts:
     shift = -(y / 2 - radius)
     wall = 0.1 * radius
     body = [
-        *seen(column(0.8 * radius, 0, 2 * wall, shade(colour, 0.85))),
-        *seen(ring((0.85 * radius, radius), wall, z, wall, colour)),
-        *felt(column(0.9 * radius, 0, z, colour)),
+        *visual(column(0.8 * radius, 0, 2 * wall, shade(colour, 0.85))),
+        *visual(ring((0.85 * radius, radius), wall, z, wall, colour)),
+        *collision(column(0.9 * radius, 0, z, colour)),
     ]
     grip = y / 2 - (shift + radius)
     handle = [
@@ -48,7 +48,7 @@ def cup(x: float, y: float, z: float, colour: Colour) -> Parts:
     ]
     return [
         *shifted(body, y=shift),
-        *seen(handle),
+        *visual(handle),
     ]
 
 
@@ -57,9 +57,9 @@ def glass(x: float, y: float, z: float, colour: Colour) -> Parts:
     radius = min(x, y) / 2
     wall = 0.08 * radius
     return [
-        *seen(column(0.75 * radius, 0, 0.08 * z, shade(colour, 0.8))),
-        *seen(ring((0.78 * radius, radius), 0.04 * z, z, wall, colour)),
-        *felt(column(0.85 * radius, 0, z, colour)),
+        *visual(column(0.75 * radius, 0, 0.08 * z, shade(colour, 0.8))),
+        *visual(ring((0.78 * radius, radius), 0.04 * z, z, wall, colour)),
+        *collision(column(0.85 * radius, 0, z, colour)),
     ]
 
 
@@ -69,9 +69,9 @@ def bowl(x: float, y: float, z: float, colour: Colour) -> Parts:
     wall = min(0.006, 0.1 * radius)
     return [
         column(0.5 * radius, 0, 0.15 * z, colour),
-        *seen(ring((0.48 * radius, 0.82 * radius), 0.04 * z, 0.5 * z, wall, shade(colour, 0.9))),
-        *seen(ring((0.8 * radius, radius), 0.45 * z, z, wall, colour)),
-        *felt(ring((0.55 * radius, 0.98 * radius), 0.1 * z, z, wall, colour, count=8)),
+        *visual(ring((0.48 * radius, 0.82 * radius), 0.04 * z, 0.5 * z, wall, shade(colour, 0.9))),
+        *visual(ring((0.8 * radius, radius), 0.45 * z, z, wall, colour)),
+        *collision(ring((0.55 * radius, 0.98 * radius), 0.1 * z, z, wall, colour, count=8)),
     ]
 
 
@@ -80,8 +80,8 @@ def plate(x: float, y: float, z: float, colour: Colour) -> Parts:
     radius = min(x, y) / 2
     return [
         column(0.65 * radius, 0, 0.5 * z, shade(colour, 0.92)),
-        *seen(ring((0.65 * radius, radius), 0.1 * z, z, 0.004, colour, count=16)),
-        *felt(column(0.95 * radius, 0.4 * z, 0.7 * z, colour)),
+        *visual(ring((0.65 * radius, radius), 0.1 * z, z, 0.004, colour, count=16)),
+        *collision(column(0.95 * radius, 0.4 * z, 0.7 * z, colour)),
     ]
 
 
@@ -90,8 +90,8 @@ def can(x: float, y: float, z: float, colour: Colour) -> Parts:
     radius = min(x, y) / 2
     return [
         column(radius, 0, z, STEEL),
-        *seen(column(1.015 * radius, 0.1 * z, 0.9 * z, colour)),
-        *seen(column(0.85 * radius, z, z + 0.001, shade(STEEL, 0.8))),
+        *visual(column(1.015 * radius, 0.1 * z, 0.9 * z, colour)),
+        *visual(column(0.85 * radius, z, z + 0.001, shade(STEEL, 0.8))),
     ]
 
 
@@ -101,11 +101,11 @@ def bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
     neck = 0.36 * radius
     return [
         column(radius, 0, 0.58 * z, colour),
-        *seen(column(1.01 * radius, 0.16 * z, 0.46 * z, WHITE)),
+        *visual(column(1.01 * radius, 0.16 * z, 0.46 * z, WHITE)),
         *turned([(radius, 0.58 * z), (neck, 0.78 * z), (neck, 0.94 * z)], colour, steps=8),
-        *seen(column(1.25 * neck, 0.92 * z, z, shade(colour, 0.5))),
-        *felt(column(0.6 * radius, 0.58 * z, 0.75 * z, colour)),
-        *felt(column(neck, 0.75 * z, z, colour)),
+        *visual(column(1.25 * neck, 0.92 * z, z, shade(colour, 0.5))),
+        *collision(column(0.6 * radius, 0.58 * z, 0.75 * z, colour)),
+        *collision(column(neck, 0.75 * z, z, colour)),
     ]
 
 
@@ -116,7 +116,7 @@ def jar(x: float, y: float, z: float, colour: Colour) -> Parts:
         column(radius, 0, 0.78 * z, colour),
         *turned([(radius, 0.78 * z), (0.82 * radius, 0.84 * z)], colour, steps=3),
         column(0.88 * radius, 0.82 * z, z, (0.75, 0.2, 0.15)),
-        *seen(column(1.01 * radius, 0.2 * z, 0.6 * z, WHITE)),
+        *visual(column(1.01 * radius, 0.2 * z, 0.6 * z, WHITE)),
     ]
 
 
@@ -134,7 +134,9 @@ def tray(x: float, y: float, z: float, colour: Colour) -> Parts:
             box((wall, y, z - floor), (s * (x - wall) / 2, 0, (z + floor) / 2), shade(colour, 0.8))
             for s in (-1, 1)
         ),
-        *seen(box((0.3 * x, 1.01 * wall, 0.4 * z), (0, s * (y - wall) / 2, 0.75 * z), DARK) for s in (-1, 1)),
+        *visual(
+            box((0.3 * x, 1.01 * wall, 0.4 * z), (0, s * (y - wall) / 2, 0.75 * z), DARK) for s in (-1, 1)
+        ),
     ]
 
 
@@ -143,10 +145,10 @@ def pot(x: float, y: float, z: float, colour: Colour) -> Parts:
     radius = min(x / 2, 0.4 * y)
     return [
         column(radius, 0, 0.78 * z, colour),
-        *seen(column(1.03 * radius, 0.76 * z, 0.82 * z, shade(colour, 0.8))),
-        *seen(ball((1.96 * radius, 1.96 * radius, 0.24 * z), (0, 0, 0.8 * z), shade(colour, 1.15))),
-        *seen(ball((0.03, 0.03, 0.12 * z), (0, 0, 0.94 * z), BLACK)),
-        *seen(
+        *visual(column(1.03 * radius, 0.76 * z, 0.82 * z, shade(colour, 0.8))),
+        *visual(ball((1.96 * radius, 1.96 * radius, 0.24 * z), (0, 0, 0.8 * z), shade(colour, 1.15))),
+        *visual(ball((0.03, 0.03, 0.12 * z), (0, 0, 0.94 * z), BLACK)),
+        *visual(
             box((0.5 * radius, y / 2 - radius, 0.07 * z), (0, s * (y / 2 + radius) / 2, 0.66 * z), BLACK)
             for s in (-1, 1)
         ),
@@ -164,7 +166,7 @@ def pan(x: float, y: float, z: float, colour: Colour) -> Parts:
     grip = x - 2 * radius
     return [
         *shifted(body, x=middle),
-        *seen(box((grip, 0.12 * radius, 0.25 * z), ((x - grip) / 2, 0, 0.8 * z), BLACK)),
+        *visual(box((grip, 0.12 * radius, 0.25 * z), ((x - grip) / 2, 0, 0.8 * z), BLACK)),
     ]
 
 
@@ -175,12 +177,12 @@ def pitcher(x: float, y: float, z: float, colour: Colour) -> Parts:
         *turned(
             [(0.7 * radius, 0), (radius, 0.35 * z), (0.6 * radius, 0.78 * z), (0.72 * radius, z)], colour
         ),
-        *felt(column(0.75 * radius, 0, z, colour)),
-        *seen(
+        *collision(column(0.75 * radius, 0, z, colour)),
+        *visual(
             box((0.5 * radius, 0.5 * radius, 0.1 * z), (0, 0.75 * radius, 0.94 * z), colour, about("x", 0.5))
         ),
-        *seen(pill(0.1 * radius, 0.6 * z, (0, -1.35 * radius, 0.58 * z), colour)),
-        *seen(
+        *visual(pill(0.1 * radius, 0.6 * z, (0, -1.35 * radius, 0.58 * z), colour)),
+        *visual(
             box((0.15 * radius, 0.7 * radius, 0.05 * z), (0, -1.0 * radius, h * z), colour)
             for h in (0.36, 0.83)
         ),
@@ -191,7 +193,7 @@ def vase(x: float, y: float, z: float, colour: Colour) -> Parts:
     """Narrow foot, wide belly, narrow neck, flaring lip."""
     radius = min(x, y) / 2
     profile = [(0.55 * radius, 0), (radius, 0.4 * z), (0.35 * radius, 0.8 * z), (0.65 * radius, z)]
-    return [*turned(profile, colour, steps=9), *felt(column(0.6 * radius, 0, z, colour))]
+    return [*turned(profile, colour, steps=9), *collision(column(0.6 * radius, 0, z, colour))]
 
 
 def wine_bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -201,43 +203,43 @@ def wine_bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
     return [
         column(radius, 0, 0.6 * z, colour),
         *turned([(radius, 0.6 * z), (neck, 0.72 * z), (neck, 0.9 * z)], colour, steps=8),
-        *seen(column(1.15 * neck, 0.86 * z, z, (0.45, 0.08, 0.12))),
-        *seen(column(1.01 * radius, 0.15 * z, 0.42 * z, (0.92, 0.88, 0.75))),
-        *felt(column(neck, 0.6 * z, z, colour)),
+        *visual(column(1.15 * neck, 0.86 * z, z, (0.45, 0.08, 0.12))),
+        *visual(column(1.01 * radius, 0.15 * z, 0.42 * z, (0.92, 0.88, 0.75))),
+        *collision(column(neck, 0.6 * z, z, colour)),
     ]
 
 
 def fork(x: float, y: float, z: float, colour: Colour) -> Parts:
     """Four tines towards +x."""
-    tines = seen(
+    tines = visual(
         box((0.26 * x, 0.12 * y, 0.6 * z), (0.37 * x, y * k, 0.5 * z), colour)
         for k in (-0.42, -0.14, 0.14, 0.42)
     )
     return [
         *tines,
-        *seen(box((0.16 * x, 0.96 * y, 0.6 * z), (0.17 * x, 0, 0.5 * z), colour)),
-        *seen(box((0.6 * x, 0.35 * y, 0.7 * z), (-0.2 * x, 0, 0.5 * z), shade(colour, 0.9))),
-        *felt(slab(x, 0.9 * y, 0, z, colour)),
+        *visual(box((0.16 * x, 0.96 * y, 0.6 * z), (0.17 * x, 0, 0.5 * z), colour)),
+        *visual(box((0.6 * x, 0.35 * y, 0.7 * z), (-0.2 * x, 0, 0.5 * z), shade(colour, 0.9))),
+        *collision(slab(x, 0.9 * y, 0, z, colour)),
     ]
 
 
 def knife(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A blade towards +x on a dark handle."""
     return [
-        *seen(box((0.5 * x, 0.9 * y, 0.3 * z), (0.2 * x, 0, 0.5 * z), colour)),
-        *seen(ball((0.18 * x, 0.9 * y, 0.3 * z), (0.41 * x, 0, 0.5 * z), colour)),
-        *seen(box((0.45 * x, 0.8 * y, z), (-0.275 * x, 0, 0.5 * z), DARK)),
-        *felt(slab(x, 0.9 * y, 0, z, colour)),
+        *visual(box((0.5 * x, 0.9 * y, 0.3 * z), (0.2 * x, 0, 0.5 * z), colour)),
+        *visual(ball((0.18 * x, 0.9 * y, 0.3 * z), (0.41 * x, 0, 0.5 * z), colour)),
+        *visual(box((0.45 * x, 0.8 * y, z), (-0.275 * x, 0, 0.5 * z), DARK)),
+        *collision(slab(x, 0.9 * y, 0, z, colour)),
     ]
 
 
 def spoon(x: float, y: float, z: float, colour: Colour) -> Parts:
     """An oval bowl towards +x."""
     return [
-        *seen(ball((0.32 * x, y, z), (0.34 * x, 0, 0.5 * z), colour)),
-        *seen(ball((0.25 * x, 0.7 * y, 0.5 * z), (0.34 * x, 0, 0.8 * z), shade(colour, 0.7))),
-        *seen(box((0.7 * x, 0.28 * y, 0.5 * z), (-0.15 * x, 0, 0.4 * z), colour)),
-        *felt(slab(x, 0.8 * y, 0, 0.9 * z, colour)),
+        *visual(ball((0.32 * x, y, z), (0.34 * x, 0, 0.5 * z), colour)),
+        *visual(ball((0.25 * x, 0.7 * y, 0.5 * z), (0.34 * x, 0, 0.8 * z), shade(colour, 0.7))),
+        *visual(box((0.7 * x, 0.28 * y, 0.5 * z), (-0.15 * x, 0, 0.4 * z), colour)),
+        *collision(slab(x, 0.8 * y, 0, 0.9 * z, colour)),
     ]
 
 
@@ -245,5 +247,5 @@ def cutting_board(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A board with a grip hole."""
     return [
         slab(x, y, 0, z, colour),
-        *seen(box((0.3 * x, 0.06 * y, z + 0.001), (0, 0.42 * y, 0.5 * z), DARK)),
+        *visual(box((0.3 * x, 0.06 * y, z + 0.001), (0, 0.42 * y, 0.5 * z), DARK)),
     ]
