@@ -324,7 +324,9 @@ class Mirror:
         if self._write_alone(robot, operations, wanted, one_by_one=not small):
             count = len(full_copy.whole.triples)
             self._report_robot(robot, "")
-            self._report(f"{robot.name}: copied at commit {wanted.commit} ({count:,} triples): {full_copy.why}")
+            self._report(
+                f"{robot.name}: copied at commit {wanted.commit} ({count:,} triples): {full_copy.why}"
+            )
 
     def _write_alone(
         self,

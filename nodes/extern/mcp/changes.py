@@ -21,7 +21,7 @@ from msgspec import structs
 from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.mcp import arguments as a
 from semmap.nodes.extern.mcp import limits, queries, requests
-from semmap.nodes.extern.mcp.answers import Answer, said, who
+from semmap.nodes.extern.mcp.answers import Answer, attribute_text, format_author
 from semmap.nodes.extern.mcp.consistent_read import known, newest, read_at_one_commit
 from semmap.nodes.extern.mcp.hints import translate_hints
 from semmap.nodes.extern.mcp.limits import Limits, Touched
@@ -77,13 +77,15 @@ class Changes:
         self._asked: dict[str, None] = {}
         self._limits = _known(client, allowed or Limits())
 
-    def propose(self, client: Client, asked: a.Propose) -> Answer:
+    def propose(self, client: Client, arguments: a.Propose) -> Answer:
         """Run a change as a dry run, and return a token for `commit`, or the reason against the change."""
-        command = self._command(asked)
+        command = self._command(arguments)
         try:
             tried, first, last = _at_one(client, lambda: client.send(structs.replace(command, dry_run=True)))
         except (errors.Inconsistent, errors.PreconditionFailed) as error:
-            against = said(translate_hints(errors.shortened(error.text, 2000)), "the knowledge base")
+            against = attribute_text(
+                translate_hints(errors.shortened(error.text, 2000)), "the knowledge base"
+            )
             seq = newest(client)
             return Answer(first=seq, last=seq, head={"possible": False, "against": against})
         if isinstance(command, commands.Add) and command.name is None:
@@ -98,8 +100,12 @@ class Changes:
         head = {
             "possible": True,
             "token": made.token,
-            "would_be": said(_would_be(tried), who("agent", self._agent)),
-            **({"notes": said(translate_hints("; ".join(tried.notes)), "the map")} if tried.notes else {}),
+            "would_be": attribute_text(_would_be(tried), format_author("agent", self._agent)),
+            **(
+                {"notes": attribute_text(translate_hints("; ".join(tried.notes)), "the map")}
+                if tried.notes
+                else {}
+            ),
             "rests_on": made.rests_on,
             "then": "commit with this token" + (", which requires approval" if self._approve else ""),
         }
@@ -107,9 +113,9 @@ class Changes:
         facts += [{"no_longer_follows": fact} for fact in tried.no_longer_follows]
         return Answer(first=first, last=last, head=head, items=facts, of="facts")
 
-    def commit(self, client: Client, asked: a.Commit) -> Answer:
+    def commit(self, client: Client, arguments: a.Commit) -> Answer:
         """Commit a proposal once, and only if the entities that it depends on have not changed."""
-        proposal = self._proposals.take(asked.token)
+        proposal = self._proposals.take(arguments.token)
         try:
             self._require_unmoved(client, proposal)
             summary = requests.summarize_change(proposal.command, proposal.tried)
@@ -140,31 +146,38 @@ class Changes:
         if request is not None:
             head["approved_by"] = request.by
         head["undo"] = f"undo commit={seq}" if made.commit is not None else "nothing has changed"
-        return Answer(first=seq, last=seq, head={**head, "text": said(made.text, who("agent", self._agent))})
+        return Answer(
+            first=seq,
+            last=seq,
+            head={**head, "text": attribute_text(made.text, format_author("agent", self._agent))},
+        )
 
-    def undo(self, client: Client, asked: a.Undo) -> Answer:
+    def undo(self, client: Client, arguments: a.Undo) -> Answer:
         """Undo a commit of this agent."""
-        found = client.history(since=asked.commit, until=asked.commit, limit=1)
-        if not found or found[0].seq != asked.commit:
-            raise errors.Refused(f"there is no commit {asked.commit} in the history; see: history")
+        found = client.history(since=arguments.commit, until=arguments.commit, limit=1)
+        if not found or found[0].seq != arguments.commit:
+            raise errors.Refused(f"there is no commit {arguments.commit} in the history; see: history")
         if (found[0].source, found[0].agent) != ("agent", self._agent):
-            by = who(found[0].source, found[0].agent)
-            raise errors.Refused(f"commit {asked.commit} is by {by}; you may undo only your own commits")
+            by = format_author(found[0].source, found[0].agent)
+            raise errors.Refused(f"commit {arguments.commit} is by {by}; you may undo only your own commits")
         undo = commands.Undo(
-            commit=asked.commit, source="agent", agent=self._agent, reason=asked.reason or "undo by agent"
+            commit=arguments.commit,
+            source="agent",
+            agent=self._agent,
+            reason=arguments.reason or "undo by agent",
         )
         tried = client.send(structs.replace(undo, dry_run=True))
-        summary = requests.summarize_undo(found[0], tried, asked.reason)
-        request = self._allowed(client, f"mcp-undo-{asked.commit}", summary)
+        summary = requests.summarize_undo(found[0], tried, arguments.reason)
+        request = self._allowed(client, f"mcp-undo-{arguments.commit}", summary)
         if request is not None and request.decision == "waiting":
             return self._waiting(client, request)
         made = client.send(undo)
         seq = made.commit if made.commit is not None else newest(client)
-        return Answer(first=seq, last=seq, head={"undone": asked.commit, "names": made.names})
+        return Answer(first=seq, last=seq, head={"undone": arguments.commit, "names": made.names})
 
-    def _command(self, asked: a.Propose) -> Any:
+    def _command(self, arguments: a.Propose) -> Any:
         """Return the proposed command, signed. Raises BadRequest for fields that it does not have."""
-        fields = msgspec.to_builtins(asked)
+        fields = msgspec.to_builtins(arguments)
         verb = fields.pop("verb")
         known_fields = COMMANDS[verb].__struct_encode_fields__
         if unknown := [name for name in fields if name not in known_fields]:
@@ -216,7 +229,7 @@ class Changes:
             return ""
         for commit in client.history(since=proposal.commit + 1, limit=1000):
             if hit := [n for n in proposal.rests_on if n in commit.changed or n in commit.removed]:
-                by = who(commit.source, commit.agent)
+                by = format_author(commit.source, commit.agent)
                 return (
                     f"the map has changed since commit {proposal.commit}: {errors.enumerated(hit[:5])}"
                     f" was changed by commit {commit.seq} ({by}); propose it again"

@@ -1,4 +1,4 @@
-"""What the options of a verb say."""
+"""Error messages about options of commands."""
 
 import pytest
 
@@ -31,6 +31,6 @@ def test_zero_is_given():
         (["--ref"], "Option '--ref' requires an argument."),
     ],
 )
-def test_what_an_option_takes_is_told(capsys, words, said):
+def test_the_values_of_an_option_are_named(capsys, words, said):
     assert execute(["add", "Cup", *words]) == 2
     assert capsys.readouterr().err.startswith(f"semmap: {said}")

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 def plain_table(variables: tuple[str, ...], rows: tuple[Row, ...]) -> Iterator[str]:
     """Yield a table as plain lines with prefixed names, for a file or a pipe."""
-    return plain.lines(variables, [[spoken(term) for term in row] for row in rows])
+    return plain.lines(variables, [[format_term(term) for term in row] for row in rows])
 
 
 def table(variables: tuple[str, ...], rows: tuple[Row, ...]) -> Table:
@@ -30,7 +30,7 @@ def table(variables: tuple[str, ...], rows: tuple[Row, ...]) -> Table:
 
     shown = tables.table(*variables, fold=variables)
     for row in rows:
-        shown.add(*map(spoken, row))
+        shown.add(*map(format_term, row))
     return shown
 
 
@@ -57,10 +57,10 @@ def news(variables: tuple[str, ...], changed: RowsChanged) -> Iterator[str]:
     for sign, rows in (("-", changed.disappeared), ("+", changed.appeared)):
         for row in rows:
             named = zip(variables, row, strict=True)
-            yield f"{sign} {'  '.join(f'?{name} {spoken(term)}' for name, term in named)}  ({by})"
+            yield f"{sign} {'  '.join(f'?{name} {format_term(term)}' for name, term in named)}  ({by})"
 
 
-def spoken(term: Term | None) -> str:
+def format_term(term: Term | None) -> str:
     """Return a term in the syntax of Turtle: `:chair1`, `dm:Chair`, `1.5`, `"text"`."""
     if term is None:
         return ""

@@ -9,7 +9,7 @@ from typing import Final
 
 from nicegui import events, ui
 
-from semmap.nodes.extern.cli.output.lines import changed
+from semmap.nodes.extern.cli.output.lines import format_change
 from semmap.nodes.extern.web.page import Page
 from semmap.nodes.extern.web.views.uploads import (
     BEGINNING,
@@ -185,7 +185,7 @@ class _Loading:
         if turn != self._turn:
             return
         self._stop.visible = False
-        self._say(f"If {name} is loaded:", *changed(reply))
+        self._say(f"If {name} is loaded:", *format_change(reply))
         self._button.text = f"Load {name}"
         self._button.visible = True
 
@@ -209,7 +209,7 @@ class _Loading:
             self._button.set_enabled(True)
         if reply is not None:
             self._forget()
-            self._say(*changed(reply))
+            self._say(*format_change(reply))
 
     def _forget(self) -> None:
         self._turn += 1

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from nicegui import ui
 
-from semmap.nodes.extern.cli.output.lines import touched
+from semmap.nodes.extern.cli.output.lines import format_commit_changes
 from semmap.nodes.extern.phrasing import author, moment
 from semmap.nodes.extern.web.differences import Difference, Mark, counted
 from semmap.nodes.extern.web.page import Page
@@ -213,7 +213,7 @@ class _Timeline:
         row = self._page.tape.row(shown)
         if row is None:
             return f"The past: commit {shown} of {last}"
-        why = row.reason or touched(row)
+        why = row.reason or format_commit_changes(row)
         return f"The past: commit {shown} of {last} · {moment(row.stamp_ns)} · {author(row)}: {why}"
 
     def _draw_differences(self, found: Mapping[str, Difference]) -> None:

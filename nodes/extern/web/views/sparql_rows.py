@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import Any, Final, NamedTuple
 
-from semmap.nodes.extern.cli.output.sparql_formats import spoken
+from semmap.nodes.extern.cli.output.sparql_formats import format_term
 from semmap.ontology import vocabulary as v
 from semmap.schemas import wording
 from semmap.schemas.explanations import Term
@@ -33,7 +33,7 @@ def rows_of(result: SparqlResult, entities: Collection[str]) -> Rows:
 
 def row_of(number: int, row: Row, entities: Collection[str]) -> dict[str, Any]:
     """One row of the table, under this number."""
-    cells = {f"c{i}": spoken(term) for i, term in enumerate(row)}
+    cells = {f"c{i}": format_term(term) for i, term in enumerate(row)}
     return {ID: number, **cells, NAMES: names_in(row, entities)}
 
 
