@@ -54,7 +54,7 @@ class _ConnectionOption(click.Option):
         if self.name != next(p.name for p in ctx.command.params if isinstance(p, _ConnectionOption)):
             return None
         present = [CONNECTION[p.name] for p in ctx.command.params if p.name in CONNECTION]
-        return ", ".join(present), "Which system to use; see: semmap --help."
+        return ", ".join(present), "System to connect to; see: semmap --help."
 
 
 def _connection_option(name: str) -> Callable[[_F], _F]:

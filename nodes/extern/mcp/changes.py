@@ -48,7 +48,7 @@ _MOST_WAITERS: Final = 2
 """The number of calls that wait for approval at the same time, each on a thread; others do not wait."""
 _LATER_S: Final = 30.0
 """The suggested time until a retry if there are too many pending requests [s]."""
-_MOST_ASKED: Final = 1000
+_MOST_REQUESTED: Final = 1000
 _MOST_NAMES: Final = 50
 """The maximum number of entities in a change; a dry run of more does not return all inferred facts."""
 
@@ -74,7 +74,7 @@ class Changes:
         self._rate = Rate(per_min / 60.0, max(1.0, per_min))
         self._per_min = per_min
         self._waiters = threading.BoundedSemaphore(_MOST_WAITERS)
-        self._asked: dict[str, None] = {}
+        self._requested: dict[str, None] = {}
         self._limits = _known(client, allowed or Limits())
 
     def propose(self, client: Client, arguments: a.Propose) -> Answer:
@@ -117,7 +117,7 @@ class Changes:
         """Commit a proposal once, and only if the entities that it depends on have not changed."""
         proposal = self._proposals.take(arguments.token)
         try:
-            self._require_unmoved(client, proposal)
+            self._require_unchanged(client, proposal)
             summary = requests.summarize_change(proposal.command, proposal.tried)
             request = self._allowed(client, f"mcp-{proposal.token}", summary)
             if request is not None and request.decision == "waiting":
@@ -136,7 +136,7 @@ class Changes:
             raise
         except errors.PreconditionFailed as error:
             self._proposals.drop(proposal)
-            raise errors.PreconditionFailed(self._moved_on(client, proposal) or error.text) from None
+            raise errors.PreconditionFailed(self._changed_since(client, proposal) or error.text) from None
         except BaseException:
             self._proposals.drop(proposal)
             raise
@@ -210,11 +210,11 @@ class Changes:
                 again_s=wait_s,
             )
 
-    def _require_unmoved(self, client: Client, proposal: Proposal) -> None:
+    def _require_unchanged(self, client: Client, proposal: Proposal) -> None:
         """Raise PreconditionFailed, with the reason, if the proposal would now have other consequences."""
-        moved = self._moved_on(client, proposal)
-        if moved:
-            raise errors.PreconditionFailed(moved)
+        changed = self._changed_since(client, proposal)
+        if changed:
+            raise errors.PreconditionFailed(changed)
         again: Changed = client.send(structs.replace(proposal.command, dry_run=True))
         before = proposal.tried
         if set(again.follows) != set(before.follows) or again.names != before.names:
@@ -223,7 +223,7 @@ class Changes:
                 " consequences; propose it again"
             )
 
-    def _moved_on(self, client: Client, proposal: Proposal) -> str:
+    def _changed_since(self, client: Client, proposal: Proposal) -> str:
         """Return a text on changed entities that a proposal depends on, or an empty text."""
         if newest(client) <= proposal.commit:
             return ""
@@ -245,7 +245,7 @@ class Changes:
         if not self._approve:
             self._require_rate()
             return None
-        if name not in self._asked:
+        if name not in self._requested:
             self._require_rate()
         submit = commands.Submit(
             id=name,
@@ -259,9 +259,9 @@ class Changes:
             request = client.send(submit)
         except errors.Refused as error:  # too many pending requests; the proposal stays valid
             raise errors.Busy(error.text, again_s=_LATER_S) from None
-        self._asked[name] = None
-        while len(self._asked) > _MOST_ASKED:
-            del self._asked[next(iter(self._asked))]
+        self._requested[name] = None
+        while len(self._requested) > _MOST_REQUESTED:
+            del self._requested[next(iter(self._requested))]
         if request.decision == "waiting" and self._waiters.acquire(blocking=False):
             try:
                 request = self._decided(client, submit)

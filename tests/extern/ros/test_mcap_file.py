@@ -39,6 +39,6 @@ def test_a_file_is_not_written_over_and_a_span_must_have_commits(changed, tmp_pa
     (tmp_path / "there.mcap").write_text("mine")
     assert "already exists" in system.cli("mcap", tmp_path / "there.mcap", "--since", first, status=2)
     assert (tmp_path / "there.mcap").read_text() == "mine"
-    assert "name it there.mcap" in system.cli("mcap", tmp_path / "there.bag", status=2)
+    assert "as in there.mcap" in system.cli("mcap", tmp_path / "there.bag", status=2)
     assert "no commit" in system.cli("mcap", tmp_path / "new.mcap", "--since", "2031-01-01", status=2)
     assert not (tmp_path / "new.mcap").exists()

@@ -74,7 +74,7 @@ _describing = _options(
 @click.option(
     "--track", type=click.Choice(["stream", "sim"]), help="Track it from the start (see: semmap track)."
 )
-@click.option("--default", is_flag=True, help="Use the label of the class as its label.")
+@click.option("--default", is_flag=True, help="Also use the label of the class as label.")
 @_dry_run
 @with_client
 def add(client: Client, **fields: Any) -> None:
