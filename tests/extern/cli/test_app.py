@@ -73,7 +73,7 @@ BAD = [
     (("explain", "chair1", "type", "Kitchen"), 1, "does not hold"),
     (("explain", "chair1", "hasColour", "red"), 2, "did you mean hasColor"),
     (("lst",), 2, "did you mean list"),
-    (("node",), 2, "Choose from: kb_node, coordinator"),
+    (("node",), 2, "choose from: kb_node, coordinator"),
     (("load", "/dev/zero"), 2, "/dev/zero is larger than 1024 MiB"),
     (("load", "nowhere.owl"), 2, "there is no file nowhere.owl"),
     (("load", "/"), 2, "is a directory"),
