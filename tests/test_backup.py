@@ -42,7 +42,7 @@ def test_a_backup_of_a_system_that_goes_on_is_a_map_of_its_own(tmp_path):
             adding.join()
         last = backups.verify(file).last
         assert added[0] < last < added[-1] + 1
-        assert "is there already" in system.cli("backup", file, status=2)
+        assert "already exists" in system.cli("backup", file, status=2)
         with system.client() as client:
             assert client.backup(file, overwrite=True).last == added[-1]
             last, there = added[-1], {entity.name for entity in client.list()}

@@ -206,7 +206,7 @@ async def _impossible(agent: Agent) -> bool:
 async def _twice(agent: Agent) -> bool:
     token = (await agent("propose", verb="add", class_="Cup", at=_TABLE, reason="seen"))["token"]
     await agent("commit", token=token)
-    return "was used" in await agent.refused("commit", token=token)
+    return "already used" in await agent.refused("commit", token=token)
 
 
 async def _back(fields: dict[str, Any], agent: Agent) -> bool:

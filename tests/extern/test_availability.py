@@ -35,17 +35,17 @@ def system_at(endpoint, began_ns, asked):
         token.undeclare()
 
 
-def test_a_watcher_is_told_that_the_system_goes_and_which_map_comes():
+def test_a_watcher_learns_that_the_system_goes_and_which_map_comes():
     endpoint, said, asked = free_endpoint(), [], []
     with contextlib.ExitStack() as watching:
         with system_at(endpoint, 1, asked):
             client = watching.enter_context(connect(endpoint))
             watching.enter_context(availability.report_availability(client, said.append))
-            until(lambda: asked == ["history"], "it is asked which map is there at first; that is no news")
-        until(lambda: said == [availability.WENT_DOWN], "it is told that the system is gone")
+            until(lambda: asked == ["history"], "the first commit of the map is requested")
+        until(lambda: said == [availability.WENT_DOWN], "it is reported that the system is down")
         with system_at(endpoint, 1, asked):
-            until(lambda: said[1:] == [availability.CAME_BACK], "it is told that the system is back")
+            until(lambda: said[1:] == [availability.CAME_BACK], "it is reported that the system is back")
         with system_at(endpoint, 2, asked):
-            until(lambda: len(said) == 4, "it is told of another map")
+            until(lambda: len(said) == 4, "another map is reported")
     another = "the endpoint now serves another map (begun from a.ttl; 3 entities, commit 7); "
     assert said[2:4] == [availability.WENT_DOWN, f"{another}further output is about it"]

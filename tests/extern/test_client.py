@@ -1,4 +1,4 @@
-"""The client before a system that keeps it waiting."""
+"""The client with a system that replies late or not at all."""
 
 import contextlib
 import time
@@ -13,7 +13,7 @@ from semmap.schemas.commits import Commit
 from tests.conftest import free_endpoint
 
 
-def test_a_coordinator_that_is_too_busy_to_say_how_things_stand_is_told():
+def test_a_coordinator_that_is_too_busy_for_its_status_is_reported():
     endpoint, kept = free_endpoint(), []
     network = bus.Network(mode="peer", connect=(), listen=(endpoint,))
     with bus.open_session(network) as session, connect(endpoint) as client:
@@ -51,7 +51,7 @@ def test_a_commit_that_does_not_come_is_waited_for_so_long():
             next(commits)
 
 
-def test_the_commits_of_another_map_behind_the_same_endpoint_are_told_too():
+def test_commits_of_another_map_at_the_same_endpoint_are_received():
     with system_at(168) as (client, publish), client.commits(timeout=5.0) as commits:
         publish(167)
         publish(2, stamp_ns=time.time_ns())

@@ -1,4 +1,4 @@
-"""A client's verbs are its commands: their fields, their documentation, their replies."""
+"""The methods of a client are the commands: their fields, documentation and replies."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ NOT_A_METHOD = {"watch", "renew", "backup"}
 """Commands of a standing query, and parts of a file: `Client.watch` and `Client.backup` send them."""
 
 
-def test_every_command_is_a_verb_of_the_client():
+def test_every_command_is_a_method_of_the_client():
     verbs = {
         name.replace("_", "-")
         for name, verb in vars(CommandMethods).items()
@@ -26,7 +26,7 @@ def test_every_command_is_a_verb_of_the_client():
     assert verbs == {*commands.COMMANDS, "list-as"} - NOT_A_METHOD
 
 
-def test_a_verb_has_the_fields_the_documentation_and_the_reply_of_its_command():
+def test_a_method_has_the_fields_the_documentation_and_the_reply_of_its_command():
     signature = inspect.signature(Client.add)
     assert list(signature.parameters)[:4] == ["self", "class_", "name", "at"]
     assert signature.parameters["name"].annotation == "Name | None"
@@ -35,7 +35,7 @@ def test_a_verb_has_the_fields_the_documentation_and_the_reply_of_its_command():
     assert Client.add.__qualname__ == "CommandMethods.add"
 
 
-def test_a_verb_that_reads_its_reply_says_what_it_gives():
+def test_a_method_that_converts_its_reply_has_its_type():
     assert inspect.signature(Client.picture).return_annotation is bytes
     assert inspect.signature(Client.list).return_annotation == tuple[Entity, ...]
     assert inspect.signature(Client.remove).return_annotation is replies.Changed
@@ -64,7 +64,7 @@ def test_numbers_of_numpy_are_sent_as_numbers():
         (commands.Get(object()), "is not a number, a string or a sequence"),
     ],
 )
-def test_what_is_no_such_field_is_refused_before_it_is_sent(command, said):
+def test_an_unknown_field_is_rejected_before_it_is_sent(command, said):
     with pytest.raises(errors.BadRequest, match=said):
         _prepare(command, UNSIGNED)
 

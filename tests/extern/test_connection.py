@@ -1,4 +1,4 @@
-"""The way to a system that is there, is starting, or is not."""
+"""Connections to a system that is running, starting, or absent."""
 
 import contextlib
 import os
@@ -65,11 +65,8 @@ def tried(monkeypatch):
     return attempts
 
 
-def test_a_refused_connection_is_told_at_once(tried):
-    with (
-        pytest.raises(errors.NoAnswer, match="start a system with: semmap up"),
-        open_session(free_endpoint(), ""),
-    ):
+def test_a_refused_connection_is_reported_at_once(tried):
+    with pytest.raises(errors.NoAnswer, match="start one with: semmap up"), open_session(free_endpoint(), ""):
         pass
     assert tried == [0.0]
 
@@ -80,7 +77,7 @@ def test_a_system_that_is_starting_is_waited_for(tried, monkeypatch):
     done = threading.Event()
 
     def listen_late() -> None:
-        until(lambda: len(tried) > 1, "the client has tried in vain")
+        until(lambda: len(tried) > 1, "the client has tried without success")
         with bus.open_session(bus.Network(mode="peer", connect=(), listen=(endpoint,))):
             done.wait(PATIENCE_S)
 
@@ -107,7 +104,7 @@ def test_a_system_that_does_not_come_is_said_to_be_starting(monkeypatch):
 
 
 @pytest.mark.parametrize(("mode", "is_peer"), [("client", False), ("peer", True), (None, True)])
-def test_a_session_joins_as_it_is_told(mode, is_peer):
+def test_the_mode_of_a_session(mode, is_peer):
     where = free_endpoint()
     there = bus.Network(connect=(), listen=(where,), mode="peer")
     with bus.open_session(there) as listening, connect(where, mode=mode) as client:

@@ -1,4 +1,4 @@
-"""Files of whoever asks."""
+"""Local files of the client."""
 
 from pathlib import Path
 

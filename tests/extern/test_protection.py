@@ -1,4 +1,4 @@
-"""A system that can be reached from elsewhere has certificates, or somebody said that it needs none."""
+"""A system that other hosts can reach requires certificates, or the option --insecure."""
 
 from __future__ import annotations
 
@@ -79,38 +79,37 @@ def test_a_secure_system_listens_with_tls(starting, keys):
     assert {settings.network(node).identity.name for node in settings.nodes} == set(settings.nodes)
 
 
-def test_what_the_certificate_is_not_for_is_told(starting, keys, capsys):
+def test_what_the_certificate_is_not_for_is_reported(starting, keys, capsys):
     assert execute(["up", "--secure", str(keys), "--listen", "tls/10.1.2.3:7001"]) == 2
     assert "semmap keys renew router --host 10.1.2.3" in capsys.readouterr().err
 
 
-def test_what_does_not_go_together_is_told(starting, keys, capsys):
+def test_what_does_not_go_together_is_reported(starting, keys, capsys):
     assert execute(["up", "--secure", str(keys), "--insecure"]) == 2
     assert "--secure and --insecure exclude each other" in capsys.readouterr().err
 
 
-def test_a_folder_without_keys_is_told(starting, tmp_path, capsys):
+def test_a_folder_without_keys_is_reported(starting, tmp_path, capsys):
     assert execute(["up", "--secure", str(tmp_path)]) == 2
     assert f"semmap keys init {tmp_path}" in capsys.readouterr().err
 
 
-def test_who_has_no_certificate_is_told_at_once(capsys):
+def test_a_missing_certificate_is_reported_immediately(capsys):
     assert execute(["list", "--connect", "tls/127.0.0.1:1"]) == 3
     assert "--identity DIR/NAME" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
-    ("identity", "told"),
-    [("nobody", "there is no file"), ("ca", "is not an identity: the certificate has no role")],
+    ("identity", "told"), [("unknown", "there is no file"), ("ca", "is not an identity: it says no role")]
 )
-def test_an_identity_that_is_none_is_told(keys, capsys, identity, told):
+def test_an_invalid_identity_is_reported(keys, capsys, identity, told):
     assert execute(["list", "--identity", str(keys / identity)]) == 2
     said = capsys.readouterr().err
     assert told in said
     assert str(keys / identity) in said
 
 
-def test_an_expired_certificate_of_the_systems_own_is_told_before_the_start(starting, tmp_path, capsys):
+def test_an_expired_certificate_of_the_systems_own_is_reported_before_the_start(starting, tmp_path, capsys):
     authority.init(tmp_path / "K", days=0)
     assert execute(["up", "--secure", str(tmp_path / "K")]) == 3
     assert "semmap keys renew supervisor" in capsys.readouterr().err

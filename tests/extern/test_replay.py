@@ -1,4 +1,4 @@
-"""A map's past, run again as a system of its own while that of the map itself runs; and recordings of it."""
+"""Replays of a map while its own system runs, and checks of recordings."""
 
 import subprocess
 import sys

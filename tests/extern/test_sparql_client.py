@@ -1,4 +1,4 @@
-"""A standing query whose system gives way to one with another map."""
+"""A standing query whose system is replaced by one with another map."""
 
 from semmap.nodes import bus
 from semmap.nodes.extern import sparql_client
@@ -8,7 +8,7 @@ from semmap.schemas.sparql import Watching
 from tests.conftest import free_endpoint
 
 
-def test_the_rows_of_another_map_are_told_though_its_numbers_are_lower(monkeypatch):
+def test_the_rows_of_another_map_are_reported_though_its_numbers_are_lower(monkeypatch):
     monkeypatch.setattr(sparql_client, "_RENEW_S", 0.1)
     maps = [(168, (("<a>",), ("<b>",))), (2, (("<b>",), ("<c>",)))]
     endpoint = free_endpoint()

@@ -1,4 +1,4 @@
-"""A system for tests of one's own, as the README has it."""
+"""A system for custom tests, as in the README."""
 
 import pytest
 
@@ -15,7 +15,7 @@ def test_a_system_is_there_for_a_test_and_gone_after_it(tmp_path):
 
 def test_one_that_does_not_start_says_why(tmp_path):
     with (
-        pytest.raises(RuntimeError, match=r"nobody\.ttl"),
-        own_system(tmp_path / "map", "--abox", str(tmp_path / "nobody.ttl")),
+        pytest.raises(RuntimeError, match=r"missing\.ttl"),
+        own_system(tmp_path / "map", "--abox", str(tmp_path / "missing.ttl")),
     ):
         pass

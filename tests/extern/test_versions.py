@@ -1,4 +1,4 @@
-"""A client and a system of different versions say so."""
+"""Errors between a client and a system of different versions."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def client_of(request):
     ],
     indirect=True,
 )
-def test_a_misunderstanding_is_told_with_both_versions(client_of):
+def test_a_misunderstanding_is_reported_with_both_versions(client_of):
     with pytest.raises(errors.SemmapError) as caught:
         client_of.get("cup1")
     ours = version.version()
@@ -67,7 +67,7 @@ def test_the_first_version_does_not_say_which_it_is(client_of):
     "client_of",
     [
         (lambda: errors.UnknownName("no entity is named 'cup1'"), lambda: STATUS),
-        (lambda: errors.BadFile("it is no picture"), lambda: STATUS),
+        (lambda: errors.BadFile("it is not an image"), lambda: STATUS),
         (
             lambda: errors.UnknownVerb("no entity is named 'cup1'"),
             lambda: {**old_status(), "version": version.version()},
@@ -76,14 +76,14 @@ def test_the_first_version_does_not_say_which_it_is(client_of):
     ],
     indirect=True,
 )
-def test_what_has_nothing_to_do_with_versions_is_told_as_it_is(client_of):
+def test_what_has_nothing_to_do_with_versions_is_reported_as_it_is(client_of):
     with pytest.raises(errors.SemmapError) as caught:
         client_of.get("cup1")
     assert "the system runs" not in caught.value.text
 
 
 @pytest.mark.parametrize("client_of", [(lambda: None, lambda: {**old_status(), "weather": 1})], indirect=True)
-def test_a_status_with_more_than_is_known_is_told_so(client_of):
+def test_a_status_with_unknown_fields_is_reported(client_of):
     with pytest.raises(errors.BadRequest, match=r"no field 'weather'.*; the system runs semmap before"):
         client_of.status()
 

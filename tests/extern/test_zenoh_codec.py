@@ -19,6 +19,6 @@ def test_a_reply_in_json_is_shown_as_it_is():
     assert json.loads(decode("k", b'[{"name": "chair1"}]')) == [{"name": "chair1"}]
 
 
-def test_what_is_no_json_cannot_be_encoded():
+def test_other_texts_than_json_cannot_be_encoded():
     with pytest.raises(ValueError, match="Expecting"):
         encode("k", "not json")

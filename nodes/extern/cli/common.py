@@ -54,7 +54,7 @@ class _ConnectionOption(click.Option):
         if self.name != next(p.name for p in ctx.command.params if isinstance(p, _ConnectionOption)):
             return None
         present = [CONNECTION[p.name] for p in ctx.command.params if p.name in CONNECTION]
-        return ", ".join(present), "Which system to use; see: semmap --help."
+        return ", ".join(present), "System to connect to; see: semmap --help."
 
 
 def _connection_option(name: str) -> Callable[[_F], _F]:
@@ -180,8 +180,11 @@ def run_arguments(app: click.Command, words: list[str], client: Client | None = 
     except click.BadOptionUsage as error:
         print_error(f"{where}{_missing_values(error, app, words[0])}")
         return 2
+    except click.MissingParameter as error:
+        print_error(f"{where}{_missing_parameter(error)}")
+        return 2
     except click.ClickException as error:
-        print_error(f"{where}{error.format_message()}")
+        print_error(f"{where}{_one_line(error)}")
         return 2
     except (click.Abort, KeyboardInterrupt):
         return 130
@@ -269,7 +272,28 @@ def _missing_values(error: click.BadOptionUsage, app: click.Command, name: str) 
         if option.nargs > 1 and error.option_name in option.opts:
             values = f"{error.option_name} {option.metavar}"
             return f"{error.option_name} requires {option.nargs} values, separated by spaces: {values}"
-    return error.format_message()
+    return _one_line(error)
+
+
+def _missing_parameter(error: click.MissingParameter) -> str:
+    """Return the error text for a missing argument or option, with the next step."""
+    parameter, ctx = error.param, error.ctx
+    if parameter is None or ctx is None:
+        return _one_line(error)
+    if isinstance(parameter, click.Option):
+        return f"missing option {parameter.opts[0]} {parameter.metavar or ''}; see: {ctx.command_path} --help"
+    name = parameter.human_readable_name.removesuffix("...")
+    if isinstance(parameter.type, click.Choice):
+        return f"missing argument {name}; choose from: {', '.join(map(str, parameter.type.choices))}"
+    formatter = click.HelpFormatter(width=1000)
+    ctx.command.format_usage(ctx, formatter)
+    return f"missing argument {name}; usage: {formatter.getvalue().strip().removeprefix('Usage: ')}"
+
+
+def _one_line(error: click.ClickException) -> str:
+    """Return the message of an error of click without its capital letter and full stop."""
+    text = error.format_message()
+    return f"{text[:1].lower()}{text[1:]}".rstrip(".")
 
 
 def _unknown_option(error: click.NoSuchOption) -> str:

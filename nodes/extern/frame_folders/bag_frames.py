@@ -21,7 +21,7 @@ from semmap.nodes.extern.frame_folders.pinhole import (
     read_pinhole,
     scale_intrinsics,
 )
-from semmap.nodes.extern.frame_folders.poses import MAPS, TransformTree, plain, stamp_ns_of
+from semmap.nodes.extern.frame_folders.poses import MAPS, TransformTree, stamp_ns_of, strip_slash
 from semmap.nodes.extern.frame_folders.topics import (
     COMPRESSED,
     IMAGE,
@@ -196,7 +196,7 @@ class _Camera:
 
 def _require_aligned(chosen: CameraTopicNames, known: _Known) -> None:
     """Raise BadFile if depth and colour were taken from different positions or with different lenses."""
-    frames = [plain(known.frames[topic]) for topic in (chosen.depth, chosen.colour)]
+    frames = [strip_slash(known.frames[topic]) for topic in (chosen.depth, chosen.colour)]
     apart = ""
     if all(frames) and frames[0] != frames[1]:
         moved = known.tree.between(frames[0], frames[1], known.stamps_ns[chosen.depth][0])
@@ -224,15 +224,15 @@ def _is_identity(pose: Transform) -> bool:
 
 def _base(path: Path, known: _Known, chosen: CameraTopicNames, base: str | None) -> tuple[str | None, str]:
     """Return the frame of the camera poses, and a note. Raises BadRequest for an unknown frame."""
-    camera = plain(known.frames[chosen.depth])
+    camera = strip_slash(known.frames[chosen.depth])
     above = known.tree.above(camera)[1:]
     if base is not None:
-        if plain(base) not in above:
+        if strip_slash(base) not in above:
             raise BadRequest(
                 f"{path}: frame {base!r} is not an ancestor of the camera frame {camera!r} on /tf; ancestors:"
                 f" {few(above)}"
             )
-        return plain(base), f"camera poses in {base}"
+        return strip_slash(base), f"camera poses in {base}"
     found = next((name for name in MAPS if name in above), None)
     if found is not None:
         return found, f"camera poses in {found}"

@@ -60,7 +60,7 @@ class TransformTree:
     def take(self, message: Any, *, static: bool) -> None:
         """Add a `tf2_msgs/TFMessage`; invalid transforms are ignored."""
         for stamped in message.transforms:
-            child, parent = plain(stamped.child_frame_id), plain(stamped.header.frame_id)
+            child, parent = strip_slash(stamped.child_frame_id), strip_slash(stamped.header.frame_id)
             t, r = stamped.transform.translation, stamped.transform.rotation
             pose = to_matrix((t.x, t.y, t.z), (r.w, r.x, r.y, r.z))
             if pose is None or not child or not parent or child == parent:
@@ -74,7 +74,7 @@ class TransformTree:
 
     def above(self, frame: str) -> list[str]:
         """Return a frame and its ancestors, in this order."""
-        found = [plain(frame)]
+        found = [strip_slash(frame)]
         while (parent := self._parents.get(found[-1])) and parent not in found and len(found) < _DEEPEST:
             found.append(parent)
         return found
@@ -83,7 +83,7 @@ class TransformTree:
         """Return the pose of `frame` in its ancestor `base`; None if it is unknown at that time."""
         pose = np.eye(4)
         for link in self.above(frame):
-            if link == plain(base):
+            if link == strip_slash(base):
                 return pose
             track = self._moving.get(link)
             step = self._still.get(link) if track is None else track.at(stamp_ns)
@@ -103,7 +103,7 @@ class TransformTree:
         return np.asarray(np.linalg.inv(poses[1]) @ poses[0])
 
 
-def plain(frame: str) -> str:
+def strip_slash(frame: str) -> str:
     """Return the name of a frame without the leading slash of ROS 1."""
     return frame.lstrip("/")
 

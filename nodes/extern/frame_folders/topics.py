@@ -35,12 +35,12 @@ def choose(
     `colour` and `depth` are set by the user, or None. Raises BadFile if there is no such topic, and
     BadRequest if there are several.
     """
-    for option, said in (("--rgb-topic", colour), ("--depth-topic", depth)):
-        if said is not None and said not in encodings:
-            raise BadRequest(f"{option}: no images on {said}; image topics: {few(sorted(encodings))}")
-    seen = {topic: said for topic, said in encodings.items() if not _INFRARED.search(topic)}
-    depths = [topic for topic, said in seen.items() if is_depth(said)]
-    colours = [topic for topic, said in seen.items() if is_colour(said) and topic not in depths]
+    for option, encoding in (("--rgb-topic", colour), ("--depth-topic", depth)):
+        if encoding is not None and encoding not in encodings:
+            raise BadRequest(f"{option}: no images on {encoding}; image topics: {few(sorted(encodings))}")
+    seen = {topic: encoding for topic, encoding in encodings.items() if not _INFRARED.search(topic)}
+    depths = [topic for topic, encoding in seen.items() if is_depth(encoding)]
+    colours = [topic for topic, encoding in seen.items() if is_colour(encoding) and topic not in depths]
     colours = [topic for topic in colours if "mono8" not in seen[topic]] or colours
     aligned = [topic for topic in depths if _ALIGNED.search(topic)]
     depth = depth or _only("depth", "--depth-topic", aligned or depths, encodings)
@@ -55,7 +55,7 @@ def _only(kind: str, option: str, topics: Sequence[str], encodings: Mapping[str,
     rest = [topic for topic in topics if _TRANSPORT.sub("", topic) not in plain]
     found = sorted({*plain, *rest})
     if not found:
-        there = few([f"{topic} ({said})" for topic, said in sorted(encodings.items())])
+        there = few([f"{topic} ({encoding})" for topic, encoding in sorted(encodings.items())])
         raise BadFile(f"no {kind} images found; image topics: {there}")
     if len(found) > 1:
         raise BadRequest(f"{kind} images on several topics: {few(found)}; choose one with {option}")

@@ -79,32 +79,32 @@ def read_cursor(cursor: str) -> tuple[int, int]:
     return int(match[1]), int(match[2])
 
 
-def said(text: str, by: Provenance | str) -> dict[str, str]:
+def attribute_text(text: str, by: Provenance | str) -> dict[str, str]:
     """Return a text from the map with its author."""
-    return {"said": text, "by": by if isinstance(by, str) else who(by.source, by.agent)}
+    return {"said": text, "by": by if isinstance(by, str) else format_author(by.source, by.agent)}
 
 
-def who(source: str, agent: str) -> str:
+def format_author(source: str, agent: str) -> str:
     """Return an author, such as `operator cli/ann`. The unverified name is shortened and sanitized."""
     return f"{source} {_WHO.sub('_', agent)[:40]}".strip()
 
 
-def when(stamp_ns: int) -> str:
+def format_time(stamp_ns: int) -> str:
     """Return a time in ISO 8601 with seconds, UTC."""
     return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(stamp_ns / 1e9))
 
 
-def metres(vector: Sequence[float] | Size) -> list[float]:
+def round_metres(vector: Sequence[float] | Size) -> list[float]:
     """Round to millimetres."""
     return [round(value, 3) + 0.0 for value in vector]
 
 
-def stands(pose: Pose | None) -> dict[str, Any]:
+def pose_fields(pose: Pose | None) -> dict[str, Any]:
     """Return the fields of a pose: `at` and, unless it is 0, `yaw`."""
     if pose is None:
         return {}
     yaw = round(pose.yaw_rad, 3) + 0.0
-    return {"at": metres(pose.position_m), **({"yaw": yaw} if yaw else {})}
+    return {"at": round_metres(pose.position_m), **({"yaw": yaw} if yaw else {})}
 
 
 def _json(value: Any) -> str:

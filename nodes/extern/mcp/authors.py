@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from typing import Final
 
-from semmap.nodes.extern.mcp.answers import who
+from semmap.nodes.extern.mcp.answers import format_author
 from semmap.schemas.entities import Entity
 
 SYSTEM: Final = "semmap"
@@ -22,7 +22,7 @@ class Authors:
         self._by_words: dict[_Words, set[str]] = {}
         self._beginning: dict[str, set[_Words]] = {}  # labels (as words), by their first word
         for entity in entities:
-            by = who(entity.reference_provenance.source, entity.reference_provenance.agent)
+            by = format_author(entity.reference_provenance.source, entity.reference_provenance.agent)
             for reference in (entity.preferred_reference, *entity.alternative_references):
                 if words := _words(reference or ""):
                     self._by_words.setdefault(words, set()).add(by)

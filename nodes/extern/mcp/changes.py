@@ -21,7 +21,7 @@ from msgspec import structs
 from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.mcp import arguments as a
 from semmap.nodes.extern.mcp import limits, queries, requests
-from semmap.nodes.extern.mcp.answers import Answer, said, who
+from semmap.nodes.extern.mcp.answers import Answer, attribute_text, format_author
 from semmap.nodes.extern.mcp.consistent_read import known, newest, read_at_one_commit
 from semmap.nodes.extern.mcp.hints import translate_hints
 from semmap.nodes.extern.mcp.limits import Limits, Touched
@@ -48,7 +48,7 @@ _MOST_WAITERS: Final = 2
 """The number of calls that wait for approval at the same time, each on a thread; others do not wait."""
 _LATER_S: Final = 30.0
 """The suggested time until a retry if there are too many pending requests [s]."""
-_MOST_ASKED: Final = 1000
+_MOST_REQUESTED: Final = 1000
 _MOST_NAMES: Final = 50
 """The maximum number of entities in a change; a dry run of more does not return all inferred facts."""
 
@@ -74,16 +74,18 @@ class Changes:
         self._rate = Rate(per_min / 60.0, max(1.0, per_min))
         self._per_min = per_min
         self._waiters = threading.BoundedSemaphore(_MOST_WAITERS)
-        self._asked: dict[str, None] = {}
+        self._requested: dict[str, None] = {}
         self._limits = _known(client, allowed or Limits())
 
-    def propose(self, client: Client, asked: a.Propose) -> Answer:
+    def propose(self, client: Client, arguments: a.Propose) -> Answer:
         """Run a change as a dry run, and return a token for `commit`, or the reason against the change."""
-        command = self._command(asked)
+        command = self._command(arguments)
         try:
             tried, first, last = _at_one(client, lambda: client.send(structs.replace(command, dry_run=True)))
         except (errors.Inconsistent, errors.PreconditionFailed) as error:
-            against = said(translate_hints(errors.shortened(error.text, 2000)), "the knowledge base")
+            against = attribute_text(
+                translate_hints(errors.shortened(error.text, 2000)), "the knowledge base"
+            )
             seq = newest(client)
             return Answer(first=seq, last=seq, head={"possible": False, "against": against})
         if isinstance(command, commands.Add) and command.name is None:
@@ -98,8 +100,12 @@ class Changes:
         head = {
             "possible": True,
             "token": made.token,
-            "would_be": said(_would_be(tried), who("agent", self._agent)),
-            **({"notes": said(translate_hints("; ".join(tried.notes)), "the map")} if tried.notes else {}),
+            "would_be": attribute_text(_would_be(tried), format_author("agent", self._agent)),
+            **(
+                {"notes": attribute_text(translate_hints("; ".join(tried.notes)), "the map")}
+                if tried.notes
+                else {}
+            ),
             "rests_on": made.rests_on,
             "then": "commit with this token" + (", which requires approval" if self._approve else ""),
         }
@@ -107,11 +113,11 @@ class Changes:
         facts += [{"no_longer_follows": fact} for fact in tried.no_longer_follows]
         return Answer(first=first, last=last, head=head, items=facts, of="facts")
 
-    def commit(self, client: Client, asked: a.Commit) -> Answer:
+    def commit(self, client: Client, arguments: a.Commit) -> Answer:
         """Commit a proposal once, and only if the entities that it depends on have not changed."""
-        proposal = self._proposals.take(asked.token)
+        proposal = self._proposals.take(arguments.token)
         try:
-            self._require_unmoved(client, proposal)
+            self._require_unchanged(client, proposal)
             summary = requests.summarize_change(proposal.command, proposal.tried)
             request = self._allowed(client, f"mcp-{proposal.token}", summary)
             if request is not None and request.decision == "waiting":
@@ -130,7 +136,7 @@ class Changes:
             raise
         except errors.PreconditionFailed as error:
             self._proposals.drop(proposal)
-            raise errors.PreconditionFailed(self._moved_on(client, proposal) or error.text) from None
+            raise errors.PreconditionFailed(self._changed_since(client, proposal) or error.text) from None
         except BaseException:
             self._proposals.drop(proposal)
             raise
@@ -140,31 +146,38 @@ class Changes:
         if request is not None:
             head["approved_by"] = request.by
         head["undo"] = f"undo commit={seq}" if made.commit is not None else "nothing has changed"
-        return Answer(first=seq, last=seq, head={**head, "text": said(made.text, who("agent", self._agent))})
+        return Answer(
+            first=seq,
+            last=seq,
+            head={**head, "text": attribute_text(made.text, format_author("agent", self._agent))},
+        )
 
-    def undo(self, client: Client, asked: a.Undo) -> Answer:
+    def undo(self, client: Client, arguments: a.Undo) -> Answer:
         """Undo a commit of this agent."""
-        found = client.history(since=asked.commit, until=asked.commit, limit=1)
-        if not found or found[0].seq != asked.commit:
-            raise errors.Refused(f"there is no commit {asked.commit} in the history; see: history")
+        found = client.history(since=arguments.commit, until=arguments.commit, limit=1)
+        if not found or found[0].seq != arguments.commit:
+            raise errors.Refused(f"there is no commit {arguments.commit} in the history; see: history")
         if (found[0].source, found[0].agent) != ("agent", self._agent):
-            by = who(found[0].source, found[0].agent)
-            raise errors.Refused(f"commit {asked.commit} is by {by}; you may undo only your own commits")
+            by = format_author(found[0].source, found[0].agent)
+            raise errors.Refused(f"commit {arguments.commit} is by {by}; you may undo only your own commits")
         undo = commands.Undo(
-            commit=asked.commit, source="agent", agent=self._agent, reason=asked.reason or "undo by agent"
+            commit=arguments.commit,
+            source="agent",
+            agent=self._agent,
+            reason=arguments.reason or "undo by agent",
         )
         tried = client.send(structs.replace(undo, dry_run=True))
-        summary = requests.summarize_undo(found[0], tried, asked.reason)
-        request = self._allowed(client, f"mcp-undo-{asked.commit}", summary)
+        summary = requests.summarize_undo(found[0], tried, arguments.reason)
+        request = self._allowed(client, f"mcp-undo-{arguments.commit}", summary)
         if request is not None and request.decision == "waiting":
             return self._waiting(client, request)
         made = client.send(undo)
         seq = made.commit if made.commit is not None else newest(client)
-        return Answer(first=seq, last=seq, head={"undone": asked.commit, "names": made.names})
+        return Answer(first=seq, last=seq, head={"undone": arguments.commit, "names": made.names})
 
-    def _command(self, asked: a.Propose) -> Any:
+    def _command(self, arguments: a.Propose) -> Any:
         """Return the proposed command, signed. Raises BadRequest for fields that it does not have."""
-        fields = msgspec.to_builtins(asked)
+        fields = msgspec.to_builtins(arguments)
         verb = fields.pop("verb")
         known_fields = COMMANDS[verb].__struct_encode_fields__
         if unknown := [name for name in fields if name not in known_fields]:
@@ -197,11 +210,11 @@ class Changes:
                 again_s=wait_s,
             )
 
-    def _require_unmoved(self, client: Client, proposal: Proposal) -> None:
+    def _require_unchanged(self, client: Client, proposal: Proposal) -> None:
         """Raise PreconditionFailed, with the reason, if the proposal would now have other consequences."""
-        moved = self._moved_on(client, proposal)
-        if moved:
-            raise errors.PreconditionFailed(moved)
+        changed = self._changed_since(client, proposal)
+        if changed:
+            raise errors.PreconditionFailed(changed)
         again: Changed = client.send(structs.replace(proposal.command, dry_run=True))
         before = proposal.tried
         if set(again.follows) != set(before.follows) or again.names != before.names:
@@ -210,13 +223,13 @@ class Changes:
                 " consequences; propose it again"
             )
 
-    def _moved_on(self, client: Client, proposal: Proposal) -> str:
+    def _changed_since(self, client: Client, proposal: Proposal) -> str:
         """Return a text on changed entities that a proposal depends on, or an empty text."""
         if newest(client) <= proposal.commit:
             return ""
         for commit in client.history(since=proposal.commit + 1, limit=1000):
             if hit := [n for n in proposal.rests_on if n in commit.changed or n in commit.removed]:
-                by = who(commit.source, commit.agent)
+                by = format_author(commit.source, commit.agent)
                 return (
                     f"the map has changed since commit {proposal.commit}: {errors.enumerated(hit[:5])}"
                     f" was changed by commit {commit.seq} ({by}); propose it again"
@@ -232,7 +245,7 @@ class Changes:
         if not self._approve:
             self._require_rate()
             return None
-        if name not in self._asked:
+        if name not in self._requested:
             self._require_rate()
         submit = commands.Submit(
             id=name,
@@ -246,9 +259,9 @@ class Changes:
             request = client.send(submit)
         except errors.Refused as error:  # too many pending requests; the proposal stays valid
             raise errors.Busy(error.text, again_s=_LATER_S) from None
-        self._asked[name] = None
-        while len(self._asked) > _MOST_ASKED:
-            del self._asked[next(iter(self._asked))]
+        self._requested[name] = None
+        while len(self._requested) > _MOST_REQUESTED:
+            del self._requested[next(iter(self._requested))]
         if request.decision == "waiting" and self._waiters.acquire(blocking=False):
             try:
                 request = self._decided(client, submit)

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-from semmap.nodes.extern.mcp.answers import said
+from semmap.nodes.extern.mcp.answers import attribute_text
 from semmap.schemas.entities import Entity
 from semmap.schemas.replies import SystemStatus
 
@@ -51,7 +51,7 @@ def overview(
 def _place(place: Entity, held: Counter[str], classes: int) -> dict[str, Any]:
     reference = place.preferred_reference or ""
     is_telling = reference.casefold() not in ("", place.class_.casefold().replace("_", " "))
-    named = said(reference[:_LONGEST_REFERENCE], place.reference_provenance) if is_telling else {}
+    named = attribute_text(reference[:_LONGEST_REFERENCE], place.reference_provenance) if is_telling else {}
     return {"name": place.name, "class": place.class_, **named, "holds": _counts(held, classes)}
 
 

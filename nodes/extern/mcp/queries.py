@@ -9,7 +9,7 @@ from typing import Any, Final, TypeVar
 from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.mcp import arguments as a
 from semmap.nodes.extern.mcp import rows
-from semmap.nodes.extern.mcp.answers import Answer, read_cursor, said, when
+from semmap.nodes.extern.mcp.answers import Answer, attribute_text, format_time, read_cursor
 from semmap.nodes.extern.mcp.authors import Authors
 from semmap.nodes.extern.mcp.consistent_read import known, newest, read_at_one_commit
 from semmap.nodes.extern.mcp.overview import overview as _overview
@@ -41,13 +41,15 @@ def overview(client: Client, _: a.Overview) -> Answer:
     return _answer(client, read)
 
 
-def find(client: Client, asked: a.Find) -> Answer:
+def find(client: Client, arguments: a.Find) -> Answer:
     """Return the entities that a noun phrase describes."""
-    found = client.find(asked.text, viewer=asked.viewer, viewpoint=asked.viewpoint, asker=asked.asker)
+    found = client.find(
+        arguments.text, viewer=arguments.viewer, viewpoint=arguments.viewpoint, asker=arguments.asker
+    )
     authors = Authors(client.list())
 
     def quote(text: str) -> dict[str, str]:
-        return said(text, authors.by(text))
+        return attribute_text(text, authors.by(text))
 
     def candidate(each: Candidate) -> dict[str, Any]:
         return rows.candidate(each, authors.by(each.called, *each.reasons))
@@ -65,70 +67,78 @@ def find(client: Client, asked: a.Find) -> Answer:
     return Answer(first=found.seq, last=found.seq, head=head, items=items, of="candidates")
 
 
-def get(client: Client, asked: a.Get) -> Answer:
+def get(client: Client, arguments: a.Get) -> Answer:
     """Return one entity."""
 
     def read(as_of: When | None) -> Found:
-        return rows.described(client.get(asked.name, as_of=as_of, where=as_of is None))
+        return rows.described(client.get(arguments.name, as_of=as_of, where=as_of is None))
 
-    return _paged(client, asked, asked.as_of, read, of="facts")
+    return _paged(client, arguments, arguments.as_of, read, of="facts")
 
 
-def relations(client: Client, asked: a.Relations) -> Answer:
+def relations(client: Client, arguments: a.Relations) -> Answer:
     """Return the spatial relations of an entity."""
 
     def read(as_of: When | None) -> Found:
         found = client.relations(
-            asked.name, asked.other, viewer=asked.viewer, viewpoint=asked.viewpoint, as_of=as_of
+            arguments.name,
+            arguments.other,
+            viewer=arguments.viewer,
+            viewpoint=arguments.viewpoint,
+            as_of=as_of,
         )
-        return {"subject": found[0].subject if found else asked.name}, [rows.relation(r) for r in found]
+        return {"subject": found[0].subject if found else arguments.name}, [rows.relation(r) for r in found]
 
-    return _paged(client, asked, asked.as_of, read, of="relations")
+    return _paged(client, arguments, arguments.as_of, read, of="relations")
 
 
-def list_(client: Client, asked: a.List) -> Answer:
+def list_(client: Client, arguments: a.List) -> Answer:
     """Return the entities of a class, or at a location."""
-    start = read_cursor(asked.cursor)[1] if asked.cursor else 0
+    start = read_cursor(arguments.cursor)[1] if arguments.cursor else 0
 
     def read(as_of: When | None) -> Found:
         found = client.list(
-            asked.class_,
+            arguments.class_,
             as_of=as_of,
-            on=asked.on,
-            in_=asked.in_,
-            near=asked.near,
-            within=asked.within,
-            nearest=asked.nearest,
-            to=asked.to,
+            on=arguments.on,
+            in_=arguments.in_,
+            near=arguments.near,
+            within=arguments.within,
+            nearest=arguments.nearest,
+            to=arguments.to,
         )
         page = found[start : start + _ON_A_PAGE]
         where = placed(client, page) if as_of is None else {}
         return {}, [rows.entity(entity, where.get(entity.name, {})) for entity in found]
 
-    return _paged(client, asked, asked.as_of, read, of="entities")
+    return _paged(client, arguments, arguments.as_of, read, of="entities")
 
 
-def query(client: Client, asked: a.Query) -> Answer:
+def query(client: Client, arguments: a.Query) -> Answer:
     """Return the result of a SPARQL query."""
 
     def read(as_of: When | None) -> Found:
-        found = client.sparql(asked.query, inferred=asked.inferred, as_of=as_of, timeout=5.0, limit=MOST_ROWS)
+        found = client.sparql(
+            arguments.query, inferred=arguments.inferred, as_of=as_of, timeout=5.0, limit=MOST_ROWS
+        )
         notes = {"notes": list(found.notes)} if found.notes else {}
         if found.kind == "ask":
             return {"answer": found.verdict, **notes}, None
         variables = found.variables if found.kind == "select" else ("subject", "predicate", "object")
         return {"variables": variables, **notes}, [rows.solution(row) for row in found.rows]
 
-    return _paged(client, asked, asked.as_of, read, of="rows")
+    return _paged(client, arguments, arguments.as_of, read, of="rows")
 
 
-def explain(client: Client, asked: a.Explain) -> Answer:
+def explain(client: Client, arguments: a.Explain) -> Answer:
     """Explain why a statement holds or, negated, cannot hold."""
 
     def read(as_of: When | None) -> Found:
         if as_of is not None:
             raise errors.Refused("the map has changed since that page; call explain without a cursor")
-        found = client.explain(asked.name, asked.predicate, asked.value, negated=asked.negated)
+        found = client.explain(
+            arguments.name, arguments.predicate, arguments.value, negated=arguments.negated
+        )
         steps = [
             {
                 "rule": step.rule,
@@ -140,47 +150,47 @@ def explain(client: Client, asked: a.Explain) -> Answer:
             for step in found.steps
         ]
         asserted = {"said": [v.to_words(triple) for triple in found.support]}
-        return {"because": said(found.text, "the reasoner"), "asserted": asserted}, steps
+        return {"because": attribute_text(found.text, "the reasoner"), "asserted": asserted}, steps
 
-    return _paged(client, asked, None, read, of="steps")
+    return _paged(client, arguments, None, read, of="steps")
 
 
-def history(client: Client, asked: a.History) -> Answer:
+def history(client: Client, arguments: a.History) -> Answer:
     """Return the newest commits, in order."""
 
     def read(as_of: When | None) -> Found:
         found = client.history(
-            asked.name,
-            since=asked.since,
-            until=as_of if asked.until is None else asked.until,
-            limit=asked.limit,
+            arguments.name,
+            since=arguments.since,
+            until=as_of if arguments.until is None else arguments.until,
+            limit=arguments.limit,
         )
         return {}, [rows.commit(commit) for commit in found]
 
-    return _paged(client, asked, None, read, of="commits")
+    return _paged(client, arguments, None, read, of="commits")
 
 
-def diff(client: Client, asked: a.Diff) -> Answer:
+def diff(client: Client, arguments: a.Diff) -> Answer:
     """Return the changes between two commits or times."""
 
     def read(as_of: When | None) -> Found:
-        found = client.diff(asked.since, as_of if asked.until is None else asked.until)
+        found = client.diff(arguments.since, as_of if arguments.until is None else arguments.until)
         return {"since": found.first, "until": found.last}, list(rows.difference(found))
 
-    return _paged(client, asked, None, read, of="changes")
+    return _paged(client, arguments, None, read, of="changes")
 
 
-def when_(client: Client, asked: a.WasWhen) -> Answer:
+def when_(client: Client, arguments: a.WasWhen) -> Answer:
     """Return when one entity was on, inside, in or attached to another."""
 
     def read(_: When | None) -> Found:
-        found = client.when(asked.name, asked.relation, asked.other)
+        found = client.when(arguments.name, arguments.relation, arguments.other)
         spells = [
             {
                 "since": spell.since,
-                "from": when(spell.since_ns) if spell.since else "before the history begins",
+                "from": format_time(spell.since_ns) if spell.since else "before the history begins",
                 **(
-                    {"until": spell.until, "to": when(spell.until_ns)}
+                    {"until": spell.until, "to": format_time(spell.until_ns)}
                     if spell.until is not None and spell.until_ns is not None
                     else {"until": "now"}
                 ),
@@ -189,15 +199,18 @@ def when_(client: Client, asked: a.WasWhen) -> Answer:
         ]
         return {"answer": found.text, "total_s": round(found.total_s, 1)}, spells
 
-    return _paged(client, asked, None, read, of="spells")
+    return _paged(client, arguments, None, read, of="spells")
 
 
-def render_picture(client: Client, asked: a.Picture) -> tuple[Answer, bytes]:
+def render_picture(client: Client, arguments: a.Picture) -> tuple[Answer, bytes]:
     """Return an image of the scene (PNG) with its caption."""
     png, first, last = _now(
-        client, lambda: client.picture(place=asked.place, labels=True, width=asked.width, height=asked.height)
+        client,
+        lambda: client.picture(
+            place=arguments.place, labels=True, width=arguments.width, height=arguments.height
+        ),
     )
-    head = {"picture": "the scene as it is simulated", "of": asked.place or "everything"}
+    head = {"picture": "the scene as it is simulated", "of": arguments.place or "everything"}
     return Answer(first=first, last=last, head=head), png
 
 
@@ -209,14 +222,14 @@ def _answer(client: Client, read: Callable[[], dict[str, Any]]) -> Answer:
 
 def _paged(
     client: Client,
-    asked: a.Paged,
+    arguments: a.Paged,
     as_of: When | None,
     read: Callable[[When | None], Found],
     *,
     of: str,
 ) -> Answer:
     """Return a reply in pages. Later pages refer to the commit of the first page."""
-    wanted = None if asked.cursor is None else read_cursor(asked.cursor)[0]
+    wanted = None if arguments.cursor is None else read_cursor(arguments.cursor)[0]
     (head, items), first, last = _now(client, partial(read, as_of))
     if wanted is not None and not first == last == wanted:
         (head, items), first, last = read(wanted if as_of is None else as_of), wanted, wanted

@@ -34,7 +34,7 @@ def read(client: Client, uri: str) -> str:
             cursor = uri.removeprefix(page).removeprefix("/")
             return answers.text(of(client), answers.read_cursor(cursor)[1] if cursor else 0)
     if uri.startswith(WATCH):
-        with client.watch(**asked(uri)) as standing:
+        with client.watch(**watch_arguments(uri)) as standing:
             found = [rows.solution(row) for row in standing.rows]
             head = {"variables": standing.variables}
             return answers.text(
@@ -45,7 +45,7 @@ def read(client: Client, uri: str) -> str:
     )
 
 
-def asked(uri: str) -> dict[str, Any]:
+def watch_arguments(uri: str) -> dict[str, Any]:
     """Return the arguments of `Client.watch` for the URI of a standing query. Raises BadRequest."""
     kind, _, word = uri.removeprefix(WATCH).partition("/")
     word = unquote(word)

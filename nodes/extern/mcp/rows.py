@@ -6,7 +6,13 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
 from semmap.nodes.extern.cli.output.sparql_formats import format_term
-from semmap.nodes.extern.mcp.answers import metres, said, stands, when, who
+from semmap.nodes.extern.mcp.answers import (
+    attribute_text,
+    format_author,
+    format_time,
+    pose_fields,
+    round_metres,
+)
 from semmap.nodes.extern.mcp.hints import translate_hints
 from semmap.ontology import vocabulary as v
 from semmap.schemas import changes
@@ -28,7 +34,7 @@ def entity(found: Entity, where: Mapping[str, list[str]]) -> dict[str, Any]:
     return {
         "name": found.name,
         "class": found.class_,
-        **stands(found.pose),
+        **pose_fields(found.pose),
         **where,
         **called(found),
     }
@@ -38,21 +44,21 @@ def called(found: Entity) -> dict[str, Any]:
     """Return the label with its author, if there is one."""
     if not found.preferred_reference:
         return {}
-    return said(found.preferred_reference, found.reference_provenance)
+    return attribute_text(found.preferred_reference, found.reference_provenance)
 
 
 def described(found: Described) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     """Return the main data of an entity, and its other facts as items."""
-    head: dict[str, Any] = {"name": found.name, "class": found.class_, **stands(found.pose)}
+    head: dict[str, Any] = {"name": found.name, "class": found.class_, **pose_fields(found.pose)}
     if found.size_m is not None:
-        head["size"] = metres(found.size_m)
+        head["size"] = round_metres(found.size_m)
     if found.body is not None and found.body.status not in ("present", "none", "unknown"):
         head["body"] = found.body.status
     head |= {kind: True for kind in ("place", "fixed") if getattr(found, kind)}
     head["changed"] = {
         "commit": found.provenance.commit,
-        "by": who(found.provenance.source, found.provenance.agent),
-        "when": when(found.provenance.stamp_ns),
+        "by": format_author(found.provenance.source, found.provenance.agent),
+        "when": format_time(found.provenance.stamp_ns),
     }
     return head, list(_facts(found))
 
@@ -71,12 +77,12 @@ def _facts(found: Described) -> Iterator[dict[str, Any]]:
     by = found.reference_provenance
     for reference in (found.preferred_reference, *found.alternative_references):
         if reference:
-            yield {"called": said(reference, by)}
+            yield {"called": attribute_text(reference, by)}
     for name, stated in found.properties.items():
         values = stated if isinstance(stated, tuple) else (stated,)
         yield {"property": name, "said": [changes.value_in_words(value) for value in values]}
     if found.conflict:
-        yield {"conflict": said(found.conflict, "perception")}
+        yield {"conflict": attribute_text(found.conflict, "perception")}
 
 
 def _by_tens(names: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
@@ -108,8 +114,8 @@ def commit(found: LoggedCommit) -> dict[str, Any]:
     rest = len(touched) - len(shown)
     return {
         "commit": found.seq,
-        "when": when(found.stamp_ns),
-        "by": who(found.source, found.agent),
+        "when": format_time(found.stamp_ns),
+        "by": format_author(found.source, found.agent),
         **({"verb": found.verb} if found.verb else {}),
         **({"undoes": found.undoes} if found.undoes else {}),
         "said": {"reason": found.reason, "changes": shown},

@@ -51,13 +51,13 @@ def server(tools: Tools) -> Server[Any]:
     async def list_tools(_: Context, __: types.PaginatedRequestParams | None) -> types.ListToolsResult:
         return types.ListToolsResult(tools=[_described(tool) for tool in tools.by_name.values()])
 
-    async def call_tool(_: Context, asked: types.CallToolRequestParams) -> types.CallToolResult:
+    async def call_tool(_: Context, request: types.CallToolRequestParams) -> types.CallToolResult:
         try:
-            page = await beside(partial(tools.call, asked.name, asked.arguments or {}))
+            page = await beside(partial(tools.call, request.name, request.arguments or {}))
         except errors.SemmapError as error:
             return _refused(error)
         except Exception:  # a bug: report it, and keep the server running
-            _log.exception("the tool %r failed", asked.name)
+            _log.exception("the tool %r failed", request.name)
             return _refused(errors.InternalError("internal error of semmap; see its log"))
         return types.CallToolResult(content=_contents(page))
 
@@ -99,35 +99,35 @@ def server(tools: Tools) -> Server[Any]:
     ) -> types.ListResourceTemplatesResult:
         return types.ListResourceTemplatesResult(resource_templates=list(_TEMPLATES))
 
-    async def read_resource(_: Context, asked: types.ReadResourceRequestParams) -> types.ReadResourceResult:
-        text = await _answered(beside(partial(tools.read, asked.uri)))
-        contents = types.TextResourceContents(uri=asked.uri, text=text, mime_type="application/json")
+    async def read_resource(_: Context, request: types.ReadResourceRequestParams) -> types.ReadResourceResult:
+        text = await _answered(beside(partial(tools.read, request.uri)))
+        contents = types.TextResourceContents(uri=request.uri, text=text, mime_type="application/json")
         return types.ReadResourceResult(contents=[contents])
 
-    async def subscribe(context: Context, asked: types.SubscribeRequestParams) -> types.EmptyResult:
+    async def subscribe(context: Context, request: types.SubscribeRequestParams) -> types.EmptyResult:
         subscriptions: Subscriptions = context.lifespan_context
-        if context.session not in sessions.get(asked.uri, ()):
-            await _answered(beside(partial(subscriptions.subscribe, asked.uri)))
-            sessions.setdefault(asked.uri, set()).add(context.session)
+        if context.session not in sessions.get(request.uri, ()):
+            await _answered(beside(partial(subscriptions.subscribe, request.uri)))
+            sessions.setdefault(request.uri, set()).add(context.session)
         return types.EmptyResult()
 
-    async def unsubscribe(context: Context, asked: types.UnsubscribeRequestParams) -> types.EmptyResult:
+    async def unsubscribe(context: Context, request: types.UnsubscribeRequestParams) -> types.EmptyResult:
         subscriptions: Subscriptions = context.lifespan_context
-        if context.session in sessions.get(asked.uri, ()):
-            sessions[asked.uri].discard(context.session)
-            await beside(partial(subscriptions.unsubscribe, asked.uri))
+        if context.session in sessions.get(request.uri, ()):
+            sessions[request.uri].discard(context.session)
+            await beside(partial(subscriptions.unsubscribe, request.uri))
         return types.EmptyResult()
 
     async def listen_to(
-        context: Context, asked: types.SubscriptionsListenRequestParams
+        context: Context, request: types.SubscriptionsListenRequestParams
     ) -> types.SubscriptionsListenResult:
         subscriptions: Subscriptions = context.lifespan_context
         followed: list[str] = []
         try:
-            for uri in asked.notifications.resource_subscriptions or ():
+            for uri in request.notifications.resource_subscriptions or ():
                 await _answered(beside(partial(subscriptions.subscribe, uri)))
                 followed.append(uri)
-            return await listen(context, asked)
+            return await listen(context, request)
         finally:
             with anyio.CancelScope(shield=True):
                 for uri in followed:

@@ -34,7 +34,7 @@ class Subscriptions:
         """Add a subscriber. URIs that are not standing queries never change. Raises SemmapError."""
         if not uri.startswith(resources.WATCH):
             return
-        asked = resources.asked(uri)
+        arguments = resources.watch_arguments(uri)
         with self._lock:
             if (known := self._active.get(uri)) is not None:
                 self._active[uri] = known._replace(subscribers=known.subscribers + 1)
@@ -42,7 +42,7 @@ class Subscriptions:
             if len(self._active) >= MOST:
                 raise errors.Refused(f"limit of {MOST} standing queries reached; unsubscribe from one first")
             stack = ExitStack()
-            standing = stack.enter_context(self._client.watch(**asked))
+            standing = stack.enter_context(self._client.watch(**arguments))
             self._active[uri] = _Subscription(1, stack.close)
 
         def wait() -> None:

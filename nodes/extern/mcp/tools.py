@@ -58,9 +58,9 @@ class Tool(NamedTuple):
         return a.schema(self.takes)
 
 
-def picture(client: Client, asked: a.Picture) -> Page:
+def picture(client: Client, parsed: a.Picture) -> Page:
     """Return the rendered scene with a caption."""
-    found = queries.render_picture(client, asked)
+    found = queries.render_picture(client, parsed)
     return Page(answers.text(found[0]), found[1])
 
 
@@ -195,11 +195,11 @@ class Tools:
         if (tool := self.by_name.get(name)) is None:
             hint = errors.did_you_mean(name, self.by_name) or f"; available: {', '.join(self.by_name)}"
             raise errors.UnknownVerb(f"unknown tool '{errors.shortened(name, 100)}'{hint}")
-        asked = _read(tool, arguments)
-        found = tool.answer(self._client, asked)
+        parsed = _read(tool, arguments)
+        found = tool.answer(self._client, parsed)
         if isinstance(found, Page):
             return found
-        cursor = getattr(asked, "cursor", None)
+        cursor = getattr(parsed, "cursor", None)
         return Page(answers.text(found, answers.read_cursor(cursor)[1] if cursor else 0))
 
     def _require_rate(self) -> None:

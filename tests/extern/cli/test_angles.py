@@ -1,4 +1,4 @@
-"""Angles as people write them."""
+"""Angles on the command line."""
 
 import math
 
@@ -30,6 +30,6 @@ def test_another_text_is_an_error(text):
         ANGLE.convert(text, None, None)
 
 
-def test_who_writes_degrees_without_a_unit_is_told_how_they_are_read(capsys):
+def test_a_large_angle_without_a_unit_prints_a_note(capsys):
     assert ANGLE.convert("90", None, None) == 90.0
     assert "90 is read as radians (116.6°); for degrees use 90deg" in capsys.readouterr().err

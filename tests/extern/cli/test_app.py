@@ -73,7 +73,7 @@ BAD = [
     (("explain", "chair1", "type", "Kitchen"), 1, "does not hold"),
     (("explain", "chair1", "hasColour", "red"), 2, "did you mean hasColor"),
     (("lst",), 2, "did you mean list"),
-    (("node",), 2, "Choose from: kb_node, coordinator"),
+    (("node",), 2, "choose from: kb_node, coordinator"),
     (("load", "/dev/zero"), 2, "/dev/zero is larger than 1024 MiB"),
     (("load", "nowhere.owl"), 2, "there is no file nowhere.owl"),
     (("load", "/"), 2, "is a directory"),
@@ -215,13 +215,13 @@ def test_watch_shows_what_happens(system):
     assert watching.wait(timeout=10) == 130
 
 
-def test_no_system_is_no_answer(system, monkeypatch):
+def test_without_a_system_there_is_no_response(system, monkeypatch):
     system_elsewhere = "tcp/127.0.0.1:9"
     said = system.cli("list", "--connect", system_elsewhere, status=3)
     assert "no response from tcp/127.0.0.1:9" in said
 
 
-def test_a_verb_that_only_asks_imports_nothing_heavy():
+def test_a_query_command_imports_nothing_heavy():
     heavy = {"mujoco", "numpy", "open3d", "owlrl", "rdflib", "rerun", "scipy", "supervisor", "trimesh"}
     code = (
         "import sys; from semmap.nodes.extern.cli.all_commands import app; app.get_command(None, 'sparql');"

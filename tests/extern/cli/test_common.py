@@ -1,4 +1,4 @@
-"""What the options of a verb say."""
+"""Error messages about options of commands."""
 
 import pytest
 
@@ -26,11 +26,28 @@ def test_zero_is_given():
         (["--at", "1", "2"], "--at requires 3 values, separated by spaces: --at X Y Z"),
         (
             ["--at", "1m", "2m", "0"],
-            "Invalid value for '--at': '1m' is not a number; use metres without a unit",
+            "invalid value for '--at': '1m' is not a number; use metres without a unit",
         ),
-        (["--ref"], "Option '--ref' requires an argument."),
+        (["--ref"], "option '--ref' requires an argument"),
     ],
 )
-def test_what_an_option_takes_is_told(capsys, words, said):
+def test_the_values_of_an_option_are_named(capsys, words, said):
     assert execute(["add", "Cup", *words]) == 2
     assert capsys.readouterr().err.startswith(f"semmap: {said}")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (
+            ["set", "cup1", "isOpen"],
+            "missing argument VALUE; usage: semmap set [OPTIONS] NAME PROPERTY VALUE...",
+        ),
+        (["move", "cup1"], "missing option --at X Y Z; see: semmap move --help"),
+        (["completion"], "missing argument SHELL; choose from: bash, zsh, fish"),
+        (["list", "x"], "got unexpected extra argument (x)"),
+    ],
+)
+def test_an_error_of_usage_names_the_next_step(capsys, words, said):
+    assert execute(words) == 2
+    assert capsys.readouterr().err == f"semmap: {said}\n"

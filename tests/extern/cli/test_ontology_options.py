@@ -42,7 +42,7 @@ def test_an_import_has_an_iri_and_a_file(run, word, said):
         ("http://o.org/b=nowhere.ttl", "there is no file nowhere.ttl"),
     ],
 )
-def test_what_is_neither_is_told(run, word, said):
+def test_what_is_neither_is_reported(run, word, said):
     result = run("--import", word)
     assert result.exit_code == 2
     assert said in result.output

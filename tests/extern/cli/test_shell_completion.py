@@ -1,4 +1,4 @@
-"""Completion as a shell asks for it."""
+"""Completion requests of a shell."""
 
 import os
 import subprocess
@@ -68,7 +68,7 @@ def test_names_of_entities_and_classes_come_from_the_running_system(endpoint, wo
     assert completed([*words[:1], "--connect", endpoint, *words[1:]], incomplete) == said
 
 
-def test_verbs_and_options_need_no_system(monkeypatch):
+def test_commands_and_options_need_no_system(monkeypatch):
     monkeypatch.setenv("SEMMAP_CONNECT", "tcp/127.0.0.1:9")
     assert completed([], "he") == []
     assert completed([], "hi") == ["history"]
@@ -94,7 +94,7 @@ def test_a_system_that_does_not_answer_is_not_waited_for_long(monkeypatch):
 
 
 @pytest.mark.parametrize("shell", shell_completion.SHELLS)
-def test_a_shell_is_told_how_to_complete(shell):
+def test_the_script_of_a_shell(shell):
     said = subprocess.run([SEMMAP, "completion", shell], capture_output=True, text=True, check=True).stdout
     assert "_SEMMAP_COMPLETE" in said
     assert f"{shell}_complete" in said

@@ -1,4 +1,4 @@
-"""The command line, started as a process of its own."""
+"""The command line, started as a separate process."""
 
 import re
 import signal
@@ -50,7 +50,7 @@ def test_it_starts_without_numpy():
         (("sparql", "ASK {}", "--connect", "tcp/127.0.0.1:9"), {"rich.console", "rich.table"}),
     ],
 )
-def test_a_verb_imports_only_what_it_needs(words, needless):
+def test_a_command_imports_only_what_it_needs(words, needless):
     code = (
         "import sys; from semmap.nodes.extern.cli.app import execute\n"
         f"execute({list(words)!r})\nsys.exit(sorted({needless!r} & sys.modules.keys()) or 0)"
@@ -73,7 +73,7 @@ def test_an_unknown_option_says_which_one_may_be_meant(words, said, capsys):
     assert capsys.readouterr().err == f"semmap: {said}\n"
 
 
-def test_each_verb_that_talks_to_a_system_says_how_it_is_told_which(capsys):
+def test_each_command_with_a_client_lists_the_connection_options(capsys):
     assert execute(["run", "--help"]) == 0
     assert "--connect, --identity, --namespace" in capsys.readouterr().out
     assert execute(["help"]) == 0

@@ -81,7 +81,7 @@ class Virtuoso:
         self.process: subprocess.Popen[bytes] | None = None
 
     def start(self) -> None:
-        """Returns when it answers, and lets whoever asks write."""
+        """Wait until it responds, and permit writing without a user."""
         ini = self.folder / "virtuoso.ini"
         self.process = subprocess.Popen(
             ["virtuoso-t", "-f", "+configfile", ini], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL

@@ -1,4 +1,4 @@
-"""Several robots asked together: who answers, as of which commit, and who does not."""
+"""Joint queries to several robots: the replies with their commits, and the errors."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def test_a_reply_is_about_the_commit_that_it_says_though_another_one_comes_meanw
     assert [entity.name for entity in answer.value] == ["cup1"]
 
 
-def test_a_robot_that_refuses_is_told_apart_from_those_that_answer(two_robots):
+def test_a_robot_that_rejects_is_distinguished_from_those_that_reply(two_robots):
     with robots("*", two_robots[0].endpoint) as found:
         one, other = found.get("cup1")
         assert one.value.name == "cup1"
@@ -95,7 +95,7 @@ def test_a_robot_that_does_not_answer_is_named(two_robots, silent):
 def test_a_robot_that_is_not_there_is_named(two_robots):
     said = two_robots[0].cli("status", "--robots", "arm1,arm7", status=3)
     assert "arm1 (commit " in said
-    assert "arm7: no node of arm7 is there; there are: arm1, arm2" in said
+    assert "arm7: robot arm7 not found; available robots: arm1, arm2" in said
 
 
 def test_an_endpoint_that_does_not_answer_is_named(two_robots):
@@ -106,7 +106,7 @@ def test_an_endpoint_that_does_not_answer_is_named(two_robots):
 
 
 def test_no_robot_at_all(two_robots):
-    assert "no robot matches lift*; there are: arm1, arm2" in two_robots[0].cli(
+    assert "no robot matches lift*; available robots: arm1, arm2" in two_robots[0].cli(
         "list", "--robots", "lift*", status=3
     )
 
@@ -124,10 +124,10 @@ def test_sparql_and_its_formats(two_robots):
     system = two_robots[0]
     said = system.cli("sparql", "SELECT ?s { ?s a dm:Cup }", "--robots", "arm1")
     assert ":cup1" in said
-    assert "table, json" in system.cli("sparql", "ASK {}", "--robots", "*", "--format", "csv", status=2)
+    assert "use table or json" in system.cli("sparql", "ASK {}", "--robots", "*", "--format", "csv", status=2)
 
 
-def test_a_namespace_where_nobody_is_names_the_robots(two_robots):
+def test_a_namespace_without_a_robot_names_the_others(two_robots):
     said = two_robots[0].cli("list", "--namespace", "arm3", status=3)
     assert said.endswith("available robots: arm1, arm2\n")
 

@@ -1,4 +1,4 @@
-"""What a copy needs to get to where its robot is: the commits since, or the whole map, in what epoch."""
+"""The data that a copy needs: the new commits, or the whole map, and in which epoch."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_a_robot_without_a_commit_has_nothing_to_copy():
         (Journal(9), copy(7, frame=Frame(0, 0, 0, 1)), 3, "frame"),
     ],
 )
-def test_the_map_is_copied_anew(journal, at, epoch, why):
+def test_the_map_is_copied_again(journal, at, epoch, why):
     found = synchronize(journal, "r", at, Frame(1, 2, 3, 0) if why == "frame" else None)
     assert isinstance(found, FullCopy)
     assert why in found.why
@@ -147,7 +147,7 @@ def test_what_the_server_does_not_confirm_was_not_written(level):
     assert level.change()[1].commit == 8
 
 
-def test_what_was_written_though_nobody_said_so_is_not_written_again(level):
+def test_what_was_written_without_a_reply_is_not_written_again(level):
     level.add_commit(made(8))
     level.add_commit(made(9))
     level.update_facts(copy(8))  # asked after the connection was cut

@@ -1,4 +1,4 @@
-"""What is written for commits: exactly once, whatever is sent twice, late, or only in part."""
+"""Updates for commits take effect exactly once, even if they are sent twice, late or in part."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ def test_the_graph_is_the_map_as_of_the_commit_that_it_says(history, data):
 
 
 @given(histories(), st.data())
-def test_a_copy_that_was_cut_short_is_made_anew(history, data):
+def test_a_copy_that_was_cut_short_is_made_again(history, data):
     store = copied(history[0][1])
     (_, there) = history[-1]
     seq = len(history)

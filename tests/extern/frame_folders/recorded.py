@@ -1,4 +1,4 @@
-"""Recordings made with the writers of rosbags and mcap, and folders as TUM's tools leave them."""
+"""Recordings made with the writers of rosbags and mcap, and folders in the TUM format."""
 
 from __future__ import annotations
 

@@ -118,7 +118,7 @@ def test_depth_in_metres_is_written_in_millimetres(tmp_path):
         (MM // 1000, "16UC1", "ends at 0.001 m; the unit is probably metres", 1),
     ],
 )
-def test_depth_in_another_unit_is_told_with_its_scale(tmp_path, capsys, depth, encoding, said, scale):
+def test_depth_in_another_unit_is_reported_with_its_scale(tmp_path, capsys, depth, encoding, said, scale):
     made = instead(table(1), DEPTH, lambda m: image(depth, encoding, stamp_ns=seconds(0), frame=FRAME))
     file = write(tmp_path, "bag", made)
     error = refused(tmp_path, capsys, file)
@@ -143,7 +143,7 @@ def test_fewer_frames_are_taken(tmp_path):
     assert len(converted(tmp_path, file, "--every", "0.45")) == 2
 
 
-def test_pictures_pair_once_with_the_nearest_and_the_rest_is_told(tmp_path, capsys):
+def test_pictures_pair_once_with_the_nearest_and_the_rest_is_reported(tmp_path, capsys):
     made = table(3)
     late = image(MM, "16UC1", stamp_ns=seconds(0.12), frame=FRAME)  # beside that of 0.105
     alone = image(RGB, "rgb8", stamp_ns=seconds(0.5), frame=FRAME)
@@ -166,7 +166,7 @@ def test_poses_need_a_frame_whose_z_is_up(tmp_path, capsys, base):
     assert ("camera poses in camera_link" if base else "ancestors on /tf: camera_link; ") in said
 
 
-def test_where_nobody_says_where_the_camera_was_the_frame_has_no_pose(tmp_path, capsys):
+def test_without_a_camera_pose_the_frame_has_no_pose(tmp_path, capsys):
     made = table(2, apart_s=3.0)
     made.append(Said(DEPTH, seconds(1.5), image(MM, "16UC1", stamp_ns=seconds(1.5), frame=FRAME)))
     made.append(Said(COLOUR, seconds(1.5), image(RGB, "rgb8", stamp_ns=seconds(1.5), frame=FRAME)))
@@ -175,7 +175,7 @@ def test_where_nobody_says_where_the_camera_was_the_frame_has_no_pose(tmp_path, 
     assert "1 frame without a camera pose" in capsys.readouterr().out
 
 
-def test_depth_that_is_not_aligned_is_told(tmp_path, capsys):
+def test_depth_that_is_not_aligned_is_reported(tmp_path, capsys):
     raw = "/camera/depth/image_rect_raw"
     made = instead(
         table(1, moving=False),
@@ -221,7 +221,7 @@ def test_of_several_topics_one_is_named(tmp_path, capsys):
         (INFO, "no camera_info for"),
     ],
 )
-def test_what_a_bag_lacks_is_told(tmp_path, capsys, without, said):
+def test_what_a_bag_lacks_is_reported(tmp_path, capsys, without, said):
     file = write(tmp_path, "bag", instead(table(1), without, lambda _: None))
     assert said in refused(tmp_path, capsys, file)
 
@@ -233,7 +233,7 @@ def test_a_file_of_intrinsics_takes_the_place_of_camera_info(tmp_path):
 
 
 @pytest.mark.parametrize("kind", ["bag", "mcap", "db3"])
-def test_a_file_that_is_cut_off_is_told(tmp_path, capsys, kind):
+def test_a_file_that_is_cut_off_is_reported(tmp_path, capsys, kind):
     whole = write(tmp_path, kind, table())
     file = next(whole.glob("*.db3")) if kind == "db3" else whole
     file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
@@ -242,6 +242,6 @@ def test_a_file_that_is_cut_off_is_told(tmp_path, capsys, kind):
     assert not (tmp_path / "out").exists()
 
 
-def test_intrinsics_that_fit_no_picture_are_told(tmp_path, capsys):
+def test_intrinsics_that_fit_no_picture_are_reported(tmp_path, capsys):
     file = write(tmp_path, "bag", instead(table(1), INFO, lambda _: info(WIDTH, 3 * HEIGHT, FRAME)))
     assert f"the intrinsics are for {WIDTH} x {3 * HEIGHT}" in refused(tmp_path, capsys, file)

@@ -1,4 +1,4 @@
-"""There and back: recorded clouds made a recording, then folders, and perceived, against the clouds."""
+"""Round trip: recorded clouds are converted to a recording, to folders, and perceived."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`semmap frames RECORDING DIR` on folders as TUM's tools write them, and what else it says."""
+"""`semmap frames RECORDING DIR` on folders in the TUM format, and its errors."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def test_pictures_that_nothing_lists_go_by_their_names(recording, capsys):
     assert "no camera poses: there is no file groundtruth.txt" in capsys.readouterr().out
 
 
-def test_the_scale_of_another_camera_is_told_with_its_intrinsics(recording, tmp_path):
+def test_the_scale_of_another_camera_is_reported_with_its_intrinsics(recording, tmp_path):
     lens(tmp_path / "lens.json", depth_scale=0.0001)
     folders = converted()
     assert (np.asarray(Image.open(folders[0] / "depth.png")) == MM / 2).all()
@@ -59,7 +59,7 @@ def test_cameras_of_tum_are_known_by_name(recording, tmp_path):
     assert execute(["frames", "rgbd_dataset_freiburg1_desk", "out"]) == 2  # those are 640 x 480, these 3 : 2
 
 
-def test_a_frame_that_cannot_be_read_is_told_and_the_others_go_on(recording, capsys):
+def test_a_frame_that_cannot_be_read_is_reported_and_the_others_go_on(recording, capsys):
     first = sorted((recording / "depth").iterdir())[0]
     first.write_bytes(first.read_bytes()[:60])
     assert len(converted()) == 2
@@ -84,7 +84,7 @@ def test_a_frame_that_cannot_be_read_is_told_and_the_others_go_on(recording, cap
         (["desk", "out", "--intrinsics", "small.json"], "do not fit an image of"),
     ],
 )
-def test_what_cannot_be_done_is_told_in_one_line(recording, tmp_path, capsys, words, said):
+def test_what_cannot_be_done_is_reported_in_one_line(recording, tmp_path, capsys, words, said):
     (tmp_path / "empty").mkdir()
     (tmp_path / "small.json").write_text(json.dumps({"fx": 100, "fy": 100, "cx": WIDTH, "cy": HEIGHT}))
     assert execute(["frames", *words]) == 2
@@ -93,7 +93,7 @@ def test_what_cannot_be_done_is_told_in_one_line(recording, tmp_path, capsys, wo
     assert error.count("\n") == 1
 
 
-def test_colour_and_depth_of_two_sizes_are_told(recording, capsys):
+def test_colour_and_depth_of_two_sizes_are_reported(recording, capsys):
     for file in (recording / "rgb").iterdir():
         Image.fromarray(RGB[:, ::2]).save(file)
     assert execute(["frames", "desk", "out", "--intrinsics", "lens.json"]) == 2

@@ -1,4 +1,4 @@
-"""Changes by an agent: proposed, committed once, within limits, approved by a person; never more."""
+"""Changes by an agent: proposed, committed once, within limits, and approved by a person."""
 
 import asyncio
 import contextlib
@@ -68,7 +68,7 @@ def test_a_token_is_good_for_one_commit_signed_by_the_agent(client):
     assert client.get("cup2").provenance.source == "agent"
 
 
-def test_a_token_that_nobody_gave_is_refused(client):
+def test_an_unknown_token_is_rejected(client):
     assert "unknown token" in agent(client, lambda a: a.refused("commit", token="guessed"))
 
 
@@ -300,7 +300,7 @@ def test_an_agent_cannot_forge_lines_of_what_a_person_reads(client, flat):
     assert flat.cli("approve", "--reject", "--all").strip() == "no pending requests"
 
 
-def test_commits_that_wait_for_a_person_hold_up_nobody(client, flat):
+def test_commits_that_wait_for_approval_do_not_block_others(client, flat):
     flat.cli("approve", "--reject", "--all")
 
     async def talk(a):
@@ -314,14 +314,14 @@ def test_commits_that_wait_for_a_person_hold_up_nobody(client, flat):
         flat.cli("approve", "--reject", "--all")
         found = [str(each) for each in await asyncio.gather(*waiting, return_exceptions=True)]
         again = asyncio.create_task(a.refused("commit", token=tokens[-1]))
-        while "nothing waits" in flat.cli("approve"):
+        while "no pending requests" in flat.cli("approve"):
             await asyncio.sleep(0.05)
         flat.cli("approve", "--reject", "--all")
         return took_s, found, await again
 
     took_s, found, again = agent(client, talk, approve=True, patience_s=30.0)
     assert took_s < 15.0
-    assert sum("was rejected by" in text for text in found) == 2  # the others are told when they ask again
+    assert sum("was rejected by" in text for text in found) == 2  # the others get it when they call again
     assert sum("10 requests of yours wait" in text for text in found) == 5
     assert "was rejected by" in again  # its token was still good
 

@@ -1,4 +1,4 @@
-"""No advice that an agent cannot follow."""
+"""Hints for agents name tools, not commands."""
 
 import pytest
 
@@ -53,5 +53,5 @@ from semmap.nodes.extern.mcp.hints import translate_hints
         ("nothing is named 'cup1'", "nothing is named 'cup1'"),
     ],
 )
-def test_verbs_and_options_become_tools_and_fields(said, told):
+def test_commands_and_options_become_tools_and_fields(said, told):
     assert translate_hints(said) == told

@@ -64,7 +64,7 @@ def test_who_has_the_token_reads_the_map(served):
         {"Authorization": f"Basic {TOKEN}"},
     ],
 )
-def test_nobody_else_is_let_in(served, headers):
+def test_other_clients_are_rejected(served, headers):
     assert status(served, **headers) == 401
 
 
@@ -101,6 +101,6 @@ def test_a_request_with_two_tokens_does_not_reach_the_server():
     assert len(reached) == 1
 
 
-def test_a_port_that_is_taken_is_told(flat, served):
+def test_a_port_that_is_taken_is_reported(flat, served):
     port = re.search(r":(\d+)/", served)[1]
     assert f"cannot listen on 127.0.0.1:{port}" in flat.cli("mcp", "--http", port, status=2)

@@ -1,4 +1,4 @@
-"""The protocol as an independent party speaks it: the command line of `@modelcontextprotocol/inspector`."""
+"""The protocol with an independent client: the command line of `@modelcontextprotocol/inspector`."""
 
 import json
 import os

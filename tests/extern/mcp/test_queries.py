@@ -1,4 +1,4 @@
-"""The reading tools, against a real system: in memory, and over stdio with the SDK's own client."""
+"""The read-only tools against a real system: in memory, and over stdio with the client of the SDK."""
 
 import json
 
@@ -80,9 +80,9 @@ def test_pages_are_of_the_commit_of_the_first(client):
         finally:
             client.remove("a_cup")
 
-    first, second, anew = asked(client, talk)
-    assert second["commit"] == first["commit"] == anew["commit"] - 1
-    assert second["total"] == first["total"] == anew["total"] - 1
+    first, second, again = asked(client, talk)
+    assert second["commit"] == first["commit"] == again["commit"] - 1
+    assert second["total"] == first["total"] == again["total"] - 1
     names = {row["name"] for row in (*first["entities"], *second["entities"])}
     assert "a_cup" not in names
 

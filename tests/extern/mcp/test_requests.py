@@ -1,4 +1,4 @@
-"""What a person reads before they decide: nothing that an agent writes can pass for anything else."""
+"""Summaries for approval: text of an agent cannot imitate other text."""
 
 import pytest
 
@@ -43,7 +43,7 @@ def test_a_change_in_words_quotes_what_the_agent_wrote(command, text):
     assert requests.summarize_change(command, tried("cup2")).text == text
 
 
-def test_where_things_would_be_is_told_first_and_classes_last():
+def test_where_things_would_be_is_reported_first_and_classes_last():
     found = requests.facts(
         tried(
             "cup2",
@@ -118,6 +118,6 @@ def test_what_an_undo_takes_back(change, text):
     assert requests.summarize_undo(commit(change), tried("cup1"), "x").text == f"undo commit 21: {text}"
 
 
-def test_of_many_changes_a_few_are_told_and_the_others_counted():
+def test_of_many_changes_a_few_are_reported_and_the_others_counted():
     changes = [Change(name=f"cup{n}", kind="added", now="Cup") for n in range(8)]
     assert requests.summarize_undo(commit(*changes), tried("cup1"), "x").text.endswith("; and 3 more changes")

@@ -1,4 +1,4 @@
-"""Resources: the schema in pages, and standing questions whose changes are notified."""
+"""Resources: the schema in pages, and standing queries with notifications of changes."""
 
 import asyncio
 import json
@@ -57,7 +57,7 @@ def test_the_schema_lists_every_class_and_property_in_pages(client):
 
 
 @pytest.mark.parametrize("mode", ["2026-07-28", "legacy"])
-def test_who_follows_a_standing_question_is_told_of_changes(client, mode):
+def test_a_subscriber_of_a_standing_query_is_notified_of_changes(client, mode):
     from mcp import Client
 
     uri = "semmap://watch/in/kitchen1"
@@ -108,7 +108,7 @@ class _nothing:  # noqa: N801
         ("semmap://watch/query/" + quote("SELECT ?e { ?e a dm:Fridge }", safe=""), "fridge1"),
     ],
 )
-def test_a_standing_question_can_be_read(client, uri, row):
+def test_a_standing_query_can_be_read(client, uri, row):
     assert row in resources.read(client, uri)
 
 
@@ -126,7 +126,7 @@ def test_a_standing_question_can_be_read(client, uri, row):
         "semmap://schema/classes/nonsense",
     ],
 )
-def test_what_is_no_resource_is_refused_in_a_sentence(client, uri):
+def test_an_unknown_resource_is_rejected(client, uri):
     async def session():
         async with in_memory(made(client)) as agent:
             with pytest.raises(MCPError) as refused:
@@ -136,7 +136,7 @@ def test_what_is_no_resource_is_refused_in_a_sentence(client, uri):
     assert "Traceback" not in run(session())
 
 
-def test_there_are_so_many_standing_questions_and_they_end(client):
+def test_the_number_of_standing_queries_is_limited(client):
     subscriptions = Subscriptions(client, lambda uri: None)
     try:
         for number in range(MOST):

@@ -1,4 +1,4 @@
-"""A client that goes away."""
+"""A client that disconnects."""
 
 import json
 import os
@@ -27,7 +27,7 @@ def test_when_the_client_is_gone_the_server_ends_without_a_word(flat, tmp_path):
     server.stdin.write(json.dumps(asked) + "\n")
     server.stdin.flush()
     assert server.stdout.readline()
-    server.stdout.close()  # nobody reads its answers any more
+    server.stdout.close()  # its replies are no longer read
     server.stdin.write(json.dumps({**asked, "id": 2, "method": "ping", "params": {}}) + "\n")
     server.stdin.close()
     assert server.wait(30) == 0

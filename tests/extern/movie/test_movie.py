@@ -1,4 +1,4 @@
-"""Movies of a map's history, played back."""
+"""Videos of the history of a map, played back."""
 
 import av
 import numpy as np
@@ -96,7 +96,7 @@ def test_what_cannot_be_filmed_is_said_and_leaves_nothing(data, tmp_path, wanted
     assert not [*tmp_path.iterdir()]
 
 
-def test_a_file_that_is_there_or_is_no_mp4_is_refused(data, tmp_path):
+def test_an_existing_file_or_another_suffix_is_rejected(data, tmp_path):
     (tmp_path / "a.mp4").write_text("mine")
     for file, said in (
         ("a.mp4", "--overwrite"),

@@ -1,4 +1,4 @@
-"""What a movie shows when."""
+"""The scenes of a video."""
 
 import math
 

@@ -28,7 +28,7 @@ def test_a_footprint_of_what_lies_on_its_side_is_as_long_as_it_is_high():
     ]
 
 
-def test_a_flat_of_rooms_is_no_room_and_a_corner_is_part_of_one():
+def test_a_flat_of_rooms_is_not_a_room_and_a_corner_is_part_of_one():
     flat = place("flat", (5.0, 2.0), (10.0, 4.0))
     rooms = (place("west", (2.4, 2.0), (4.8, 4.0)), place("east", (7.6, 2.0), (4.8, 4.0)))
     corner = place("corner", (1.0, 1.0), (1.5, 1.5))

@@ -50,7 +50,7 @@ def test_a_name_prefers_not_to_cross_walls():
     assert label.box.overlap_mm2(wall) == 0.0
 
 
-def test_no_room_is_told():
+def test_missing_space_returns_none():
     thing = Box(50.0, 50.0, 51.0, 51.0)
     sheet = Sheet(Box(49.0, 49.0, 52.0, 52.0), [thing])
     assert sheet.place("remote_control1", 2.0, thing) is None

@@ -1,4 +1,4 @@
-"""Things, entities and pictures for tests of what is told to ROS."""
+"""Objects, entities and images for tests of ROS messages."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ def test_in_ros_the_first_pixel_is_at_zero(camera):
     assert found.depth.intrinsics[2] == 3.5
 
 
-def test_what_was_taken_apart_is_no_frame(camera):
+def test_images_that_are_apart_in_time_are_not_a_frame(camera):
     camera.take_colour(image(COLOUR, "rgb8", stamp_ns=0))
     assert camera.take_depth(image(DEPTH, "16UC1", stamp_ns=50_000_000)) is None
     assert camera.take_colour(image(COLOUR, "rgb8", stamp_ns=60_000_000)) is not None

@@ -20,7 +20,7 @@ def read(message, base="map", *links):
 
 
 @given(at=st.tuples(NUMBERS, NUMBERS, NUMBERS), yaw=st.floats(-3.1, 3.1))
-def test_what_is_told_comes_back(at, yaw):
+def test_published_detections_can_be_read_back(at, yaw):
     told = thing(at=at, yaw=yaw, probability=0.75)
     (seen,) = read(detections([told], AT))
     assert distance_m(seen.pose, told.pose) < 1e-6
@@ -48,7 +48,7 @@ def test_without_a_size_or_a_hypothesis_there_is_nothing_to_see():
     assert read(said) == ()
 
 
-def test_a_frame_that_nobody_knows_is_named():
+def test_an_unknown_frame_is_named():
     with pytest.raises(errors.BadRequest, match="frame 'map' has no parent"):
         read(detections([thing()], AT), "world")
 

@@ -23,7 +23,7 @@ def test_the_newest_counts():
     assert found.pose("/lens", "map", 0)[0, 3] == 2
 
 
-def test_a_frame_that_nobody_publishes_is_named():
+def test_an_unpublished_frame_is_named():
     with pytest.raises(errors.BadRequest, match="frame 'base' has no parent on /tf"):
         frames_of(("lens", "base", (0, 0, 0))).pose("lens", "map", 0)
 
@@ -42,7 +42,7 @@ def test_frames_in_one_another_are_refused():
         frames_of(("a", "b", (0, 0, 0)), ("b", "a", (0, 0, 0))).pose("a", "map", 0)
 
 
-def test_what_is_no_transform_is_passed_over():
+def test_invalid_transforms_are_ignored():
     said = transforms(("lens", "map", (float("nan"), 0, 0)), ("", "map", (0, 0, 0)), ("a", "a", (0, 0, 0)))
     found = Frames()
     found.take(said, static=True)

@@ -40,7 +40,7 @@ def test_the_other_order_of_bytes_is_read():
     assert np.frombuffer(depth_of(depth), "<f4").tolist() == [1.5]
 
 
-def test_what_cannot_be_read_is_told_with_what_can():
+def test_what_cannot_be_read_is_reported_with_what_can():
     with pytest.raises(errors.BadRequest, match="'yuv422'; supported: rgb8, bgr8"):
         colour_of(image(RED_BLUE, "yuv422"))
     with pytest.raises(errors.BadRequest, match="'rgb8'; supported: 16UC1"):

@@ -37,8 +37,8 @@ def test_another_party_reads_a_span_of_the_history(changed, tmp_path):
 def test_a_file_is_not_written_over_and_a_span_must_have_commits(changed, tmp_path):
     system, first = changed
     (tmp_path / "there.mcap").write_text("mine")
-    assert "is there already" in system.cli("mcap", tmp_path / "there.mcap", "--since", first, status=2)
+    assert "already exists" in system.cli("mcap", tmp_path / "there.mcap", "--since", first, status=2)
     assert (tmp_path / "there.mcap").read_text() == "mine"
-    assert "name it there.mcap" in system.cli("mcap", tmp_path / "there.bag", status=2)
+    assert "as in there.mcap" in system.cli("mcap", tmp_path / "there.bag", status=2)
     assert "no commit" in system.cli("mcap", tmp_path / "new.mcap", "--since", "2031-01-01", status=2)
     assert not (tmp_path / "new.mcap").exists()

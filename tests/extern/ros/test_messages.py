@@ -21,7 +21,7 @@ def test_a_detection_is_the_box_around_the_middle():
     assert (hypothesis.hypothesis.class_id, hypothesis.hypothesis.score) == ("Cup", 0.5)
 
 
-def test_a_place_is_no_detection_and_has_a_name_and_a_frame():
+def test_a_place_is_not_a_detection_and_has_a_name_and_a_frame():
     room = thing("kitchen1", "Kitchen", place=True, size_m=(3.0, 3.0, 2.5))
     assert messages.detections([room], AT).detections == []
     assert [m.text for m in messages.markers([room], AT).markers] == ["", "kitchen1"]
@@ -66,7 +66,7 @@ def test_an_obstacle_has_its_class_and_its_box(scene_of):
     assert said.primitive_poses[0].position.z == 0.05
 
 
-def test_what_has_no_size_or_is_a_place_is_no_obstacle(scene_of):
+def test_an_entity_without_a_size_and_a_place_are_not_obstacles(scene_of):
     assert scene_of([thing(size_m=None), thing("k", place=True)]) is None
     assert scene_of([thing(size_m=None)], [thing()]).world.collision_objects[0].operation == REMOVE
 

@@ -112,7 +112,7 @@ def test_another_party_sees_the_map_and_its_changes(bridged, router):
         assert "table1" in drawn
 
 
-def test_semmap_itself_is_no_router(flat):
+def test_semmap_itself_is_not_a_router(flat):
     assert "is a Zenoh peer, not a router" in flat.cli("ros", "--router", flat.endpoint, status=2)
 
 
@@ -175,5 +175,5 @@ def test_a_router_that_is_not_there_is_named(flat):
     assert "no response from a ROS router at tcp/127.0.0.1:1" in said
 
 
-def test_what_is_no_camera_is_told_before_anything_begins(flat):
+def test_an_invalid_camera_is_reported_before_the_start(flat):
     assert "example: front=" in flat.cli("ros", "--camera", "front", status=2)

@@ -46,7 +46,7 @@ def test_another_party_computes_the_same_hash(name):
     assert get_type_hash(name, msg_definition=texts.pop(name), dependencies=texts) == expected
 
 
-def test_somebody_elses_hash():
+def test_a_hash_from_another_implementation():
     """As a client of rmw_zenoh written in another language has it."""
     known = "RIHS01_793f5eab9595ac1c0da07873cc859db42eae51f0ee76056db8562515d830e018"
     assert store().hash_rihs01("vision_msgs/msg/Detection3DArray") == known
@@ -67,7 +67,7 @@ def test_a_field_that_there_is_not_is_an_error():
 
 
 @pytest.mark.parametrize("cdr", [b"", b"\0\1\0\0", b"\0\1\0\0\xff\xff\xff\xff" * 4])
-def test_nonsense_is_no_message(cdr):
+def test_nonsense_is_not_a_message(cdr):
     with pytest.raises(errors.BadRequest, match="not a vision_msgs/msg/Detection3DArray"):
         decode(cdr, "vision_msgs/msg/Detection3DArray")
 

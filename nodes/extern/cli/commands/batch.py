@@ -42,7 +42,7 @@ def batch(client: Client, file: Path, **fields: Any) -> None:
         raise errors.BadFile(f"{file} is not a UTF-8 text file") from None
     if not changes:
         raise errors.BadRequest(f"{file}: no changes found; write one update, set or unset command per line")
-    print_lines(lines.changed(client.batch(*changes, **fields)))
+    print_lines(lines.format_change(client.batch(*changes, **fields)))
 
 
 def read_changes(text: str) -> Iterator[Update | Set | Unset]:

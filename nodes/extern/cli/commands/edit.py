@@ -74,7 +74,7 @@ _describing = _options(
 @click.option(
     "--track", type=click.Choice(["stream", "sim"]), help="Track it from the start (see: semmap track)."
 )
-@click.option("--default", is_flag=True, help="Use the label of the class as its label.")
+@click.option("--default", is_flag=True, help="Also use the label of the class as label.")
 @_dry_run
 @with_client
 def add(client: Client, **fields: Any) -> None:
@@ -82,7 +82,7 @@ def add(client: Client, **fields: Any) -> None:
 
     Without --at, it is placed at the next free position.
     """
-    print_lines(lines.changed(client.add(**drop_unset(fields))))
+    print_lines(lines.format_change(client.add(**drop_unset(fields))))
 
 
 @command(example="semmap update cup1 --at 2.5 1 0.75 --yaw 90deg")
@@ -107,7 +107,7 @@ def add(client: Client, **fields: Any) -> None:
 @with_client
 def update(client: Client, **fields: Any) -> None:
     """Change an entity; omitted fields keep their values."""
-    print_lines(lines.changed(client.update(**drop_unset(fields))))
+    print_lines(lines.format_change(client.update(**drop_unset(fields))))
 
 
 @command("set", example="semmap set door1 isOpen true", cls=NegativeNumbers)
@@ -125,7 +125,7 @@ def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fi
 
     The value of a functional property replaces the previous one. Other properties keep their previous values.
     """
-    print_lines(lines.changed(client.set(name, property, *values, **_drop_none(fields))))
+    print_lines(lines.format_change(client.set(name, property, *values, **_drop_none(fields))))
 
 
 @command(example="semmap unset cup1 hasColor", cls=NegativeNumbers)
@@ -138,7 +138,7 @@ def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fi
 @with_client
 def unset(client: Client, **fields: Any) -> None:
     """Remove one value of a property of an entity, or all."""
-    print_lines(lines.changed(client.unset(**_drop_none(fields))))
+    print_lines(lines.format_change(client.unset(**_drop_none(fields))))
 
 
 @command(example="semmap track robot1 --from stream")
@@ -160,7 +160,7 @@ def track(client: Client, **fields: Any) -> None:
 
     The newest pose is used and is not committed. When the entity stops, its pose is committed.
     """
-    print_lines(lines.changed(client.track(**drop_unset(fields))))
+    print_lines(lines.format_change(client.track(**drop_unset(fields))))
 
 
 @command(example="semmap remove cup1 cup2")
@@ -169,7 +169,7 @@ def track(client: Client, **fields: Any) -> None:
 @with_client
 def remove(client: Client, names: tuple[str, ...], dry_run: bool) -> None:
     """Remove entities from the map and the scene."""
-    print_lines(lines.changed(client.remove(*names, dry_run=dry_run)))
+    print_lines(lines.format_change(client.remove(*names, dry_run=dry_run)))
 
 
 @command(example="semmap clear --dry-run")
@@ -181,7 +181,7 @@ def clear(client: Client, dry_run: bool) -> None:
 
     with progress(client):
         reply = client.clear(dry_run=dry_run)
-    print_lines(lines.changed(reply))
+    print_lines(lines.format_change(reply))
 
 
 @command(example="semmap load demo/flat.ttl --replace")
@@ -211,7 +211,7 @@ def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **ho
             raise errors.NoAnswer(
                 f"{error.text}; {file.name} may or may not have been loaded; see: semmap history"
             ) from None
-    print_lines(lines.changed(reply))
+    print_lines(lines.format_change(reply))
     if is_plan(file) and not how["tbox"]:
         for line in read_plan(file).lines:
             print_escaped(f"  {line}")

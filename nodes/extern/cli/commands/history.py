@@ -82,7 +82,7 @@ def diff(client: Client, since: str, until: str | None, format: str) -> None:
     if format == "json":
         print_json(found)
     else:
-        print_lines(lines.difference(found))
+        print_lines(lines.format_difference(found))
 
 
 @command(example="semmap when cup1 isOn table1")
@@ -118,4 +118,4 @@ def undo(client: Client, commit: int | None, dry_run: bool) -> None:
 
     with progress(client):
         reply = client.undo(commit, dry_run=dry_run)
-    print_lines(lines.changed(reply))
+    print_lines(lines.format_change(reply))

@@ -71,7 +71,7 @@ def find(client: Client, text: str, format: str, **fields: Any) -> None:
     if format == "json":
         print_json(found)
     else:
-        print_lines(list(lines.found(found)))
+        print_lines(list(lines.format_matches(found)))
     if found.outcome == "none":
         sys.exit(errors.Refused.exit_status)
 

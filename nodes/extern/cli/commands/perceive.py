@@ -131,17 +131,17 @@ def perceive(
             if unknown_here := detector.labels.unknown([masks_found]):
                 print_error(wording.unknown_labels(unknown_here))
             sight = with_masks(sight, masks_found)
-        told = recognise_segments(sight, learnt, None if detector is None else detector.labels)
+        observations = recognise_segments(sight, learnt, None if detector is None else detector.labels)
         if fit:
-            told = fit_view(sight, told, surfaces())
+            observations = fit_view(sight, observations, surfaces())
         frame = "plane" if cloud.map_from_camera is None else "map"
         if format == "json":
-            records.append({"file": str(file), "frame": frame, "objects": as_records(sight, told)})
+            records.append({"file": str(file), "frame": frame, "objects": as_records(sight, observations)})
         else:
-            console().print(f"{file}: {wording.counted(len(told), 'object')}; {_FRAMES[frame]}")
-            if told:
-                console().print(as_table(sight, told))
-            if None in told.values():
+            console().print(f"{file}: {wording.counted(len(observations), 'object')}; {_FRAMES[frame]}")
+            if observations:
+                console().print(as_table(sight, observations))
+            if None in observations.values():
                 console().print(_CLUTTER)
         if labels is not None:
             buffer = io.BytesIO()
@@ -222,15 +222,15 @@ def _dataset(
         except OSError as error:
             raise errors.BadFile(f"{labels} cannot be created: {error.strerror}") from None
     rows, unknown, printed_s, began_s = [], set[str](), 0.0, time.monotonic()
-    for told in perceive_folders(folders, learnt, detector, surfaces() if fit else None):
-        rows.append(told.row)
-        unknown.update(told.unknown_labels)
-        if labels is not None and told.labels is not None:
+    for found in perceive_folders(folders, learnt, detector, surfaces() if fit else None):
+        rows.append(found.row)
+        unknown.update(found.unknown_labels)
+        if labels is not None and found.labels is not None:
             buffer = io.BytesIO()
-            np.save(buffer, told.labels)
-            write_atomically(labels / f"{told.row.frame}.npy", buffer.getvalue())
+            np.save(buffer, found.labels)
+            write_atomically(labels / f"{found.row.frame}.npy", buffer.getvalue())
         if out is None and format == "table":
-            show_frame(told.row)
+            show_frame(found.row)
         elif time.monotonic() > printed_s + _PROGRESS_S:
             printed_s = time.monotonic()
             print_escaped(

@@ -136,7 +136,7 @@ def check(client: Client, engine: Any) -> None:
 @with_client
 def infer(client: Client, name: str | None) -> None:
     """List the inferred facts of one entity, or of all."""
-    print_lines(lines.inferred(client.infer(name)))
+    print_lines(lines.format_inferred(client.infer(name)))
 
 
 @command(example="semmap explain cup1 isLocatedIn kitchen1", cls=NegativeNumbers)
@@ -156,7 +156,7 @@ def explain(client: Client, name: str, predicate: str, value: str, negated: bool
     if format == "json":
         print_json(explanation)
     else:
-        print_lines(lines.explanation(explanation))
+        print_lines(lines.format_explanation(explanation))
 
 
 @command(example="semmap could milk1 isInside oven1", cls=NegativeNumbers)
@@ -199,7 +199,7 @@ def relations(client: Client, name: str, other: str | None, format: str, **field
     if format == "json":
         print_json(found)
     else:
-        print_lines(list(lines.relations(found)) or [_no_relations(client, name)])
+        print_lines(list(lines.format_relations(found)) or [_no_relations(client, name)])
 
 
 def _no_relations(client: Client, name: str) -> str:

@@ -80,7 +80,7 @@ def _execute_message(client: Client, message: bytes, where: str) -> int:
         print_error(f"{where}{error.text.removeprefix('malformed message: ')}")
         return error.exit_status
     if isinstance(reply, replies.Changed):
-        print_lines(lines.changed(reply))
+        print_lines(lines.format_change(reply))
     else:
         print(getattr(reply, "text", None) or codec.encode_json(reply).decode())
     return 0

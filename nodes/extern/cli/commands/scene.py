@@ -47,7 +47,7 @@ def move(client: Client, wait: bool, **fields: Any) -> None:
 
     The map is updated when the body comes to rest. While time is paused, the command does not wait.
     """
-    print_lines(lines.moved(client.move(**drop_unset(fields), wait=wait)))
+    print_lines(lines.format_move(client.move(**drop_unset(fields), wait=wait)))
 
 
 @command(example="semmap attach cup1 --to robot1_gripper", cls=NegativeNumbers)
@@ -68,7 +68,7 @@ def attach(client: Client, **fields: Any) -> None:
     It moves with HOLDER until it is detached. With --carry, the objects on it and inside it are attached to
     it at their current poses, and are detached with it.
     """
-    print_lines(lines.changed(client.attach(**drop_unset(fields))))
+    print_lines(lines.format_change(client.attach(**drop_unset(fields))))
 
 
 @command(example="semmap detach cup1")
@@ -80,7 +80,7 @@ def detach(client: Client, name: str, dry_run: bool) -> None:
 
     Objects that were attached with it (--carry) are also detached.
     """
-    print_lines(lines.changed(client.detach(name, dry_run=dry_run)))
+    print_lines(lines.format_change(client.detach(name, dry_run=dry_run)))
 
 
 _JOINT = click.option("--joint", metavar="JOINT", help="Only this door, drawer or switch of the object.")
@@ -97,7 +97,7 @@ def open_(client: Client, name: str, to: float, joint: str | None, wait: bool) -
 
     The map is updated when the door comes to rest.
     """
-    print_lines(lines.moved(client.open(name, to=to, joint=joint, wait=wait)))
+    print_lines(lines.format_move(client.open(name, to=to, joint=joint, wait=wait)))
 
 
 @command(example="semmap close fridge1")
@@ -110,7 +110,7 @@ def close(client: Client, name: str, joint: str | None, wait: bool) -> None:
 
     The map is updated when the door comes to rest.
     """
-    print_lines(lines.moved(client.close(name, joint=joint, wait=wait)))
+    print_lines(lines.format_move(client.close(name, joint=joint, wait=wait)))
 
 
 @command(example="semmap drive robot1 --to 2 1 --to 4 1.5 --yaw 90deg", cls=NegativeNumbers)
@@ -134,7 +134,7 @@ def drive(client: Client, wait: bool, **fields: Any) -> None:
 
     The robot drives to each waypoint in a straight line. It does not plan around obstacles.
     """
-    print_lines(lines.moved(client.drive(**drop_unset(fields), wait=wait)))
+    print_lines(lines.format_move(client.drive(**drop_unset(fields), wait=wait)))
 
 
 @command(example="semmap pause")

@@ -20,7 +20,7 @@ _INVERSE = {"isOn": "supports", "isInside": "contains"}
 """The inverse of a relation, as a verb."""
 
 
-def changed(reply: Changed) -> Iterable[str]:
+def format_change(reply: Changed) -> Iterable[str]:
     """Yield a change with its commit, the skipped entities, notes, and consequences of a dry run."""
     yield reply.text + (f" (commit {reply.commit})" if reply.commit is not None else "")
     yield from (f"  skipped: {skipped}" for skipped in reply.skipped)
@@ -29,13 +29,13 @@ def changed(reply: Changed) -> Iterable[str]:
     yield from _few("would no longer be inferred", reply.no_longer_follows)
 
 
-def moved(reply: Moved) -> Iterable[str]:
+def format_move(reply: Moved) -> Iterable[str]:
     """Yield the move of a body, with the commit that updated the map, or the reason why there is none."""
     yield reply.text + (f" (commit {reply.commit})" if reply.commit is not None else "")
     yield from (f"  note: {note}" for note in reply.notes)
 
 
-def difference(found: Difference) -> Iterable[str]:
+def format_difference(found: Difference) -> Iterable[str]:
     """Yield the changes, one line per entity, then a summary with the commits and times."""
     about: dict[str, list[str]] = {}
     for change in found.changes:
@@ -51,7 +51,7 @@ def difference(found: Difference) -> Iterable[str]:
     yield f"{count} changed between commits {found.first} and {found.last} ({times})"
 
 
-def touched(commit: LoggedCommit) -> str:
+def format_commit_changes(commit: LoggedCommit) -> str:
     """Return the changes of a commit for a few entities, and the number of the others."""
     about: dict[str, list[str]] = {}
     for change in commit.changes:
@@ -79,12 +79,12 @@ def _few(what: str, texts: Sequence[str]) -> Iterable[str]:
         yield f"  {what}: {len(texts) - len(shown)} more facts"
 
 
-def inferred(reply: Inferred) -> Iterable[str]:
+def format_inferred(reply: Inferred) -> Iterable[str]:
     """Return the inferred triples, one per line."""
     return reply.text or ("no inferred facts beyond the asserted ones",)
 
 
-def relations(found: Sequence[Relation]) -> Iterable[str]:
+def format_relations(found: Sequence[Relation]) -> Iterable[str]:
     """Yield the relations, one per line. Several objects on or inside another one share a line."""
     contents: dict[tuple[str, str], list[str]] = {}
     for relation in found:
@@ -98,7 +98,7 @@ def relations(found: Sequence[Relation]) -> Iterable[str]:
             yield f"{relation.object} {_INVERSE[relation.relation]} {wording.few(names, _MOST)}"
 
 
-def found(answer: Found) -> Iterable[str]:
+def format_matches(answer: Found) -> Iterable[str]:
     """Yield the matches of a description with reasons, and a clarification question or nearest matches."""
     for written, corrected in answer.read_as:
         yield f"'{written}' is read as '{corrected}'"
@@ -116,6 +116,6 @@ def found(answer: Found) -> Iterable[str]:
         yield answer.question
 
 
-def explanation(e: Explanation) -> Iterable[str]:
+def format_explanation(e: Explanation) -> Iterable[str]:
     """Yield an explanation with the asserted triples that it is based on."""
     yield e.text

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from rich.table import Table
 
-from semmap.nodes.extern.cli.output.lines import touched
+from semmap.nodes.extern.cli.output.lines import format_commit_changes
 from semmap.nodes.extern.cli.output.tables import card, table
 from semmap.nodes.extern.phrasing import author, moment, pose_text, provenance_text
 from semmap.schemas.replies import LoggedCommit, Sighting
@@ -24,7 +24,7 @@ def history_table(commits: Iterable[LoggedCommit]) -> Table:
             author(c),
             c.reason,
             "" if c.confidence is None else f"{c.confidence:.2f}",
-            touched(c),
+            format_commit_changes(c),
         )
         for note in c.notes:
             rows.add("", "", "", "", "", f"note: {note}")

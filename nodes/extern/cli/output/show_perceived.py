@@ -26,19 +26,20 @@ def counts(sight: SegmentedView) -> dict[int, int]:
     return {segment.label: segment.count for segment in sight.segments}
 
 
-def as_records(sight: SegmentedView, told: Mapping[int, Observation | None]) -> list[dict[str, Any]]:
+def as_records(sight: SegmentedView, observations: Mapping[int, Observation | None]) -> list[dict[str, Any]]:
     """Return the objects with label, number of points, and observation (None for clutter)."""
     of = counts(sight)
     return [
-        {"label": label, "points": of[label], "observation": seen} for label, seen in sorted(told.items())
+        {"label": label, "points": of[label], "observation": seen}
+        for label, seen in sorted(observations.items())
     ]
 
 
-def as_table(sight: SegmentedView, told: Mapping[int, Observation | None]) -> Table:
+def as_table(sight: SegmentedView, observations: Mapping[int, Observation | None]) -> Table:
     """Return a table with one row per object: its class, pose and size."""
     rows = table(*_COLUMNS, fold=("class", "size [m]"))
     of = counts(sight)
-    for label, seen in sorted(told.items()):
+    for label, seen in sorted(observations.items()):
         rows.add(*_cells(label, of[label], seen))
     return rows
 

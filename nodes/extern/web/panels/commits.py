@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from nicegui import ui
 
-from semmap.nodes.extern.cli.output.lines import touched
+from semmap.nodes.extern.cli.output.lines import format_commit_changes
 from semmap.nodes.extern.phrasing import author, moment
 from semmap.nodes.extern.web.page import Page
 from semmap.schemas.replies import LoggedCommit
@@ -91,5 +91,5 @@ def _cells(row: LoggedCommit, *, is_shown: bool) -> dict[str, Any]:
         "time": moment(row.stamp_ns).replace("T", " "),
         "by": author(row),
         "why": row.reason,
-        "what": ("▶ " if is_shown else "") + touched(row),
+        "what": ("▶ " if is_shown else "") + format_commit_changes(row),
     }

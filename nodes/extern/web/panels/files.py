@@ -9,7 +9,7 @@ from typing import Final
 
 from nicegui import events, ui
 
-from semmap.nodes.extern.cli.output.lines import changed
+from semmap.nodes.extern.cli.output.lines import format_change
 from semmap.nodes.extern.web.page import Page
 from semmap.nodes.extern.web.views.uploads import (
     BEGINNING,
@@ -185,7 +185,7 @@ class _LoadForm:
         if request != self._request:
             return
         self._stop.visible = False
-        self._show(f"Changes by {name}:", *changed(reply))
+        self._show(f"Changes by {name}:", *format_change(reply))
         self._button.text = f"Load {name}"
         self._button.visible = True
 
@@ -209,7 +209,7 @@ class _LoadForm:
             self._button.set_enabled(True)
         if reply is not None:
             self._reset()
-            self._show(*changed(reply))
+            self._show(*format_change(reply))
 
     def _reset(self) -> None:
         self._request += 1

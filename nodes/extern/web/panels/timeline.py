@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from nicegui import ui
 
-from semmap.nodes.extern.cli.output.lines import touched
+from semmap.nodes.extern.cli.output.lines import format_commit_changes
 from semmap.nodes.extern.phrasing import author, moment
 from semmap.nodes.extern.web.differences import Difference, Mark, format_counts
 from semmap.nodes.extern.web.page import Page
@@ -215,7 +215,7 @@ class _Timeline:
         row = self._page.history.row(shown)
         if row is None:
             return f"Past: commit {shown} of {last}"
-        reason = row.reason or touched(row)
+        reason = row.reason or format_commit_changes(row)
         return f"Past: commit {shown} of {last} · {moment(row.stamp_ns)} · {author(row)}: {reason}"
 
     def _draw_differences(self, found: Mapping[str, Difference]) -> None:

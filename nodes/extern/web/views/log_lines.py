@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable
 from datetime import datetime
 from typing import Any, Final, NamedTuple
 
-from semmap.nodes.extern.cli.output.lines import touched
+from semmap.nodes.extern.cli.output.lines import format_commit_changes
 from semmap.nodes.extern.phrasing import author
 from semmap.schemas.health import Health
 from semmap.schemas.replies import LoggedCommit
@@ -72,7 +72,7 @@ def line_of(commit: LoggedCommit) -> Line:
     reason = f"{commit.reason}: " if commit.reason else f"{commit.verb}: " if commit.verb else ""
     notes = "".join(f" ({note})" for note in commit.notes)
     names = tuple(dict.fromkeys((*commit.changed, *commit.removed)))
-    text = f"{reason}{touched(commit)}{notes}"
+    text = f"{reason}{format_commit_changes(commit)}{notes}"
     return Line(commit.stamp_ns, commit.seq, author(commit), commit.source, text, names)
 
 

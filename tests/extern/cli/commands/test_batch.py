@@ -1,4 +1,4 @@
-"""Batches as they are written: a change a line."""
+"""Parsing of batches: one change per line."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ unset door1 hasColor 'color red'
         ("update --help", "line 2: 'update --help' is not a change"),
     ],
 )
-def test_a_line_that_is_none_is_named(capsys, line, said):
+def test_an_invalid_line_is_named(capsys, line, said):
     with pytest.raises(errors.BadRequest, match=said):
         list(read_changes(f"set door1 isOpen true\n{line}\n"))
 
@@ -57,7 +57,7 @@ def test_a_batch_over_a_real_system(flat_map, tmp_path):
     assert "is not a UTF-8 text file" in flat_map.cli("batch", str(file), status=2)
     assert "there is no file" in flat_map.cli("batch", str(tmp_path / "none.txt"), status=2)
     file.write_text("# nothing\n")
-    assert "there is not a change" in flat_map.cli("batch", str(file), status=2)
+    assert "no changes found" in flat_map.cli("batch", str(file), status=2)
     with flat_map.client() as client:
         assert client.get("door1").properties["isOpen"] is False
         made = client.batch(

@@ -1,4 +1,4 @@
-"""The past, undo and the TBox through the command line and a whole system without a simulator."""
+"""History, undo and the TBox through the command line and a whole system without a simulator."""
 
 from __future__ import annotations
 
@@ -163,7 +163,7 @@ def test_another_tbox_comes_with_its_imports(system, tmp_path):
         )
 
 
-def test_what_nobody_describes_is_told_or_refused(system, tmp_path):
+def test_undescribed_entities_are_reported_or_rejected(system, tmp_path):
     file = tmp_path / "strange.ttl"
     file.write_text(
         f"@prefix : <{v.ABOX}> . @prefix dm: <{v.TBOX}> . :stool9 a dm:Chair ; dm:isLocatedIn :hal ."

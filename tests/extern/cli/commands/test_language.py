@@ -1,4 +1,4 @@
-"""Commands in words, and words on what is there, from the command line and the client."""
+"""Natural-language commands and descriptions through the command line and the client."""
 
 import json
 
@@ -34,7 +34,7 @@ def test_other_forms(system, monkeypatch):
     assert json.loads(text)["frames"][0]["arguments"][0]["span"] == [2, 3]
 
 
-def test_what_is_there_is_told_in_few_words(system, monkeypatch, capsys):
+def test_the_map_is_described_in_few_words(system, monkeypatch, capsys):
     text, status = said(system, monkeypatch, "tell")
     assert (text, status) == ("The map has one place and one thing. The kitchen has a lemonade.\n", 0)
     text, _ = said(system, monkeypatch, "tell", "kitchen", "--words", "20", "--format", "json")
@@ -79,7 +79,7 @@ def test_italian_needs_no_flag(system, monkeypatch):
         ("hi", "example: take the cup"),
     ],
 )
-def test_what_is_no_command_says_why(system, monkeypatch, capsys, text, why):
+def test_another_text_than_a_command_has_a_reason(system, monkeypatch, capsys, text, why):
     assert said(system, monkeypatch, "understand", text) == ("", 1)
     assert why in capsys.readouterr().err
 
@@ -131,7 +131,7 @@ def test_whatever_is_said_is_answered(system, text, understood):
         assert "".join(frame.text for frame in client.understand(text).frames) == understood
 
 
-def test_what_is_no_command_says_so(system, monkeypatch, capsys):
+def test_another_text_than_a_command_is_reported(system, monkeypatch, capsys):
     text, status = said(system, monkeypatch, "understand", "frobnicate the lemonade")
     assert (text, status) == ("", 1)
     assert "unknown verb: frobnicate" in capsys.readouterr().err
@@ -169,7 +169,7 @@ def test_a_thing_is_found_by_what_is_said_of_it(kitchen, monkeypatch):
         assert (found.outcome, found.seq) == ("none", client.status().commit)
 
 
-def test_what_is_ambiguous_is_asked_back_and_what_is_not_there_is_told(kitchen, monkeypatch):
+def test_what_is_ambiguous_is_asked_back_and_what_is_not_there_is_reported(kitchen, monkeypatch):
     text, status = said(kitchen, monkeypatch, "find", "the cup")
     assert text.splitlines()[-1] == "Which one: the red cup or the blue one?"
     assert status == 0

@@ -69,7 +69,7 @@ def test_what_was_shown_is_recognised_until_it_is_forgotten(here, capsys):
         (["perceive", "--frames", "shown", "--data", "map"], "no exemplars in map"),
     ],
 )
-def test_what_cannot_be_shown_is_told_in_one_line(here, capsys, words, told):
+def test_what_cannot_be_shown_is_reported_in_one_line(here, capsys, words, told):
     (here / "empty").mkdir()
     assert execute(words) == 2
     error = capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""What a map was last run with."""
+"""The settings that a map was last run with."""
 
 import click
 import pytest
@@ -29,7 +29,7 @@ def test_a_map_goes_on_as_it_was_run(data, capsys):
     assert capsys.readouterr().err == ""
 
 
-def test_settings_that_are_lost_are_told(data, capsys):
+def test_settings_that_are_lost_are_reported(data, capsys):
     (data / SETTINGS).write_text("{")
     assert _settings_before(data) is None
     assert "--truth and --world are reset to their defaults" in capsys.readouterr().err
@@ -42,7 +42,7 @@ def test_a_shipped_world_of_another_installation_is_the_shipped_world_of_this_on
     assert capsys.readouterr().err == ""
 
 
-def test_a_world_that_is_gone_is_told_and_the_truth_stays(data, capsys):
+def test_a_world_that_is_gone_is_reported_and_the_truth_stays(data, capsys):
     text = (data / SETTINGS).read_text()
     (data / SETTINGS).write_text(text.replace(str(EMPTY_WORLD), "/nowhere/world.xml"))
     before = _settings_before(data)
@@ -59,8 +59,8 @@ def test_another_abox_does_not_count_for_a_map_that_goes_on(data):
     goes_on = CliRunner().invoke(tell, ["--data", str(data), "--abox", "none"])
     assert goes_on.stdout == f"perceived {EMPTY_WORLD}\n"
     assert "--abox is ignored" in goes_on.stderr
-    anew = CliRunner().invoke(tell, ["--data", str(data), "--abox", "none", "--fresh"])
-    assert (anew.stdout, anew.stderr) == (f"map {EMPTY_WORLD}\n", "")
+    fresh = CliRunner().invoke(tell, ["--data", str(data), "--abox", "none", "--fresh"])
+    assert (fresh.stdout, fresh.stderr) == (f"map {EMPTY_WORLD}\n", "")
 
 
 def test_a_part_whose_map_is_elsewhere_remembers_its_world(data):

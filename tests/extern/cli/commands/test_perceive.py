@@ -62,7 +62,7 @@ def test_json_is_for_programs(tmp_path, capsys):
         ([], "FILE"),
     ],
 )
-def test_what_cannot_be_done_is_told_in_one_line(tmp_path, capsys, monkeypatch, arguments, said):
+def test_what_cannot_be_done_is_reported_in_one_line(tmp_path, capsys, monkeypatch, arguments, said):
     monkeypatch.chdir(tmp_path)
     write_cloud(tmp_path / "boxes.pcd")
     (tmp_path / "empty.pcd").write_bytes(header("binary", width=0, height=0))
@@ -124,14 +124,14 @@ def test_a_dataset_without_any_frame_that_can_be_used_is_an_error(tmp_path, caps
         (["--frames", "empty"], "no folders of frames"),
     ],
 )
-def test_what_a_dataset_is_not_is_told(tmp_path, capsys, monkeypatch, arguments, said):
+def test_what_a_dataset_is_not_is_reported(tmp_path, capsys, monkeypatch, arguments, said):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "empty").mkdir()
     assert execute(["perceive", *arguments]) == 2
     assert said in capsys.readouterr().err
 
 
-def test_masks_cut_a_frame_up_and_a_label_that_nobody_knows_is_told(tmp_path, capsys):
+def test_masks_segment_a_frame_and_an_unknown_label_is_reported(tmp_path, capsys):
     write_frame(tmp_path / "frames" / "first")
     (height, width), box = SEEN.truth.shape, np.isin(SEEN.truth, [1])
     np.save(tmp_path / "frames" / "first" / "mine.npy", box.astype(np.uint16))
@@ -170,7 +170,7 @@ def test_masks_cut_a_frame_up_and_a_label_that_nobody_knows_is_told(tmp_path, ca
         (["boxes.pcd", "--masks", "small.npy", "--label-map", "small.npy"], "not a JSON object of labels"),
     ],
 )
-def test_what_is_wrong_with_masks_is_told_in_one_line(tmp_path, capsys, monkeypatch, words, said):
+def test_what_is_wrong_with_masks_is_reported_in_one_line(tmp_path, capsys, monkeypatch, words, said):
     monkeypatch.chdir(tmp_path)
     write_cloud(tmp_path / "boxes.pcd")
     np.save(tmp_path / "small.npy", np.zeros((3, 4), int))

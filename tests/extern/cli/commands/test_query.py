@@ -1,4 +1,4 @@
-"""Questions about one triple, from the command line, the client and a bare query."""
+"""Queries about one triple through the command line, the client and a raw Zenoh query."""
 
 import io
 import json

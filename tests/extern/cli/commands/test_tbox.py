@@ -18,7 +18,7 @@ def file(tmp_path):
     return file
 
 
-def test_what_is_found_is_told(file, capsys):
+def test_what_is_found_is_reported(file, capsys):
     assert execute(["tbox", "check", file(SOUND)]) == 0
     said = capsys.readouterr().out
     assert "ontology        http://o.org/o (http://o.org/o/1)\n" in said

@@ -1,4 +1,4 @@
-"""`semmap list --on` where a fact about places is withheld, through a whole system."""
+"""`semmap list --on` with a suppressed fact about places, through a whole system."""
 
 import pytest
 

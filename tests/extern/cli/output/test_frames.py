@@ -1,4 +1,4 @@
-"""The tree of frames, as it is printed."""
+"""The printed frame tree."""
 
 from __future__ import annotations
 
@@ -37,6 +37,6 @@ def test_frames_are_below_those_that_they_are_in():
 
 
 def test_a_frame_without_a_parent_that_is_there_comes_last():
-    lines = printed(frame("map", ""), frame("lidar", "nobody", "stream", problem="no parent")).splitlines()
+    lines = printed(frame("map", ""), frame("lidar", "unknown", "stream", problem="no parent")).splitlines()
     assert "lidar" in lines[-1]
-    assert "in nobody" in lines[-1]
+    assert "in unknown" in lines[-1]

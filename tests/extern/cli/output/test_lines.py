@@ -10,7 +10,7 @@ from semmap.schemas.replies import Changed
 @pytest.mark.parametrize(("count", "shown"), [(0, 0), (1, 1), (20, 20), (21, 19), (700, 19)])
 def test_of_many_consequences_a_few_are_shown_and_the_rest_counted(count, shown):
     facts = tuple(f"cup{i} type Cup" for i in range(count))
-    text, *rest = lines.changed(Changed(commit=None, text="it would be", no_longer_follows=facts))
+    text, *rest = lines.format_change(Changed(commit=None, text="it would be", no_longer_follows=facts))
     assert text == "it would be"
     assert rest[:shown] == [f"  would no longer be inferred: {fact}" for fact in facts[:shown]]
     assert rest[shown:] == [f"  would no longer be inferred: {count - shown} more facts"] * (count > shown)
@@ -21,18 +21,18 @@ def test_what_a_thing_bears_is_one_sentence():
         return Relation(relation=relation, subject=name, object=other, text=f"{name} {relation} {other}: ...")
 
     alone = [on("table1", "isLocatedIn", "kitchen1"), on("cup1")]
-    assert list(lines.relations(alone)) == [relation.text for relation in alone]
+    assert list(lines.format_relations(alone)) == [relation.text for relation in alone]
     several = [
         on("table1", "isLocatedIn", "kitchen1"),
         on("cup1"),
         on("cup2"),
         on("ball1", "isInside", "bin1"),
     ]
-    assert list(lines.relations(several)) == [
+    assert list(lines.format_relations(several)) == [
         several[0].text,
         "table1 supports cup1 and cup2",
         several[3].text,
     ]
-    many = list(lines.relations([on(f"cup{n}") for n in range(30)]))
+    many = list(lines.format_relations([on(f"cup{n}") for n in range(30)]))
     assert many[0].startswith("table1 supports cup0, cup1")
     assert many[0].endswith("and 11 more")

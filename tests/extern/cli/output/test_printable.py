@@ -1,4 +1,4 @@
-"""What a stranger wrote does not command a terminal."""
+"""Texts of other programs cannot control the terminal."""
 
 from __future__ import annotations
 

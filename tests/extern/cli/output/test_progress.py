@@ -1,4 +1,4 @@
-"""How far a large change is, as it is told."""
+"""Progress messages of a large change."""
 
 from functools import partial
 from types import SimpleNamespace

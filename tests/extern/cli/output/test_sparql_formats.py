@@ -70,8 +70,8 @@ def test_turtle_is_for_graphs():
         (None, ""),
     ],
 )
-def test_terms_are_spoken(term, said):
-    assert formats.to_words(term) == said
+def test_terms_as_in_turtle(term, said):
+    assert formats.format_term(term) == said
 
 
 def test_news_tell_the_commit():

@@ -1,4 +1,4 @@
-"""Tables in a terminal: however narrow it is, nothing of a cell is lost."""
+"""Tables in a terminal: cells are complete at any width."""
 
 import io
 import time
@@ -111,7 +111,7 @@ def test_large_sizes_are_written_out():
     assert "1000 x 99.5 x 0.0802" in drawn(show.entity_table([entity("hall", (1000.0, 99.5, 0.0802))]), 200)
 
 
-def test_bodies_that_could_not_be_made_are_told_below_the_list():
+def test_bodies_that_could_not_be_made_are_reported_below_the_list():
     failed = BodyState(status="failed", detail="too long")
     chairs = [entity("chair1"), structs.replace(entity("chair2"), body=failed)]
     assert (
