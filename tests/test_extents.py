@@ -89,7 +89,7 @@ def test_scenes_have_extents_and_properties(system, tmp_path):
         ),
         (("add", "Room", "--extent", "POLYGON ((0 0, 4 4, 4 nan, 0 0))"), "within 10000 m"),
         (("add", "Room", "--extent", "CIRCLE"), "an extent is one POLYGON, not CIRCLE"),
-        (("add", "Room", "--extent", L_SHAPE, "--yaw", "1"), "leave the angle out"),
+        (("add", "Room", "--extent", L_SHAPE, "--yaw", "1"), "remove the angle"),
         (("add", "Chair", "--extent", L_SHAPE), "only places have an extent, and a Chair is not a place"),
         (("update", "chair1", "--extent", L_SHAPE), "only places have an extent, and a Chair is not a place"),
     ],

@@ -94,7 +94,7 @@ def live_off_m(client):
 def test_it_is_taken_carried_and_put(client):
     assert [e.name for e in client.list(on="table1")] == ["cup1"]
     reply = client.attach("cup1", to="tray1")
-    assert re.match(r"tray1 holds cup1, at \(-3, 0, 0\.[78]", reply.text)  # the table is 0.75 m high
+    assert re.match(r"cup1 is attached to tray1, at \(-3, 0, 0\.[78]", reply.text)  # the table is 0.75 m high
     cup = client.get("cup1", where=True)
     assert holder_of(cup) == "tray1"
     assert client.list(on="table1") == ()

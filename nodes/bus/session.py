@@ -183,7 +183,7 @@ def open_session(network: Network) -> Iterator[zenoh.Session]:
         session = zenoh.open(network.as_config())
     except zenoh.ZError as error:
         where = ", ".join((*network.listen, *network.connect))
-        if not network.listen and any(said in str(error) for said in _NOT_REACHED):
+        if not network.listen and any(reason in str(error) for reason in _NOT_REACHED):
             if network.identity is not None:
                 raise errors.NoAnswer(
                     f"no response from {where}: no system runs there with --secure, or it rejects the"

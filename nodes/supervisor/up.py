@@ -187,15 +187,15 @@ class _Foreground:
 
     def _report_waiting(self, health: Health) -> None:
         """In a part of a system, print once what a node waits for: it may be on a host that starts later."""
-        said = health.node, health.detail
+        message = health.node, health.detail
         is_long = time.monotonic() > self._waits_from_s
         if (
             self._settings.only
             and is_long
             and health.detail.startswith("waiting")
-            and said not in self._waits
+            and message not in self._waits
         ):
-            self._waits.add(said)
+            self._waits.add(message)
             self._say(f"{health.node:<{_COLUMN}} {health.detail}")
 
     def _report_progress(self, health: Health) -> None:
@@ -315,8 +315,8 @@ class _Foreground:
                 listed = bus.ask(session, keys.CMD, List.VERB, List(), reply_type(List))
                 names |= {entity.model for entity in listed if isinstance(entity, Entity)}
             if strange := ignored_files(folder, names):
-                said = f"ignored, because no class has a model of that name: {', '.join(strange)}"
-                self._say(f"{'models':<{_COLUMN}} {said}")
+                message = f"ignored, because no class has a model with this name: {', '.join(strange)}"
+                self._say(f"{'models':<{_COLUMN}} {message}")
             for note in own_notes(folder, names):
                 self._say(f"{'models':<{_COLUMN}} {note}")
 

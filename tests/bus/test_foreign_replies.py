@@ -91,14 +91,14 @@ def test_ask_later_reports_a_foreign_reply_and_can_query_all(three):
     token = bus.declare_presence(node, "kb_node")
     until(lambda: liveliness.is_there("kb_node"), "the token is seen")
 
-    def ask(everybody):
+    def ask(ask_all):
         answers, done = [], threading.Event()
 
         def take(read):
             answers.append(read)
             done.set()
 
-        bus.ask_later(client, keys.BRIDGE, "get", *ASKED, take, liveliness=liveliness, ask_all=everybody)
+        bus.ask_later(client, keys.BRIDGE, "get", *ASKED, take, liveliness=liveliness, ask_all=ask_all)
         assert done.wait(PATIENCE_S)
         return answers[0]
 

@@ -107,7 +107,7 @@ def test_json_is_not_cut(pair, small):
     server, client = pair
     bus.serve(server, PREFIX, answer(lambda request: replies.Done(text="x" * 2000)))
     (reply,) = client.get(f"{PREFIX}/get?name=x;format=json")
-    assert "one in JSON may have" in reply.err.payload.to_bytes().decode()
+    assert "the limit for JSON is" in reply.err.payload.to_bytes().decode()
 
 
 def test_an_invalid_attachment_gets_an_error(pair):

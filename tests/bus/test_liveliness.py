@@ -55,7 +55,7 @@ def test_present_robots_are_reported_before_it_returns(pair):
 
 def test_queries_to_a_node_are_cancelled_when_it_goes(lifelines_and_token):
     liveliness, token = lifelines_and_token
-    old = [liveliness.token_for(("kb_node",)), liveliness.of(("kb_node", "coordinator"))]
+    old = [liveliness.token_for(("kb_node",)), liveliness.token_for(("kb_node", "coordinator"))]
     others = liveliness.token_for(("coordinator",))
     assert liveliness.token_for(("kb_node",)) is old[0]
     token.undeclare()

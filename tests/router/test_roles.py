@@ -38,9 +38,9 @@ BY_A_NODE = keys.health_key("after")
 
 
 def settle(sessions, *names):
-    """Wait until the router has all that these sessions have sent it, and they all that it has sent them.
+    """Wait until the router has all messages of these sessions, and they have all of the router.
 
-    So it knows their subscribers, and they who follows what they publish: to nobody they would send nothing.
+    Then it knows their subscribers, and publishers know their followers: without those they would send nothing.
     """
     for name in names:
         with Heard(sessions["coordinator"], BY_EVERYBODY) as heard:

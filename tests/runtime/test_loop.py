@@ -261,7 +261,7 @@ def test_a_relayed_reply_in_json(network):
     ("prefix", "verb", "error", "said"),
     [
         (PREFIX, "fly", errors.UnknownVerb, "unknown command 'fly'"),
-        ("semmap/nobody", "get", errors.NoAnswer, "no response on semmap/nobody/get: no node serves it"),
+        ("semmap/unserved", "get", errors.NoAnswer, "no response on semmap/unserved/get: no node serves it"),
     ],
 )
 def test_a_relayed_error_is_forwarded(network, monkeypatch, prefix, verb, error, said):

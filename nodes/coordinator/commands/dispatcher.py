@@ -72,7 +72,7 @@ class CommandDispatcher:
         return _CHANGING[type(command)](self.map, command)
 
     def _adopt(self, observed: ObservedState) -> KbCoroutine[Changed]:
-        """Commit the observed state of one entity, or of those that were moved run_together."""
+        """Commit the observed state of one entity, or of those that were moved together."""
         if observed.reason:
             return (
                 yield from entity_changes.adopt_observed(

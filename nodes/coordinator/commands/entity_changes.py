@@ -167,8 +167,8 @@ def _describe(was: Entity, made: Effects | None) -> str:
     now = _find_changed(made, was.name)
     if made is None:
         return f"{was.name}: {UNCHANGED}"
-    said = changes.in_words(changes.between(was, now)) if now is not None else ""
-    return f"{was.name}: {said}" if said else was.name
+    text = changes.in_words(changes.between(was, now)) if now is not None else ""
+    return f"{was.name}: {text}" if text else was.name
 
 
 def _other_names(made: Effects | None, name: str) -> tuple[str, ...]:

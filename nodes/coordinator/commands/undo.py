@@ -50,8 +50,8 @@ def undo(view: MapView, command: Undo) -> KbCoroutine[Changed]:
     text = f"undid commit {first}"
     if settling:
         text += f" and what settled after it ({wording.commits(settling)})"
-    if said := _describe(undone, commit):
-        text = f"{text}: {said}"
+    if described := _describe(undone, commit):
+        text = f"{text}: {described}"
     return make_reply(commit, text, names=commit.names, undone=undone)
 
 

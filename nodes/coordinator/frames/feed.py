@@ -128,12 +128,12 @@ class Frames:
         if not isinstance(command, c.Add | c.Update) or not command.id or command.dry_run:
             raise error
 
-        def told(done: Any) -> Any:
+        def result_or_raise(done: Any) -> Any:
             if done is None:
                 raise error
             return done
 
-        return _then(run_async(find_earlier_result(command), self._kb.ask_later), told)
+        return _then(run_async(find_earlier_result(command), self._kb.ask_later), result_or_raise)
 
     def _with_cameras(self, use: Callable[[Tree], R]) -> R | Future[R]:
         """Return `use(tree)`; the tree includes the cameras of the simulator if one runs."""

@@ -83,8 +83,8 @@ class EntityLinks:
         return whole
 
     def _above(self, entity: Entity) -> Entity | None:
-        said = entity.properties.get(PART_OF)
-        whole = self._entities.get(said) if isinstance(said, str) else None
+        parent = entity.properties.get(PART_OF)
+        whole = self._entities.get(parent) if isinstance(parent, str) else None
         return whole if whole is not None and whole.pose is not None and not whole.place else None
 
 

@@ -224,8 +224,8 @@ def _describe_drive(driven: Driven) -> str:
         raise errors.Refused(f"{driven.name} is blocked at {where} by an obstacle")
     if driven.outcome == "fallen":
         raise errors.Refused(f"{driven.name} {wording.fallen(driven.name, driven.pose)}")
-    said = {"driving": "is on its way from", "there": "is at", "stopped": "stopped at"}[driven.outcome]
-    return f"{driven.name} {said} {where}, facing {math.degrees(driven.pose.yaw_rad):.0f}°"
+    predicate = {"driving": "is on its way from", "there": "is at", "stopped": "stopped at"}[driven.outcome]
+    return f"{driven.name} {predicate} {where}, facing {math.degrees(driven.pose.yaw_rad):.0f}°"
 
 
 def _describe_rest(body: Body) -> str:

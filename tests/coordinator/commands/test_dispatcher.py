@@ -306,7 +306,7 @@ def test_an_entity_is_listed_by_its_classes_in_the_order_of_names(dispatcher):
     assert [e.name for e in dispatcher.map.entities_of(None)] == ["a", "b", "k"]
     assert [e.name for e in dispatcher.map.entities_of("Furniture")] == ["a", "b"]
     assert dispatcher.map.pose_of("a").position_m == (1.0, 1.0, 0.0)
-    assert dispatcher.map.pose_of("nobody") is None
+    assert dispatcher.map.pose_of("unknown") is None
     with pytest.raises(errors.UnknownName, match="no entity is named 'c'"):
         dispatcher.map.entity("c")
 

@@ -41,7 +41,7 @@ def repeated(publish):
 def test_positions_in_the_frame_of_a_robot_that_is_tracked(system):
     with system.client() as client, system.client() as robot:
         client.add("Robot", "robot1", at=(0.0, 0.0, 0.0), track="stream")
-        with pytest.raises(errors.Refused, match="robot1 is tracked, but where it is now is not known"):
+        with pytest.raises(errors.Refused, match="robot1 is tracked, but its current pose is unknown"):
             client.add("Cup", at=(1.0, 0.0, 0.0), frame="robot1")
 
         def publish() -> None:
@@ -92,7 +92,7 @@ def test_cycles_and_unknown_frames_are_rejected_with_a_reason(system):
         until(lambda: "hook" in [f.name for f in client.frames()], "the other frame")
         client.publish_frame("dock", "hook", fixed=True)
         until(
-            lambda: [p for p in client.status().problems if "in a cycle: dock in hook in dock" in p],
+            lambda: [p for p in client.status().problems if "form a cycle: dock in hook in dock" in p],
             "that it is a cycle",
         )
         assert client.get("fridge1", frame="dock").pose is not None

@@ -44,7 +44,7 @@ def test_a_robot_is_tracked_while_it_drives_and_committed_where_it_stops(system)
 def test_a_silent_stream_is_reported_as_stale(system):
     with system.client() as client:
         client.add("Robot", "robot2", at=(1.0, 4.0, 0.0), track="stream")
-        assert any("no live pose has come yet" in problem for problem in client.status().problems)
+        assert any("no live pose has been received yet" in problem for problem in client.status().problems)
         client.publish_pose("robot2", (1.0, 4.5, 0.0))
         until(lambda: client.get("robot2").live, "the pose")
         until(lambda: client.get("robot2").live.stale, "that it is stale")
@@ -58,7 +58,7 @@ def test_invalid_live_poses_are_reported(system):
     with system.client() as client:
         client.add("Robot", "robot3", at=(7.0, 3.0, 0.0), track="stream")
         for key, payload in (
-            ("semmap/live/nobody1", b'{"at": [1, 2, 0]}'),
+            ("semmap/live/unknown1", b'{"at": [1, 2, 0]}'),
             ("semmap/live/fridge1", b'{"at": [1, 2, 0]}'),
             ("semmap/live/robot3", b'{"at": [1, NaN, 0]}'),
             ("semmap/live/robot3", b"\xc1"),
@@ -70,7 +70,7 @@ def test_invalid_live_poses_are_reported(system):
 
         until(lambda: len(ignored()) == 3, "three that are ignored")
         said = ignored()
-        assert any("no entity is named 'nobody1'" in problem for problem in said)
+        assert any("no entity is named 'unknown1'" in problem for problem in said)
         assert any("fridge1 is not tracked" in problem for problem in said)
         with pytest.raises(errors.BadRequest, match="yaw or orientation"):
             client.publish_pose("robot3", (1.0, 2.0, 0.0), yaw=1.0, orientation=(1.0, 0.0, 0.0, 0.0))
@@ -106,7 +106,7 @@ def test_the_simulator_provides_the_pose_of_a_body(system):
 def test_tracking_on_the_command_line(system):
     assert "unchanged: fridge1 is not tracked" in system.cli("track", "fridge1", "--off")
     assert "is a place" in system.cli("track", "kitchen1", status=1)
-    assert "no entity is named" in system.cli("track", "nobody1", status=1)
+    assert "no entity is named" in system.cli("track", "unknown1", status=1)
     system.cli("add", "Robot", "robot5", "--at", "7", "5", "0", "--track", "stream")
     system.cli("track", "robot5", "--from", "lidar", status=2)
     assert "would be" in system.cli("track", "fridge1", "--dry-run")
