@@ -62,10 +62,10 @@ def unknown_labels(labels: Collection[str]) -> str:
 def carried(name: str, load: Collection[str], left: Collection[str] = ()) -> str:
     """Return a text about the objects that moved with a thing; `left` are those that had to stay."""
     if not load and left:
-        return f"{name} carried nothing along; {few(left)} was to be left"
+        return f"nothing moved with {name}; excluded: {few(left)}"
     if not load:
-        return f"nothing stands on {name} or is inside it"
-    return f"{name} carried {few(load)} along"
+        return f"nothing is on {name} or inside it"
+    return f"{few(load)} moved with {name}"
 
 
 def commits(seqs: Sequence[int]) -> str:

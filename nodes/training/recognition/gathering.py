@@ -74,7 +74,7 @@ def read_things(folder: Path) -> Samples:
 
 
 def joined(things: Sequence[Samples], own: Sequence[Samples], pairs: Sequence[Pairs]) -> Gathered:
-    """All of all parts."""
+    """Join all parts."""
     return Gathered(_numbered(things), _numbered(own), Pairs.joined(pairs))
 
 

@@ -89,7 +89,7 @@ def test_a_hand_that_carries_puts_what_is_borne_with_it():
     running = running_with({"tray1": tray, "cup1": beside}, answer, lambda command, load: let_go.append(load))
     move = c.Move(name="tray1", at=(5.0, 5.0, 0.5), yaw=math.pi / 2, carry=True, leave=("milk1",))
     said = running.move(move).result()
-    assert said.text == "put tray1 at (5, 5, 0.5) and released it; tray1 carried cup1 along"
+    assert said.text == "put tray1 at (5, 5, 0.5) and released it; cup1 moved with tray1"
     assert asked[0].leave == ("milk1",)
     there = {p.name: p.pose for p in asked[1].placements}
     assert there["cup1"].position_m == pytest.approx((5.0, 5.2, 0.52))
