@@ -194,7 +194,7 @@ def tour(t: Tour) -> None:
 
     t.heading("Move the bowl with its contents, while a standing query watches the table")
     with t.watching("watch", "--on", "dining table", begins="watching", shows=("- bowl1", "+ bowl1")):
-        t.do("update", "bowl1", "--at", "8.2", "1.3", "0", "--carry", holds="bowl1 carried apple1 along")
+        t.do("update", "bowl1", "--at", "8.2", "1.3", "0", "--carry", holds="apple1 moved with bowl1")
         t.do("list", "--in", "bowl1", holds="apple1")
         t.do("undo", holds="undid commit")
 

@@ -344,7 +344,7 @@ class List(Command[tuple[Entity, ...] | dict[str, Any]], frozen=True, tag="list"
 
     @property
     def where(self) -> Where | None:
-        """What it asks of where things are, if it does."""
+        """The spatial conditions, if there are any."""
         where = Where(
             on=self.on, in_=self.in_, near=self.near, within=self.within, nearest=self.nearest, to=self.to
         )
@@ -650,7 +650,7 @@ class Watch(Command[Watching], frozen=True, tag="watch"):
 
     @property
     def where(self) -> Where | None:
-        """What it asks of where things are, if it does."""
+        """The spatial conditions, if there are any."""
         where = Where(on=self.on, in_=self.in_, near=self.near, within=self.within)
         return None if where == Where() else where
 

@@ -55,7 +55,7 @@ class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     things: tuple[PlannedThing, ...]
     walls: tuple[Outline, ...] = ()
     notes: tuple[str, ...] = ()
-    """What is missing in the plan."""
+    """Notes about what is missing in the plan."""
 
 
 class WallsQuery(Call[tuple[Outline, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):

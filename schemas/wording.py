@@ -60,21 +60,21 @@ def unknown_labels(labels: Collection[str]) -> str:
 
 
 def carried(name: str, load: Collection[str], left: Collection[str] = ()) -> str:
-    """What a thing carried along; `left` is what was to stay."""
+    """Return a text about the objects that moved with a thing; `left` are those that had to stay."""
     if not load and left:
-        return f"{name} carried nothing along; {few(left)} was to be left"
+        return f"nothing moved with {name}; excluded: {few(left)}"
     if not load:
-        return f"nothing stands on {name} or is inside it"
-    return f"{name} carried {few(load)} along"
+        return f"nothing is on {name} or inside it"
+    return f"{few(load)} moved with {name}"
 
 
 def commits(seqs: Sequence[int]) -> str:
-    """`commit 7`, `commits 7, 8`."""
+    """Return `commit 7` or `commits 7, 8`."""
     return f"commit{'s' * (len(seqs) > 1)} {', '.join(map(str, seqs))}"
 
 
 def sentence(error: Exception, kind: Any) -> str:
-    """Why something is no message of type `kind`: `at: the 1st must be a number from -10000 to 10000`."""
+    """Return why a message is not of type `kind`: `at: the 1st must be a number from -10000 to 10000`."""
     if isinstance(error, ValidationError):
         return _of_value(str(error), kind)
     if isinstance(error, RecursionError):
@@ -120,7 +120,7 @@ def _place(step: str | int) -> str:
 
 
 def _type_at(info: inspect.Type, steps: Sequence[str | int]) -> inspect.Type | None:
-    """The type of what stands at `steps` in a message; None where that cannot be told."""
+    """Return the type at a path in a message, or None if it cannot be determined."""
     found: inspect.Type | None = _bare(info)
     for step in steps:
         found = _bare(_inside(found, step))
@@ -155,7 +155,7 @@ def _instead(word: str, info: inspect.Type | None) -> str:
 
 
 def _describe(info: inspect.Type | None) -> str:
-    """What a value of this type may be."""
+    """Return a description of the valid values of a type."""
     match info:
         case inspect.FloatType() | inspect.IntType():
             return ("a number" if isinstance(info, inspect.FloatType) else "a whole number") + _bounds(info)

@@ -91,7 +91,7 @@ class System:
         self.begun: str | None = None
         """Which map `begin_anew` gave last."""
         self.said: list[str] = []
-        """What it has said so far."""
+        """The output so far."""
         self.is_ready = threading.Event()
         """It has said that it is ready, or ended."""
 

@@ -40,7 +40,7 @@ PLACES = (
     ("ycb 011_banana", -0.10, -0.20, 0.7),
     ("ycb 077_rubiks_cube", 0.15, -0.22, 0.3),
 )
-"""What stands on the table, where from its middle [m], and how it is turned [rad]."""
+"""The things on the table, with positions from its middle [m] and yaw [rad]."""
 
 
 @pytest.mark.long
@@ -91,12 +91,12 @@ def await_looks(looks: list[Observations], count: int) -> None:
 
 
 def poses(client: Client) -> dict[str, Pose]:
-    """Where the map has things."""
+    """Return the positions of things in the map."""
     return {entity.name: entity.pose for entity in client.list()}
 
 
 def stands(client: Client) -> dict[str, Pose]:
-    """Where the things really stand."""
+    """Return the true positions of things."""
     scene = bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene)
     return {body.name: body.pose for body in scene.bodies if body.name.startswith("foreign-")}
 
@@ -111,7 +111,7 @@ def distance_m(one: Pose, other: Pose) -> float:
 
 
 def renamed_back(changes: Iterable[Change]) -> set[str]:
-    """Who was once more said to be what it had been before; the oldest change first."""
+    """Return the entities whose class changed back to an earlier one, the oldest change first."""
     were: dict[str, set[object]] = {}
     back = set()
     for change in changes:

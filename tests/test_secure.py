@@ -119,10 +119,10 @@ def test_perception_speaks_as_perception_only(as_, raw):
 
 
 def test_the_coordinator_refuses_what_a_client_did_not(raw):
-    with raw("vera") as session, pytest.raises(errors.Refused, match=r"\(viewer\) may not clear"):
+    with raw("vera") as session, pytest.raises(errors.Refused, match="may not use 'clear'"):
         bus.ask(session, keys.commands_as("vera"), "clear", commands.Clear(), Changed)
     tbox = commands.Load(content=b"", tbox=True)
-    with raw("bob") as session, pytest.raises(errors.Refused, match=r"\(operator\) may not load --tbox"):
+    with raw("bob") as session, pytest.raises(errors.Refused, match="may not use 'load --tbox'"):
         bus.ask(session, keys.commands_as("bob"), "load", tbox, Changed)
     with raw("root") as session, pytest.raises(errors.SemmapError) as caught:  # admitted, and no TBox
         bus.ask(session, keys.commands_as("root"), "load", tbox, Changed)

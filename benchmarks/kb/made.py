@@ -63,7 +63,7 @@ class Cost(NamedTuple):
 
 
 def cost(act: Callable[[], object]) -> Cost:
-    """What it takes."""
+    """Return the wall time and CPU time of an action."""
     cpu = process_time()
     wall_s = timed(act)
     return Cost(wall_s, process_time() - cpu)

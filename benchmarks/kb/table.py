@@ -97,7 +97,7 @@ def of_room(add: Figures, remove: Figures) -> list[Row]:
 
 
 def of_owlrl(owlrl: Figures, engine: Engine) -> list[Row]:
-    """How many times faster the engine is than owlrl, on a map of the same size."""
+    """The speed-up of the engine over owlrl, on a map of the same size."""
     times = owlrl["p50_ms"] / engine.add["p50_ms"]
     return [
         Row(f"owlrl: add and check, {engine.entities}", owlrl["p50_ms"], "ms"),

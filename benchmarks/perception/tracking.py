@@ -45,7 +45,7 @@ CAMERAS = [
 
 
 class Kept(NamedTuple):
-    """Of `moves`: in `kept` the thing had one name before and after, in `held` at least an entity after."""
+    """Results of `moves`: `kept` have the same name afterwards, `held` at least an entity."""
 
     moves: int
     kept: int

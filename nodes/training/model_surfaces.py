@@ -1,4 +1,4 @@
-"""Points of the surface of every model, for perception, which does not have the library: `make shapes`."""
+"""Surface points of every model, for perception, which has no access to the library: `make shapes`."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from semmap.ontology.model_shapes import varieties_of
 
 POINTS = 450
 _TRIES = 8
-"""So many times as many points are drawn; of these, what lies within another part is never seen."""
+"""The oversampling factor; sampled points inside another part are invisible and discarded."""
 _WITHIN = 0.004
-"""What is deeper inside another part than this share of the largest extent is within it."""
+"""Points deeper inside another part than this share of the largest extent count as inside."""
 _ALIKE, _MOST = 0.03, 0.96
-"""A turn changes nothing that moves hardly a point off the surface by this share of the larger side."""
+"""A rotation is a symmetry if it moves almost no point off the surface by this share of the larger side."""
 _TURNS_RAD = np.radians([20.0, 47.0, 90.0, 131.0, 180.0])
 
 
 def library_surfaces() -> dict[str, list[ModelSurface]]:
-    """The surfaces of the models of each class that has any: first what stands for it, then its varieties."""
+    """Return the surfaces of the models of each class: first its default model, then the varieties."""
     surfaces = {model: surface_of(build(model, None)) for model in sorted(KINDS)}
     return {class_: [surfaces[model] for model in models] for class_, models in library_models().items()}
 
 
 def library_models() -> dict[str, list[str]]:
-    """The models of each class, in the order of `library_surfaces`."""
+    """Return the models of each class, in the order of `library_surfaces`."""
     standing: dict[str, list[str]] = {}
     for model, class_ in sorted(class_of_models(MODELS).items()):
         standing.setdefault(class_, []).append(model)
@@ -42,7 +42,7 @@ def library_models() -> dict[str, list[str]]:
 
 
 def surface_of(model: Model) -> ModelSurface:
-    """Points that are evenly spread over what is seen of a model, and their outward normals."""
+    """Return points that are evenly distributed over the visible surface, and their outward normals."""
     rng = np.random.default_rng(1)
     parts = [part for part in model.parts if part.role is not Role.COLLISION]
     points, normals, owners = _drawn(parts, _TRIES * POINTS, rng)
@@ -57,7 +57,7 @@ def surface_of(model: Model) -> ModelSurface:
 def _drawn(
     parts: Sequence[Part], count: int, rng: np.random.Generator
 ) -> tuple[Floats, Floats, NDArray[np.intp]]:
-    """So many points, normals and the numbers of their parts, each part by its area."""
+    """Sample points, normals and part numbers, in proportion to the area of each part."""
     corners, normals, owners = [], [], []
     for number, part in enumerate(parts):
         found = facets(part)
@@ -79,7 +79,7 @@ def _drawn(
 
 
 def outside_m(points: Floats, part: Part) -> Floats:
-    """(N,) how far points are from the surface of a part, negative within it; far away for a mesh."""
+    """Return (N,) distances of points from the surface of a part, negative inside it; large for a mesh."""
     own = (points - np.asarray(part.centre)) @ rotation_matrix(part.turn)
     half = np.asarray(part.half)
     match part.shape:
@@ -99,7 +99,7 @@ def outside_m(points: Floats, part: Part) -> Floats:
 
 
 def _fold(points: Floats, parts: Sequence[Part], size_m: Floats) -> int:
-    """How many turns about z leave a model as it is, see `ModelSurface`: by how far they move its points."""
+    """Return the order of a model's rotational symmetry about z (see `ModelSurface`), by point distances."""
     within = _ALIKE * float(max(size_m[:2]))
 
     def same(turn_rad: float) -> bool:
@@ -114,7 +114,7 @@ def _fold(points: Floats, parts: Sequence[Part], size_m: Floats) -> int:
 
 
 def _spread(points: Floats, count: int) -> NDArray[np.intp]:
-    """The rows of `count` points that are far from one another: each is the farthest from those before."""
+    """Return the rows of `count` distant points: each is the farthest from the previous ones."""
     chosen = np.zeros(min(count, len(points)), np.intp)
     away = np.full(len(points), np.inf)
     for n in range(1, len(chosen)):

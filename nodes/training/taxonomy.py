@@ -1,4 +1,4 @@
-"""Classes of the TBox for models of the library, and what is above each class."""
+"""The TBox classes of the library's models, and their superclasses."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _TOP = {"Physical_Thing", "Thing"}
 
 
 def hierarchy(tbox: Path = HOUSEHOLD) -> dict[str, tuple[str, ...]]:
-    """The named superclasses of each named class, the most special first, below `Physical_Thing`."""
+    """Return the superclasses of each class below `Physical_Thing`, the most specific first."""
     parents = _parents(Graph().parse(tbox))
     above = {name: _closure(name, parents) for name in parents}
     return {
@@ -24,7 +24,7 @@ def hierarchy(tbox: Path = HOUSEHOLD) -> dict[str, tuple[str, ...]]:
 
 
 def class_of_models(models: Mapping[str, object], tbox: Path = HOUSEHOLD) -> dict[str, str]:
-    """The class that a model stands for: the one of its name, else the most general that looks like it."""
+    """Return the class of a model: the one with its name, or the most general one that has this model."""
     graph = Graph().parse(tbox)
     classes = {
         str(s).partition("#")[2]: s for s in graph.subjects(RDF.type, OWL.Class) if isinstance(s, URIRef)

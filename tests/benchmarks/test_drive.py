@@ -1,4 +1,4 @@
-"""What counts as found on a drive."""
+"""The counts of found things on a drive."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the benchmark of spatial relations counts, on a few scenes."""
+"""The counts of the benchmark of spatial relations, on a few scenes."""
 
 from benchmarks.relations.accuracy import Counts, against_contacts, flat, inside_against_samples
 from benchmarks.relations.speed import rooms

@@ -16,7 +16,7 @@ from tests.mutants.mirror import OwnTests
 from tests.mutants.sample import Mutant
 
 KILLED, SURVIVED, TIMEOUT, NO_TEST, BROKEN = "killed", "survived", "timeout", "no test", "broken"
-"""What came of a mutant. `BROKEN`: its tests fail without it, too."""
+"""The outcome of a mutant. `BROKEN`: its tests also fail without it."""
 
 _PURE = "not long and not process"
 _NONE_COLLECTED = 5

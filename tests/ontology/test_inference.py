@@ -1,4 +1,4 @@
-"""What owlrl concludes from the TBox: the reference for any other reasoner.
+"""Inferences of owlrl from the TBox, as the reference for other reasoners.
 
 Closing the TBox with the flat takes owlrl a good while, so one closure, with the examples below, serves the
 file. The fault catalogue and the check of every class are marked long.

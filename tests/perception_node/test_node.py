@@ -289,7 +289,9 @@ def test_a_frame_is_looked_at_with_the_masks_of_its_moment(world, monkeypatch, c
         stamp_ns = world._stamp_ns
         masks = DetectedMasks(camera="left", stamp_ns=stamp_ns, width=64, height=48, masks=(run,))
         world.session.put(keys.MASKS.key, codec.encode(masks))
-        return "no class here: spork" in caplog.text  # also for masks that arrive before their frame
+        return (
+            "mask labels without a class: spork" in caplog.text
+        )  # also for masks that arrive before their frame
 
     until(told, "the look had the masks")
     world.film()

@@ -1,4 +1,4 @@
-"""What is written about the library is true of it."""
+"""The documentation of the library matches the code."""
 
 from __future__ import annotations
 

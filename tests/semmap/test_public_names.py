@@ -1,4 +1,4 @@
-"""What `import semmap` gives is a promise: its names are pinned here, and it is quick."""
+"""The public names of `import semmap` are fixed, and the import is fast."""
 
 from __future__ import annotations
 

@@ -279,7 +279,7 @@ class Resolver:
         return own > middle if sign < 0 else own < middle
 
     def _smallest_of_the_small(self, names: Names, description: Description) -> Names:
-        """Of several small ones those that are small beside the others, if there are any."""
+        """Of several small things, return those that are small compared with the others, if there are any."""
         for restriction in description.restrictions:
             if isinstance(restriction, Sized):
                 axis, sign = restriction.axis, restriction.sign

@@ -1,4 +1,4 @@
-"""Tables of arrays: what training keeps of many things, a row for each."""
+"""Tables of arrays with one row per sample."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ class Table:
 
     @classmethod
     def joined(cls, parts: Sequence[Self]) -> Self:
-        """All rows of all parts, of which there must be one."""
+        """Join the rows of all parts, at least one."""
         return cls(*(np.concatenate([getattr(p, field.name) for p in parts]) for field in fields(cls)))
 
     def write(self, path: Path) -> None:
-        """Keep it in a file, which is whole or not there."""
+        """Write the table to a file atomically."""
         beside = path.with_name(f"{path.stem}.partly.npz")
         np.savez(beside, **{field.name: getattr(self, field.name) for field in fields(self)})
         beside.replace(path)
 
     @classmethod
     def read(cls, path: Path) -> Self:
-        """Take it out of a file again."""
+        """Read the table from a file."""
         with np.load(path) as arrays:
             return cls(*(arrays[field.name] for field in fields(cls)))

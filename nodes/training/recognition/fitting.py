@@ -1,4 +1,4 @@
-"""Perceptrons that tell classes, or numbers, from features."""
+"""Perceptrons for classification and regression."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _NEVER_SEEN = -12.0
 def classifier(
     inputs: Numbers, target: NDArray[np.int64], classes: int, recipe: Recipe, *, seed: int = 0
 ) -> Perceptron:
-    """Scores (N, classes) from inputs (N, D); a class that `target` (N,) never names gets a very low one."""
+    """Train scores (N, classes) from inputs (N, D); classes without samples get very low scores."""
 
     def slope(scores: Floats, rows: NDArray[np.int64]) -> Floats:
         likely = np.exp(scores - scores.max(axis=1, keepdims=True))
@@ -30,7 +30,7 @@ def classifier(
 
 
 def regressor(inputs: Numbers, target: Numbers, recipe: Recipe) -> Perceptron:
-    """One number for each of inputs (N, D)."""
+    """Train the regression of one number from inputs (N, D)."""
 
     def slope(scores: Floats, rows: NDArray[np.int64]) -> Floats:
         return np.asarray(scores - target[rows, None], np.float32)

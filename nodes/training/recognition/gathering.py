@@ -1,4 +1,4 @@
-"""Simulated scenes, cut up and described: what recognition learns from."""
+"""Generation of the training data of recognition from simulated scenes."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _Part = TypeVar("_Part", Samples, Pairs)
 
 @dataclass(frozen=True)
 class Gathered:
-    """What recognition learns from: things, our models as they are, and neighbours in other scenes."""
+    """The training data: things, our unmodified models, and neighbour pairs in other scenes."""
 
     things: Samples
     own: Samples
@@ -60,7 +60,7 @@ def gather(
 
 
 def read(folder: Path) -> Gathered:
-    """All the parts that a folder keeps."""
+    """Read all parts in a folder."""
     return joined(
         _things_in(folder),
         _things_in(folder, "own"),
@@ -69,12 +69,12 @@ def read(folder: Path) -> Gathered:
 
 
 def read_things(folder: Path) -> Samples:
-    """The things of all the parts that a folder keeps."""
+    """Read the things of all parts in a folder."""
     return _numbered(_things_in(folder))
 
 
 def joined(things: Sequence[Samples], own: Sequence[Samples], pairs: Sequence[Pairs]) -> Gathered:
-    """All of all parts."""
+    """Join all parts."""
     return Gathered(_numbered(things), _numbered(own), Pairs.joined(pairs))
 
 
@@ -83,7 +83,7 @@ def _things_in(folder: Path, name: str = "things") -> list[Samples]:
 
 
 def _numbered(things: Sequence[Samples]) -> Samples:
-    """All of all parts, each scene with a number of its own."""
+    """Join all parts, with unique scene numbers."""
     return Samples.joined([replace(part, scene=part.scene + n * _SCENES) for n, part in enumerate(things)])
 
 
@@ -106,7 +106,7 @@ def _pairs(heaped: int, seed: int, foreign: Path | None, keep: Path | None) -> P
 def _kept(
     kind: type[_Part], name: str, make: Callable[[], _Part], size: int, seed: int, keep: Path | None
 ) -> _Part:
-    """What a folder keeps of a part, else what is made, and kept."""
+    """Read a part from a folder, or generate and store it."""
     if keep is None:
         return make()
     path = keep / _file(name, seed, size)

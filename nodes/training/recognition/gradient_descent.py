@@ -1,4 +1,4 @@
-"""Perceptrons learn by stochastic gradient descent, in single precision; done again, the same comes out.
+"""Training of perceptrons by stochastic gradient descent in single precision; reproducible.
 
 Steps are Adam's (Kingma and Ba, 2015), weights decay by themselves (Loshchilov and Hutter, 2019), and the
 rate rises and then falls along a cosine. Inputs and hidden units are left out by lot (Srivastava and others,
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float32]
 Slope = Callable[[Floats, NDArray[np.int64]], Floats]
-"""The slope of the loss by the scores (B, outputs) of some rows (B,)."""
+"""Returns the gradient of the loss by the scores (B, outputs) of rows (B,)."""
 
 _MEAN, _SQUARE = np.float32(0.1), np.float32(0.001)
 _RISING = 0.03  # of the steps
@@ -26,7 +26,7 @@ _TINY = np.float32(1e-8)
 
 @dataclass(frozen=True)
 class Recipe:
-    """How one perceptron learns. `dropped`: the shares of inputs and of hidden units that are left out."""
+    """Training parameters of a perceptron. `dropped`: dropout rates of inputs and hidden units."""
 
     hidden: tuple[int, ...]
     rounds: int = 16
@@ -38,14 +38,14 @@ class Recipe:
 
 @dataclass
 class Layers:
-    """One (inputs, outputs) array of weights and one (outputs,) array of biases a layer."""
+    """Return an (inputs, outputs) array of weights and an (outputs,) array of biases per layer."""
 
     weights: list[Floats]
     biases: list[Floats]
 
 
 def descend(inputs: Floats, outputs: int, slope: Slope, recipe: Recipe, seed: int) -> Layers:
-    """Layers from standardised inputs (N, D) to so many outputs whose loss is small."""
+    """Train layers from standardised inputs (N, D) to `outputs` outputs."""
     rng = np.random.default_rng(seed)
     layers = _beginning((inputs.shape[1], *recipe.hidden, outputs), rng)
     values = [*layers.weights, *layers.biases]
@@ -74,7 +74,7 @@ def _beginning(sizes: tuple[int, ...], rng: np.random.Generator) -> Layers:
 
 
 def _batches(rows: int, recipe: Recipe, rng: np.random.Generator) -> Iterator[NDArray[np.int64]]:
-    """Every round all rows in another order, but for a rest smaller than a batch."""
+    """Yield shuffled batches of all rows per round, without an incomplete last batch."""
     for _ in range(recipe.rounds):
         order = rng.permutation(rows)
         for first in range(0, rows - recipe.batch + 1, recipe.batch):
@@ -93,7 +93,7 @@ def _slopes(
     recipe: Recipe,
     rng: np.random.Generator,
 ) -> list[Floats]:
-    """The loss's slopes by all weights and then all biases, for one batch."""
+    """Return the gradients of the loss by all weights and all biases, for one batch."""
     of_inputs, of_hidden = recipe.dropped
     values = [inputs * (rng.random(inputs.shape, np.float32) >= of_inputs)]
     kept = []

@@ -1,4 +1,4 @@
-"""Learn which neighbours are pieces of one thing."""
+"""Train the decision which neighbouring segments belong to one thing."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _TREES = 100
 
 
 def learn_joining(learnt: RecognitionModel, pairs: Pairs) -> Trees:
-    """Trees that tell which pairs are one thing, from pairs in scenes that `learnt` has not learnt from."""
+    """Train trees on pairs in scenes on which `learnt` was not trained."""
     of_sorts = (getattr(pairs, sort) for sort in SORTS)
     features = [values.reshape(-1, values.shape[2]) for values in of_sorts]
     chances = leaf_probabilities(learnt, features).reshape(len(pairs.one), 3, -1)

@@ -1,4 +1,4 @@
-"""Pairs of neighbours that perception cut out of simulated scenes: are they pieces of one thing?"""
+"""Pairs of neighbouring segments in simulated scenes, with whether they belong to one thing."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Pairs(Table):
 
 
 def pairs_of(shot: Shot, items: Sequence[Item], rng: np.random.Generator) -> list[Pairs]:
-    """All neighbours in what perception cut out, by all cameras together and by each alone.
+    """Return all pairs of neighbouring segments, for all cameras together and for each alone.
 
     Also those that are left when some pieces of one thing have been put together.
     """

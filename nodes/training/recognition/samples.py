@@ -57,7 +57,7 @@ class Samples(Table):
 
 
 def samples_of(shot: Shot, items: Sequence[Item], scene: int) -> Samples | None:
-    """Every thing of a scene, by all its cameras together and by each alone, cut out as the truth has it.
+    """Return every thing of a scene, for all cameras together and for each alone, segmented by ground truth.
 
     Also what perception itself cuts out: segments that hold several things teach nothing and are left out,
     pieces of a thing are clutter.
@@ -90,7 +90,7 @@ def samples_of(shot: Shot, items: Sequence[Item], scene: int) -> Samples | None:
 
 
 def _truly(cloud: Cloud, owner: NDArray[np.int32], bodies: Sequence[Body]) -> SegmentedView:
-    """The cloud cut up by the truth, but for what lies so near its support that it cannot be told from it."""
+    """Return the true segments of the cloud, without points that are too close to their support."""
     pose = np.eye(4) if cloud.map_from_camera is None else cloud.map_from_camera
     points, depth = map_points(cloud, pose), cloud.points_camera[..., 2]
     bottoms = np.array([0.0, *(body.pose.position_m[2] for body in bodies)], np.float32)
@@ -108,14 +108,14 @@ def _truly(cloud: Cloud, owner: NDArray[np.int32], bodies: Sequence[Body]) -> Se
 
 
 def view_sets(count: int) -> Iterator[tuple[int, ...]]:
-    """Each camera alone, and all together."""
+    """Yield each camera alone, and all together."""
     yield from ((view,) for view in range(count))
     if count > 1:
         yield tuple(range(count))
 
 
 def shared_pixels(parts: Parts, shot: Shot, views: Sequence[int]) -> NDArray[np.int64]:
-    """(N + 1, B + 1) how many pixels N parts and B bodies have in common; none of either comes first."""
+    """Return (N + 1, B + 1) pixel counts of N parts and B bodies; index 0 stands for none."""
     shape = len(parts.things) + 1, len(shot.bodies) + 1
     table = np.zeros(shape, np.int64)
     for label, view in zip(parts.labels, views, strict=True):
@@ -125,7 +125,7 @@ def shared_pixels(parts: Parts, shot: Shot, views: Sequence[int]) -> NDArray[np.
 
 
 def _owner_names(shot: Shot, table: NDArray[np.int64]) -> list[str | None]:
-    """Whose each thing is: a body's name, `NOTHING` for clutter, None where several are in one."""
+    """Return the body of each segment, `NOTHING` for clutter, None for several bodies."""
     visible = table.sum(axis=0)
     names: list[str | None] = []
     for row in table[1:]:
@@ -146,7 +146,7 @@ def _shifts(thing: Thing, item: Item | None) -> NDArray[np.float64]:
 
 
 def true_box(item: Item, yaw_rad: float) -> Box:
-    """The upright box of this yaw around the whole item."""
+    """Return the upright box with this yaw around the whole item."""
     turn = about("z", item.yaw_rad - yaw_rad)
     rotation = rotation_matrix(turn)
     parts = [

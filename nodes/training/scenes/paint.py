@@ -21,19 +21,19 @@ Pattern = Callable[[Floats], Floats]
 _LEAST_LIGHT, _MOST_LIGHT = 0.35, 1.5
 _SHARES = {"plain": 0.36, "dark": 0.14, "light": 0.11, "halves": 0.13, "print": 0.17, "patches": 0.09}
 _TEXTURE_LIGHT = (0.45, 0.9)
-"""How bright a texture is under a camera's light."""
+"""The brightness of a texture under a camera's light."""
 
 
 @dataclass(frozen=True)
 class Paint:
-    """What one thing is painted with, `glow` times as bright; None leaves its own colours."""
+    """The paint of one thing, with the brightness factor `glow`; None leaves its own colours."""
 
     pattern: Pattern | None
     glow: float = 1.0
 
 
 def any_paint(rng: np.random.Generator, own: float, texture: Pattern | None = None) -> Paint:
-    """Its own colours under other light by this chance, else one, black, white, two, a print, or patches.
+    """Return its own colours under other light with this probability, or a random paint.
 
     `texture`: its own colours, if the pictures of it do not show them.
     """
@@ -46,17 +46,17 @@ def any_paint(rng: np.random.Generator, own: float, texture: Pattern | None = No
 
 
 def black(_: np.random.Generator) -> Paint:
-    """All of it, as dark things are under a light."""
+    """Return a dark paint."""
     return Paint(_plain(np.full(3, 0.06, np.float32)))
 
 
 def one_colour(rng: np.random.Generator) -> Paint:
-    """Any one colour."""
+    """Return a single random colour."""
     return Paint(_plain(_colour(rng)))
 
 
 def painted(colours: Bytes, points: Floats, paint: Paint) -> Bytes:
-    """(N, 3) rgb of a thing's pixels, painted; `points`: (N, 3) where these lie, see `Pattern`."""
+    """Return (N, 3) painted rgb of a thing's pixels; `points`: (N, 3) their positions, see `Pattern`."""
     if paint.pattern is None:
         return np.asarray(np.clip(colours * np.float32(paint.glow), 0, 255), np.uint8)
     grey = colours.mean(axis=1, dtype=np.float32) + 1.0
@@ -66,13 +66,13 @@ def painted(colours: Bytes, points: Floats, paint: Paint) -> Bytes:
 
 
 def printed_on(vertices: Floats, colours: Floats) -> Pattern:
-    """What has these colours (V, 3) at its vertices (V, 3), in the coordinates of `Pattern`."""
+    """Return a pattern with these colours (V, 3) at vertices (V, 3), in the coordinates of `Pattern`."""
     tree = KDTree(vertices)
     return lambda points: colours[tree.query(points)[1]]
 
 
 def _colour(rng: np.random.Generator) -> Floats:
-    """Any colour: of any hue, from pale to deep, from dark to bright."""
+    """Return a random colour of any hue, saturation and brightness."""
     hue, saturation, value = rng.random(), rng.random() ** 0.7, rng.uniform(0.12, 0.95)
     wheel = np.abs((6.0 * hue + np.array([0.0, 4.0, 2.0])) % 6.0 - 3.0) - 1.0
     return np.asarray(value * (1.0 - saturation * (1.0 - np.clip(wheel, 0.0, 1.0))), np.float32)
@@ -89,14 +89,14 @@ def _grey(low: float, high: float) -> Callable[[np.random.Generator], Pattern]:
 
 
 def _halves(rng: np.random.Generator) -> Pattern:
-    """Two colours, apart at some height or beside one another; lids and handles are such."""
+    """Return a pattern of two colours, divided at a height or side by side, like lids and handles."""
     axis, at = int(rng.choice([0, 1, 2, 2, 2])), float(rng.uniform(-0.6, 0.8))
     one, other = _colour(rng), _colour(rng)
     return lambda points: np.where((points[:, axis] > at)[:, None], one, other)
 
 
 def _print(rng: np.random.Generator) -> Pattern:
-    """A colour with a band and blots of others: a label with something printed on it."""
+    """Return a colour with a band and spots of others, like a printed label."""
     base, band = _colour(rng), _colour(rng)
     low, high = np.sort(rng.uniform(-0.9, 0.9, 2))
     blots, spots = rng.uniform(-1.0, 1.0, (6, 3)), np.array([_colour(rng) for _ in range(6)])
@@ -112,7 +112,7 @@ def _print(rng: np.random.Generator) -> Pattern:
 
 
 def _patches(rng: np.random.Generator) -> Pattern:
-    """Each point has the colour of the nearest of some seeds."""
+    """Return a pattern in which each point has the colour of the nearest seed."""
     count = int(rng.integers(3, 9))
     seeds, colours = rng.uniform(-1.0, 1.0, (count, 3)), np.array([_colour(rng) for _ in range(count)])
     return lambda points: colours[((points[:, None] - seeds) ** 2).sum(axis=2).argmin(axis=1)]

@@ -61,7 +61,7 @@ class Item:
 
     @property
     def label(self) -> str:
-        """What it is to be taken for."""
+        """The expected label."""
         return self.said or self.kind
 
 
@@ -80,7 +80,7 @@ class Shot:
 
 @lru_cache(maxsize=64)
 def tinted(item: Item) -> Model:
-    """The item's model at its size, in its colour."""
+    """Return the item's model in its size and colour."""
     kind = MODELS.get(item.kind)
     x, y, z = item.size_m
     form = item.form or (kind and kind.parts)
@@ -90,7 +90,7 @@ def tinted(item: Item) -> Model:
 
 
 class Stage:
-    """One world in which scene after scene is set up and photographed."""
+    """A world in which scenes are set up and rendered one after another."""
 
     def __init__(self) -> None:
         self._models: dict[str, Model] = {}
@@ -98,7 +98,7 @@ class Stage:
         self._eye = Eye()
 
     def show(self, items: Sequence[Item], *, settle_s: float = 0.0) -> tuple[Body, ...]:
-        """Put these things up instead of those before; with `settle_s` they are free to fall first."""
+        """Replace the scene by these things; with `settle_s` they can fall first."""
         self._world.delete(list(self._models))
         self._models = {item.name: tinted(item) for item in items}
         self._world.spawn(
@@ -121,7 +121,7 @@ class Stage:
         return tuple(body for body in self._world.scene().bodies if not body.ghost)
 
     def paint(self, colours: Mapping[str, Colour], light: float) -> None:
-        """Colours of the world's own geoms (`floor`), and how bright the light is (about 0.35)."""
+        """Set the colours of the world's geoms (`floor`), and the brightness of the light (about 0.35)."""
         model = self._world.model
         for name, colour in colours.items():
             model.geom_rgba[mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, name), :3] = colour
@@ -135,7 +135,7 @@ class Stage:
         rng: np.random.Generator,
         paints: Mapping[str, Paint] = MappingProxyType({}),
     ) -> Shot:
-        """What cameras with a real sensor's faults see of the scene; bodies with `paints` are painted."""
+        """Render the scene with sensor noise; bodies with `paints` are painted."""
         clouds, owners = zip(*(self._look(bodies, view, rng, paints) for view in views), strict=True)
         return Shot(clouds, owners, tuple(bodies))
 

@@ -25,23 +25,23 @@ class Solid(NamedTuple):
     faces: NDArray[np.int32]
 
     def part(self, colour: Colour) -> Part:
-        """Of one colour, where it is."""
+        """Return a part in one colour, in place."""
         return mesh(self.vertices, self.faces, colour)
 
     def moved(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Solid:
-        """Elsewhere."""
+        """Return the solid translated."""
         return self._replace(vertices=self.vertices + np.array([x, y, z]))
 
     def turned(self, axis: str, angle_rad: float) -> Solid:
-        """Turned about the axis x, y or z through the origin."""
+        """Return the solid rotated about the axis x, y or z through the origin."""
         return self._replace(vertices=self.vertices @ rotation_matrix(about(axis, angle_rad)).T)
 
     def scaled(self, x: float = 1.0, y: float = 1.0, z: float = 1.0) -> Solid:
-        """Stretched along the axes."""
+        """Return the solid scaled along the axes."""
         return self._replace(vertices=self.vertices * (x, y, z))
 
     def lipped(self, reach_m: float, width_rad: float, from_share: float) -> Solid:
-        """With a lip drawn out towards +y, from a share of the height up to the rim."""
+        """Return the solid with a lip towards +y, from a share of the height up to the rim."""
         x, y, z = self.vertices.T
         height = (z - z.min()) / (z.max() - z.min())
         up = np.clip((height - from_share) / (1.0 - from_share), 0.0, 1.0) ** 2
@@ -51,7 +51,7 @@ class Solid(NamedTuple):
         return self._replace(vertices=drawn)
 
     def lumpy(self, share: float, rng: np.random.Generator) -> Solid:
-        """Its points nearer to the middle and farther from it by up to about so much, in slow waves."""
+        """Return the solid with smooth radial deformations up to about this amount."""
         middle = self.vertices.mean(axis=0)
         away = self.vertices - middle
         towards = away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), _LEAST_M)

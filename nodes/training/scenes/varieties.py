@@ -43,7 +43,7 @@ class Variety(NamedTuple):
 
 
 def any_size(variety: Variety, rng: np.random.Generator) -> Vec3:
-    """A size between its smallest and its largest, in proportion more than in extent."""
+    """Return a random size between the smallest and the largest."""
     low, high = np.log(variety.low_m), np.log(variety.high_m)
     whole = rng.random()
     share = np.clip(whole + rng.normal(0.0, variety.uneven, 3), 0.0, 1.0)
@@ -52,7 +52,7 @@ def any_size(variety: Variety, rng: np.random.Generator) -> Vec3:
 
 
 def carton(x: float, y: float, z: float, colour: Colour) -> Parts:
-    """A closed cuboid with visible flaps."""
+    """Return a closed box with visible flaps."""
     return [
         slab(x, y, 0.0, z, colour),
         *visual(box((0.97 * x, 0.97 * y, 0.001), (0.0, 0.0, z), shade(colour, 0.9))),
@@ -131,6 +131,6 @@ _NO_BOX = tuple(
 
 
 def is_like_another(variety: Variety, size_m: Vec3) -> bool:
-    """Whether a cuboid of this size would rather be of a class that has a cuboid's form, too."""
+    """Return whether a cuboid of this size is more similar to another box-shaped class."""
     logs = np.log(np.sort(size_m))
     return variety.form is carton and any(np.abs(logs - other).max() < _LIKE for other in _NO_BOX)

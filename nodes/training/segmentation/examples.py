@@ -1,4 +1,4 @@
-"""Pairs of patches with the truth about them, from scenes whose objects are known."""
+"""Pairs of patches with ground truth, from scenes with known objects."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ def example(cloud: Cloud, truth: NDArray[np.int32]) -> Example:
 
 
 def right_way(of: Example, rng: np.random.Generator) -> Rows:
-    """The pairs met from patches to objects when only what belongs together is merged, in any order."""
+    """Return the pairs encountered when only correct merges are made, in random order."""
     return _met(of, lambda _, one: np.where(one, rng.uniform(0.6, 1.0, len(one)), 0.0))
 
 
 def own_way(of: Example, probability: Callable[[NDArray[np.float32]], NDArray[np.float32]]) -> Rows:
-    """The pairs met when a model decides, also after its errors."""
+    """Return the pairs encountered when a model decides, including those after its errors."""
     return _met(of, lambda rows, _: probability(rows))
 
 
@@ -77,6 +77,6 @@ NO_ROWS = Rows(np.zeros((0, len(NAMES)), np.float32), np.zeros(0, np.bool_), np.
 
 
 def joined(parts: Iterable[Rows]) -> Rows:
-    """All rows of all parts."""
+    """Join the rows of all parts."""
     columns = zip(NO_ROWS, *parts, strict=True)
     return Rows._make(np.concatenate(column) for column in columns)

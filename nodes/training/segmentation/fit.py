@@ -1,4 +1,4 @@
-"""Boosted trees fitted with scikit-learn, taken out of it as plain arrays."""
+"""Boosted trees that are fitted with scikit-learn and converted to plain arrays."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ TREES = 150
 
 
 def fit(rows: Rows, trees: int = TREES) -> Trees:
-    """Trees that tell pairs that are one object from those that are not."""
+    """Train trees that classify whether pairs belong to one object."""
     from sklearn.ensemble import HistGradientBoostingClassifier  # takes longer to import than all else
 
     model = HistGradientBoostingClassifier(

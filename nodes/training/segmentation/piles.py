@@ -42,14 +42,14 @@ _FOVY_RAD = 2 * math.atan(240 / 525)
 
 
 class Pile(NamedTuple):
-    """What the camera saw, and (H, W) the number of the thing at each pixel, 0 for the table."""
+    """The camera's frame, and (H, W) the number of the thing at each pixel, 0 for the table."""
 
     cloud: Cloud
     truth: NDArray[np.int32]
 
 
 def pile(rng: np.random.Generator, eye: Eye) -> Pile:
-    """A table with 2 to 14 things on it; in some a long one is hidden in its middle by another."""
+    """Return a table with 2 to 14 things; in some scenes the middle of a long one is hidden."""
     tints = _tints(rng)
     models = [_thing(tints, rng) for _ in range(int(rng.integers(2, 15)))]
     screened = rng.random() < _SCREENED
@@ -76,7 +76,7 @@ def pile(rng: np.random.Generator, eye: Eye) -> Pile:
 
 
 Tints = Callable[[], Colour | None]
-"""The colour of the next thing; None for the library's."""
+"""Returns the colour of the next thing; None for the library's."""
 
 
 def _tints(rng: np.random.Generator) -> Tints:
@@ -92,7 +92,7 @@ def _any_colour(rng: np.random.Generator) -> Colour:
 
 
 def _photographed(rgb: NDArray[np.uint8], rng: np.random.Generator) -> NDArray[np.uint8] | None:
-    """A picture as a cheap camera takes it: in light of some colour and strength, with noise; or none."""
+    """Return an image like a cheap camera's: with random light and noise; or none."""
     if rng.random() < _COLOURLESS:
         return None
     noise = rng.normal(0.0, _COLOUR_NOISE * rng.random(), rgb.shape)

@@ -1,4 +1,4 @@
-"""A table on which things are put down until they touch something, without physics."""
+"""Placement of things on a table until they touch something, without physics."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _STEP_M, _FINE_M = 0.02, 0.0005
 
 
 class Tabletop:
-    """A table whose top is z = 0, and things that wait beside it."""
+    """A table with its top at z = 0, and the things beside it that are not placed yet."""
 
     def __init__(self, models: list[Model], half_m: tuple[float, float] = (1.0, 1.0)) -> None:
         """`half_m`: half the table's extents along x and y."""

@@ -93,7 +93,7 @@ def test_a_move_with_contents_keeps_their_relative_poses():
     )
     move = c.Move(name="tray1", at=(5.0, 5.0, 0.5), yaw=math.pi / 2, carry=True, leave=("milk1",))
     said = running.move(move).result()
-    assert said.text == "put tray1 at (5, 5, 0.5) and released it; tray1 carried cup1 along"
+    assert said.text == "put tray1 at (5, 5, 0.5) and released it; cup1 moved with tray1"
     assert asked[0].leave == ("milk1",)
     there = {p.name: p.pose for p in asked[1].placements}
     assert there["cup1"].position_m == pytest.approx((5.0, 5.2, 0.52))

@@ -74,7 +74,7 @@ def test_shared_coordinates_are_kept_for_the_other_entity(semantic_map):
 
 def test_a_first_position(semantic_map):
     semantic_map.commit(transaction(1, turtle(":chair1 a dm:Chair .")))
-    with pytest.raises(errors.BadRequest, match="no position yet"):
+    with pytest.raises(errors.BadRequest, match="has no position; give one with --at"):
         placed(semantic_map, yaw=1.0)
     placed(semantic_map, at=(1.0, 2.0, 3.0))
     assert semantic_map.entity("chair1").pose == Pose(position_m=(1.0, 2.0, 3.0))

@@ -1,4 +1,4 @@
-"""What is learnt is the same for the same examples, and understands what it learnt."""
+"""Training is reproducible, and the taggers recognise their training examples."""
 
 from benchmarks.language import trials
 from benchmarks.language.scoring import scores

@@ -1,4 +1,4 @@
-"""What is met on the way from patches to objects."""
+"""Training pairs for segmentation."""
 
 from __future__ import annotations
 

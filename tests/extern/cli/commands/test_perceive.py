@@ -147,7 +147,10 @@ def test_masks_segment_a_frame_and_an_unknown_label_is_reported(tmp_path, capsys
     (tmp_path / "frames" / "first" / "yolo.json").write_text(json.dumps(told))
     capsys.readouterr()
     assert execute([*words, "yolo.json"]) == 0
-    assert "no class here: spork; --label-map FILE" in capsys.readouterr().err
+    assert (
+        "mask labels without a class: spork; map them to classes with --label-map FILE"
+        in capsys.readouterr().err
+    )
     (tmp_path / "map.json").write_text('{"spork": "Box"}')
     assert execute([*words, "yolo.json", "--label-map", str(tmp_path / "map.json")]) == 0
     ((found,),) = [row["objects"] for row in json.loads(out.read_text())]
