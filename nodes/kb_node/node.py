@@ -17,7 +17,7 @@ from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, Tell
 from semmap.nodes.kb_node.handlers.loading import LoadHandlers
 from semmap.nodes.kb_node.handlers.maintenance import MaintenanceHandlers
 from semmap.nodes.kb_node.handlers.queries import QueryHandlers
-from semmap.nodes.kb_node.replaying import Player, rejecting_handlers
+from semmap.nodes.kb_node.replaying import ReplayPlayer, rejecting_handlers
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.sparql.protocol import Placements
 from semmap.nodes.kb_node.sparql.service import SparqlService
@@ -80,11 +80,11 @@ class KnowledgeBase:
             **self._queries.handlers(),
             **self._maintenance.handlers(),
         }
-        self._player: Player | None = None
+        self._player: ReplayPlayer | None = None
         if config.replay is not None:
             handlers.update(rejecting_handlers())
             tell = partial(self._publish, told=False, at_once=True)
-            self._player = Player(node, self.map, config.data, config.replay, tell)
+            self._player = ReplayPlayer(node, self.map, config.data, config.replay, tell)
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
             for prefix in (keys.CMD, keys.commands_as()):

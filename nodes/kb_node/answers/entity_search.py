@@ -31,12 +31,12 @@ class SearchResult(NamedTuple):
     found: Found
     missing: Missing | None = None
 
-    def with_the_past(self, gone: tuple[str, ...]) -> Found:
+    def with_last_times(self, gone: tuple[str, ...]) -> Found:
         """Return the result with the times at which the missing entities were last there."""
         return structs.replace(self.found, gone=gone)
 
 
-class Finding:
+class EntitySearch:
     """Finds entities by description. Owned by the node's thread."""
 
     def __init__(self, semantic_map: SemanticMap) -> None:
@@ -50,7 +50,7 @@ class Finding:
         """Return the described entities. Raises BadRequest; UnknownName for an unknown asker or viewer."""
         space = self._map.places.space()
         asker = None if query.asker is None else self._named(query.asker)
-        around = Asked(space, self._view(query, space), self._map.derived_facts.left_out)
+        around = Asked(space, self._view(query, space), self._map.derived_facts.suppressed_measurements)
         with space.remembering():
             answer = find(query.text, self.known(), around, asker)
             found = telling.told(answer)
@@ -59,7 +59,7 @@ class Finding:
     def described(self, text: str) -> tuple[str, ...]:
         """Return the names of the entities that a text describes, or none if it cannot be read."""
         space = self._map.places.space()
-        around = Asked(space, None, self._map.derived_facts.left_out)
+        around = Asked(space, None, self._map.derived_facts.suppressed_measurements)
         try:
             with space.remembering():
                 found = find(text, self.known(), around)
@@ -69,7 +69,7 @@ class Finding:
 
     def is_at(self, thing: str, other: str) -> bool:
         """Return whether an object is on, in or inside another, or whether that is unknown."""
-        space, left_out = self._map.places.space(), self._map.derived_facts.left_out
+        space, left_out = self._map.places.space(), self._map.derived_facts.suppressed_measurements
         solid = space.solids.get(thing)
         if solid is None or other not in space.solids:
             return True
@@ -77,14 +77,14 @@ class Finding:
 
     def where(self, thing: str) -> str:
         """Return what an object is on, inside or in, such as `on desk1`, or "" if nothing."""
-        around = Asked(self._map.places.space(), None, self._map.derived_facts.left_out)
+        around = Asked(self._map.places.space(), None, self._map.derived_facts.suppressed_measurements)
         relation, other = next(iter(around.whereabouts(thing)), (None, ""))
         return f"{SPOKEN[relation].removeprefix('is ')} {other}" if relation else ""
 
     def question(self, names: tuple[str, ...], language: Language) -> str:
         """Return a question that asks which of several entities is meant."""
         space = self._map.places.space()
-        around = Asked(space, None, self._map.derived_facts.left_out)
+        around = Asked(space, None, self._map.derived_facts.suppressed_measurements)
         with space.remembering():
             return asking_back.question(names, Resolver(self.known(), around, language))
 

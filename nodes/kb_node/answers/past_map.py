@@ -44,9 +44,9 @@ def load_past_map(journal: Journal, past: Past, seq: int, *, inferred: bool) -> 
     asserted = asserted_after(journal, seq)
     if not inferred:
         return PastMap(seq, tuple(asserted))
-    held = _rebuild(journal, past, seq, asserted)
-    placed = tuple(map(Placed.of, held.there.values()))
-    return PastMap(seq, tuple(asserted), held.derived_facts.all(), placed, held.classes.limits)
+    rebuilt = _rebuild(journal, past, seq, asserted)
+    placed = tuple(map(Placed.of, rebuilt.there.values()))
+    return PastMap(seq, tuple(asserted), rebuilt.derived_facts.all(), placed, rebuilt.classes.limits)
 
 
 class _RebuiltMap(NamedTuple):
@@ -66,9 +66,9 @@ def _rebuild(journal: Journal, past: Past, seq: int, asserted: set[Triple]) -> _
     classes = ClassTable(reasoner)
     derived_facts = DerivedFacts(reasoner, classes.limits)
     derived_facts.change((), asserted - tbox, lenient=True)
-    there: dict[str, Entity] = {entity.name: entity for entity in past.entities(seq)}
-    derived_facts.fill(there)
-    return _RebuiltMap(tbox, asserted - tbox, reasoner, classes, derived_facts, there)
+    entities: dict[str, Entity] = {entity.name: entity for entity in past.entities(seq)}
+    derived_facts.fill(entities)
+    return _RebuiltMap(tbox, asserted - tbox, reasoner, classes, derived_facts, entities)
 
 
 def export_past(journal: Journal, past: Past, query: Export) -> Document:
@@ -81,8 +81,8 @@ def export_past(journal: Journal, past: Past, query: Export) -> Document:
         raise errors.InternalError("the question names no moment")
     seq = past.commit_at(query.as_of)
     if query.inferred:
-        held = _rebuild(journal, past, seq, asserted_after(journal, seq))
-        return answers.document(_export_snapshot(held, seq), query.format)
+        rebuilt = _rebuild(journal, past, seq, asserted_after(journal, seq))
+        return answers.document(_export_snapshot(rebuilt, seq), query.format)
     tbox = frozenset(rdf.parse(journal.tbox(seq), f"the TBox in {journal.path}"))
     abox = sorted(asserted_after(journal, seq) - tbox)
     used = prefixes.used_by(abox, prefixes.WELL_KNOWN)
