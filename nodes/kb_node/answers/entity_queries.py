@@ -228,7 +228,7 @@ class PastState:
     def entities(self, query: Entities) -> tuple[Entity, ...]:
         """Return the entities; see `CurrentState.entities`."""
         if query.as_of is None:
-            raise errors.InternalError("the question names no moment")
+            raise errors.InternalError("the query has no time")
         found = self._past.entities(query.as_of, query.class_, tuple(self._map.classes.iris))
         if query.where is None:
             return found
@@ -238,7 +238,7 @@ class PastState:
     def entity(self, query: Get) -> Described:
         """Return one entity; see `CurrentState.entity`. Wrong assertions are not reported."""
         if query.as_of is None:
-            raise errors.InternalError("the question names no moment")
+            raise errors.InternalError("the query has no time")
         entity = self._past.entity(query.name, query.as_of)
         if not query.where:
             return Described.of(entity)
@@ -249,7 +249,7 @@ class PastState:
     def relations(self, query: Relations) -> tuple[Relation, ...]:
         """Return the relations; see `CurrentState.relations`."""
         if query.as_of is None:
-            raise errors.InternalError("the question names no moment")
+            raise errors.InternalError("the query has no time")
         everyone = self._past.entities(query.as_of, None, ())
         entities = {entity.name: entity for entity in everyone}
         named = _named(query, entities.get, lambda: everyone)

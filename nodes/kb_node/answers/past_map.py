@@ -78,7 +78,7 @@ def export_past(journal: Journal, past: Past, query: Export) -> Document:
     if there was no map; BadRequest for an invalid time.
     """
     if query.as_of is None:
-        raise errors.InternalError("the question names no moment")
+        raise errors.InternalError("the query has no time")
     seq = past.commit_at(query.as_of)
     if query.inferred:
         rebuilt = _rebuild(journal, past, seq, asserted_after(journal, seq))
@@ -107,7 +107,7 @@ def query_past(journal: Journal, past: Past, query: Sparql) -> SparqlResult:
     Raises the query's error, Refused if there was no map, BadRequest for an invalid time.
     """
     if query.as_of is None:
-        raise errors.InternalError("the question names no moment")
+        raise errors.InternalError("the query has no time")
     then = load_past_map(journal, past, past.commit_at(query.as_of), inferred=query.inferred)
     service = SparqlService(
         lambda: then.asserted,

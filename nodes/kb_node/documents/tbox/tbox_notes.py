@@ -29,7 +29,7 @@ def notes(tbox: Iterable[Triple], reasoner: Reasoner, classes: ClassTable) -> tu
     Ineffective axioms of the shipped TBox are not reported.
     """
     tbox = list(tbox)
-    notes_ = (
+    texts = (
         missing_imports_note(ontology_files.missing_imports(tbox)),
         no_spatial_class_note(classes),
         ignored_statements_note(tbox),
@@ -38,7 +38,7 @@ def notes(tbox: Iterable[Triple], reasoner: Reasoner, classes: ClassTable) -> tu
         slow_changes_note(reasoner),
         no_spatial_facts_note(reasoner, classes),
     )
-    return tuple(filter(None, notes_))
+    return tuple(filter(None, texts))
 
 
 def _known(tbox: Iterable[Triple]) -> Counter[str]:
@@ -79,8 +79,8 @@ def ignored_statements_note(tbox: Iterable[Triple]) -> str:
     for s, text in sorted((v.local_name(s), v.lexical(o)) for s, p, o in tbox if p == v.SET_ASIDE):
         what, _, why = text.partition(": ")
         reasons.setdefault(why, []).append(f"{s} {what}")
-    notes_ = "; ".join(f"{', '.join(what)} ({why})" for why, what in reasons.items())
-    return notes_ and f"ignored, because every map would be inconsistent with it: {notes_}"
+    texts = "; ".join(f"{', '.join(what)} ({why})" for why, what in reasons.items())
+    return texts and f"ignored, because every map would be inconsistent with it: {texts}"
 
 
 def beyond_rl_note(kinds: Counter[str]) -> str:
