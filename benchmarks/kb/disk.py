@@ -40,7 +40,7 @@ def measure(where: Path | None, size: int) -> Disk:
         journal = Journal(path / FILENAME)
         maps: list[SemanticMap] = []
         start_up = cost(lambda: maps.append(SemanticMap(journal)))
-        list_all = each(range(10), lambda _: codec.encode(answers.entities_of(maps[0], None)))
+        list_all = each(range(10), lambda _: codec.encode(answers.find_entities(maps[0], None)))
         journal.close()
         return Disk(size, bulk_load, start_up, list_all, _sync(path / "sync"))
 

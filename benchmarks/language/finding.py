@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 from typing import Any, Final, NamedTuple
 
 from benchmarks.table import Row
-from semmap.nodes.kb_node.answers.entity_search import Finding
+from semmap.nodes.kb_node.answers.entity_search import EntitySearch
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
@@ -52,12 +52,12 @@ def tried() -> list[Tried]:
     for name, room in written["maps"].items():
         asked = [(i, d) for i, d in enumerate(written["descriptions"]) if d["map"] == name]
         with _map(_flat() if isinstance(room, str) else _room(room)) as there:
-            finding = Finding(there)
+            finding = EntitySearch(there)
             found += [_try(finding, index, description) for index, description in asked]
     return sorted(found, key=lambda one: one.number)
 
 
-def _try(finding: Finding, index: int, asked: Mapping[str, Any]) -> Tried:
+def _try(finding: EntitySearch, index: int, asked: Mapping[str, Any]) -> Tried:
     viewer = asked["viewer"]
     query = Find(
         text=asked["text"],
@@ -105,7 +105,7 @@ def milliseconds(entities: int = _ENTITIES) -> float:
     asked = [d for d in written["descriptions"] if d["map"] != "flat" and not isinstance(d["viewer"], str)]
     times = []
     with _map(_floors(rooms, entities)) as there:
-        finding = Finding(there)
+        finding = EntitySearch(there)
         finding.find(Find(text="the cup"))
         for description in asked:
             viewer = description["viewer"] and tuple(map(float, description["viewer"]))

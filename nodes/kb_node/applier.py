@@ -174,10 +174,10 @@ class Applier:
         if not moved:
             return commit
         changed = {entity.name: entity for entity in commit.changed}
-        gone = {departed.name for departed in commit.removed}
+        removed = {departed.name for departed in commit.removed}
         for iri in sorted(moved):
             name = v.entity_name(iri)
-            entity = changed.get(name) or (None if name in gone else entities.get(name))
+            entity = changed.get(name) or (None if name in removed else entities.get(name))
             if entity is not None and v.iri(entity.iri) == iri:
                 changed[name] = structs.replace(entity, types=state.types_of(entity))
         return structs.replace(commit, changed=tuple(e for n, e in changed.items() if e != entities.get(n)))
@@ -188,8 +188,8 @@ class Applier:
         `suppressed` are the facts that were suppressed before.
         """
         state = self._state
-        gone = {departed.name for departed in commit.removed}
-        after = {name: e for name, e in state.by_name.items() if name not in gone}
+        removed = {departed.name for departed in commit.removed}
+        after = {name: e for name, e in state.by_name.items() if name not in removed}
         after.update((entity.name, entity) for entity in commit.changed)
         state.derived_facts.fill(after)
         commit = self._with_suppressed(commit, sorted(state.derived_facts.suppressed.keys() - suppressed))

@@ -50,13 +50,13 @@ class CommitPublisher:
             self._effects.put(codec.encode(effects), encoding=codec.encoding_of(effects))
         self._commits.put(payload, encoding=codec.encoding_of(passed_on))
         if self._entities_are_watched():
-            for gone in commit.removed:
-                self._delete(gone.name, self._types.get(gone.name, gone.types))
+            for departed in commit.removed:
+                self._delete(departed.name, self._types.get(departed.name, departed.types))
             for name in dict.fromkeys((*(e.name for e in commit.changed), *derived_changes.subjects)):
                 if (described := self._describe(name)) is not None:
                     self._put(described)
-        for gone in commit.removed:
-            self._types.pop(gone.name, None)
+        for departed in commit.removed:
+            self._types.pop(departed.name, None)
         for entity in commit.changed:
             self._types[entity.name] = entity.types
 

@@ -138,9 +138,9 @@ class DerivedFacts:
                 suppressed.append(last)
                 if last in insert and not self._reasoner.is_computed(last):
                     insert.remove(last)
-                    self._withhold(last, found, is_there=False)
+                    self._suppress(last, found, is_there=False)
                 else:
-                    self._withhold(last, found)
+                    self._suppress(last, found)
             else:
                 return change
 
@@ -170,9 +170,9 @@ class DerivedFacts:
         and so on.
         """
         about = [triple for triple in asserted if triple[1] not in _MEASURES]
-        aside = list(islice(self._reasoner.suppressed(), FEW_ASIDE + 1))
-        if about and len(aside) <= FEW_ASIDE:
-            return sorted(aside)
+        suppressed = list(islice(self._reasoner.suppressed(), FEW_ASIDE + 1))
+        if about and len(suppressed) <= FEW_ASIDE:
+            return sorted(suppressed)
         waiting = {term for s, _, o in asserted for term in (s, o)}
         found: set[Triple] = set()
         while waiting:
@@ -208,7 +208,7 @@ class DerivedFacts:
         return {t: found for t, found in self.suppressed.items() if self._is_asserted(t)}
 
     @property
-    def left_out(self) -> frozenset[Fact]:
+    def suppressed_measurements(self) -> frozenset[Fact]:
         """Return the measured facts that are suppressed."""
         if not self.suppressed:
             return frozenset()
@@ -286,21 +286,21 @@ class DerivedFacts:
         if self.computed.is_idle:
             return
         yield from self.computed.facts.compute_steps()
-        said = self._asserted_places()
-        if self.is_compared_in_steps(said):
+        asserted = self._asserted_places()
+        if self.is_compared_in_steps(asserted):
             for names in split_batches(tuple(entities), _STEP, self._progress):
                 self._compare(names, entities.get)
                 yield
             return
-        step = self.computed.begin(entities.get, said)
-        there, aside = set(self._reasoner.computed()), set(self._reasoner.suppressed())
+        step = self.computed.begin(entities.get, asserted)
+        present, suppressed = set(self._reasoner.computed()), set(self._reasoner.suppressed())
         step = step._replace(
-            come=set(step.come) - there,
-            gone=there.difference(step.come),
-            denied=step.denied - aside,
-            undenied=aside - step.denied - self.suppressed.keys(),
+            come=set(step.come) - present,
+            gone=present.difference(step.come),
+            denied=step.denied - suppressed,
+            undenied=suppressed - step.denied - self.suppressed.keys(),
         )
-        for triple in aside & self.computed.denied:
+        for triple in suppressed & self.computed.denied:
             self._clear_suppressed(triple)
         self._carry_out(step, ())
 
@@ -317,8 +317,8 @@ class DerivedFacts:
         """Update the computed facts of some entities in the reasoner."""
         subjects = {name: v.iri(entity.iri) for name in names if (entity := known(name)) is not None}
         now = self.computed.of(subjects, known)
-        there = {t for iri in subjects.values() for t in self._reasoner.computed(iri)}
-        self._carry_out(Step(now - there - self.suppressed.keys(), there - now, set(), set()), ())
+        present = {t for iri in subjects.values() for t in self._reasoner.computed(iri)}
+        self._carry_out(Step(now - present - self.suppressed.keys(), present - now, set(), set()), ())
 
     def _carry_out(self, step: Step, retracted: Iterable[Triple]) -> None:
         lost = [*step.gone, *step.denied, *retracted]
@@ -327,9 +327,9 @@ class DerivedFacts:
         try:
             self._believe(gone=step.gone, come=step.come, aside=step.denied, back=step.undenied)
         except Inconsistent:
-            said = set(filter(self._is_asserted, step.undenied))
-            self._believe(gone=step.gone, aside=step.denied, back=step.undenied - said)
-            self._believe_consistent(sorted(said.union(step.come), key=self._order))
+            asserted = set(filter(self._is_asserted, step.undenied))
+            self._believe(gone=step.gone, aside=step.denied, back=step.undenied - asserted)
+            self._believe_consistent(sorted(asserted.union(step.come), key=self._order))
         if self._dependents:
             self._reconsider(lost)
 
@@ -372,14 +372,14 @@ class DerivedFacts:
         aside: Collection[Triple],
         back: Collection[Triple],
     ) -> None:
-        reasoner, taken = self._reasoner, list[Triple]()
+        reasoner, added = self._reasoner, list[Triple]()
         self._moved.update(reasoner.update_computed(remove=gone, suppress=aside, restore=back).others)
         try:
             for part in split_batches(come, PART, self._progress):
                 self._moved.update(reasoner.update_computed(add=part).others)
-                taken += part
+                added += part
         except Inconsistent:
-            reasoner.update_computed(remove=taken, add=gone, suppress=back, restore=aside)
+            reasoner.update_computed(remove=added, add=gone, suppress=back, restore=aside)
             raise
 
     # Contradictions
@@ -388,9 +388,9 @@ class DerivedFacts:
         """Add all facts that contradict nothing, and suppress the others."""
         if not facts:
             return
-        said = [t for t in facts if self._is_asserted(t)]
+        asserted = [t for t in facts if self._is_asserted(t)]
         try:
-            self._believe(come=[t for t in facts if t not in said], back=said)
+            self._believe(come=[t for t in facts if t not in asserted], back=asserted)
         except Inconsistent as error:
             if len(facts) > 1:
                 half = len(facts) // 2
@@ -408,11 +408,11 @@ class DerivedFacts:
         if last == fact:
             self._record_suppressed(fact, found)
             return
-        self._withhold(last, found)
+        self._suppress(last, found)
         self._believe_consistent([fact])
         self._reconsider([last])
 
-    def _withhold(self, fact: Triple, found: Explanation, *, is_there: bool = True) -> None:
+    def _suppress(self, fact: Triple, found: Explanation, *, is_there: bool = True) -> None:
         """Remove a fact from those that hold."""
         if not is_there:
             self._reasoner.update_computed(suppress=[fact])

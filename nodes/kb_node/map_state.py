@@ -117,7 +117,7 @@ class MapState:
     def abox(self) -> list[Triple]:
         """Return the asserted triples that are not part of the TBox."""
         tbox = self.tbox
-        return [t for said in self.reasoner.by_subject() for t in said if t not in tbox]
+        return [t for triples in self.reasoner.by_subject() for t in triples if t not in tbox]
 
     def inferred(self, name: str | None = None) -> Iterator[Triple]:
         """Yield the inferred triples about one entity, or about all. Raises UnknownName."""
@@ -251,8 +251,8 @@ class MapState:
         """Update the entities for a commit that the reasoner has already applied."""
         self.seq, self.digest = commit.seq, commit.digest
         self.places.update(commit.names, commit.retracted, commit.inserted)
-        for gone in commit.removed:
-            del self.by_name[gone.name]
+        for removed in commit.removed:
+            del self.by_name[removed.name]
         self.update_entities(commit.changed)
 
     def revert_entities(self, commit: Commit, before: Mapping[str, Entity | None], digest: str) -> None:

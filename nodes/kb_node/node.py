@@ -13,11 +13,11 @@ from semmap.nodes.kb_node.commit_publisher import CommitPublisher
 from semmap.nodes.kb_node.config import KbConfig
 from semmap.nodes.kb_node.derived_facts import DerivedChanges
 from semmap.nodes.kb_node.documents.tbox import tbox_notes
-from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, Tell
+from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, Report
 from semmap.nodes.kb_node.handlers.loading import LoadHandlers
 from semmap.nodes.kb_node.handlers.maintenance import MaintenanceHandlers
 from semmap.nodes.kb_node.handlers.queries import QueryHandlers
-from semmap.nodes.kb_node.replaying import Player, rejecting_handlers
+from semmap.nodes.kb_node.replaying import ReplayPlayer, rejecting_handlers
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.sparql.protocol import Placements
 from semmap.nodes.kb_node.sparql.service import SparqlService
@@ -62,16 +62,16 @@ class KnowledgeBase:
         self._queries = QueryHandlers(
             self.map, journal, self._sparql, self._location_queries, asker=lambda: node.asker
         )
-        reporting_progress = self._reporting_progress
+        report_progress = self._report_progress
         changes = ChangeHandlers(
             self.map,
             journal,
             publish=self._publish,
-            not_written=self._not_written,
-            reporting_progress=reporting_progress,
+            on_write_error=self._on_write_error,
+            report_progress=report_progress,
         )
         loading = LoadHandlers(
-            self.map, journal, changes, self._sparql, reporting_progress=reporting_progress, notes=self._notes
+            self.map, journal, changes, self._sparql, report_progress=report_progress, notes=self._notes
         )
         self._maintenance = MaintenanceHandlers(journal)
         handlers = {
@@ -80,11 +80,11 @@ class KnowledgeBase:
             **self._queries.handlers(),
             **self._maintenance.handlers(),
         }
-        self._player: Player | None = None
+        self._player: ReplayPlayer | None = None
         if config.replay is not None:
             handlers.update(rejecting_handlers())
-            tell = partial(self._publish, told=False, at_once=True)
-            self._player = Player(node, self.map, config.data, config.replay, tell)
+            publish = partial(self._publish, told=False, at_once=True)
+            self._player = ReplayPlayer(node, self.map, config.data, config.replay, publish)
         node.serve(keys.BRIDGE, handlers)
         for verb in keys.OF_THE_MAP:
             for prefix in (keys.CMD, keys.commands_as()):
@@ -129,21 +129,21 @@ class KnowledgeBase:
         self._location_queries.follow(commit.seq, commit.names)
         self.map.clean_up()
 
-    def _not_written(self, error: NotWritten) -> None:
+    def _on_write_error(self, error: NotWritten) -> None:
         self._node.report(error.text)
         self._node.describe(f"{self._summary()}; the disk accepts no commits")
 
     @contextmanager
-    def _reporting_progress(self, work: str) -> Iterator[Tell]:
+    def _report_progress(self, work: str) -> Iterator[Report]:
         """Report the progress of a large change in the heartbeat, and prepare the process for it."""
 
-        def tell(text: str) -> None:
+        def report(text: str) -> None:
             self._node.describe(f"{work}: {text}")
             self._node.beat()
 
         try:
             with gc_pause.uncollected(freeze=True):
-                yield tell
+                yield report
         finally:
             self._node.afterwards(heap.trim)
             self._node.describe(self._summary)

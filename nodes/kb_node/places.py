@@ -108,10 +108,10 @@ class Places:
         """Return what objects support now."""
         return Contents(self.space(), self._facts())
 
-    def update(self, names: Iterable[str], gone: Collection[Triple], come: Collection[Triple]) -> None:
+    def update(self, names: Iterable[str], removed: Collection[Triple], added: Collection[Triple]) -> None:
         """Update the state for a commit that touched these entities and these triples."""
         self._surroundings.mark_changed(names)
-        self._sayings.change(gone, come)
+        self._sayings.change(removed, added)
 
     def load_edits(self, edit: Edit, edits: Iterable[Edit]) -> list[Edit]:
         """Return the edits of the objects that move along with `edit`, except those that `edits` are about.
@@ -152,21 +152,21 @@ class Places:
         return self.loads().find_all(name, {*leave, *besides})
 
     def find_denied_locations(
-        self, reasoner: Reasoner, classes: ClassTable, gone: Collection[Triple], come: Collection[Triple]
+        self, reasoner: Reasoner, classes: ClassTable, removed: Collection[Triple], added: Collection[Triple]
     ) -> RetractedLocations:
         """Return asserted locations that the geometry denies after a change moves or resizes entities."""
         if not self._sayings:
             return RetractedLocations()
-        moved = dict(_moved(self._entities, reasoner, classes, gone, come))
-        leaving = set(gone)
-        said = {t: fact for t, fact in self._sayings.about(moved).items() if t not in leaving}
-        if not said:
+        moved = dict(_moved(self._entities, reasoner, classes, removed, added))
+        leaving = set(removed)
+        asserted = {t: fact for t, fact in self._sayings.about(moved).items() if t not in leaving}
+        if not asserted:
             return RetractedLocations()
         space = self.space()
         triples: list[Triple] = []
         notes: dict[str, None] = {}
         with space.with_changes(moved.values()):
-            for triple, fact in said.items():
+            for triple, fact in asserted.items():
                 if (relation := find_contradiction(space, fact)) is not None:
                     triples.append(triple)
                     notes[f"retracted: {relation.text}"] = None
@@ -198,12 +198,12 @@ class Places:
 
     def conflict_notes(self, commit: Commit) -> tuple[str, ...]:
         """Return notes on locations that a commit asserts and the geometry denies."""
-        said = filter_location_triples(commit.inserted)
-        if not said:
+        asserted = filter_location_triples(commit.inserted)
+        if not asserted:
             return ()
-        facts = dict.fromkeys(fact for triple in said if (fact := fact_of(triple)) is not None)
+        facts = dict.fromkeys(fact for triple in asserted if (fact := fact_of(triple)) is not None)
         space = self.space()
-        with space.with_changes(commit.changed, (gone.name for gone in commit.removed)):
+        with space.with_changes(commit.changed, (removed.name for removed in commit.removed)):
             relations = (find_contradiction(space, fact) for fact in facts)
             return truncate_notes(dict.fromkeys(r.text for r in relations if r is not None))
 
@@ -219,15 +219,15 @@ def _moved(
     entities: Mapping[str, Entity],
     reasoner: Reasoner,
     classes: ClassTable,
-    gone: Collection[Triple],
-    come: Collection[Triple],
+    removed: Collection[Triple],
+    added: Collection[Triple],
 ) -> Iterator[tuple[str, Entity]]:
     """Yield the entities that a change of triples moves or reshapes, as they will be."""
     own_words = not classes.alignments
-    changed = chain(gone, come)
-    touched = subjects(t for t in changed if t[1] in _GEOMETRY) if own_words else subjects(gone, come)
-    about = _lookup_after(reasoner, gone, come)
-    opened = subjects(t for t in chain(gone, come) if t[1] in _OPENING)
+    changed = chain(removed, added)
+    touched = subjects(t for t in changed if t[1] in _GEOMETRY) if own_words else subjects(removed, added)
+    about = _lookup_after(reasoner, removed, added)
+    opened = subjects(t for t in chain(removed, added) if t[1] in _OPENING)
     concerned = {
         iri
         for node in reasoner.mentioned(touched)
@@ -248,14 +248,14 @@ def _moved(
 
 
 def _lookup_after(
-    reasoner: Reasoner, gone: Iterable[Triple], come: Iterable[Triple]
+    reasoner: Reasoner, removed: Iterable[Triple], added: Iterable[Triple]
 ) -> Callable[[Term], dict[Term, list[Term]]]:
     """Return a lookup of what will be asserted about each subject."""
     leaving: dict[Term, set[Triple]] = {}
     coming: dict[Term, list[Triple]] = {}
-    for triple in gone:
+    for triple in removed:
         leaving.setdefault(triple[0], set()).add(triple)
-    for triple in come:
+    for triple in added:
         coming.setdefault(triple[0], []).append(triple)
 
     def about(subject: Term) -> dict[Term, list[Term]]:
@@ -263,9 +263,9 @@ def _lookup_after(
         if subject not in leaving and subject not in coming:
             return known
         without = leaving.get(subject, set())
-        said = {p: [o for o in objects if (subject, p, o) not in without] for p, objects in known.items()}
+        asserted = {p: [o for o in objects if (subject, p, o) not in without] for p, objects in known.items()}
         for _, p, o in coming.get(subject, ()):
-            said.setdefault(p, []).append(o)
-        return {p: objects for p, objects in said.items() if objects}
+            asserted.setdefault(p, []).append(o)
+        return {p: objects for p, objects in asserted.items() if objects}
 
     return about

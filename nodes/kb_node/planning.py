@@ -38,13 +38,15 @@ def make_plan(state: MapState, transaction: Transaction) -> Plan | None:
     if transaction.unchanged:
         preconditions.require_unchanged(transaction, state.by_name)
     retract, insert, notes = _expand_intents(state, transaction)
-    held = preconditions.find_asserted(state.reasoner, (transaction.require, retract, insert), state.progress)
-    preconditions.require(transaction, held)
+    asserted = preconditions.find_asserted(
+        state.reasoner, (transaction.require, retract, insert), state.progress
+    )
+    preconditions.require(transaction, asserted)
     wanted = set(insert) if retract else frozenset[Triple]()
-    retracted = tuple([t for t in dict.fromkeys(retract) if t not in wanted and t in held])
+    retracted = tuple([t for t in dict.fromkeys(retract) if t not in wanted and t in asserted])
     inserted = _unique(insert)
-    if held:
-        inserted = tuple([t for t in inserted if t not in held])
+    if asserted:
+        inserted = tuple([t for t in inserted if t not in asserted])
     if not retracted and not inserted:
         return None
     denied = state.places.find_denied_locations(state.reasoner, state.classes, retracted, inserted)

@@ -46,9 +46,9 @@ def find_asserted(
     found: set[Triple] = set()
     many: set[Term] = set()
     for subject in with_progress(known, progress):
-        said = list(islice(reasoner.asserted(subject), _FEW))
-        found.update(said)
-        if len(said) == _FEW:
+        asserted = list(islice(reasoner.asserted(subject), _FEW))
+        found.update(asserted)
+        if len(asserted) == _FEW:
             many.add(subject)
     return {t for t in named if t in found or (t[0] in many and any(reasoner.asserted(*t)))}
 

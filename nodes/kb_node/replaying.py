@@ -32,7 +32,7 @@ _MAX_CHECKS: Final = 100
 CHANGES: Final = (Transaction, Transactions, LoadDocument, LoadTBox, TakeBack, Compact)
 
 
-class Player:
+class ReplayPlayer:
     """Commits one commit after another, each at its time. Owned by the node's thread."""
 
     def __init__(

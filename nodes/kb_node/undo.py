@@ -34,7 +34,7 @@ def undo(
     """
     if (known := journal.commit_of(command.id)) is not None:
         return known
-    target = _newest_asked(journal) if command.commit is None else _named(journal, command.commit)
+    target = _newest_client_commit(journal) if command.commit is None else _named(journal, command.commit)
     _require_authority(command, target)
     reverse = _reverse_tbox if target.tbox else _reverse
     try:
@@ -55,15 +55,15 @@ def undo(
 
 
 def _reverse(semantic_map: SemanticMap, journal: Journal, command: TakeBack, target: Commit) -> Commit | None:
-    later = _later(journal, target)
+    later = _later_commits(journal, target)
     _require_in_force(
         target, later if target.names else map(journal.commit, journal.list_undo_commits(target.seq))
     )
     settling = [commit for commit in _in_force(later) if _is_settling(commit)]
     undone = [target, *reversed(settling)]
     retract, insert = _net(undone)
-    if _is_disturbed(semantic_map, retract, insert):
-        raise errors.Refused(_what_rests_on(target, [c for c in later if c not in undone]))
+    if _has_changed(semantic_map, retract, insert):
+        raise errors.Refused(_dependency_error(target, [c for c in later if c not in undone]))
     return semantic_map.commit(_transaction(command, undone, retract, insert, require=retract))
 
 
@@ -72,7 +72,7 @@ def _reverse_tbox(semantic_map: SemanticMap, journal: Journal, command: TakeBack
     later = [journal.commit(seq) for seq in journal.tbox_changes(after=target.seq)]
     _require_in_force(target, later)
     if again := [commit for commit in _in_force(later) if not commit.undoes]:
-        raise errors.Refused(_what_rests_on(target, again))
+        raise errors.Refused(_dependency_error(target, again))
     before, after = (semantic_map.tbox_at(seq) for seq in (target.seq - 1, target.seq))
     retract = tuple(t for t in target.inserted if t not in after and semantic_map.is_asserted(t))
     insert = tuple(t for t in target.retracted if t not in before and not semantic_map.is_asserted(t))
@@ -107,7 +107,7 @@ def _require_in_force(target: Commit, later: Iterable[Commit]) -> None:
             raise errors.Refused(f"commit {target.seq} was already undone by commit {commit.seq}")
 
 
-def _newest_asked(journal: Journal) -> Commit:
+def _newest_client_commit(journal: Journal) -> Commit:
     """Return the newest commit that a client requested and that is not undone."""
     backwards = (journal.commit(seq) for seq in range(journal.last, journal.first - 1, -1))
     for commit in _in_force(backwards):
@@ -134,7 +134,7 @@ def _require_authority(command: TakeBack, target: Commit) -> None:
         raise errors.Refused(f"commit {target.seq} was made by an operator, so only an operator may undo it")
 
 
-def _later(journal: Journal, target: Commit) -> list[Commit]:
+def _later_commits(journal: Journal, target: Commit) -> list[Commit]:
     """Return the later commits that concern `target`, newest first.
 
     These are the commits that touched one of its entities, and what the system did by itself right after it.
@@ -187,27 +187,27 @@ def _net(commits: Sequence[Commit]) -> tuple[tuple[Triple, ...], tuple[Triple, .
     return tuple(inserted), tuple(retracted)
 
 
-def _is_disturbed(
+def _has_changed(
     semantic_map: SemanticMap, inserted: tuple[Triple, ...], retracted: tuple[Triple, ...]
 ) -> bool:
     """Return whether the result of the commits has changed or has been extended since."""
-    mine, reasoner, with_progress = set(inserted), semantic_map.reasoner, semantic_map.with_progress
+    own, reasoner, with_progress = set(inserted), semantic_map.reasoner, semantic_map.with_progress
     changed = {s for s, p, _ in retracted if p == v.RDF_TYPE}
     brought = {s for s, p, _ in inserted if p == v.RDF_TYPE} - changed
     if preconditions.is_large_share((inserted, retracted), reasoner):
         held = set(chain.from_iterable(with_progress(reasoner.by_subject())))
-        about = [t for t in held - mine if t[0] in brought or t[2] in brought]
+        about = [t for t in held - own if t[0] in brought or t[2] in brought]
     else:
         held = preconditions.find_asserted(reasoner, (inserted, retracted), semantic_map.progress)
         asserted = chain.from_iterable(
             chain(reasoner.asserted(term), reasoner.asserted(None, None, term))
             for term in with_progress(brought)
         )
-        about = [t for t in asserted if t not in mine]
-    return bool(about) or not held >= mine or not held.isdisjoint(retracted)
+        about = [t for t in asserted if t not in own]
+    return bool(about) or not held >= own or not held.isdisjoint(retracted)
 
 
-def _what_rests_on(target: Commit, others: list[Commit]) -> str:
+def _dependency_error(target: Commit, others: list[Commit]) -> str:
     """Return the error text.
 
     `others` are later commits, newest first; pairs that undo each other do not count.

@@ -34,7 +34,7 @@ class Told:
             bus.follow(session, keys.COMMIT, lambda _, commit: self.commits.put(commit)),
             bus.follow(session, keys.ENTITY, lambda key, entity: self.news.put((key, entity))),
         ]
-        self._publisher = CommitPublisher(session, (), CurrentState(self.map).described)
+        self._publisher = CommitPublisher(session, (), CurrentState(self.map).describe)
 
     def commit(self, **what):
         made = self.map.commit(Transaction(id=str(self.map.seq), source="operator", **what))

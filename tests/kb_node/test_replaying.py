@@ -8,7 +8,7 @@ from concurrent.futures import Future
 import pytest
 
 from semmap.nodes.kb_node.config import Replay
-from semmap.nodes.kb_node.replaying import CHANGES, Player, find_missing, rejecting_handlers
+from semmap.nodes.kb_node.replaying import CHANGES, ReplayPlayer, find_missing, rejecting_handlers
 from semmap.nodes.kb_node.storage.journal import FILENAME
 from semmap.nodes.kb_node.storage.replay.preparation import SOURCE
 from semmap.schemas import errors
@@ -75,7 +75,9 @@ def replay(tmp_path):
 
     def play(loop, nodes=("kb_node",)):
         publish = []
-        player = Player(loop, here, tmp_path / "here", Replay(began + 3, 1.0, 5.0, nodes), publish.append)
+        player = ReplayPlayer(
+            loop, here, tmp_path / "here", Replay(began + 3, 1.0, 5.0, nodes), publish.append
+        )
         made.append(player)
         return player, publish, here, began
 

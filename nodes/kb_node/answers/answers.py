@@ -30,10 +30,10 @@ from semmap.schemas.explanations import Term, Triple
 from semmap.schemas.replies import Checked, Document, Inferred
 
 
-def entities_of(semantic_map: SemanticMap, class_name: str | None) -> tuple[Entity, ...]:
+def find_entities(semantic_map: SemanticMap, class_name: str | None) -> tuple[Entity, ...]:
     """Return the entities of a class, given by its exact name. Raises UnknownClass."""
     return tuple(
-        semantic_map.entities(term_resolution.class_(semantic_map, class_name) if class_name else None)
+        semantic_map.entities(term_resolution.resolve_class(semantic_map, class_name) if class_name else None)
     )
 
 
@@ -161,8 +161,8 @@ def export_snapshot(semantic_map: SemanticMap, inferred: bool) -> ExportSnapshot
     """Return the current map for export: the ABox or, if `inferred`, all that holds about its individuals."""
     semantic_map.ensure_derived()
     abox = semantic_map.abox()
-    aside = set(semantic_map.reasoner.suppressed())
-    held = [triple for triple in abox if triple not in aside] if aside else abox
+    suppressed = set(semantic_map.reasoner.suppressed())
+    held = [triple for triple in abox if triple not in suppressed] if suppressed else abox
     following: list[Triple] = []
     if inferred:
         abox = held

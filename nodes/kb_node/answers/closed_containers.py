@@ -48,10 +48,10 @@ def find_closed_container(semantic_map: SemanticMap, entity: Entity) -> Closed |
 def _find_closing_joints(semantic_map: SemanticMap, inner: Entity, outer: Entity) -> tuple[str, ...]:
     """Return the joints that close the cavity around an object, if all are shut and others are open."""
     solids = semantic_map.places.space().solids
-    one, around = solids.get(inner.name), solids.get(outer.name)
-    if one is None or around is None or not around.form.joints or not around.hollows:
+    inner_solid, around = solids.get(inner.name), solids.get(outer.name)
+    if inner_solid is None or around is None or not around.form.joints or not around.hollows:
         return ()
-    hollow, form = hollow_around(one, around), around.form
+    hollow, form = hollow_around(inner_solid, around), around.form
     closing = {*hollow.behind, *filter(None, (hollow.carried_by,))}
     shares = {
         leaf.name: joint_at(leaf, position).openness
@@ -65,12 +65,12 @@ def _find_closing_joints(semantic_map: SemanticMap, inner: Entity, outer: Entity
 def describe(closed: Closed) -> str:
     """Return `not observable: fridge1 has been closed since commit 7, 5 min ago`."""
     entity, joints = closed
-    said = entity.joint_provenance or entity.provenance
-    ago = wording.duration((time.time_ns() - said.stamp_ns) / 1e9)
+    provenance = entity.joint_provenance or entity.provenance
+    ago = wording.duration((time.time_ns() - provenance.stamp_ns) / 1e9)
     if not joints:
-        return f"not observable: {entity.name} has been closed since commit {said.commit}, {ago} ago"
+        return f"not observable: {entity.name} has been closed since commit {provenance.commit}, {ago} ago"
     are = "is" if len(joints) == 1 else "are"
     return (
         f"not observable: {' and '.join(joints)} of {entity.name} {are} closed"
-        f" (last stated in commit {said.commit}, {ago} ago)"
+        f" (last stated in commit {provenance.commit}, {ago} ago)"
     )

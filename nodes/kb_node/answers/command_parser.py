@@ -7,7 +7,7 @@ from itertools import product
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.answers.entity_search import Finding
+from semmap.nodes.kb_node.answers.entity_search import EntitySearch
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.language import lexicon
@@ -23,18 +23,18 @@ from semmap.schemas.language import SemanticFrame, Understood
 _MOST_WORDS = 200  # per command: a minute of speech
 
 
-class Understanding:
+class CommandParser:
     """Parses commands and resolves them against the map. Owned by the node's thread."""
 
-    def __init__(self, semantic_map: SemanticMap, finding: Finding) -> None:
-        """Create a parser; `finding` resolves descriptions and formulates clarification questions."""
-        self._map, self._finding = semantic_map, finding
+    def __init__(self, semantic_map: SemanticMap, search: EntitySearch) -> None:
+        """Create a parser; `search` resolves descriptions and formulates clarification questions."""
+        self._map, self._search = semantic_map, search
         self._lexicon = lexicon.load()
         self._classes: ClassTable | None = None
         self._vocabulary: Vocabulary | None = None
         self._scene: tuple[int, Scene] | None = None
 
-    def understand(self, query: Understand) -> Understood:
+    def parse(self, query: Understand) -> Understood:
         """Return the frames of a command and clarification questions.
 
         Raises BadRequest for no words or too many.
@@ -44,14 +44,14 @@ class Understanding:
             raise errors.BadRequest("the command contains no words")
         if len(words) > _MOST_WORDS:
             raise errors.BadRequest(f"the command has {len(words)} words; the maximum is {_MOST_WORDS}")
-        found = shipped().understand(query.text, self._there(), query.language, self._finding.described)
+        found = shipped().understand(query.text, self._there(), query.language, self._search.described)
         open_still = dict.fromkeys(
             argument.candidates
             for frame in found.frames
             for argument in frame.arguments
             if argument.ambiguous
         )
-        questions = (self._finding.question(names, found.language) for names in open_still)
+        questions = (self._search.question(names, found.language) for names in open_still)
         doubts = dict.fromkeys(doubt for frame in found.frames for doubt in self._doubts(frame))
         return structs.replace(found, question=" ".join(questions), doubts=tuple(doubts))
 
@@ -64,8 +64,8 @@ class Understanding:
         sources = [a.entity for a in frame.arguments if a.role == "Source" and a.entity]
         things = [a.entity for a in frame.arguments if a.role == "Theme" and a.entity]
         for thing, source in product(things, sources):
-            if thing != source and not self._finding.is_at(thing, source):
-                where = self._finding.where(thing)
+            if thing != source and not self._search.is_at(thing, source):
+                where = self._search.where(thing)
                 yield f"{thing} is not on or in {source}" + (f"; it is {where}" if where else "")
 
     def _there(self) -> Scene:

@@ -40,12 +40,12 @@ class Descriptions:
         name = query.name
         if name is not None and self._map.find(name) is None:
             name = resolve_single(tuple(self._map.entities()), name)
-        told = self._describe(name, query.words)
-        words = told.text.split()  # quoted labels may contain line breaks
+        description = self._describe(name, query.words)
+        words = description.text.split()  # quoted labels may contain line breaks
         if len(words) > query.words:  # class labels may be that long
             words[query.words - 1 :] = [f"{words[query.words - 1]}…"]
         return language.Account(
-            text=" ".join(words), words=len(words), left_out=told.left_out, commit=self._map.seq
+            text=" ".join(words), words=len(words), left_out=description.left_out, commit=self._map.seq
         )
 
     def _describe(self, name: str | None, most_words: int) -> Summary:

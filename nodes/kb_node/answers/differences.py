@@ -41,7 +41,7 @@ def compute_difference(journal: Journal, past: HistoryReader, query: Diff, limit
             changes += between(then.get(name), now[name])
         else:
             changes.append(removed(name, then[name].class_))
-    was, is_ = (_facts(there.values(), limits) for there in (then, now))
+    was, is_ = (_facts(entities.values(), limits) for entities in (then, now))
     differing = sorted([(fact, False) for fact in was - is_] + [(fact, True) for fact in is_ - was])
     relations = tuple(
         Related(subject=s, relation=_KEPT[relation], object=o, came=came, text=_phrase(relation, came, o))
@@ -68,29 +68,29 @@ def _phrase(relation: RelationName, came: bool, other: str) -> str:
     return f"{words if came else words.replace('is ', 'is no longer ', 1)} {other}"
 
 
-def _facts(there: Iterable[Entity], limits: Thresholds) -> set[Fact]:
+def _facts(entities: Iterable[Entity], limits: Thresholds) -> set[Fact]:
     facts = Facts(limits)
-    for _ in facts.fill_steps(there):
+    for _ in facts.fill_steps(entities):
         pass
     return set(facts)
 
 
 def find_spells(journal: Journal, past: HistoryReader, query: WasWhen, limits: Thresholds) -> Spells:
     """Return when the relation held. Raises UnknownName; BadRequest for an ambiguous word."""
-    there = {entity.name: entity for entity in past.entities(past.last)} if past.last else {}
-    one, other = (_name(word, there, past) for word in (query.name, query.other))
-    text, told = _find_spells(one, query.relation, other, journal, past, limits)
-    if not told and (bearer := _find_support(one, query.relation, other, there, limits)) is not None:
+    entities = {entity.name: entity for entity in past.entities(past.last)} if past.last else {}
+    one, other = (_name(word, entities, past) for word in (query.name, query.other))
+    text, intervals = _find_spells(one, query.relation, other, journal, past, limits)
+    if not intervals and (bearer := _find_support(one, query.relation, other, entities, limits)) is not None:
         relation, below = bearer
-        borne = _find_spells(one, relation, below, journal, past, limits)[0].replace(one, "it", 1)
+        part = _find_spells(one, relation, below, journal, past, limits)[0].replace(one, "it", 1)
         where = f"{_spoken(query.relation)} {other}"
-        text = f"{one} was never itself {where}; {borne}, and {below} is {where}"
+        text = f"{one} was never itself {where}; {part}, and {below} is {where}"
     return Spells(
         subject=one,
         relation=query.relation,
         object=other,
-        spells=told,
-        total_s=sum(_lasted_s(spell, time.time_ns()) for spell in told),
+        spells=intervals,
+        total_s=sum(_lasted_s(spell, time.time_ns()) for spell in intervals),
         text=text,
     )
 
@@ -104,7 +104,7 @@ def _find_spells(
     found = find_intervals(journal.decode_partially(PoseChanges), first, [fact], limits, in_any_place=True)[
         fact
     ]
-    told = tuple(
+    intervals = tuple(
         Spell(
             since=since,
             since_ns=_stamp_ns(journal, since),
@@ -113,7 +113,7 @@ def _find_spells(
         )
         for since, until in found
     )
-    return _describe(one, f"{_spoken(relation)} {other}", told, time.time_ns()), told
+    return _describe(one, f"{_spoken(relation)} {other}", intervals, time.time_ns()), intervals
 
 
 def _spoken(relation: KeptRelation) -> str:
@@ -121,12 +121,12 @@ def _spoken(relation: KeptRelation) -> str:
 
 
 def _find_support(
-    one: str, relation: KeptRelation, other: str, there: Mapping[str, Entity], limits: Thresholds
+    one: str, relation: KeptRelation, other: str, entities: Mapping[str, Entity], limits: Thresholds
 ) -> tuple[KeptRelation, str] | None:
     """Return what an object is on or inside now, if that is itself on or inside `other`, else None."""
     if relation not in ("isOn", "isInside"):
         return None
-    space = Space(map(PlacedEntity.of, there.values()), limits)
+    space = Space(map(PlacedEntity.of, entities.values()), limits)
     if (solid := space.solids.get(one)) is None:
         return None
     container, supports, _ = space.spatial_relations(solid)
@@ -140,22 +140,22 @@ def _find_support(
     return None
 
 
-def _name(word: str, there: Mapping[str, Entity], past: HistoryReader) -> str:
+def _name(word: str, entities: Mapping[str, Entity], past: HistoryReader) -> str:
     """Return the entity that a word names: by its present or former name, by label or by class."""
-    if word in there or past.knows(word):
+    if word in entities or past.knows(word):
         return word
-    return resolve_single(tuple(there.values()), word)
+    return resolve_single(tuple(entities.values()), word)
 
 
-def _describe(name: str, where: str, told: Sequence[Spell], now_ns: int) -> str:
+def _describe(name: str, where: str, intervals: Sequence[Spell], now_ns: int) -> str:
     """Return `cup1 has been on table1 since commit 4 (for 2 min); before that from commit 1 until ...`."""
-    if not told:
+    if not intervals:
         return f"{name} was never {where}"
-    spans = [_span(spell, now_ns) for spell in told if spell.until is not None]
+    spans = [_span(spell, now_ns) for spell in intervals if spell.until is not None]
     shown = spans if len(spans) <= _LONGEST else [*spans[:3], f"{len(spans) - 6} more times", *spans[-3:]]
-    total_s = sum(_lasted_s(spell, now_ns) for spell in told)
-    often = f"; {len(told)} times, {wording.duration(total_s)} in all" if len(told) > 1 else ""
-    if (last := told[-1]).until is None:
+    total_s = sum(_lasted_s(spell, now_ns) for spell in intervals)
+    often = f"; {len(intervals)} times, {wording.duration(total_s)} in all" if len(intervals) > 1 else ""
+    if (last := intervals[-1]).until is None:
         earlier = f"; before that {', '.join(shown)}" if shown else ""
         return f"{name} has been {where} since {_beginning(last)} ({_length(last, now_ns)}){earlier}{often}"
     return f"{name} is no longer {where}; it was {', '.join(shown)}{often}"

@@ -34,7 +34,7 @@ def dry_run(
     after = semantic_map.try_out(change, inspect)
     if after is None:
         return None
-    held = _asserted(semantic_map, after.concerned)
+    asserted = _asserted(semantic_map, after.concerned)
     followed = _inferred(semantic_map, after.concerned)
     commit, names = after.commit, semantic_map.classes.qualified_names
     return structs.replace(
@@ -43,7 +43,7 @@ def dry_run(
             inserted=len(commit.inserted),
             retracted=len(commit.retracted),
             changed=tuple(entity.name for entity in commit.changed),
-            gained=_spoken(after.followed - followed - held, names),
+            gained=_spoken(after.followed - followed - asserted, names),
             lost=_spoken(followed - after.followed - after.held, names),
         ),
     )
@@ -54,8 +54,8 @@ class _After:
 
     def __init__(self, semantic_map: SemanticMap, commit: Commit) -> None:
         self.commit = commit
-        gone = filter(None, (semantic_map.find(departed.name) for departed in commit.removed))
-        self.concerned = [v.iri(entity.iri) for entity in islice((*commit.changed, *gone), _FEW)]
+        removed = filter(None, (semantic_map.find(departed.name) for departed in commit.removed))
+        self.concerned = [v.iri(entity.iri) for entity in islice((*commit.changed, *removed), _FEW)]
         self.held = _asserted(semantic_map, self.concerned)
         self.followed = _inferred(semantic_map, self.concerned)
 

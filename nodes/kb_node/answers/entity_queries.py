@@ -52,10 +52,12 @@ class Explained(NamedTuple):
             return self.explanation
         facts = [fact for fact, _ in self.measured]
         began = look_up(facts)
-        told = [f"{text} ({since})" if (since := began.describe([f])) else text for f, text in self.measured]
+        sentences = [
+            f"{text} ({since})" if (since := began.describe([f])) else text for f, text in self.measured
+        ]
         if len(facts) > 1 and (since := began.describe(facts)) is not None:
-            told[-1] += f". It holds {since}"
-        return structs.replace(self.explanation, text=self.before + "; ".join(told))
+            sentences[-1] += f". It holds {since}"
+        return structs.replace(self.explanation, text=self.before + "; ".join(sentences))
 
 
 class CurrentState:
@@ -66,7 +68,7 @@ class CurrentState:
 
     def entities(self, query: Entities) -> tuple[Entity, ...]:
         """Return the entities of a class, or those that match `where`. Raises UnknownClass, UnknownName."""
-        found = answers.entities_of(self._map, query.class_)
+        found = answers.find_entities(self._map, query.class_)
         if query.where is None:
             return found
         return tuple(
@@ -75,7 +77,7 @@ class CurrentState:
                 found,
                 query.where,
                 self._map.entities(),
-                self._map.derived_facts.left_out,
+                self._map.derived_facts.suppressed_measurements,
             )
         )
 
@@ -98,10 +100,10 @@ class CurrentState:
     def _with_where(self, entity: Entity) -> Described:
         space = self._map.places.space()
         wrong = find_contradictions(space, answers.asserted_locations(self._map, entity))
-        left_out = self._map.derived_facts.left_out
-        there = (r for r in list_locations(space, entity.name) if _fact(r) not in left_out)
+        left_out = self._map.derived_facts.suppressed_measurements
+        locations = (r for r in list_locations(space, entity.name) if _fact(r) not in left_out)
         withheld = tuple(answers.suppressed_facts(self._map, entity))
-        return Described.of(entity, tuple(there), tuple(wrong), withheld)
+        return Described.of(entity, tuple(locations), tuple(wrong), withheld)
 
     def find_denied(self) -> tuple[Relation, ...]:
         """Return the asserted locations that contradict the geometry."""
@@ -113,7 +115,7 @@ class CurrentState:
     def relations(self, query: Relations) -> tuple[Relation, ...]:
         """Return the relations of an entity. Raises UnknownName; BadRequest for an ambiguous word."""
         named = _named(query, self._map.find, lambda: tuple(self._map.entities()))
-        left_out = self._map.derived_facts.left_out
+        left_out = self._map.derived_facts.suppressed_measurements
         is_fixed = self._map.entity(named.name).fixed
         found = list_relations(self._map.places.space(), named, is_fixed=is_fixed)
         return tuple(_mark_suppressed(r) if left_out and _fact(r) in left_out else r for r in found)
@@ -133,51 +135,57 @@ class CurrentState:
         for name in ends:
             if name not in space.solids:
                 raise errors.Refused(f"{name} has no position, so it has no spatial relations")
-        seen = explain_relation(space, ends[0], relation, ends[1])
-        if seen is None:
+        measured = explain_relation(space, ends[0], relation, ends[1])
+        if measured is None:
             raise errors.InternalError(f"the relation '{relation}' is not computed")
-        if not seen.holds:
-            raise errors.Refused(seen.text)
-        return Explanation(conclusion=None, support=(), steps=(), text=seen.text)
+        if not measured.holds:
+            raise errors.Refused(measured.text)
+        return Explanation(conclusion=None, support=(), steps=(), text=measured.text)
 
     def explain(self, query: Explain, asked: questions.StatementQuestion) -> Explained | None:
         """Return why something holds, with measurements if they are a reason, or None if it is not known yet.
 
         Raises Refused if a measurement denies it.
         """
-        seen = self._measure(asked.triples[0])
+        measured = self._measure(asked.triples[0])
         found = questions.why(self._map.reasoner, asked)
         if query.negated:
-            if seen is None or seen.holds or found is not None:
+            if measured is None or measured.holds or found is not None:
                 return None
-            return Explained(Explanation(conclusion=None, support=(), steps=(), text=seen.text))
+            return Explained(Explanation(conclusion=None, support=(), steps=(), text=measured.text))
         if found is None:
             if (
                 withheld := next((t for t in asked.triples if t in self._map.derived_facts.suppressed), None)
             ) is not None:
                 raise errors.Refused(f"it does not hold: {self._map.derived_facts.describe(withheld)}")
-            if seen is not None and not seen.holds:
+            if measured is not None and not measured.holds:
                 is_said = (
                     self._map.is_asserted(asked.triples[0])
                     and self.describe_conflict(asked.triples[0]) is not None
                 )
-                aside = "; it is asserted, but suppressed while the geometry contradicts it"
-                raise errors.Refused(seen.text + (aside if is_said else ""))
-            return None if seen is None else Explained(self._explain_relation(seen))
+                note = "; it is asserted, but suppressed while the geometry contradicts it"
+                raise errors.Refused(measured.text + (note if is_said else ""))
+            return None if measured is None else Explained(self._explain_relation(measured))
         if found.conclusion is not None and self._map.reasoner.is_computed(found.conclusion):
             return Explained(found, measured=(self._describe_fact(found.conclusion),))
-        if seen is not None and not seen.holds:
+        if measured is not None and not measured.holds:
             # An object on another touches it across a small gap, and the locations of places are asserted.
-            seen = None if seen.relation == "touches" or self._is_place(seen.subject) else seen
-        if seen is not None:
-            if not seen.holds:
-                text = f"{found.text.rstrip('.')}; but according to the poses, {seen.text}"
+            measured = (
+                None if measured.relation == "touches" or self._is_place(measured.subject) else measured
+            )
+        if measured is not None:
+            if not measured.holds:
+                text = f"{found.text.rstrip('.')}; but according to the poses, {measured.text}"
                 return Explained(structs.replace(found, text=text))
-            return Explained(found, f"{found.text.rstrip('.')}; and ", ((_fact(seen), seen.text),))
-        told = tuple(
+            return Explained(found, f"{found.text.rstrip('.')}; and ", ((_fact(measured), measured.text),))
+        sentences = tuple(
             self._describe_fact(fact) for fact in found.support if self._map.reasoner.is_computed(fact)
         )
-        return Explained(found, f"{found.text.rstrip('.')}; measured: ", told) if told else Explained(found)
+        return (
+            Explained(found, f"{found.text.rstrip('.')}; measured: ", sentences)
+            if sentences
+            else Explained(found)
+        )
 
     def describe_conflict(self, triple: Triple) -> str | None:
         """Return how the geometry contradicts an asserted location, as a clause, or None."""
@@ -203,18 +211,18 @@ class CurrentState:
     def _is_place(self, name: str) -> bool:
         return self._map.entity(name).place
 
-    def _explain_relation(self, seen: Relation) -> Explanation:
-        subject, object_ = (v.iri(self._map.entity(name).iri) for name in (seen.subject, seen.object))
+    def _explain_relation(self, measured: Relation) -> Explanation:
+        subject, object_ = (v.iri(self._map.entity(name).iri) for name in (measured.subject, measured.object))
         return Explanation(
-            conclusion=(subject, v.dm(seen.relation), object_), support=(), steps=(), text=seen.text
+            conclusion=(subject, v.dm(measured.relation), object_), support=(), steps=(), text=measured.text
         )
 
     def _describe_fact(self, fact: Triple) -> tuple[Fact, str]:
         """Return a computed fact with its measurement."""
         relation = COMPUTED[fact[1]]
         name, other = v.entity_name(fact[0]), v.entity_name(fact[2])
-        seen = explain_relation(self._map.places.space(), name, relation, other)
-        return (name, relation, other), v.to_words(fact) if seen is None else seen.text
+        measured = explain_relation(self._map.places.space(), name, relation, other)
+        return (name, relation, other), v.to_words(fact) if measured is None else measured.text
 
 
 class PastState:
@@ -227,7 +235,7 @@ class PastState:
     def entities(self, query: Entities) -> tuple[Entity, ...]:
         """Return the entities; see `CurrentState.entities`."""
         if query.as_of is None:
-            raise errors.InternalError("the question names no moment")
+            raise errors.InternalError("the query has no time")
         found = self._past.entities(query.as_of, query.class_, tuple(self._map.classes.iris))
         if query.where is None:
             return found
@@ -237,22 +245,22 @@ class PastState:
     def entity(self, query: Get) -> Described:
         """Return one entity; see `CurrentState.entity`. Wrong assertions are not reported."""
         if query.as_of is None:
-            raise errors.InternalError("the question names no moment")
+            raise errors.InternalError("the query has no time")
         entity = self._past.entity(query.name, query.as_of)
         if not query.where:
             return Described.of(entity)
         space = self._space(self._past.entities(query.as_of, None, ()))
-        there = tuple(list_locations(space, entity.name))
-        return Described.of(entity, there, on_nothing=_on_nothing(space, entity))
+        locations = tuple(list_locations(space, entity.name))
+        return Described.of(entity, locations, on_nothing=_on_nothing(space, entity))
 
     def relations(self, query: Relations) -> tuple[Relation, ...]:
         """Return the relations; see `CurrentState.relations`."""
         if query.as_of is None:
-            raise errors.InternalError("the question names no moment")
+            raise errors.InternalError("the query has no time")
         everyone = self._past.entities(query.as_of, None, ())
-        there = {entity.name: entity for entity in everyone}
-        named = _named(query, there.get, lambda: everyone)
-        is_fixed = named.name in there and there[named.name].fixed
+        entities = {entity.name: entity for entity in everyone}
+        named = _named(query, entities.get, lambda: everyone)
+        is_fixed = named.name in entities and entities[named.name].fixed
         return tuple(list_relations(self._space(everyone), named, is_fixed=is_fixed))
 
     def _space(self, entities: Iterable[Entity]) -> Space:

@@ -31,12 +31,12 @@ class SearchResult(NamedTuple):
     found: Found
     missing: Missing | None = None
 
-    def with_the_past(self, gone: tuple[str, ...]) -> Found:
+    def with_last_times(self, gone: tuple[str, ...]) -> Found:
         """Return the result with the times at which the missing entities were last there."""
         return structs.replace(self.found, gone=gone)
 
 
-class Finding:
+class EntitySearch:
     """Finds entities by description. Owned by the node's thread."""
 
     def __init__(self, semantic_map: SemanticMap) -> None:
@@ -50,7 +50,9 @@ class Finding:
         """Return the described entities. Raises BadRequest; UnknownName for an unknown asker or viewer."""
         space = self._map.places.space()
         asker = None if query.asker is None else self._named(query.asker)
-        around = RelationCache(space, self._view(query, space), self._map.derived_facts.left_out)
+        around = RelationCache(
+            space, self._view(query, space), self._map.derived_facts.suppressed_measurements
+        )
         with space.caching():
             answer = find(query.text, self.known(), around, asker)
             found = explanation.explain(answer)
@@ -59,7 +61,7 @@ class Finding:
     def described(self, text: str) -> tuple[str, ...]:
         """Return the names of the entities that a text describes, or none if it cannot be read."""
         space = self._map.places.space()
-        around = RelationCache(space, None, self._map.derived_facts.left_out)
+        around = RelationCache(space, None, self._map.derived_facts.suppressed_measurements)
         try:
             with space.caching():
                 found = find(text, self.known(), around)
@@ -69,7 +71,7 @@ class Finding:
 
     def is_at(self, thing: str, other: str) -> bool:
         """Return whether an object is on, in or inside another, or whether that is unknown."""
-        space, left_out = self._map.places.space(), self._map.derived_facts.left_out
+        space, left_out = self._map.places.space(), self._map.derived_facts.suppressed_measurements
         solid = space.solids.get(thing)
         if solid is None or other not in space.solids:
             return True
@@ -77,14 +79,16 @@ class Finding:
 
     def where(self, thing: str) -> str:
         """Return what an object is on, inside or in, such as `on desk1`, or "" if nothing."""
-        around = RelationCache(self._map.places.space(), None, self._map.derived_facts.left_out)
+        around = RelationCache(
+            self._map.places.space(), None, self._map.derived_facts.suppressed_measurements
+        )
         relation, other = next(iter(around.spatial_relations(thing)), (None, ""))
         return f"{PHRASES[relation].removeprefix('is ')} {other}" if relation else ""
 
     def question(self, names: tuple[str, ...], language: Language) -> str:
         """Return a question that asks which of several entities is meant."""
         space = self._map.places.space()
-        around = RelationCache(space, None, self._map.derived_facts.left_out)
+        around = RelationCache(space, None, self._map.derived_facts.suppressed_measurements)
         with space.caching():
             return clarification.clarifying_question(names, Resolver(self.known(), around, language))
 

@@ -123,19 +123,26 @@ def find_intervals(
     smallest place around it. With `in_any_place` it is also located in all places that this one is part of,
     and a place in those around it.
     """
-    there = {entity.name: PlacedEntity.of(entity) for entity in first}
+    placed_by_name = {entity.name: PlacedEntity.of(entity) for entity in first}
     by_name = groupby(sorted(facts), key=lambda fact: fact[0])
-    spots = [_Neighbourhood(name, frozenset(about), limits, there, in_any_place) for name, about in by_name]
+    spots = [
+        _Neighbourhood(name, frozenset(about), limits, placed_by_name, in_any_place)
+        for name, about in by_name
+    ]
     found: dict[Fact, list[tuple[int, int | None]]] = {fact: [] for fact in facts}
     since = {fact: 0 for spot in spots for fact in spot.holding()}
     for moves in history:
-        before = {name: there.get(name) for name in _names(moves)}
+        before = {name: placed_by_name.get(name) for name in _names(moves)}
         for left in moves.removed:
-            there.pop(left.name, None)
-        there.update((stood.name, stood.placed) for stood in moves.changed)
-        shifted = {name: (was, there.get(name)) for name, was in before.items() if was != there.get(name)}
+            placed_by_name.pop(left.name, None)
+        placed_by_name.update((stood.name, stood.placed) for stood in moves.changed)
+        shifted = {
+            name: (was, placed_by_name.get(name))
+            for name, was in before.items()
+            if was != placed_by_name.get(name)
+        }
         for spot in spots:
-            if spot.follow(shifted, there):
+            if spot.follow(shifted, placed_by_name):
                 holding = spot.holding()
                 for fact in spot.facts:
                     if fact in holding:
@@ -159,29 +166,29 @@ class _Neighbourhood:
         name: str,
         facts: frozenset[Fact],
         limits: Thresholds,
-        there: dict[str, PlacedEntity],
+        placed_by_name: dict[str, PlacedEntity],
         in_any_place: bool,
     ) -> None:
-        """Create the neighbourhood. `facts` are about the object; `there` are all entities at first."""
+        """Create the neighbourhood. `facts` are about the object; `placed_by_name` has all entities."""
         self._in_any_place = in_any_place
         self.facts = facts
         self._name = name
         self._limits = limits
-        self._begin(there)
+        self._begin(placed_by_name)
 
-    def _begin(self, there: dict[str, PlacedEntity]) -> None:
-        self._own = there.get(self._name)
-        near = [placed for placed in there.values() if self._is_near(placed)]
+    def _begin(self, placed_by_name: dict[str, PlacedEntity]) -> None:
+        self._own = placed_by_name.get(self._name)
+        near = [placed for placed in placed_by_name.values() if self._is_near(placed)]
         self._space = Space(near, self._limits)
 
     def follow(
         self,
         shifted: dict[str, tuple[PlacedEntity | None, PlacedEntity | None]],
-        there: dict[str, PlacedEntity],
+        placed_by_name: dict[str, PlacedEntity],
     ) -> bool:
         """Apply changed poses. Return whether they matter here."""
         if self._name in shifted:
-            self._begin(there)
+            self._begin(placed_by_name)
             return True
         matters = False
         for name, (was, now) in shifted.items():

@@ -79,7 +79,7 @@ class Inventories:
 
     def _of(self, entities: Iterable[Entity]) -> Inventory:
         self._map.ensure_derived()
-        left_out = self._map.derived_facts.left_out
+        left_out = self._map.derived_facts.suppressed_measurements
         things = [self._thing(entity, left_out) for entity in entities if not entity.place]
         return Inventory(things, self._places())
 

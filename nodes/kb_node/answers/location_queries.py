@@ -76,12 +76,12 @@ class LocationQueries:
         require_complete(where)
         class_name = None
         if command.class_ is not None:
-            class_name = v.local_name(term_resolution.class_(self._map, command.class_))
+            class_name = v.local_name(term_resolution.resolve_class(self._map, command.class_))
         those = resolve_words(where, tuple(self._map.entities()))
         require_possible(self._map.places.space(), those, where.within)
         if not self._queries:
             self._entities = {entity.name: entity for entity in self._map.entities()}
-            self._left_out = self._map.derived_facts.left_out
+            self._left_out = self._map.derived_facts.suppressed_measurements
         self._queries[name] = standing = _LocationQuery(
             watch=name,
             class_name=class_name,
@@ -125,7 +125,7 @@ class LocationQueries:
         if not self._queries:
             return
         self._touched.update(names)
-        left_out = self._map.derived_facts.left_out
+        left_out = self._map.derived_facts.suppressed_measurements
         self._touched.update(fact[0] for fact in left_out ^ self._left_out)
         self._left_out = left_out
         if seq < self._map.seq or not self._touched:
@@ -187,7 +187,7 @@ class LocationQueries:
         candidates = [e for e in found if e is not None and (class_name is None or class_name in e.types)]
         space: Space = self._map.places.space()
         there = filter_entities(
-            space, candidates, standing.where, standing.meant, self._map.derived_facts.left_out
+            space, candidates, standing.where, standing.meant, self._map.derived_facts.suppressed_measurements
         )
         return {entity.name: (v.iri(entity.iri),) for entity in there}
 

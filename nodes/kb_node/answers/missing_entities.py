@@ -24,20 +24,20 @@ _LOOKED_AT: Final = 200
 
 
 def describe_missing(
-    journal: Journal, past: HistoryReader, sought: Missing, there: Set[str], limits: Thresholds
+    journal: Journal, past: HistoryReader, missing: Missing, present: Set[str], limits: Thresholds
 ) -> tuple[str, ...]:
     """Return sentences on when it was last there, newest first.
 
-    For any thread. `there` are the present names.
+    For any thread. `present` are the present names.
     """
-    removed = islice(_removed(journal, past, sought, there), _MOST)
-    moved = islice(_moved(journal, past, sought, limits), _MOST)
+    removed = islice(_removed(journal, past, missing, present), _MOST)
+    moved = islice(_moved(journal, past, missing, limits), _MOST)
     return (*removed, *moved)
 
 
-def _removed(journal: Journal, past: HistoryReader, sought: Missing, there: Set[str]) -> Iterator[str]:
+def _removed(journal: Journal, past: HistoryReader, missing: Missing, present: Set[str]) -> Iterator[str]:
     """Yield sentences on removed entities of that kind."""
-    touched = [(seq, name) for name, seq in journal.last_touches(past.last) if name not in there]
+    touched = [(seq, name) for name, seq in journal.last_touches(past.last) if name not in present]
     for seq, name in sorted(touched, reverse=True)[:_LOOKED_AT]:
         try:
             entity = past.entity(name, seq - 1)
@@ -46,13 +46,13 @@ def _removed(journal: Journal, past: HistoryReader, sought: Missing, there: Set[
             errors.Refused,
         ):  # it existed only briefly, or before the history begins
             continue
-        if sought.is_such(item(entity)):
+        if missing.is_such(item(entity)):
             yield f"{name} was there until commit {seq}, {_at(journal, seq)}"
 
 
-def _moved(journal: Journal, past: HistoryReader, sought: Missing, limits: Thresholds) -> Iterator[str]:
+def _moved(journal: Journal, past: HistoryReader, missing: Missing, limits: Thresholds) -> Iterator[str]:
     """Yield sentences on present entities that were at the described location before."""
-    for name, relation, other in sought.pairs:
+    for name, relation, other in missing.pairs:
         asked = WasWhen(name=name, relation=relation, other=other)
         held = find_spells(journal, past, asked, limits).spells
         if held and (until := held[-1].until) is not None:

@@ -44,9 +44,9 @@ def load_past_map(journal: Journal, past: HistoryReader, seq: int, *, inferred: 
     asserted = collect_asserted(journal, seq)
     if not inferred:
         return PastMap(seq, tuple(asserted))
-    held = _rebuild(journal, past, seq, asserted)
-    placed = tuple(map(PlacedEntity.of, held.there.values()))
-    return PastMap(seq, tuple(asserted), held.derived_facts.all(), placed, held.classes.limits)
+    rebuilt = _rebuild(journal, past, seq, asserted)
+    placed = tuple(map(PlacedEntity.of, rebuilt.there.values()))
+    return PastMap(seq, tuple(asserted), rebuilt.derived_facts.all(), placed, rebuilt.classes.limits)
 
 
 class _RebuiltMap(NamedTuple):
@@ -66,9 +66,9 @@ def _rebuild(journal: Journal, past: HistoryReader, seq: int, asserted: set[Trip
     classes = ClassTable(reasoner)
     derived_facts = DerivedFacts(reasoner, classes.limits)
     derived_facts.change((), asserted - tbox, lenient=True)
-    there: dict[str, Entity] = {entity.name: entity for entity in past.entities(seq)}
-    derived_facts.fill(there)
-    return _RebuiltMap(tbox, asserted - tbox, reasoner, classes, derived_facts, there)
+    entities: dict[str, Entity] = {entity.name: entity for entity in past.entities(seq)}
+    derived_facts.fill(entities)
+    return _RebuiltMap(tbox, asserted - tbox, reasoner, classes, derived_facts, entities)
 
 
 def export_past(journal: Journal, past: HistoryReader, query: Export) -> Document:
@@ -78,11 +78,11 @@ def export_past(journal: Journal, past: HistoryReader, query: Export) -> Documen
     if there was no map; BadRequest for an invalid time.
     """
     if query.as_of is None:
-        raise errors.InternalError("the question names no moment")
+        raise errors.InternalError("the query has no time")
     seq = past.commit_at(query.as_of)
     if query.inferred:
-        held = _rebuild(journal, past, seq, collect_asserted(journal, seq))
-        return answers.document(_export_snapshot(held, seq), query.format)
+        rebuilt = _rebuild(journal, past, seq, collect_asserted(journal, seq))
+        return answers.document(_export_snapshot(rebuilt, seq), query.format)
     tbox = frozenset(rdf.parse(journal.tbox(seq), f"the TBox in {journal.path}"))
     abox = sorted(collect_asserted(journal, seq) - tbox)
     used = prefixes.used_by(abox, prefixes.WELL_KNOWN)
@@ -107,7 +107,7 @@ def query_past(journal: Journal, past: HistoryReader, query: Sparql) -> SparqlRe
     Raises the query's error, Refused if there was no map, BadRequest for an invalid time.
     """
     if query.as_of is None:
-        raise errors.InternalError("the question names no moment")
+        raise errors.InternalError("the query has no time")
     then = load_past_map(journal, past, past.commit_at(query.as_of), inferred=query.inferred)
     service = SparqlService(
         lambda: then.asserted,

@@ -48,18 +48,18 @@ class StatementQuestion(NamedTuple):
 
 def parse_explain(semantic_map: SemanticMap, question: Explain) -> StatementQuestion:
     """Return the statement that `explain` is about. Raises UnknownName, UnknownClass, BadRequest."""
-    subject = term_resolution.individual(semantic_map, question.name)
-    predicate = term_resolution.property_(semantic_map, question.predicate)
-    values = term_resolution.values(semantic_map, subject, predicate, question.value)
+    subject = term_resolution.resolve_individual(semantic_map, question.name)
+    predicate = term_resolution.resolve_property(semantic_map, question.predicate)
+    values = term_resolution.resolve_values(semantic_map, subject, predicate, question.value)
     return StatementQuestion(tuple((subject, predicate, value) for value in values), question.negated)
 
 
 def parse_could(semantic_map: SemanticMap, question: Could) -> StatementQuestion:
     """Return the statement that `could` is about. Raises UnknownName, UnknownClass, BadRequest."""
-    subject = term_resolution.individual(semantic_map, question.name)
-    predicate = term_resolution.property_(semantic_map, question.predicate)
+    subject = term_resolution.resolve_individual(semantic_map, question.name)
+    predicate = term_resolution.resolve_property(semantic_map, question.predicate)
     return StatementQuestion(
-        ((subject, predicate, term_resolution.value(semantic_map, predicate, question.value)),)
+        ((subject, predicate, term_resolution.resolve_value(semantic_map, predicate, question.value)),)
     )
 
 
@@ -125,16 +125,16 @@ def explain(reasoner: Reasoner, asked: StatementQuestion, *, recompute: bool = T
     if (different := why_different(reasoner, first, allow_recompute=recompute)) is not None:
         return _to_message(reasoner, different)
     if (excluded := refute(reasoner, first, allow_recompute=recompute)) is not None:
-        told = _to_message(reasoner, excluded)
-        raise errors.Refused(f"it does not hold: {told.text}", explanation=told)
+        message = _to_message(reasoner, excluded)
+        raise errors.Refused(f"it does not hold: {message.text}", explanation=message)
     if not recompute:
         raise Undecided("no rule derives it, and none excludes it")
     near = _near(reasoner, asked)
     if (further := why_entailed(near, first, words=reasoner.words)) is not None:
         return _to_message(reasoner, further)
     if (excluded := why_excluded(near, first, words=reasoner.words)) is not None:
-        told = _to_message(reasoner, excluded)
-        raise errors.Refused(f"it does not hold: {told.text}", explanation=told)
+        message = _to_message(reasoner, excluded)
+        raise errors.Refused(f"it does not hold: {message.text}", explanation=message)
     raise errors.Refused(f"it does not hold that {clause}, and nothing excludes it")
 
 
@@ -169,8 +169,8 @@ def could(
             reasoner.update_computed(add=measured)
     text = f"yes: nothing excludes that {clause}"
     if measured:
-        seen = " and ".join(triple_clause(fact, reasoner.words) for fact in measured)
-        text += f", although by their poses {seen}"
+        sentences = " and ".join(triple_clause(fact, reasoner.words) for fact in measured)
+        text += f", although by their poses {sentences}"
     elif against is not None:
         text += f", but according to the poses, {against}"
     if same := sorted(_would_be_same(reasoner, triple)):

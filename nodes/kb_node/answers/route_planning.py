@@ -19,7 +19,7 @@ from semmap.schemas.plans import Plan, Way
 R = TypeVar("R")
 
 
-class Aside(Protocol):
+class ThreadRunner(Protocol):
     """Runs a function in another thread."""
 
     def __call__(self, function: Callable[[], R]) -> Future[R]:
@@ -30,30 +30,30 @@ class Aside(Protocol):
 class RoutePlanning:
     """Computes plans and routes. Owned by the node's thread; `aside` runs functions in other threads."""
 
-    def __init__(self, semantic_map: SemanticMap, past: HistoryReader, aside: Aside) -> None:
+    def __init__(self, semantic_map: SemanticMap, past: HistoryReader, run_in_thread: ThreadRunner) -> None:
         self._map = semantic_map
         self._past = past
-        self._aside = aside
+        self._run_in_thread = run_in_thread
 
-    def plan(self, query: PlanOf) -> Future[Plan]:
+    def compute_plan(self, query: PlanOf) -> Future[Plan]:
         """Return the plan of the map."""
         entities = self._entities(query.as_of)
 
         def plan() -> Plan:
             return plan_of(entities(), query.walls)
 
-        return self._aside(plan)
+        return self._run_in_thread(plan)
 
-    def way(self, query: WayOf) -> Future[Way]:
+    def compute_route(self, query: WayOf) -> Future[Way]:
         """Return a route through the map. Raises UnknownName; Refused if there is none."""
         entities = self._entities(query.as_of)
 
         def way() -> Way:
-            there = entities()
-            ends = [parse_position(word) or _named(there, word) for word in (query.from_, query.to)]
-            return find_path(plan_of(there, query.walls), ends[0], ends[1], query.radius, query.heights)
+            present = entities()
+            ends = [parse_position(word) or _named(present, word) for word in (query.from_, query.to)]
+            return find_path(plan_of(present, query.walls), ends[0], ends[1], query.radius, query.heights)
 
-        return self._aside(way)
+        return self._run_in_thread(way)
 
     def _entities(self, as_of: When | None) -> Callable[[], Sequence[Entity]]:
         """Return a function for the entities. Only this thread may read the present ones."""
@@ -63,6 +63,6 @@ class RoutePlanning:
         return lambda: now
 
 
-def _named(there: Sequence[Entity], word: str) -> str:
+def _named(present: Sequence[Entity], word: str) -> str:
     """Return the name that a word means. Raises UnknownName; BadRequest for an ambiguous word."""
-    return word if any(entity.name == word for entity in there) else resolve_single(there, word)
+    return word if any(entity.name == word for entity in present) else resolve_single(present, word)

@@ -49,18 +49,18 @@ class Sightings:
         by_sight = found.removed is not None and found.removed.source == "perception"
         return self._describe(found, found.removed if by_sight else None)
 
-    def _describe(self, found: Sighting, gone: Provenance | None, how: str = "") -> Sighting:
+    def _describe(self, found: Sighting, missing: Provenance | None, how: str = "") -> Sighting:
         seen_ns = self._seen_ns.get(found.name)
         if seen_ns is not None and seen_ns <= found.provenance.stamp_ns:
             seen_ns = None  # of its former place
         now_ns = time.time_ns()
-        if gone is not None:
-            text = f"reported missing {_at(gone, now_ns)}: {how or gone.reason}"
+        if missing is not None:
+            text = f"reported missing {_at(missing, now_ns)}: {how or missing.reason}"
         elif found.removed is not None:
             text = f"removed {_at(found.removed, now_ns)} by {_author(found.removed)}"
         else:
             text = _describe_observed(found.provenance, seen_ns, now_ns)
-        return structs.replace(found, gone=gone, seen_ns=seen_ns, text=text)
+        return structs.replace(found, gone=missing, seen_ns=seen_ns, text=text)
 
 
 def _describe_observed(placed: Provenance, seen_ns: int | None, now_ns: int) -> str:
@@ -75,11 +75,13 @@ def _describe_observed(placed: Provenance, seen_ns: int | None, now_ns: int) -> 
     return f"{how} {_at(placed, now_ns)}; not seen since, not reported missing"
 
 
-def _at(said: Provenance, now_ns: int) -> str:
+def _at(provenance: Provenance, now_ns: int) -> str:
     """Return `at commit 7, 12 min ago`."""
-    return f"at commit {said.commit}, {wording.duration((now_ns - said.stamp_ns) / 1e9)} ago"
+    return f"at commit {provenance.commit}, {wording.duration((now_ns - provenance.stamp_ns) / 1e9)} ago"
 
 
-def _author(said: Provenance) -> str:
-    by = {"operator": "an operator", "file": "a file", "scene": "the scene"}.get(said.source, said.source)
-    return f"{said.source}/{said.agent}" if said.agent else by
+def _author(provenance: Provenance) -> str:
+    by = {"operator": "an operator", "file": "a file", "scene": "the scene"}.get(
+        provenance.source, provenance.source
+    )
+    return f"{provenance.source}/{provenance.agent}" if provenance.agent else by

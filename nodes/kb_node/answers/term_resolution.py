@@ -30,7 +30,7 @@ OF_CLASSES: Final = frozenset(RELATIONS.values()) - {v.OWL_SAME_AS, v.OWL_DIFFER
 _VOCABULARY: Final = tuple(f"<{namespace}" for namespace in (v.OWL, v.RDF, v.RDFS, v.XSD))
 
 
-def class_(semantic_map: SemanticMap, word: str) -> Term:
+def resolve_class(semantic_map: SemanticMap, word: str) -> Term:
     """Return the class that a word means. Raises UnknownClass."""
     classes = semantic_map.classes
     if word in classes.iris:
@@ -46,11 +46,11 @@ def class_(semantic_map: SemanticMap, word: str) -> Term:
 
 def _class_or_built_in(semantic_map: SemanticMap, word: str) -> Term:
     """Return a class of the TBox or of the OWL vocabulary (`owl:Thing`). Raises UnknownClass."""
-    found = term(semantic_map, word)
-    return found if found is not None and found.startswith(_VOCABULARY) else class_(semantic_map, word)
+    found = parse_term(semantic_map, word)
+    return found if found is not None and found.startswith(_VOCABULARY) else resolve_class(semantic_map, word)
 
 
-def term(semantic_map: SemanticMap, word: str) -> Term | None:
+def parse_term(semantic_map: SemanticMap, word: str) -> Term | None:
     """Return a term that is written as such or with a known prefix, or None for another word."""
     prefix, colon, name = word.partition(":")
     if word.startswith(("<", '"', "_:")):
@@ -59,7 +59,7 @@ def term(semantic_map: SemanticMap, word: str) -> Term | None:
     return v.iri(known[prefix] + name) if colon and prefix in known else None
 
 
-def individual(semantic_map: SemanticMap, word: str) -> Term:
+def resolve_individual(semantic_map: SemanticMap, word: str) -> Term:
     """Return an entity, another individual or a class that the map or its TBox names.
 
     Raises UnknownName; BadRequest for an ambiguous name.
@@ -67,7 +67,7 @@ def individual(semantic_map: SemanticMap, word: str) -> Term:
     if (entity := semantic_map.find(composed(word))) is not None:
         return v.iri(entity.iri)
     reasoner = semantic_map.reasoner
-    if (found := term(semantic_map, word)) is not None:
+    if (found := parse_term(semantic_map, word)) is not None:
         if reasoner.mentioned({found}):
             return found
     else:
@@ -84,7 +84,7 @@ def individual(semantic_map: SemanticMap, word: str) -> Term:
     return v.iri(semantic_map.entity(word).iri)
 
 
-def property_(semantic_map: SemanticMap, word: str) -> Term:
+def resolve_property(semantic_map: SemanticMap, word: str) -> Term:
     """Return the property that a word means: a name, a label, an IRI or one of RELATIONS.
 
     Raises BadRequest.
@@ -92,7 +92,7 @@ def property_(semantic_map: SemanticMap, word: str) -> Term:
     relation = RELATIONS.get(word.casefold())
     if relation is not None:
         return relation
-    if (found := term(semantic_map, word)) is not None:
+    if (found := parse_term(semantic_map, word)) is not None:
         return found
     names = semantic_map.classes.property_names
     if (known := names.find(word)) is None:
@@ -101,39 +101,39 @@ def property_(semantic_map: SemanticMap, word: str) -> Term:
     return known
 
 
-def values(semantic_map: SemanticMap, subject: Term, predicate: Term, word: str) -> list[Term]:
+def resolve_values(semantic_map: SemanticMap, subject: Term, predicate: Term, word: str) -> list[Term]:
     """Return the terms that `word` may stand for as the object of this subject and predicate."""
     if predicate in OF_CLASSES and not word.startswith("_:"):
         return [_class_or_built_in(semantic_map, word)]
-    if (found := term(semantic_map, word)) is not None:
+    if (found := parse_term(semantic_map, word)) is not None:
         return [found]
     if predicate in RELATIONS.values():
-        return [individual(semantic_map, word)]
+        return [resolve_individual(semantic_map, word)]
     held = (
         *semantic_map.reasoner.asserted(subject, predicate),
         *semantic_map.reasoner.inferred(subject, predicate),
     )
     named = [o for _, _, o in held if (v.lexical(o) if o.startswith('"') else v.entity_name(o)) == word]
-    return named or [_unheld(semantic_map, predicate, word)]
+    return named or [_resolve_absent_value(semantic_map, predicate, word)]
 
 
-def value(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
+def resolve_value(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
     """Return an individual, or a literal of the property's range. Raises UnknownName, BadRequest."""
     if predicate in OF_CLASSES and not word.startswith("_:"):
         return _class_or_built_in(semantic_map, word)
-    if (found := term(semantic_map, word)) is not None:
+    if (found := parse_term(semantic_map, word)) is not None:
         return found
     if _is_data(semantic_map.reasoner, predicate):
         return _literal(semantic_map, predicate, word)
-    return individual(semantic_map, word)
+    return resolve_individual(semantic_map, word)
 
 
-def _unheld(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
+def _resolve_absent_value(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
     """Return a value that the subject does not have: an individual if there is one of that name."""
     if _is_data(semantic_map.reasoner, predicate):
         return _literal(semantic_map, predicate, word)
     try:
-        return individual(semantic_map, word)
+        return resolve_individual(semantic_map, word)
     except errors.UnknownName:
         return v.entity_iri(word)
 

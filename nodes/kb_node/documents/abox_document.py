@@ -45,15 +45,15 @@ def filter_document(
     others lose the unknown classes. Raises BadFile for a TBox.
     """
     triples = list(triples)
-    said = group_by_property(triples)
-    if _has_other_numbers(said, classes.number_datatypes):
+    by_property = group_by_property(triples)
+    if _has_other_numbers(by_property, classes.number_datatypes):
         triples = _with_numbers(triples, classes.number_datatypes)
-        said = group_by_property(triples)
-    types_said = said.get(v.RDF_TYPE, [])
+        by_property = group_by_property(triples)
+    types_said = by_property.get(v.RDF_TYPE, [])
     used = set(map(itemgetter(2), types_said))
     declared = {s for s, _, o in types_said if o in _CLASSES} if used & _CLASSES else set[Term]()
     known = declared.union(classes.names, _OF_STARS)
-    spatial = _with_subclasses(classes.spatial, said.get(v.RDFS_SUB_CLASS_OF, []))
+    spatial = _with_subclasses(classes.spatial, by_property.get(v.RDFS_SUB_CLASS_OF, []))
     own = {o for o in used if not is_built_in(o)}
     if declared and spatial.isdisjoint(own):
         raise errors.BadFile("it declares classes but no entities; to load a TBox use --tbox")
@@ -63,18 +63,22 @@ def filter_document(
     namesakes = set(classes.names.values())
     for s, c in unknown:
         name = v.local_name(c)
-        users.setdefault(c if name in namesakes else name, []).append(_called(s))
+        users.setdefault(c if name in namesakes else name, []).append(_display_name(s))
     if unknown and not skip_unknown:
         raise errors.UnknownClass(errors.unknown_classes(users, classes.names.values()))
     words = [f"{name} (unknown class '{c}')" for c, names in users.items() for name in names]
     kept = triples
     if unknown:
         described = own & known
-        gone = {s for s, _ in unknown} - {s for s, _, o in types_said if o in described}
+        removed = {s for s, _ in unknown} - {s for s, _, o in types_said if o in described}
         doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
-        kept = _without(gone, [t for t in triples if t not in doubtful])
-        said = group_by_property(kept)
-    notes = (*_unknown_properties(said, classes), *_own_classes(declared, classes), *_halves(said, kept))
+        kept = _without(removed, [t for t in triples if t not in doubtful])
+        by_property = group_by_property(kept)
+    notes = (
+        *_unknown_properties(by_property, classes),
+        *_own_classes(declared, classes),
+        *_incomplete_values(by_property, kept),
+    )
     return FilteredDocument(kept, words, list(notes))
 
 
@@ -96,9 +100,9 @@ def find_undescribed(
     What the reasoner holds counts as a description, if `stays` is True for it.
     """
     relations = {s for s, _, _ in reasoner.asserted(None, v.RDF_TYPE, v.OWL_OBJECT_PROPERTY)}
-    said = group_by_property(triples)
-    related = {o for p in relations & said.keys() for _, _, o in said[p]}
-    related.difference_update(map(itemgetter(0), said.get(v.RDF_TYPE, ())))
+    by_property = group_by_property(triples)
+    related = {o for p in relations & by_property.keys() for _, _, o in by_property[p]}
+    related.difference_update(map(itemgetter(0), by_property.get(v.RDF_TYPE, ())))
     strange = {o for o in related if not any(map(stays, reasoner.asserted(o, v.RDF_TYPE, None)))}
     found: dict[Term, Triple] = {}
     for triple in triples if strange else ():
@@ -109,7 +113,9 @@ def find_undescribed(
 
 def undescribed_note(found: Mapping[Term, Triple]) -> str:
     """Return one sentence on the undescribed individuals."""
-    few = ", ".join(f"{_called(term)} ({v.to_words(said)})" for term, said in [*found.items()][:_FEW])
+    few = ", ".join(
+        f"{_display_name(term)} ({v.to_words(triple)})" for term, triple in [*found.items()][:_FEW]
+    )
     more = f" and {len(found) - _FEW} more" if len(found) > _FEW else ""
     return f"referenced but not described: {few}{more}"
 
@@ -122,12 +128,12 @@ def _with_subclasses(roots: frozenset[Term], below: list[Triple]) -> set[Term]:
     return found
 
 
-def _has_other_numbers(said: Mapping[Term, list[Triple]], kinds: Mapping[Term, Term]) -> bool:
+def _has_other_numbers(by_property: Mapping[Term, list[Triple]], kinds: Mapping[Term, Term]) -> bool:
     """Return whether a number has another datatype than its property requires."""
     return any(
         o.endswith(_NUMBERS)
         for p, kind in kinds.items()
-        for _, _, o in said.get(p, ())
+        for _, _, o in by_property.get(p, ())
         if not o.endswith(kind)
     )
 
@@ -144,16 +150,18 @@ def _with_numbers(triples: list[Triple], kinds: Mapping[Term, Term]) -> list[Tri
     ]
 
 
-def _unknown_properties(said: Mapping[Term, list[Triple]], classes: ClassTable) -> list[str]:
+def _unknown_properties(by_property: Mapping[Term, list[Triple]], classes: ClassTable) -> list[str]:
     """Return a note on unknown properties in the TBox's namespace, because they may be misspelt."""
     if not any(p.startswith(_TBOX) for p in classes.properties):
         return []  # the TBox is from elsewhere, and these properties describe entities
-    used = {p for p in said if p.startswith(_TBOX)} - classes.properties
-    declared = {s for s, _, o in said.get(v.RDF_TYPE, ()) if o in v.PROPERTY_KINDS} if used else set()
+    used = {p for p in by_property if p.startswith(_TBOX)} - classes.properties
+    declared = {s for s, _, o in by_property.get(v.RDF_TYPE, ()) if o in v.PROPERTY_KINDS} if used else set()
     unknown = used - declared
     if not unknown:
         return []
-    users = {v.local_name(p): [v.local_name(s) for s, _, _ in said[p]] for p in said if p in unknown}
+    users = {
+        v.local_name(p): [v.local_name(s) for s, _, _ in by_property[p]] for p in by_property if p in unknown
+    }
     known = declared | classes.properties
     return [errors.unknown_properties(users, map(v.local_name, sorted(known)))]
 
@@ -170,16 +178,16 @@ def _own_classes(declared: set[Term], classes: ClassTable) -> list[str]:
     ]
 
 
-def _halves(said: Mapping[Term, list[Triple]], triples: list[Triple]) -> list[str]:
+def _incomplete_values(by_property: Mapping[Term, list[Triple]], triples: list[Triple]) -> list[str]:
     """Return a note on incomplete positions, orientations and sizes, which are ignored."""
-    having = {p: set(map(itemgetter(0), said.get(p, ()))) for p in _FLOATS}
+    having = {p: set(map(itemgetter(0), by_property.get(p, ()))) for p in _FLOATS}
     if all(having[p] == having[whole[0]] for whole in _WHOLES for p in whole):
         return []
     numbers: dict[Term, int] = {}
     for s, p, _ in [t for t in triples if t[1] in _FLOATS]:
         numbers[s] = numbers.get(s, 0) | _BITS[p]
     lacking = [
-        f"{_called(s)} has no {' and no '.join(v.local_name(p) for p in whole if not _BITS[p] & bits)}"
+        f"{_display_name(s)} has no {' and no '.join(v.local_name(p) for p in whole if not _BITS[p] & bits)}"
         for s, bits in numbers.items()
         for whole in _WHOLES
         if 0 < sum(_BITS[p] & bits for p in whole) < sum(_BITS[p] for p in whole)
@@ -190,7 +198,7 @@ def _halves(said: Mapping[Term, list[Triple]], triples: list[Triple]) -> list[st
     return [f"incomplete position, orientation or size ignored: {few}"]
 
 
-def _called(individual: Term) -> str:
+def _display_name(individual: Term) -> str:
     return "a blank node" if individual.startswith("_:") else v.local_name(individual)
 
 
@@ -199,8 +207,8 @@ def is_built_in(term: Term) -> bool:
     return term.startswith("_:") or (term.startswith("<") and v.bare(term).startswith(_VOCABULARIES))
 
 
-def _without(gone: set[Term], triples: list[Triple]) -> list[Triple]:
-    """Return the triples without those about `gone` and about nodes that describe nothing else."""
+def _without(removed: set[Term], triples: list[Triple]) -> list[Triple]:
+    """Return the triples without those about `removed` and about nodes that describe nothing else."""
     edges = [(s, o) for s, p, o in triples if p in entity_triples.DESCRIPTION_PROPERTIES]
-    gone = gone.union({o for s, o in edges if s in gone} - {o for s, o in edges if s not in gone})
-    return [(s, p, o) for s, p, o in triples if s not in gone and o not in gone]
+    removed = removed.union({o for s, o in edges if s in removed} - {o for s, o in edges if s not in removed})
+    return [(s, p, o) for s, p, o in triples if s not in removed and o not in removed]

@@ -33,13 +33,13 @@ def _colors(triples: Iterable[Triple]) -> Mapping[Term, int]:
     while count < (count := len(set(colors.values()))):  # the last round distinguished more of them
         numbers: dict[object, int] = {}
         colors = {
-            node: numbers.setdefault((colors[node], *_seen_from(node, said, colors)), len(numbers))
-            for node, said in about.items()
+            node: numbers.setdefault((colors[node], *_seen_from(node, triples_about, colors)), len(numbers))
+            for node, triples_about in about.items()
         }
     return colors
 
 
-def _seen_from(node: Term, said: Iterable[Triple], colors: Mapping[Term, int]) -> list[Triple]:
+def _seen_from(node: Term, triples_about: Iterable[Triple], colors: Mapping[Term, int]) -> list[Triple]:
     """Return the triples about a blank node, with colors in place of other labels."""
 
     def name(term: Term) -> str:
@@ -47,7 +47,7 @@ def _seen_from(node: Term, said: Iterable[Triple], colors: Mapping[Term, int]) -
             return "_:"
         return f"_:{colors[term]}" if term in colors else term
 
-    return sorted((name(s), p, name(o)) for s, p, o in said)
+    return sorted((name(s), p, name(o)) for s, p, o in triples_about)
 
 
 def _is_blank(term: Term) -> bool:

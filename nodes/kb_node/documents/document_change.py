@@ -26,10 +26,10 @@ def make_document_transaction(
     filtered = abox_document.filter_document(triples, semantic_map.classes, skip_unknown=load.skip_unknown)
     stays = semantic_map.tbox.__contains__ if load.replace else lambda _: True
     if found := abox_document.find_undescribed(filtered.triples, semantic_map.reasoner, stays):
-        said = abox_document.undescribed_note(found)
+        note = abox_document.undescribed_note(found)
         if load.strict:
-            raise errors.UnknownName(said)
-        filtered.notes.append(f"{said}; --strict rejects such files")
+            raise errors.UnknownName(note)
+        filtered.notes.append(f"{note}; --strict rejects such files")
     transaction = _transaction(
         load,
         retract=semantic_map.abox() if load.replace else (),
@@ -46,8 +46,8 @@ def is_exact_copy(triples: Sequence[Triple], transaction: Transaction) -> bool:
 
 def _outside(triples: list[Triple], tbox: frozenset[Triple]) -> Iterable[Triple]:
     """Return the triples that are not in the TBox."""
-    said = tbox.intersection(triples)
-    return (t for t in triples if t not in said) if said else triples
+    stated = tbox.intersection(triples)
+    return (t for t in triples if t not in stated) if stated else triples
 
 
 def read_tbox(semantic_map: SemanticMap, load: LoadTBox, *, label_prefix: str) -> list[Triple]:

@@ -39,12 +39,14 @@ def split(transaction: Transaction, size: int = PART) -> list[Transaction]:
 
 
 def commit_each(
-    parts: Sequence[Transaction], commit: Callable[[Transaction], Commit | None], tell: Callable[[str], None]
+    parts: Sequence[Transaction],
+    commit: Callable[[Transaction], Commit | None],
+    report: Callable[[str], None],
 ) -> list[Commit]:
     """Commit the parts and return the commits. Raises the error of a part with the commits made so far."""
     made: list[Commit] = []
     for number, part in enumerate(parts, start=1):
-        tell(f"part {number} of {len(parts)}")
+        report(f"part {number} of {len(parts)}")
         try:
             if (done := commit(part)) is not None:
                 made.append(done)

@@ -48,13 +48,13 @@ class Header(NamedTuple):
 
 def header(triples: Iterable[Triple]) -> Header:
     """Return the ontologies with their versions and imports."""
-    said: dict[Term, dict[Term, None]] = {v.OWL_ONTOLOGY: {}, VERSION: {}, v.OWL_IMPORTS: {}}
+    found: dict[Term, dict[Term, None]] = {v.OWL_ONTOLOGY: {}, VERSION: {}, v.OWL_IMPORTS: {}}
     for s, p, o in triples:
         if p == v.RDF_TYPE and o == v.OWL_ONTOLOGY:
-            said[v.OWL_ONTOLOGY][s] = None
+            found[v.OWL_ONTOLOGY][s] = None
         elif p in (VERSION, v.OWL_IMPORTS):
-            said[p][o] = None
-    return Header(*(tuple(sorted(terms)) for terms in said.values()))
+            found[p][o] = None
+    return Header(*(tuple(sorted(terms)) for terms in found.values()))
 
 
 def missing_imports(triples: Iterable[Triple]) -> tuple[str, ...]:
@@ -125,14 +125,14 @@ class _Gathering:
         named = [o for o in header(self._read[path]).ontologies if o.startswith("<")]
         return wanted if wanted in named or not named else named[0]
 
-    def _find(self, term: Term, beside: Path) -> Path | None:
+    def _find(self, term: Term, folder_of_import: Path) -> Path | None:
         iri = v.bare(term)
         if (given := self._given.get(_plain(term))) is not None:
             return given.resolve()
         for path in self._named:
             if self._is(path, term):
                 return path
-        folders = dict.fromkeys((beside, *(path.parent for path in self._named)))
+        folders = dict.fromkeys((folder_of_import, *(path.parent for path in self._named)))
         if (at := _file_below(folders, iri)) is not None:
             return at
         for folder in folders:

@@ -127,12 +127,12 @@ class _Reader:
         if any(map(text.__contains__, _ODD_SPACES)):
             return False
         try:
-            known = self._knowing({*subjects, *objects})
-            said = list(map(known.__getitem__, subjects))
-            if any(term[0] == '"' for term in set(said)):
+            known = self._resolve_words({*subjects, *objects})
+            subject_terms = list(map(known.__getitem__, subjects))
+            if any(term[0] == '"' for term in set(subject_terms)):
                 return False
             terms: list[Term] = [""] * (3 * len(ends))
-            terms[::3] = said
+            terms[::3] = subject_terms
             terms[1::3] = map(self._predicates.__getitem__, predicates)
             terms[2::3] = map(known.__getitem__, objects)
         except _NotPlain:
@@ -140,7 +140,7 @@ class _Reader:
         self._terms += terms
         return True
 
-    def _knowing(self, words: set[str]) -> dict[str, Term]:
+    def _resolve_words(self, words: set[str]) -> dict[str, Term]:
         """Return the terms of words. Raises _NotPlain for an invalid word."""
         known = self._known
         if len(known) > _REMEMBERED:

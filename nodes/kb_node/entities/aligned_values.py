@@ -39,37 +39,39 @@ class AlignedSize(NamedTuple):
 
 def pose(alignments: Iterable[Alignment], about: About, iri: Term, size_m: Size | None) -> Pose | None:
     """Return the pose of an entity's bottom centre in the map frame, or None if there is none."""
-    said = find_pose(alignments, about, iri)
-    if said is None:
+    asserted = find_pose(alignments, about, iri)
+    if asserted is None:
         return None
     return Pose(
-        position_m=shifted(said.position, said.orientation, -_origin_height(said.words, size_m)),
-        orientation_wxyz=said.orientation,
+        position_m=shift_along_z(
+            asserted.position, asserted.orientation, -_origin_height(asserted.words, size_m)
+        ),
+        orientation_wxyz=asserted.orientation,
     )
 
 
 def size(alignments: Iterable[Alignment], about: About, iri: Term) -> Size | None:
     """Return the size of an entity, or None."""
-    said = find_size(alignments, about, iri)
-    return None if said is None else said.size_m
+    asserted = find_size(alignments, about, iri)
+    return None if asserted is None else asserted.size_m
 
 
 def names(alignments: Iterable[Alignment], about: About, iri: Term) -> list[str]:
     """Return the names of an entity, best first: those of the vocabularies, then its labels."""
-    said = about(iri)
+    asserted = about(iri)
     properties = (*(p for known in alignments for p in known.names), v.RDFS_LABEL)
-    return [v.lexical(o) for p in properties for o in sorted(said.get(p, ())) if o.startswith('"')]
+    return [v.lexical(o) for p in properties for o in sorted(asserted.get(p, ())) if o.startswith('"')]
 
 
 def find_pose(alignments: Iterable[Alignment], about: About, iri: Term) -> AlignedPose | None:
     """Return the first valid pose; poses relative to another frame are ignored."""
     for words in (words for known in alignments for words in known.pose):
         for nodes in _paths(about, iri, words.path):
-            there = about(nodes[-1])
-            position = _vector(there.get(words.position, ()), 3)
-            if position is None or (words.relative is not None and there.get(words.relative)):
+            values = about(nodes[-1])
+            position = _vector(values.get(words.position, ()), 3)
+            if position is None or (words.relative is not None and values.get(words.relative)):
                 continue
-            turned = _vector(there.get(words.orientation, ()), 4) if words.orientation is not None else None
+            turned = _vector(values.get(words.orientation, ()), 4) if words.orientation is not None else None
             orientation = _quaternion(turned, words) if turned is not None else IDENTITY
             if orientation is not None:
                 return AlignedPose(words, nodes, position, orientation)  # type: ignore[arg-type]
@@ -80,8 +82,8 @@ def find_size(alignments: Iterable[Alignment], about: About, iri: Term) -> Align
     """Return the first size that is complete and positive."""
     for words in (words for known in alignments for words in known.size):
         for nodes in _paths(about, iri, words.path):
-            there = about(nodes[-1])
-            found = [_vector(there.get(p, ()), 1) for p in (words.x, words.y, words.z)]
+            values = about(nodes[-1])
+            found = [_vector(values.get(p, ()), 1) for p in (words.x, words.y, words.z)]
             extent = tuple(number[0] for number in found if number is not None and number[0] > 0)
             if len(extent) == 3:
                 return AlignedSize(words, nodes, extent)
@@ -89,26 +91,26 @@ def find_size(alignments: Iterable[Alignment], about: About, iri: Term) -> Align
 
 
 def pose_triples(
-    said: AlignedPose, pose: Pose, size_m: Size | None, about: About
+    asserted: AlignedPose, pose: Pose, size_m: Size | None, about: About
 ) -> tuple[list[Triple], list[Triple]]:
     """Return the removed and the added triples for a new pose at the same individual."""
-    node, words = said.nodes[-1], said.words
-    position = shifted(pose.position_m, pose.orientation_wxyz, _origin_height(words, size_m))
+    node, words = asserted.nodes[-1], asserted.words
+    position = shift_along_z(pose.position_m, pose.orientation_wxyz, _origin_height(words, size_m))
     new: list[tuple[Term, tuple[float, ...]]] = [(words.position, position)]
     if words.orientation is not None:
         w, x, y, z = pose.orientation_wxyz
         new.append((words.orientation, (x, y, z, w) if words.order == "xyzw" else (w, x, y, z)))
-    return _said_anew(node, new, about)
+    return _replace_numbers(node, new, about)
 
 
-def size_triples(said: AlignedSize, size_m: Size, about: About) -> tuple[list[Triple], list[Triple]]:
+def size_triples(asserted: AlignedSize, size_m: Size, about: About) -> tuple[list[Triple], list[Triple]]:
     """Return the removed and the added triples for a new size at the same individual."""
-    words = said.words
+    words = asserted.words
     new = zip((words.x, words.y, words.z), size_m, strict=True)
-    return _said_anew(said.nodes[-1], [(p, (value,)) for p, value in new], about)
+    return _replace_numbers(asserted.nodes[-1], [(p, (value,)) for p, value in new], about)
 
 
-def shifted(position: Vector, orientation_wxyz: Quaternion, height_m: float) -> Vector:
+def shift_along_z(position: Vector, orientation_wxyz: Quaternion, height_m: float) -> Vector:
     """Return `position` moved along the entity's z axis [m], rounded to 1e-9 m."""
     w, x, y, z = orientation_wxyz
     up = (2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y))
@@ -154,17 +156,17 @@ def _quaternion(numbers: tuple[float, ...], words: PoseMapping) -> Quaternion | 
     return (w / norm, x / norm, y / norm, z / norm)
 
 
-def _said_anew(
+def _replace_numbers(
     node: Term, new: Iterable[tuple[Term, tuple[float, ...]]], about: About
 ) -> tuple[list[Triple], list[Triple]]:
     """Return the removed and the added literals; the datatypes stay."""
-    gone: list[Triple] = []
-    come: list[Triple] = []
-    said = about(node)
+    removed: list[Triple] = []
+    added: list[Triple] = []
+    asserted = about(node)
     for predicate, numbers in new:
-        before = sorted(said.get(predicate, ()))
-        gone += [(node, predicate, o) for o in before]
+        before = sorted(asserted.get(predicate, ()))
+        removed += [(node, predicate, o) for o in before]
         datatype = v.datatype_of(before[0]) if before and before[0].startswith('"') else None
         text = " ".join(repr(float(number)) for number in numbers)
-        come.append((node, predicate, v.literal(text, datatype)))
-    return gone, come
+        added.append((node, predicate, v.literal(text, datatype)))
+    return removed, added

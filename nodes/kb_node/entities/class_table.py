@@ -154,13 +154,13 @@ class ClassTable:
         spatial = [t for t in named if t in self.spatial]
         if not spatial:
             return None
-        said = [t for t in spatial if t in asserted] or spatial
+        declared = [t for t in spatial if t in asserted] or spatial
         return Kind(
-            class_name=self.names[said[0]],
+            class_name=self.names[declared[0]],
             types=tuple(self.names[t] for t in named),
             place=any(t in self.places for t in named) and self._solid.isdisjoint(named),
-            fixed=any(t in self.fixed for t in said),
-            model=self.models[said[0]],
+            fixed=any(t in self.fixed for t in declared),
+            model=self.models[declared[0]],
         )
 
     @cached_property
@@ -221,12 +221,14 @@ class ClassTable:
         without any of these, all classes except properties are spatial. In any other TBox, none is.
         """
         asserted = self._reasoner.asserted
-        said = set(self.declared_roots) or {o for _, _, o in asserted(v.HAS_POSITION, v.RDFS_DOMAIN, None)}
-        said = {c for c in said if c in self.names} or {v.PHYSICAL_THING}.intersection(self.names)
-        said = said or {c for known in self.alignments for c in known.things if self._named_below(c)}
-        if not said and v.TBOX in self.prefixes.values():
-            said = set(self.names) - self._named_below(v.PROPERTY)
-        return sorted(said)
+        declared = set(self.declared_roots) or {
+            o for _, _, o in asserted(v.HAS_POSITION, v.RDFS_DOMAIN, None)
+        }
+        declared = {c for c in declared if c in self.names} or {v.PHYSICAL_THING}.intersection(self.names)
+        declared = declared or {c for known in self.alignments for c in known.things if self._named_below(c)}
+        if not declared and v.TBOX in self.prefixes.values():
+            declared = set(self.names) - self._named_below(v.PROPERTY)
+        return sorted(declared)
 
     def _named_below(self, *roots: Term) -> frozenset[Term]:
         return frozenset(c for root in roots for c in self._reasoner.subclasses(root) if c in self.names)

@@ -85,9 +85,9 @@ def add_effects(
             entity = entity_reading.inherit_provenance(entity, was, concerned=iri in owners)
         if (other := changed.setdefault(entity.name, entity)) is not entity:
             raise _name_taken(other)
-    gone = {departed.name for departed in removed}
+    removed_names = {departed.name for departed in removed}
     for name, entity in changed.items():
-        if name not in gone and (holder := before.get(name, entity)).iri != entity.iri:
+        if name not in removed_names and (holder := before.get(name, entity)).iri != entity.iri:
             raise _name_taken(holder)
     return structs.replace(
         commit,

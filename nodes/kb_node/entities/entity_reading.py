@@ -45,9 +45,9 @@ def about(reasoner: Reasoner, triples: Collection[Triple], new: Set[Term]) -> Ab
         return reasoner.about
     at_hand: dict[Term, dict[Term, list[Term]]] = {s: {} for s in new}
     for s, p, o in triples:
-        said = at_hand.get(s)
-        if said is not None:
-            said.setdefault(p, []).append(o)
+        asserted = at_hand.get(s)
+        if asserted is not None:
+            asserted.setdefault(p, []).append(o)
     return lambda subject: at_hand.get(subject) or reasoner.about(subject)
 
 
@@ -67,14 +67,14 @@ def read_entity(
     if types.isdisjoint(classes.spatial):
         return None
     about = about or reasoner.about
-    said = about(iri)
+    asserted = about(iri)
     if classes.alignments and iri.startswith("_:"):
         return None  # an unnamed part, which clients cannot refer to
-    kind = classes.kind(types, frozenset(said.get(v.RDF_TYPE, ())))
+    kind = classes.kind(types, frozenset(asserted.get(v.RDF_TYPE, ())))
     if kind is None:
         raise errors.InternalError(f"{iri} is a spatial individual without a class")
     pose, size_m = read_place(about, classes, iri)
-    preferred = _references(about, said.get(v.HAS_PREFERRED_REFERENCE, ()))
+    preferred = _references(about, asserted.get(v.HAS_PREFERRED_REFERENCE, ()))
     if classes.alignments:
         preferred = preferred or aligned_values.names(classes.alignments, about, iri)[:1]
     return make_entity(
@@ -84,11 +84,11 @@ def read_entity(
         pose=pose,
         size_m=size_m,
         preferred=preferred,
-        alternatives=_references(about, said.get(v.HAS_ALTERNATIVE_REFERENCE, ())),
-        conflict="; ".join(sorted(map(_text, said.get(v.CONFLICTING_OBSERVATION, ())))),
-        tracked=_tracked(iri, said.get(v.TRACKED_FROM, ())),
-        model=stated_model(said),
-        properties=classes.property_table.read_values(said),
+        alternatives=_references(about, asserted.get(v.HAS_ALTERNATIVE_REFERENCE, ())),
+        conflict="; ".join(sorted(map(_text, asserted.get(v.CONFLICTING_OBSERVATION, ())))),
+        tracked=_tracked(iri, asserted.get(v.TRACKED_FROM, ())),
+        model=stated_model(asserted),
+        properties=classes.property_table.read_values(asserted),
     )
 
 
@@ -97,14 +97,14 @@ def read_place(about: About, classes: ClassTable, iri: Term) -> tuple[Pose | Non
 
     Raises BadRequest for invalid numbers or an invalid polygon.
     """
-    said = about(iri)
-    size_m = _size(about, iri, said.get(v.HAS_SIZE, ()))
-    pose = _pose(about, iri, said.get(v.HAS_POSITION, ()))
+    asserted = about(iri)
+    size_m = _size(about, iri, asserted.get(v.HAS_SIZE, ()))
+    pose = _pose(about, iri, asserted.get(v.HAS_POSITION, ()))
     if classes.alignments:
         size_m = size_m or aligned_values.size(classes.alignments, about, iri)
         pose = pose or aligned_values.pose(classes.alignments, about, iri, size_m)
-    if v.HAS_EXTENT in said:
-        return _around(iri, said[v.HAS_EXTENT], pose, size_m)
+    if v.HAS_EXTENT in asserted:
+        return _around(iri, asserted[v.HAS_EXTENT], pose, size_m)
     return pose, size_m
 
 
@@ -167,26 +167,26 @@ def make_entity(
     )
 
 
-def choose_model(known: Entity, classes: ClassTable, said: Objects, size_m: Size | None) -> str:
+def choose_model(known: Entity, classes: ClassTable, asserted: Objects, size_m: Size | None) -> str:
     """Return the model of an entity of the same class with these assertions and this size."""
     class_ = classes.iris.get(known.class_)
     usual = known.model if class_ is None else classes.models[class_]
-    return stated_model(said) or chosen(usual, known.name, size_m)
+    return stated_model(asserted) or chosen(usual, known.name, size_m)
 
 
-def stated_model(said: Objects) -> str:
+def stated_model(asserted: Objects) -> str:
     """Return the model that is stated for an entity, or ""."""
-    terms = said.get(v.MODEL, ())
+    terms = asserted.get(v.MODEL, ())
     return _text(min(terms)) if terms else ""
 
 
 def read_moved(reasoner: Reasoner, known: Entity, provenance: Provenance) -> Entity:
     """Return `known` at its new pose, if nothing but coordinates has changed. Raises BadRequest."""
     iri = v.iri(known.iri)
-    said = reasoner.about(iri)
-    pose = _pose(reasoner.about, iri, said.get(v.HAS_POSITION, ()))
-    if known.place and v.HAS_EXTENT in said:
-        pose, _ = _around(iri, said[v.HAS_EXTENT], pose, known.size_m)
+    asserted = reasoner.about(iri)
+    pose = _pose(reasoner.about, iri, asserted.get(v.HAS_POSITION, ()))
+    if known.place and v.HAS_EXTENT in asserted:
+        pose, _ = _around(iri, asserted[v.HAS_EXTENT], pose, known.size_m)
     return structs.replace(known, pose=pose, provenance=provenance)
 
 
@@ -228,7 +228,7 @@ def inherit_provenance(entity: Entity, known: Entity, *, concerned: bool) -> Ent
         known.preferred_reference,
         known.alternative_references,
     )
-    said = entity.provenance
+    asserted = entity.provenance
     same_joints = not (entity.joint_provenance or known.joint_provenance) or all(
         entity.properties.get(name) == known.properties.get(name) for name in OPENING
     )
@@ -240,13 +240,13 @@ def inherit_provenance(entity: Entity, known: Entity, *, concerned: bool) -> Ent
     )
     return structs.replace(
         entity,
-        provenance=said if concerned else known.provenance,
-        pose_provenance=known.pose_provenance if entity.pose == known.pose else said,
-        shape_provenance=known.shape_provenance if same_shape else said,
-        reference_provenance=known.reference_provenance if same_references else said,
-        joint_provenance=known.joint_provenance if same_joints else said,
-        switch_provenance=known.switch_provenance if same_switches else said,
-        grip_provenance=known.grip_provenance if same_grip else said,
+        provenance=asserted if concerned else known.provenance,
+        pose_provenance=known.pose_provenance if entity.pose == known.pose else asserted,
+        shape_provenance=known.shape_provenance if same_shape else asserted,
+        reference_provenance=known.reference_provenance if same_references else asserted,
+        joint_provenance=known.joint_provenance if same_joints else asserted,
+        switch_provenance=known.switch_provenance if same_switches else asserted,
+        grip_provenance=known.grip_provenance if same_grip else asserted,
     )
 
 
@@ -290,7 +290,7 @@ def read_entity_triples(
 ) -> Star:
     """Return the triples about an entity as a message; see `find_entity_triples`. Raises Refused."""
     own, incoming = find_entity_triples(reasoner, classes, iri, leaving, tbox)
-    aside = reasoner.suppressed_about([iri]) if reasoner.has_suppressed else ()
+    suppressed = reasoner.suppressed_about([iri]) if reasoner.has_suppressed else ()
     return Star(
         seq=seq,
         name=v.entity_name(iri),
@@ -298,7 +298,7 @@ def read_entity_triples(
         own=tuple(own),
         incoming=tuple(incoming),
         computed=tuple(reasoner.computed(iri)),
-        denied=tuple(sorted(triple for triple in aside if triple[0] == iri)),
+        denied=tuple(sorted(triple for triple in suppressed if triple[0] == iri)),
     )
 
 
@@ -352,11 +352,11 @@ def find_users(reasoner: Reasoner, node: Term) -> Iterable[Term]:
 def _pose(about: About, iri: Term, nodes: Sequence[Term]) -> Pose | None:
     if not nodes:
         return None
-    said = about(min(nodes))
-    position = _numbers(iri, v.COORDINATE_XYZ, said)
+    asserted = about(min(nodes))
+    position = _numbers(iri, v.COORDINATE_XYZ, asserted)
     if position is None:
         return None
-    orientation = _numbers(iri, v.ORIENTATION_WXYZ, said)
+    orientation = _numbers(iri, v.ORIENTATION_WXYZ, asserted)
     if orientation is None:
         return Pose(position_m=position)  # type: ignore[arg-type]
     try:
@@ -374,13 +374,13 @@ def _size(about: About, iri: Term, nodes: Sequence[Term]) -> tuple[float, float,
     return size  # type: ignore[return-value]
 
 
-def _numbers(iri: Term, predicates: Sequence[Term], said: Objects) -> tuple[float, ...] | None:
+def _numbers(iri: Term, predicates: Sequence[Term], asserted: Objects) -> tuple[float, ...] | None:
     """Return one number per predicate, or None if one is missing."""
-    if said.keys().isdisjoint(predicates):
+    if asserted.keys().isdisjoint(predicates):
         return None
     found: list[float] = []
     for predicate in predicates:
-        terms = said.get(predicate, ())
+        terms = asserted.get(predicate, ())
         if not terms:
             continue
         term = terms[0] if len(terms) == 1 else min(terms)

@@ -98,55 +98,58 @@ class Draft:
         that does not exist, PreconditionFailed, and Refused for an entity of the TBox.
         """
         iri = v.iri(entity.iri)
-        said = self._reasoner.about(iri)
-        if not self._tbox.isdisjoint([(iri, p, o) for p, objects in said.items() for o in objects]):
+        asserted = self._reasoner.about(iri)
+        if not self._tbox.isdisjoint([(iri, p, o) for p, objects in asserted.items() for o in objects]):
             raise errors.Refused(f"{entity.name} is part of the TBox, which commands cannot change")
         if edit.only_if:
-            self._require(entity.name, said, edit.only_if)
+            self._require(entity.name, asserted, edit.only_if)
         if edit.unset or edit.set:
-            self._state(entity, said, edit)
+            self._state(entity, asserted, edit)
         if edit.places or (edit.size is not None and entity.pose is not None and self._classes.alignments):
             self._place(
-                entity, said.get(v.HAS_POSITION, ()), edit.pose_after(entity.pose), edit.size or entity.size_m
+                entity,
+                asserted.get(v.HAS_POSITION, ()),
+                edit.pose_after(entity.pose),
+                edit.size or entity.size_m,
             )
         if edit.class_iri is not None and v.iri(edit.class_iri) != self._classes.iris.get(entity.class_):
             class_iri = self._class(edit.class_iri)
             self._retract(
-                (iri, v.RDF_TYPE, o) for o in said.get(v.RDF_TYPE, ()) if o != v.OWL_NAMED_INDIVIDUAL
+                (iri, v.RDF_TYPE, o) for o in asserted.get(v.RDF_TYPE, ()) if o != v.OWL_NAMED_INDIVIDUAL
             )
             self._insert([(iri, v.RDF_TYPE, class_iri)])
         if edit.size is not None:
-            self._resize(entity, said.get(v.HAS_SIZE, ()), edit.size)
+            self._resize(entity, asserted.get(v.HAS_SIZE, ()), edit.size)
         if edit.ref is not None and edit.ref != entity.preferred_reference:
-            nodes = said.get(v.HAS_PREFERRED_REFERENCE, ())
+            nodes = asserted.get(v.HAS_PREFERRED_REFERENCE, ())
             (node,) = self._references(entity, v.HAS_PREFERRED_REFERENCE, nodes, ["preferred_reference"])
             self._insert(entity_triples.preferred_reference(iri, node, edit.ref))
         if edit.alt is not None and edit.alt != entity.alternative_references:
-            nodes = said.get(v.HAS_ALTERNATIVE_REFERENCE, ())
+            nodes = asserted.get(v.HAS_ALTERNATIVE_REFERENCE, ())
             names = [f"alternative_reference_{i}" for i in range(1, len(edit.alt) + 1)]
             found = self._references(entity, v.HAS_ALTERNATIVE_REFERENCE, nodes, names)
             for node, text in zip(found, edit.alt, strict=True):
                 self._insert(entity_triples.alternative_reference(iri, node, text))
         if edit.conflict is not None and edit.conflict != entity.conflict:
-            known = said.get(v.CONFLICTING_OBSERVATION, ())
+            known = asserted.get(v.CONFLICTING_OBSERVATION, ())
             self._retract((iri, v.CONFLICTING_OBSERVATION, o) for o in known)
             if edit.conflict:
                 self._insert([(iri, v.CONFLICTING_OBSERVATION, v.literal(edit.conflict))])
         if edit.tracked is not None and edit.tracked != entity.tracked:
-            self._retract((iri, v.TRACKED_FROM, o) for o in said.get(v.TRACKED_FROM, ()))
+            self._retract((iri, v.TRACKED_FROM, o) for o in asserted.get(v.TRACKED_FROM, ()))
             if edit.tracked:
                 self._insert([(iri, v.TRACKED_FROM, v.literal(edit.tracked))])
 
-    def _require(self, name: str, said: Objects, only_if: Sequence[Statement]) -> None:
+    def _require(self, name: str, asserted: Objects, only_if: Sequence[Statement]) -> None:
         """Raise PreconditionFailed unless each property has one of the values, or none if none is given."""
         for prop, terms in self._typed(only_if, name):
-            known = said.get(prop.iri, ())
+            known = asserted.get(prop.iri, ())
             if not any(is_same_value(one, other) for one in known for other in terms) and (known or terms):
                 now = " and ".join(to_text(term) for term in sorted(known)) or "not set"
                 wanted = " or ".join(map(to_text, terms)) or "unset"
                 raise errors.PreconditionFailed(f"{name}: {prop.name} is {now}, not {wanted}")
 
-    def _state(self, entity: Entity, said: Objects, edit: Edit) -> None:
+    def _state(self, entity: Entity, asserted: Objects, edit: Edit) -> None:
         """Remove values of properties, then add others.
 
         Raises BadRequest for a value that is both set and unset, and for several values of a functional
@@ -164,19 +167,19 @@ class Draft:
                     raise errors.BadRequest(
                         f"{prop.name} {to_text(term)} is both set and unset; give one of the two"
                     )
-            known = left.get(prop.iri, list(said.get(prop.iri, ())))
+            known = left.get(prop.iri, list(asserted.get(prop.iri, ())))
             left[prop.iri] = [k for k in known if terms and not any(is_same_value(k, term) for term in terms)]
         for prop, terms in wanted:
             given = [term for other, new in wanted if other.iri == prop.iri for term in new]
             if prop.functional and not all(is_same_value(given[0], term) for term in given):
                 raise errors.BadRequest(f"{prop.name} has one value at most; give one")
-            known = left.get(prop.iri, list(said.get(prop.iri, ())))
+            known = left.get(prop.iri, list(asserted.get(prop.iri, ())))
             new = [term for term in terms if not any(is_same_value(k, term) for k in known)]
             left[prop.iri] = [*([] if prop.functional and new else known), *new]
-        left.update(implied_values.imply_joint_values(left, said))
-        left.update(implied_values.imply_attachment_values(left, said))
+        left.update(implied_values.imply_joint_values(left, asserted))
+        left.update(implied_values.imply_attachment_values(left, asserted))
         for property_, now in left.items():
-            before = said.get(property_, ())
+            before = asserted.get(property_, ())
             self._retract((iri, property_, term) for term in before if term not in now)
             self._insert((iri, property_, term) for term in now if term not in before)
 
@@ -198,12 +201,14 @@ class Draft:
 
     def _place(self, entity: Entity, nodes: Sequence[Term], pose: Pose, size_m: Size | None) -> None:
         about = self._reasoner.about
-        said = None if nodes else aligned_values.find_pose(self._classes.alignments, about, v.iri(entity.iri))
-        if said is not None and self._is_own_path(said.nodes):
-            self._change(aligned_values.pose_triples(said, pose, size_m, about))
+        asserted = (
+            None if nodes else aligned_values.find_pose(self._classes.alignments, about, v.iri(entity.iri))
+        )
+        if asserted is not None and self._is_own_path(asserted.nodes):
+            self._change(aligned_values.pose_triples(asserted, pose, size_m, about))
             return
-        if said is not None:
-            self._detach(said.nodes, said.words.path, said.words.position)
+        if asserted is not None:
+            self._detach(asserted.nodes, asserted.words.path, asserted.words.position)
         numbers = entity_triples.COORDINATE_PROPERTIES
         node = self._numbers(entity, v.HAS_POSITION, nodes, "coordinates", numbers)
         if list(nodes) == [node]:
@@ -213,12 +218,12 @@ class Draft:
 
     def _resize(self, entity: Entity, nodes: Sequence[Term], size_m: Size) -> None:
         iri, about = v.iri(entity.iri), self._reasoner.about
-        said = None if nodes else aligned_values.find_size(self._classes.alignments, about, iri)
-        if said is not None and self._is_own_path(said.nodes):
-            self._change(aligned_values.size_triples(said, size_m, about))
+        asserted = None if nodes else aligned_values.find_size(self._classes.alignments, about, iri)
+        if asserted is not None and self._is_own_path(asserted.nodes):
+            self._change(aligned_values.size_triples(asserted, size_m, about))
             return
-        if said is not None:
-            self._detach(said.nodes, said.words.path, said.words.x)
+        if asserted is not None:
+            self._detach(asserted.nodes, asserted.words.path, asserted.words.x)
         node = self._numbers(entity, v.HAS_SIZE, nodes, "size", v.SIZE_XYZ)
         self._insert(entity_triples.size(iri, node, size_m))
 
@@ -239,8 +244,8 @@ class Draft:
         """Return the individual for new numbers: the present one if it is not shared, or a new one."""
         iri = v.iri(entity.iri)
         if len(nodes) == 1 and self._is_own(nodes[0]):
-            said = self._reasoner.about(nodes[0])
-            self._retract((nodes[0], p, o) for p in numbers for o in said.get(p, ()))
+            asserted = self._reasoner.about(nodes[0])
+            self._retract((nodes[0], p, o) for p in numbers for o in asserted.get(p, ()))
             return nodes[0]
         self._remove_nodes(iri, edge, nodes)
         return self._free(entity.name, word)

@@ -102,8 +102,8 @@ def read_regular(pattern: Pattern, star: _Star, provenance: Provenance, classes:
         alternatives=_texts(pattern.alternatives, names, others),
         properties=classes.property_table.read_values(
             {
-                said.property: [names[i] for i in said.nodes] + [others[i] for i in said.places]
-                for said in pattern.stated
+                content.property: [names[i] for i in content.nodes] + [others[i] for i in content.places]
+                for content in pattern.stated
             }
         )
         if pattern.stated
@@ -135,22 +135,22 @@ def _pattern(form: Form, star: _Star, reasoner: Reasoner, classes: ClassTable) -
     entity, *nodes = map(reasoner.types, names)
     if entity.isdisjoint(classes.spatial) or not all(map(classes.spatial.isdisjoint, nodes)):
         return None
-    said = _RunContent(form, others)
-    if said.is_unusual or said.uses(classes.entry_properties) or said.uses(_EXTENT):
+    content = _RunContent(form, others)
+    if content.is_unusual or content.uses(classes.entry_properties) or content.uses(_EXTENT):
         return None
-    kind = classes.kind(entity, frozenset(said.classes))
+    kind = classes.kind(entity, frozenset(content.classes))
     if kind is None:
         raise errors.InternalError("a spatial individual has no class")
     try:
-        coordinates, size = said.node(v.HAS_POSITION), said.node(v.HAS_SIZE)
+        coordinates, size = content.node(v.HAS_POSITION), content.node(v.HAS_SIZE)
         return Pattern(
             kind=kind,
-            position=said.numbers(coordinates, v.COORDINATE_XYZ),
-            orientation=said.numbers(coordinates, v.ORIENTATION_WXYZ),
-            size=said.numbers(size, v.SIZE_XYZ),
-            preferred=tuple(said.texts(v.HAS_PREFERRED_REFERENCE)),
-            alternatives=tuple(said.texts(v.HAS_ALTERNATIVE_REFERENCE)),
-            stated=tuple(said.stated(classes)),
+            position=content.numbers(coordinates, v.COORDINATE_XYZ),
+            orientation=content.numbers(coordinates, v.ORIENTATION_WXYZ),
+            size=content.numbers(size, v.SIZE_XYZ),
+            preferred=tuple(content.texts(v.HAS_PREFERRED_REFERENCE)),
+            alternatives=tuple(content.texts(v.HAS_ALTERNATIVE_REFERENCE)),
+            stated=tuple(content.stated(classes)),
         )
     except _Irregular:
         return None

@@ -49,40 +49,40 @@ def _wanted(add: Sequence[NewEntity], classes: ClassTable) -> ExpectedEntities |
     class_of = {new.class_iri: v.iri(new.class_iri) for new in add}
     if any(new.set for new in add) or not classes.spatial.issuperset(class_of.values()):
         return None
-    looks, rows = _looks(class_of.values(), classes)
+    appearances, rows = _looks(class_of.values(), classes)
     row = {iri: rows[c] for iri, c in class_of.items()}
     arrivals = [
         ExpectedEntity(v.entity_iri(n.name), row[n.class_iri], pose.position_m, pose.orientation_wxyz, n.size)
         for n in add
         if (pose := n.pose) is not None
     ]
-    return ExpectedEntities(looks, arrivals)
+    return ExpectedEntities(appearances, arrivals)
 
 
 def _said(insert: Iterable[Triple], classes: ClassTable) -> ExpectedEntities | None:
-    said = group_by_property(insert)
-    at = {s: o for s, _, o in said.get(v.HAS_POSITION, ())}
-    if not MANY <= len(at) <= MOST or not said.keys().isdisjoint(_SHAPING):
+    by_property = group_by_property(insert)
+    at = {s: o for s, _, o in by_property.get(v.HAS_POSITION, ())}
+    if not MANY <= len(at) <= MOST or not by_property.keys().isdisjoint(_SHAPING):
         return None
     things, nodes = list(at), list(at.values())
-    sizes = [node or "" for node in _objects(said, v.HAS_SIZE, things)]
+    sizes = [node or "" for node in _objects(by_property, v.HAS_SIZE, things)]
     spatial = classes.spatial
-    class_of = {s: o for s, _, o in said.get(v.RDF_TYPE, ()) if o in spatial}
+    class_of = {s: o for s, _, o in by_property.get(v.RDF_TYPE, ()) if o in spatial}
     position, turn, size = (
-        [_objects(said, p, of) for p in properties]
+        [_objects(by_property, p, of) for p in properties]
         for properties, of in ((v.COORDINATE_XYZ, nodes), (v.ORIENTATION_WXYZ, nodes), (v.SIZE_XYZ, sizes))
     )
     if not at.keys() <= class_of.keys() or any(None in column for column in position):
         return None
-    looks, rows = _looks(class_of.values(), classes)
-    look = map(rows.__getitem__, map(class_of.__getitem__, things))
+    appearances, rows = _looks(class_of.values(), classes)
+    appearance = map(rows.__getitem__, map(class_of.__getitem__, things))
     numbers = (zip(*columns, strict=True) for columns in (position, turn, size))
-    return ExpectedEntities(looks, list(map(ExpectedEntity, things, look, *numbers)))
+    return ExpectedEntities(appearances, list(map(ExpectedEntity, things, appearance, *numbers)))
 
 
-def _objects(said: _Said, property_: Term, subjects: Sequence[Term]) -> list[Term | None]:
+def _objects(by_property: _Said, property_: Term, subjects: Sequence[Term]) -> list[Term | None]:
     """Return the last object of each subject for a property, or None for those without."""
-    triples = said.get(property_, ())
+    triples = by_property.get(property_, ())
     if [s for s, _, _ in triples] == subjects:  # the usual order
         return [o for _, _, o in triples]
     found = {s: o for s, _, o in triples}

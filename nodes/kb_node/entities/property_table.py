@@ -88,12 +88,12 @@ class PropertyTable:
                 else frozenset(o for q in above for _, _, o in reasoner.asserted(q, v.RDFS_RANGE, None)),
             )
 
-    def read_values(self, said: Mapping[Term, Iterable[Term]]) -> dict[str, property_values.Stated]:
+    def read_values(self, asserted: Mapping[Term, Iterable[Term]]) -> dict[str, property_values.Stated]:
         """Return the properties by name of an individual with these assertions; functional as scalars."""
-        known = said.keys() & self.by_iri.keys()
+        known = asserted.keys() & self.by_iri.keys()
         if not known:
             return {}
-        return dict(sorted(_shown(self.by_iri[p], said[p]) for p in known))
+        return dict(sorted(_shown(self.by_iri[p], asserted[p]) for p in known))
 
     def find(self, word: str, name: str = "NAME") -> Property:
         """Return the property that `word` means: a name, an IRI in <>, a prefixed name or a label.
@@ -204,8 +204,8 @@ class PropertyTable:
             words.setdefault(_fold(word), set()).add(term)
 
     def _labels(self, term: Term) -> dict[str, str]:
-        said = sorted(o for _, _, o in self._reasoner.asserted(term, v.RDFS_LABEL) if o.startswith('"'))
-        return {v.language_of(o) or "": v.lexical(o) for o in said}
+        asserted = sorted(o for _, _, o in self._reasoner.asserted(term, v.RDFS_LABEL) if o.startswith('"'))
+        return {v.language_of(o) or "": v.lexical(o) for o in asserted}
 
     def _is(self, p: Term, kind: Term) -> bool:
         return any(self._reasoner.asserted(p, v.RDF_TYPE, kind))

@@ -17,8 +17,8 @@ from semmap.schemas.bridge import MadeBy, Outcome, TakeBack, Transactions
 from semmap.schemas.calls import Handler, by_verb
 from semmap.schemas.commits import Commit, Effects, Transaction
 
-Tell = Callable[[str], None]
-ReportingProgress = Callable[[str], AbstractContextManager[Tell]]
+Report = Callable[[str], None]
+ReportProgress = Callable[[str], AbstractContextManager[Report]]
 """Context for a large change that reports its progress in the heartbeat. The text begins with a word of
 WORKING."""
 
@@ -47,18 +47,18 @@ class ChangeHandlers:
         journal: Journal,
         *,
         publish: PublishCommit,
-        not_written: Callable[[NotWritten], None],
-        reporting_progress: ReportingProgress,
+        on_write_error: Callable[[NotWritten], None],
+        report_progress: ReportProgress,
     ) -> None:
         """Create the handlers. `publish` is called with each new commit, in order, before the reply.
 
-        `not_written` is called with each error of the disk.
+        `on_write_error` is called with each error of the disk.
         """
         self._map = semantic_map
         self._journal = journal
         self._publish = publish
-        self._not_written = not_written
-        self._reporting_progress = reporting_progress
+        self._on_write_error = on_write_error
+        self._report_progress = report_progress
 
     def handlers(self) -> dict[str, Handler]:
         """Return the handlers by command."""
@@ -76,8 +76,8 @@ class ChangeHandlers:
         if coming + going <= _FEW:
             return self._commit(transaction)
         file = transaction.reason.removeprefix("load ") or "a file"
-        with self._reporting_progress(f"loading {file}" if coming else "removing entities") as tell:
-            tell(f"{coming or going:,} entities to check and write")
+        with self._report_progress(f"loading {file}" if coming else "removing entities") as report:
+            report(f"{coming or going:,} entities to check and write")
             return self._commit(transaction)
 
     def _commit(self, transaction: Transaction) -> Effects | None:
@@ -98,7 +98,7 @@ class ChangeHandlers:
         results = self._map.commit_together(several.transactions)
         for error in results:
             if isinstance(error, NotWritten):
-                self._not_written(error)
+                self._on_write_error(error)
         for transaction, result in zip(several.transactions, results, strict=True):
             if isinstance(result, Commit) and result.seq > before:
                 before = result.seq
@@ -120,8 +120,8 @@ class ChangeHandlers:
         if count <= _FEW:
             yield
             return
-        with self._reporting_progress(f"undoing commit {target.seq}") as tell:
-            tell(f"{count:,} entities to check and write")
+        with self._report_progress(f"undoing commit {target.seq}") as report:
+            report(f"{count:,} entities to check and write")
             yield
 
     def on_made_by(self, query: MadeBy) -> tuple[Effects | None, ...]:
@@ -145,7 +145,7 @@ class ChangeHandlers:
         try:
             commit = change()
         except NotWritten as error:
-            self._not_written(error)
+            self._on_write_error(error)
             raise
         if commit is not None and commit.seq > before:
             self._publish(commit, told=told and not commit.tbox, at_once=at_once)

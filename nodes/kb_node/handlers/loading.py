@@ -10,7 +10,7 @@ from functools import partial
 from semmap.nodes.kb_node.answers import dry_runs
 from semmap.nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
-from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, ReportingProgress, effects
+from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, ReportProgress, effects
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.storage.journal import Journal
@@ -31,7 +31,7 @@ class LoadHandlers:
         changing: ChangeHandlers,
         sparql: SparqlService,
         *,
-        reporting_progress: ReportingProgress,
+        report_progress: ReportProgress,
         notes: Callable[[], tuple[str, ...]],
     ) -> None:
         """Create the handlers; `notes` returns the notes on the current TBox."""
@@ -39,7 +39,7 @@ class LoadHandlers:
         self._journal = journal
         self._changing = changing
         self._sparql = sparql
-        self._reporting_progress = reporting_progress
+        self._report_progress = report_progress
         self._notes = notes
 
     def handlers(self) -> dict[str, Handler]:
@@ -60,15 +60,15 @@ class LoadHandlers:
         if rdf.syntax_of(content) == "turtle" and not (load.replace or load.parts or load.dry_run):
             self._sparql.prefetch(load.id, content, v.ABOX, packed=load.content)
         label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # stable across retries
-        with self._reporting_progress(f"loading {load.filename or 'a file'}") as tell:
+        with self._report_progress(f"loading {load.filename or 'a file'}") as report:
             triples = rdf.parse(
                 content,
                 load.filename,
                 label_prefix=label,
-                progress=lambda count: tell(f"{count:,} triples read"),
+                progress=lambda count: report(f"{count:,} triples read"),
             )
             del content
-            tell(f"{len(triples):,} triples to check and write")
+            report(f"{len(triples):,} triples to check and write")
             transaction, filtered = document_change.make_document_transaction(self._map, load, triples)
             if not document_change.is_exact_copy(triples, transaction):
                 self._sparql.discard_prepared()
@@ -84,7 +84,7 @@ class LoadHandlers:
             del triples, filtered  # for very many triples each list takes much memory
             parts = load_parts.split(transaction) if load.parts else [transaction]
             commit = partial(self._commit, told=load.told)
-            commits = load_parts.commit_each(parts, commit, tell if load.parts else lambda _: None)
+            commits = load_parts.commit_each(parts, commit, report if load.parts else lambda _: None)
             return Loaded(
                 commit=effects(commits[-1] if commits else None),
                 parts=len(commits),

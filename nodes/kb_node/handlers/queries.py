@@ -19,9 +19,9 @@ from semmap.nodes.kb_node.answers import (
     past_map,
     questions,
 )
-from semmap.nodes.kb_node.answers.command_parser import Understanding
+from semmap.nodes.kb_node.answers.command_parser import CommandParser
 from semmap.nodes.kb_node.answers.descriptions import Descriptions
-from semmap.nodes.kb_node.answers.entity_search import Finding
+from semmap.nodes.kb_node.answers.entity_search import EntitySearch
 from semmap.nodes.kb_node.answers.live_poses import LiveEntities
 from semmap.nodes.kb_node.answers.location_queries import LocationQueries
 from semmap.nodes.kb_node.answers.missing_entities import describe_missing
@@ -107,8 +107,8 @@ class QueryHandlers:
         self._now = entity_queries.CurrentState(semantic_map)
         self.live = LiveEntities(semantic_map)
         """Receives live poses."""
-        self._finding = Finding(semantic_map)
-        self._understanding = Understanding(semantic_map, self._finding)
+        self._search = EntitySearch(semantic_map)
+        self._parser = CommandParser(semantic_map, self._search)
         self._then = entity_queries.PastState(semantic_map, self._past)
         self.sightings = Sightings(self._past)
         """Receives the observations of perception."""
@@ -137,12 +137,12 @@ class QueryHandlers:
             Relations.answered_by(self.on_relations),
             Diff.answered_by(self.on_diff),
             WasWhen.answered_by(self.on_when),
-            Understand.answered_by(self._understanding.understand),
+            Understand.answered_by(self._parser.parse),
             Tell.answered_by(self._descriptions.describe),
             Find.answered_by(self.on_find),
             Export.answered_by(self.on_export),
-            PlanOf.answered_by(self._routes.plan),
-            WayOf.answered_by(self._routes.way),
+            PlanOf.answered_by(self._routes.compute_plan),
+            WayOf.answered_by(self._routes.compute_route),
             History.answered_by(self.on_history),
             LastSeen.answered_by(self.on_last_seen),
             Check.answered_by(self.on_check),
@@ -309,12 +309,14 @@ class QueryHandlers:
         If there are none, also say when they were last there.
         """
         with self.live.applied():
-            sought = self._finding.find(query)
+            sought = self._search.find(query)
         if sought.missing is None:
             return sought.found
         missing, there, limits = sought.missing, frozenset(self._map.names), self._map.classes.limits
         return self._aside.submit(
-            lambda: sought.with_the_past(describe_missing(self._journal, self._past, missing, there, limits))
+            lambda: sought.with_last_times(
+                describe_missing(self._journal, self._past, missing, there, limits)
+            )
         )
 
     def on_check(self, query: Check) -> Future[Checked]:

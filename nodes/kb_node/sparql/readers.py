@@ -45,11 +45,11 @@ class Reader:
         """Fork a reader. `infers` means that the dataset contains inferred triples."""
         self.log = log
         self._store_path = dataset.path if isinstance(dataset, DiskDataset) else None
-        self.control, there = Pipe()
+        self.control, remote = Pipe()
         self._pid = os.fork()
         if self._pid == 0:
-            _serve(lane, there, dataset, log, infers)
-        there.close()
+            _serve(lane, remote, dataset, log, infers)
+        remote.close()
 
     def retire(self) -> None:
         """Let the reader exit after its current query."""

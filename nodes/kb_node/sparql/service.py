@@ -166,7 +166,7 @@ class SparqlService:
                     delta=delta_of(commit),
                     derived_changes=derived_changes if self._infers else UNCHANGED,
                     placed=tuple(map(PlacedEntity.of, commit.changed)) if self._measures else (),
-                    removed=tuple(gone.name for gone in commit.removed) if self._measures else (),
+                    removed=tuple(departed.name for departed in commit.removed) if self._measures else (),
                 )
             )
 
@@ -253,9 +253,9 @@ class _Worker:
         self._waiting: dict[int, tuple[type[Call], Future[Any]]] = {}
         self._lock = threading.Lock()
         self.is_alive = True
-        self._connection, there = Pipe()
+        self._connection, remote = Pipe()
         self._lanes = Lanes(self.send)
-        theirs = [there, *self._lanes.remote_ends]
+        theirs = [remote, *self._lanes.remote_ends]
         fds = [connection.fileno() for connection in theirs]
         self._process = subprocess.Popen(
             [sys.executable, "-P", "-m", "semmap.nodes.kb_node.sparql.worker", *map(str, fds)],

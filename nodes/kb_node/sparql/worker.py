@@ -146,9 +146,9 @@ class Worker:
             delta = self._consequences.after(delta, committed.derived_changes)
         self._dataset.apply(delta)
         if self._measured is not None:
-            gone, come = self._measured.after(delta, committed.placed, committed.removed)
-            self._dataset.apply(Delta(seq=delta.seq, unmeasured=gone, measured=come))
-            delta = structs.replace(delta, unmeasured=gone, measured=come)
+            removed, added = self._measured.after(delta, committed.placed, committed.removed)
+            self._dataset.apply(Delta(seq=delta.seq, unmeasured=removed, measured=added))
+            delta = structs.replace(delta, unmeasured=removed, measured=added)
         self._log.append(delta)
         self.monitor.follow(delta)
         self._begin_log_if_long()
@@ -165,12 +165,12 @@ class Worker:
 
     def _measure(self, demand: int) -> None:
         """Update the measured triples in the dataset for request `demand`."""
-        gone: tuple[Triple, ...] = ()
-        come: tuple[Triple, ...] = ()
+        removed: tuple[Triple, ...] = ()
+        added: tuple[Triple, ...] = ()
         if self._measured is not None:
             standing = map(self._needs, self.monitor.inferred_queries)
-            gone, come = self._measured.update_needs(Needs.merge((*self._needed, *standing)))
-        delta = Delta(seq=self._dataset.seq, unmeasured=gone, measured=come, demand=demand)
+            removed, added = self._measured.update_needs(Needs.merge((*self._needed, *standing)))
+        delta = Delta(seq=self._dataset.seq, unmeasured=removed, measured=added, demand=demand)
         self._log.append(delta)
         self._dataset.apply(delta)
         self._begin_log_if_long()

@@ -34,11 +34,11 @@ def names(entities):
 
 
 def test_listing_is_by_exact_class_name(furnished):
-    assert names(answers.entities_of(furnished, None)) == ["chair1", "chair2", "kitchen1"]
-    assert names(answers.entities_of(furnished, "Seat")) == ["chair1", "chair2"]
-    assert answers.entities_of(furnished, "Door") == ()
+    assert names(answers.find_entities(furnished, None)) == ["chair1", "chair2", "kitchen1"]
+    assert names(answers.find_entities(furnished, "Seat")) == ["chair1", "chair2"]
+    assert answers.find_entities(furnished, "Door") == ()
     with pytest.raises(errors.UnknownClass, match="unknown class 'Saet'; did you mean Seat"):
-        answers.entities_of(furnished, "Saet")
+        answers.find_entities(furnished, "Saet")
 
 
 def test_infer_returns_only_inferred_facts(furnished):

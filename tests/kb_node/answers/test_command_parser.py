@@ -2,8 +2,8 @@
 
 import pytest
 
-from semmap.nodes.kb_node.answers.command_parser import Understanding
-from semmap.nodes.kb_node.answers.entity_search import Finding
+from semmap.nodes.kb_node.answers.command_parser import CommandParser
+from semmap.nodes.kb_node.answers.entity_search import EntitySearch
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas.commands import Understand
@@ -21,7 +21,7 @@ def understanding(flat):
             f"{colour}cup", v.dm("Cup"), pose=pose, size_m=[0.08, 0.08, 0.1], preferred=f"{colour} cup"
         )
         flat.commit(Transaction(id=colour, source="operator", insert=tuple(cup)))
-    return Understanding(flat, Finding(flat))
+    return CommandParser(flat, EntitySearch(flat))
 
 
 @pytest.mark.parametrize(
@@ -47,11 +47,11 @@ def understanding(flat):
     ],
 )
 def test_details_of_a_description_select_the_entity(understanding, text, understood):
-    assert [frame.text for frame in understanding.understand(Understand(text=text)).frames] == understood
+    assert [frame.text for frame in understanding.parse(Understand(text=text)).frames] == understood
 
 
 def test_an_ambiguous_word_leads_to_one_clarification_question(understanding):
-    understood = understanding.understand(Understand(text="take the cup on the table and put it in the sink"))
+    understood = understanding.parse(Understand(text="take the cup on the table and put it in the sink"))
     assert understood.frames[1].arguments[0].candidates == ("bluecup", "redcup")
     assert understood.question.startswith("Which one: the cup called blue cup or the one called red cup?")
     assert understood.question.count("red cup") == 1
@@ -72,5 +72,5 @@ def test_an_ambiguous_word_leads_to_one_clarification_question(understanding):
     ],
 )
 def test_parts_that_do_not_match_the_map_are_reported(understanding, text, understood, doubts):
-    told = understanding.understand(Understand(text=text))
+    told = understanding.parse(Understand(text=text))
     assert ([frame.text for frame in told.frames], told.doubts) == ([understood], doubts)

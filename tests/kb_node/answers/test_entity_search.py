@@ -3,7 +3,7 @@
 import pytest
 from msgspec import structs
 
-from semmap.nodes.kb_node.answers.entity_search import Finding
+from semmap.nodes.kb_node.answers.entity_search import EntitySearch
 from semmap.nodes.kb_node.answers.missing_entities import describe_missing
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.ontology import entity_triples
@@ -34,7 +34,7 @@ def names(found):
     ],
 )
 def test_descriptions_in_the_flat_are_resolved(flat, text, fields, meant):
-    found = Finding(flat).find(Find(text=text, **fields)).found
+    found = EntitySearch(flat).find(Find(text=text, **fields)).found
     assert (names(found), found.seq) == (meant, 1)
     assert all(candidate.reasons for candidate in found.candidates)
 
@@ -66,14 +66,14 @@ def test_descriptions_in_the_flat_are_resolved(flat, text, fields, meant):
     ],
 )
 def test_unknown_words_are_reported(flat, text, meant):
-    assert names(Finding(flat).find(Find(text=text)).found) == meant
+    assert names(EntitySearch(flat).find(Find(text=text)).found) == meant
 
 
 def test_excluded_entities_are_not_in_the_result(flat):
-    every = names(Finding(flat).find(Find(text="everything in the kitchen")).found)
-    chairs = names(Finding(flat).find(Find(text="the chairs in the kitchen")).found)
+    every = names(EntitySearch(flat).find(Find(text="everything in the kitchen")).found)
+    chairs = names(EntitySearch(flat).find(Find(text="the chairs in the kitchen")).found)
     assert len(chairs) == 4
-    rest = Finding(flat).find(Find(text="everything in the kitchen except the chairs")).found
+    rest = EntitySearch(flat).find(Find(text="everything in the kitchen except the chairs")).found
     assert names(rest) == every - chairs
     assert all("except the chairs" in candidate.reasons for candidate in rest.candidates)
 
@@ -97,7 +97,7 @@ def test_excluded_entities_are_not_in_the_result(flat):
     ],
 )
 def test_a_full_name_counts_more_than_its_head_noun(flat, text, meant):
-    found = Finding(flat).find(Find(text=text)).found
+    found = EntitySearch(flat).find(Find(text=text)).found
     assert (names(found), found.read_as) == (meant, ())
 
 
@@ -115,12 +115,12 @@ def test_an_entity_is_found_by_its_label(flat, reference, text):
         "spoon1", v.dm("Spoon"), pose=Pose(position_m=(2.0, 2.0, 0.0)), preferred=reference
     )
     flat.commit(Transaction(id="1", source="operator", insert=tuple(spoon)))
-    assert names(Finding(flat).find(Find(text=text)).found) == {"spoon1"}
+    assert names(EntitySearch(flat).find(Find(text=text)).found) == {"spoon1"}
 
 
 @pytest.mark.parametrize("text", ["closed windows", "the window which is not open"])
 def test_unknown_states_are_reported_as_unknown(flat, text):
-    found = Finding(flat).find(Find(text=text)).found
+    found = EntitySearch(flat).find(Find(text=text)).found
     assert found.outcome == "none"
     assert found.text.startswith("unknown whether window1, window2, window3 and window4 are ")
 
@@ -130,13 +130,13 @@ def test_an_object_without_other_support_is_on_the_floor(flat):
         "ball1", v.dm("Ball"), pose=Pose(position_m=(3.0, 2.0, 0.0)), preferred="ball"
     )
     flat.commit(Transaction(id="1", source="operator", insert=tuple(ball)))
-    assert names(Finding(flat).find(Find(text="the ball on the floor")).found) == {"ball1"}
-    assert names(Finding(flat).find(Find(text="la palla sul pavimento")).found) == {"ball1"}
-    assert Finding(flat).find(Find(text="the bowl on the floor")).found.outcome == "none"
+    assert names(EntitySearch(flat).find(Find(text="the ball on the floor")).found) == {"ball1"}
+    assert names(EntitySearch(flat).find(Find(text="la palla sul pavimento")).found) == {"ball1"}
+    assert EntitySearch(flat).find(Find(text="the bowl on the floor")).found.outcome == "none"
 
 
 def test_entities_that_are_not_listed_are_counted(flat):
-    found = Finding(flat).find(Find(text="anything not on the table")).found
+    found = EntitySearch(flat).find(Find(text="anything not on the table")).found
     assert len(found.candidates) == 50
     assert found.text == f"{50 + found.others} things match"
     assert found.others > 0
@@ -148,11 +148,11 @@ def test_a_label_that_is_not_a_noun_is_not_used_in_questions(flat):
         cup = entity_triples.describe(f"cup{i + 2}", v.dm("Cup"), pose=Pose(position_m=at), preferred=said)
         flat.commit(Transaction(id=str(i), source="operator", insert=tuple(cup)))
     for text in ("the cup", "the cup on the table", "la tazza"):
-        found = Finding(flat).find(Find(text=text)).found
+        found = EntitySearch(flat).find(Find(text=text)).found
         assert found.outcome == "ambiguous"
         assert "Ignore" not in found.question + found.text
         assert not any("Ignore" in candidate.called for candidate in found.candidates)
-    quoted = Finding(flat).find(Find(text=said)).found
+    quoted = EntitySearch(flat).find(Find(text=said)).found
     assert f"called “{said}”" in quoted.candidates[0].reasons
 
 
@@ -170,18 +170,18 @@ def test_a_label_that_is_not_a_noun_is_not_used_in_questions(flat):
     ],
 )
 def test_ordinals_bounds_and_polite_words(flat, text, outcome, number):
-    found = Finding(flat).find(Find(text=text)).found
+    found = EntitySearch(flat).find(Find(text=text)).found
     assert (found.outcome, len(found.candidates)) == (outcome, number)
 
 
 def test_a_superlative_reports_the_measurement_and_a_direction_needs_a_viewpoint(flat):
-    found = Finding(flat).find(Find(text="the chair nearest to the kitchen window")).found
+    found = EntitySearch(flat).find(Find(text="the chair nearest to the kitchen window")).found
     assert found.candidates[0].reasons[-1] == "1.12 m from window2"
-    found = Finding(flat).find(Find(text="the lowest book")).found
+    found = EntitySearch(flat).find(Find(text="the lowest book")).found
     assert "at a height of 0.74 m" in found.candidates[0].reasons
-    found = Finding(flat).find(Find(text="the third book")).found
-    assert found.question.startswith("From where is the third counted?")
-    found = Finding(flat).find(Find(text="the third book", viewpoint=(7.4, 6.5, 0.0, 0.0))).found
+    found = EntitySearch(flat).find(Find(text="the third book")).found
+    assert found.question.startswith("The third from where?")
+    found = EntitySearch(flat).find(Find(text="the third book", viewpoint=(7.4, 6.5, 0.0, 0.0))).found
     assert "from where" not in found.question
 
 
@@ -200,20 +200,20 @@ def test_a_superlative_reports_the_measurement_and_a_direction_needs_a_viewpoint
     ],
 )
 def test_neighbours_and_doors_between_places_are_found(flat, text, meant):
-    assert names(Finding(flat).find(Find(text=text)).found) == meant
+    assert names(EntitySearch(flat).find(Find(text=text)).found) == meant
 
 
 def test_an_unknown_viewer_or_asker_is_rejected(flat):
     with pytest.raises(errors.UnknownName):
-        Finding(flat).find(Find(text="my cup", asker="ghost9"))
+        EntitySearch(flat).find(Find(text="my cup", asker="ghost9"))
     with pytest.raises(errors.BadRequest, match="depend on who looks"):
-        Finding(flat).find(Find(text="the leftmost book"))
-    with pytest.raises(errors.BadRequest, match="'chair' is ambiguous"):
-        Finding(flat).find(Find(text="the leftmost book", viewer="chair"))
+        EntitySearch(flat).find(Find(text="the leftmost book"))
+    with pytest.raises(errors.BadRequest, match="'chair' may mean"):
+        EntitySearch(flat).find(Find(text="the leftmost book", viewer="chair"))
 
 
 def test_a_search_uses_the_newest_commit(flat):
-    finding = Finding(flat)
+    finding = EntitySearch(flat)
     assert finding.find(Find(text="the spoon")).found.outcome == "none"
     spoon = entity_triples.describe(
         "spoon1", v.dm("Spoon"), pose=Pose(position_m=(2.0, 2.0, 0.0)), preferred="ladle"
@@ -225,7 +225,7 @@ def test_a_search_uses_the_newest_commit(flat):
 
 
 def test_a_removed_entity_is_reported_with_its_time(flat):
-    finding = Finding(flat)
+    finding = EntitySearch(flat)
     spoon = entity_triples.describe("spoon1", v.dm("Spoon"), pose=Pose(position_m=(2.0, 2.0, 0.0)))
     flat.commit(Transaction(id="1", source="operator", insert=tuple(spoon)))
     flat.commit(Transaction(id="2", source="operator", retract=tuple(spoon)))
@@ -234,7 +234,7 @@ def test_a_removed_entity_is_reported_with_its_time(flat):
     told = describe_missing(flat._journal, past, sought.missing, frozenset(flat.names), flat.classes.limits)
     assert len(told) == 1
     assert told[0].startswith("spoon1 was there until commit 3, ")
-    assert sought.with_the_past(told) == structs.replace(sought.found, gone=told)
+    assert sought.with_last_times(told) == structs.replace(sought.found, gone=told)
     other = finding.find(Find(text="the fork"))
     assert (
         describe_missing(flat._journal, past, other.missing, frozenset(flat.names), flat.classes.limits) == ()
@@ -242,7 +242,7 @@ def test_a_removed_entity_is_reported_with_its_time(flat):
 
 
 def test_a_moved_entity_is_reported_with_its_time(flat):
-    finding = Finding(flat)
+    finding = EntitySearch(flat)
     apple, at = flat.entity("apple1"), Pose(position_m=(2.0, 2.0, 0.0))
     assert apple.pose is not None
     coordinates = v.entity_iri("apple1_coordinates")

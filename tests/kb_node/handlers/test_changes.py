@@ -26,7 +26,7 @@ class Listener:
         self.commits.append((commit.seq, told))
 
     @contextmanager
-    def reporting_progress(self, work):
+    def report_progress(self, work):
         assert work.startswith(WORKING)
         yield lambda text: self.work.append(f"{work}: {text}")
 
@@ -42,8 +42,8 @@ def changes(semantic_map, listener):
         semantic_map,
         semantic_map._journal,
         publish=listener.spread,
-        not_written=listener.refused.append,
-        reporting_progress=listener.reporting_progress,
+        on_write_error=listener.refused.append,
+        report_progress=listener.report_progress,
     )
 
 

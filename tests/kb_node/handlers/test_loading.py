@@ -20,22 +20,22 @@ class NoSparql:
 
 
 def loading(semantic_map, said):
-    def reporting_progress(work):
+    def report_progress(work):
         return nullcontext(lambda text: said.append(f"{work}: {text}"))
 
     changing = ChangeHandlers(
         semantic_map,
         semantic_map._journal,
         publish=lambda commit, **how: None,
-        not_written=said.append,
-        reporting_progress=reporting_progress,
+        on_write_error=said.append,
+        report_progress=report_progress,
     )
     return LoadHandlers(
         semantic_map,
         semantic_map._journal,
         changing,
         NoSparql(),
-        reporting_progress=reporting_progress,
+        report_progress=report_progress,
         notes=lambda: (),
     )
 

@@ -78,7 +78,7 @@ class Home:
     def watch(self, query, **fields):
         return self.service.ask(Watch(query=query, **fields), self.seq).result(WAIT_S)
 
-    def merge_log(self, watch, **fields):
+    def renew(self, watch, **fields):
         return self.service.ask(Renew(watch=watch, **fields), self.seq).result(WAIT_S)
 
     def hear(self):

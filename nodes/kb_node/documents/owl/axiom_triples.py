@@ -106,8 +106,8 @@ class _Part(Expressions):
         """Add an axiom with its annotations."""
         axiom: Any = annotated.component
         about = self._map_axiom(axiom)
-        for said in about:
-            self._annotate(said, annotated.ann, _AXIOM)
+        for added in about:
+            self._annotate(added, annotated.ann, _AXIOM)
         return self
 
     def _map_axiom(self, axiom: Any) -> Sequence[Triple | Term]:
@@ -140,13 +140,13 @@ class _Part(Expressions):
         self, about: Triple | Term, annotations: Iterable[m.Annotation], kind: Term = _ANNOTATION
     ) -> None:
         """Add the annotations of a node, or of a triple of a `kind`, and their own annotations."""
-        said = sorted(
+        added = sorted(
             (((self.term(a.ap), self.term(a.av)), a.ann) for a in annotations), key=lambda pair: pair[0]
         )
-        if not said:
+        if not added:
             return
         node = about if isinstance(about, str) else self._reified(about, kind)
-        for (predicate, value), own in said:
+        for (predicate, value), own in added:
             self._annotate(self.add(node, predicate, value)[0], own)
 
     def _reified(self, triple: Triple, kind: Term) -> Term:
@@ -173,9 +173,9 @@ class _Part(Expressions):
         return []
 
     def _annotation_assertion(self, axiom: m.AnnotationAssertion) -> list[Triple]:
-        said = self.add(self.term(axiom.subject), self.term(axiom.ann.ap), self.term(axiom.ann.av))
-        self._annotate(said[0], axiom.ann.ann, _AXIOM)
-        return said
+        added = self.add(self.term(axiom.subject), self.term(axiom.ann.ap), self.term(axiom.ann.av))
+        self._annotate(added[0], axiom.ann.ann, _AXIOM)
+        return added
 
     def _sub_object_property(self, axiom: m.SubObjectPropertyOf) -> list[Triple]:
         wider = self.term(axiom.sup)

@@ -98,8 +98,8 @@ class Expressions:
             return variable
         return _atomic(x)
 
-    def _restriction(self, on: Any, *said: tuple[Term, Term]) -> Term:
-        return self._describe(_RESTRICTION, (owl("onProperty"), self.term(on)), *said)
+    def _restriction(self, on: Any, *values: tuple[Term, Term]) -> Term:
+        return self._describe(_RESTRICTION, (owl("onProperty"), self.term(on)), *values)
 
     def _cardinality(self, x: Any, on: str, bound: str, of: Term, filler: str) -> Term:
         """Return a cardinality restriction.
@@ -119,9 +119,9 @@ class Expressions:
         space = v.RDF if name == "LangRange" else v.XSD
         return v.iri(space + name[0].lower() + name[1:]), self.term(restriction.l)
 
-    def _describe(self, kind: Term | None, *said: tuple[Term, Term]) -> Term:
+    def _describe(self, kind: Term | None, *values: tuple[Term, Term]) -> Term:
         node = self.new_blank_node(kind)
-        for predicate, value in said:
+        for predicate, value in values:
             self.add(node, predicate, value)
         return node
 

@@ -143,9 +143,9 @@ def _describe_error(fault: str, text: str, prepared: str) -> str:
     if place := _BYTE.search(fault):
         at = int(place[1])
         line = prepared.encode()[:at].count(b"\n") + 1
-        said = _VALIDITY.search(fault)
+        validity = _VALIDITY.search(fault)
         token = prepared.encode()[at : at + 60].decode(errors="ignore").split()
-        what = said[1] if said else fault
+        what = validity[1] if validity else fault
         return f"line {line}: {what}" + (f" ({token[0]})" if what == "undefined prefix" and token else "")
     return fault.removeprefix("Failed to open ontology: ")
 

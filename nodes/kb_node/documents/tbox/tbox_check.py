@@ -118,8 +118,8 @@ def _classes(triples: Iterable[Triple]) -> list[Term]:
 
 
 def _individuals(triples: Collection[Triple]) -> set[Term]:
-    said = {s for s, p, o in triples if p == v.RDF_TYPE and not is_built_in(o)}
-    return said | _of(triples, v.OWL_NAMED_INDIVIDUAL)
+    described = {s for s, p, o in triples if p == v.RDF_TYPE and not is_built_in(o)}
+    return described | _of(triples, v.OWL_NAMED_INDIVIDUAL)
 
 
 def _ambiguous(tbox: Collection[Triple]) -> dict[str, dict[str, str]]:

@@ -40,16 +40,18 @@ def with_declarations(
 
 
 def _without_ignored_statements(triples: list[Triple]) -> list[Triple]:
-    there = set(triples)
+    present = set(triples)
     namespaces = {prefixes.split(c)[0] for c in _classes(triples)}
-    for aside in (aside for known in alignments.find_for_namespaces(namespaces) for aside in known.set_aside):
-        if aside.triple in there:
-            there.remove(aside.triple)
-            subject, predicate, _ = aside.triple
-            text = f"{v.local_name(predicate)} {v.local_name(aside.triple[2])}: {aside.why}"
-            triples = [t for t in triples if t != aside.triple]
+    for ignored in (
+        ignored for known in alignments.find_for_namespaces(namespaces) for ignored in known.set_aside
+    ):
+        if ignored.triple in present:
+            present.remove(ignored.triple)
+            subject, predicate, _ = ignored.triple
+            text = f"{v.local_name(predicate)} {v.local_name(ignored.triple[2])}: {ignored.why}"
+            triples = [t for t in triples if t != ignored.triple]
             triples.append((subject, v.SET_ASIDE, v.literal(text)))
-            triples += [aside.instead] if aside.instead is not None else []
+            triples += [ignored.instead] if ignored.instead is not None else []
     return triples
 
 

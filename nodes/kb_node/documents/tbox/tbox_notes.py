@@ -29,16 +29,16 @@ def notes(tbox: Iterable[Triple], reasoner: Reasoner, classes: ClassTable) -> tu
     Ineffective axioms of the shipped TBox are not reported.
     """
     tbox = list(tbox)
-    said = (
-        missing(ontology_files.missing_imports(tbox)),
-        not_in_space(classes),
-        set_aside(tbox),
-        beyond(outside_rl(filter(is_schema, tbox)) - _known(tbox)),
-        described(tbox_validation.described_by(tbox, classes)),
-        slow(reasoner),
-        without_places(reasoner, classes),
+    texts = (
+        missing_imports_note(ontology_files.missing_imports(tbox)),
+        no_spatial_class_note(classes),
+        ignored_statements_note(tbox),
+        beyond_rl_note(outside_rl(filter(is_schema, tbox)) - _known(tbox)),
+        described_entities_note(tbox_validation.described_by(tbox, classes)),
+        slow_changes_note(reasoner),
+        no_spatial_facts_note(reasoner, classes),
     )
-    return tuple(filter(None, said))
+    return tuple(filter(None, texts))
 
 
 def _known(tbox: Iterable[Triple]) -> Counter[str]:
@@ -48,7 +48,7 @@ def _known(tbox: Iterable[Triple]) -> Counter[str]:
     return outside_rl(filter(is_schema, rdf.parse(HOUSEHOLD_TTL.read_bytes(), HOUSEHOLD_TTL.name)))
 
 
-def missing(imports: tuple[str, ...]) -> str:
+def missing_imports_note(imports: tuple[str, ...]) -> str:
     """Return a note on missing imports, or ""."""
     if not imports:
         return ""
@@ -56,7 +56,7 @@ def missing(imports: tuple[str, ...]) -> str:
     return f"{_count(len(imports), 'import')} not found; the TBox is used without: {few}"
 
 
-def without_places(reasoner: Reasoner, classes: ClassTable) -> str:
+def no_spatial_facts_note(reasoner: Reasoner, classes: ClassTable) -> str:
     """Return a note if no spatial facts are computed because the TBox lacks the properties, or ""."""
     if not classes.spatial or any(any(reasoner.asserted(p, v.RDF_TYPE, None)) for p in COMPUTED):
         return ""
@@ -64,7 +64,7 @@ def without_places(reasoner: Reasoner, classes: ClassTable) -> str:
     return f"the TBox has none of {few}, so spatial relations are measured on request and are not facts"
 
 
-def not_in_space(classes: ClassTable) -> str:
+def no_spatial_class_note(classes: ClassTable) -> str:
     """Return a note if the TBox has no spatial class, or ""."""
     if classes.spatial:
         return ""
@@ -73,17 +73,17 @@ def not_in_space(classes: ClassTable) -> str:
     )
 
 
-def set_aside(tbox: Iterable[Triple]) -> str:
+def ignored_statements_note(tbox: Iterable[Triple]) -> str:
     """Return a note on statements of the TBox that are ignored, or ""."""
     reasons: dict[str, list[str]] = {}
     for s, text in sorted((v.local_name(s), v.lexical(o)) for s, p, o in tbox if p == v.SET_ASIDE):
         what, _, why = text.partition(": ")
         reasons.setdefault(why, []).append(f"{s} {what}")
-    said = "; ".join(f"{', '.join(what)} ({why})" for why, what in reasons.items())
-    return said and f"ignored, because every map would be inconsistent with it: {said}"
+    texts = "; ".join(f"{', '.join(what)} ({why})" for why, what in reasons.items())
+    return texts and f"ignored, because every map would be inconsistent with it: {texts}"
 
 
-def beyond(kinds: Counter[str]) -> str:
+def beyond_rl_note(kinds: Counter[str]) -> str:
     """Return a note on the axioms that the reasoner does not use fully, by kind, or ""."""
     if not kinds:
         return ""
@@ -95,7 +95,7 @@ def beyond(kinds: Counter[str]) -> str:
     return f"{axioms} beyond OWL 2 RL; that part has no effect ({few})"
 
 
-def described(names: list[str]) -> str:
+def described_entities_note(names: list[str]) -> str:
     """Return a note on entities that no command can change, or ""."""
     if not names:
         return ""
@@ -103,7 +103,7 @@ def described(names: list[str]) -> str:
     return f"{are} described by the TBox itself, so commands cannot change them: {wording.few(names, 4)}"
 
 
-def slow(reasoner: Reasoner) -> str:
+def slow_changes_note(reasoner: Reasoner) -> str:
     """Return a note on why the reasoner is not incremental, and the time of a change, or ""."""
     if (why := reasoner.not_incremental) is None:
         return ""

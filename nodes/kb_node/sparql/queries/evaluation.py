@@ -66,8 +66,8 @@ def _is_nothing(rows: tuple[Row, ...]) -> bool:
 
 def declared_in(dataset: Dataset) -> dict[str, str]:
     """Return the prefixes of the TBox's own namespaces."""
-    said = dataset.store.quads_for_pattern(None, _PREFERRED_PREFIX, None, ASSERTED)
-    declared = prefixes.declared_in((str(q.subject), str(q.predicate), str(q.object)) for q in said)
+    quads = dataset.store.quads_for_pattern(None, _PREFERRED_PREFIX, None, ASSERTED)
+    declared = prefixes.declared_in((str(q.subject), str(q.predicate), str(q.object)) for q in quads)
     return {prefix: namespace for namespace, prefix in declared.items()}
 
 

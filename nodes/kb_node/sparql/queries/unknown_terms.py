@@ -62,13 +62,13 @@ def _is_mentioned(dataset: Dataset, node: ox.NamedNode) -> bool:
 def _called(dataset: Dataset, namespace: str) -> set[str]:
     """Return the local names of a namespace; if there are many individuals, only some of them."""
     type_ = ox.NamedNode(v.bare(v.RDF_TYPE))
-    said = (
+    typed = (
         dataset.store.quads_for_pattern(None, type_, None if kind is None else ox.NamedNode(v.bare(kind)))
         for kind in (*_KINDS, None)
     )
     iris = {
         quad.subject.value
-        for quads in said
+        for quads in typed
         for quad in islice(quads, _COMPARED)
         if isinstance(quad.subject, ox.NamedNode)
     }

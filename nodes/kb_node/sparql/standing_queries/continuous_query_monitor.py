@@ -114,8 +114,8 @@ class ContinuousQueryMonitor:
         if command.end:
             self._end_query(standing)
         standing.ends = time.monotonic() + standing.lease_s
-        said = "has ended" if command.end else f"is renewed for {standing.lease_s:g} s"
-        self._send(CommandReply(number=number, reply=_encoded(Done(text=f"{command.watch} {said}"))))
+        result = "has ended" if command.end else f"is renewed for {standing.lease_s:g} s"
+        self._send(CommandReply(number=number, reply=_encoded(Done(text=f"{command.watch} {result}"))))
 
     def follow(self, delta: Delta) -> None:
         """Schedule the evaluations that a commit requires."""
@@ -210,9 +210,9 @@ class ContinuousQueryMonitor:
             self._active.lane.send_bytes(msgpack.encode(question))
 
     def _new_reader(self) -> ReaderSwitch:
-        lane, there = Pipe()
-        reader = self._hire(there)
-        there.close()
+        lane, remote = Pipe()
+        reader = self._hire(remote)
+        remote.close()
         return ReaderSwitch(lane, reader)
 
     def _finish(self) -> None:

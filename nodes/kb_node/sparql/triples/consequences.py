@@ -61,8 +61,8 @@ class Consequences:
     ) -> None:
         """Add to `dataset` what follows from the asserted and computed facts that are not suppressed."""
         self._dataset = dataset
-        aside = set(derived_changes.aside)
-        self._reasoner = Reasoner(t for t in asserted if t not in aside)
+        suppressed = set(derived_changes.aside)
+        self._reasoner = Reasoner(t for t in asserted if t not in suppressed)
         self._reasoner.update_computed(add=derived_changes.come, suppress=derived_changes.aside)
         dataset.deny(derived_changes.aside)
         self._read_schema()
@@ -79,44 +79,44 @@ class Consequences:
         `derived_changes` are the changes of computed and suppressed facts.
         """
         was_compiled = self._reasoner.is_compiled
-        less = self._reasoner.update_computed(
+        removal = self._reasoner.update_computed(
             remove=derived_changes.gone, suppress=derived_changes.aside, report_implied=True
         )
         touched = self._reasoner.apply(delete=delta.retracted, insert=delta.inserted).touched
-        more = self._reasoner.update_computed(
+        addition = self._reasoner.update_computed(
             add=derived_changes.come, restore=derived_changes.back, report_implied=True
         )
         if not (was_compiled and self._reasoner.is_compiled) or any(map(is_schema, delta.asserted)):
-            gone, new = self._all_changes()
-        elif less.implied is None or more.implied is None:
-            touched |= less.touched | more.touched
-            gone, new = self._changes((*delta.asserted, *chain(*derived_changes)), touched)
+            removed, new = self._all_changes()
+        elif removal.implied is None or addition.implied is None:
+            touched |= removal.touched | addition.touched
+            removed, new = self._changes((*delta.asserted, *chain(*derived_changes)), touched)
         else:
-            gone, new = self._changes(delta.asserted, touched)
-            for triple in less.implied | more.implied:
-                self._compare(triple, gone, new)
-            for term in less.touched | more.touched:
-                self._compare_classes(term, gone, new)
+            removed, new = self._changes(delta.asserted, touched)
+            for triple in removal.implied | addition.implied:
+                self._compare(triple, removed, new)
+            for term in removal.touched | addition.touched:
+                self._compare_classes(term, removed, new)
         return Delta(
             seq=delta.seq,
             retracted=delta.retracted,
             inserted=delta.inserted,
-            no_longer_inferred=tuple(sorted(gone)),
+            no_longer_inferred=tuple(sorted(removed)),
             newly_inferred=tuple(sorted(new)),
             denied=derived_changes.aside,
             undenied=derived_changes.back,
         )
 
-    def _compare(self, triple: Triple, gone: set[Triple], new: set[Triple]) -> None:
+    def _compare(self, triple: Triple, removed: set[Triple], new: set[Triple]) -> None:
         """Add a relation to the removed or the new inferred triples."""
-        was, does = self._dataset.follows(triple), self._reasoner.follows(triple)
-        if was != does:
-            (new if does else gone).add(triple)
+        was, follows = self._dataset.follows(triple), self._reasoner.follows(triple)
+        if was != follows:
+            (new if follows else removed).add(triple)
 
-    def _compare_classes(self, term: Term, gone: set[Triple], new: set[Triple]) -> None:
+    def _compare_classes(self, term: Term, removed: set[Triple], new: set[Triple]) -> None:
         before = {t for t in self._dataset.inferred(term) if t[1] == v.RDF_TYPE}
         now = set(self._reasoner.inferred(term, v.RDF_TYPE, None))
-        gone |= before - now
+        removed |= before - now
         new |= now - before
 
     def _all_changes(self) -> tuple[set[Triple], set[Triple]]:
@@ -129,12 +129,12 @@ class Consequences:
         self, otherwise: Iterable[Triple], touched: Iterable[Term]
     ) -> tuple[set[Triple], set[Triple]]:
         """Return the removed and the new inferred triples after a change of these triples."""
-        gone, new = set[Triple](), set[Triple]()
-        said: dict[Term, list[Triple]] = {}
+        removed, new = set[Triple](), set[Triple]()
+        by_subject: dict[Term, list[Triple]] = {}
         for triple in otherwise:
-            said.setdefault(triple[0], []).append(triple)
-        waiting = {o for triples in said.values() for _, p, o in triples if p != v.RDF_TYPE}
-        waiting.update(touched, said)
+            by_subject.setdefault(triple[0], []).append(triple)
+        waiting = {o for triples in by_subject.values() for _, p, o in triples if p != v.RDF_TYPE}
+        waiting.update(touched, by_subject)
         seen = set[Term]()
         while waiting:
             subject = waiting.pop()
@@ -143,10 +143,10 @@ class Consequences:
             seen.add(subject)
             before = {t for t in self._dataset.inferred(subject) if t[1] not in _OF_THE_SCHEMA}
             now = set(inferred(self._reasoner, subject))
-            gone |= before - now
+            removed |= before - now
             new |= now - before
-            waiting |= self._concerned(subject, {*(before ^ now), *said.get(subject, ())}) - seen
-        return gone, new
+            waiting |= self._concerned(subject, {*(before ^ now), *by_subject.get(subject, ())}) - seen
+        return removed, new
 
     def _concerned(self, subject: Term, changed: set[Triple]) -> set[Term]:
         """Return the individuals that a change of these triples about `subject` may concern."""

@@ -76,8 +76,8 @@ class MeasuredRelations:
         placed = tuple(placed)
         reborn = [e.name for e in placed if self._iris.get(e.name, v.iri(e.iri)) != v.iri(e.iri)]
         removed = (*removed, *reborn)
-        gone = self._pairs.update((), removed)
-        candidates = self._triples(gone, self._iris)
+        removed_triples = self._pairs.update((), removed)
+        candidates = self._triples(removed_triples, self._iris)
         for name in removed:
             if (iri := self._iris.pop(name, None)) is not None:
                 del self._names[iri]
@@ -97,12 +97,12 @@ class MeasuredRelations:
 
     def _differing(self, candidates: Iterable[Triple]) -> tuple[tuple[Triple, ...], tuple[Triple, ...]]:
         """Return those of the triples that the dataset has wrongly, and those that it lacks."""
-        gone, come = list[Triple](), list[Triple]()
+        removed_triples, added_triples = list[Triple](), list[Triple]()
         dataset = self._dataset
         for triple in candidates:
             is_there = dataset.is_measured(triple)
             holds = self._derived.holds(triple, self._pairs, self._names)
             belongs = holds and not dataset.holds_unmeasured(triple)
             if is_there != belongs:
-                (come if belongs else gone).append(triple)
-        return tuple(gone), tuple(come)
+                (added_triples if belongs else removed_triples).append(triple)
+        return tuple(removed_triples), tuple(added_triples)

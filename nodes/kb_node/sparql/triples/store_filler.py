@@ -73,7 +73,7 @@ class StoreFiller:
             sent = 0
             for piece in pieces:
                 if not self._is_wanted:
-                    raise ValueError("it is not wanted any more")
+                    raise ValueError("the store is no longer needed")
                 process.stdin.write(frame(piece))
                 sent += len(piece)
             if self._turtle:

@@ -76,7 +76,7 @@ def test_roots_stay_until_others_are_declared():
 
 
 def test_without_roots_the_consequence_is_reported():
-    assert "load it again with --spatial-root CLASS" in tbox_notes.not_in_space(table(triples()))
+    assert "load it again with --spatial-root CLASS" in tbox_notes.no_spatial_class_note(table(triples()))
 
 
 SOMA = """
@@ -102,9 +102,9 @@ def test_statements_that_make_every_map_inconsistent_are_ignored_and_reported():
     assert (region, v.RDFS_SUB_CLASS_OF, REGION) in tbox
     reasoner = Reasoner(tbox)
     reasoner.apply(insert=triples(COLOR))
-    note = tbox_notes.set_aside(tbox)
+    note = tbox_notes.ignored_statements_note(tbox)
     assert note.startswith(
         "ignored, because every map would be inconsistent with it: ColorRegion subClassOf PhysicalAtt"
     )
     assert with_declarations(tbox) == tbox
-    assert tbox_notes.set_aside(triples()) == ""
+    assert tbox_notes.ignored_statements_note(triples()) == ""

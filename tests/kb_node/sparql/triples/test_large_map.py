@@ -331,7 +331,7 @@ def test_a_long_log_is_merged_into_the_store(node, monkeypatch):
     kept = dataset(path, node.map.seq, node.map.seq)
     commit = node.commit("more", chair("more"))
     kept.apply(Delta(seq=commit.seq, inserted=commit.inserted))
-    kept.renew([Delta(seq=commit.seq, inserted=commit.inserted)])
+    kept.merge_log([Delta(seq=commit.seq, inserted=commit.inserted)])
     opened = kept.open_in_reader()
     assert opened.seq == commit.seq
     triple = commit.inserted[0]
