@@ -109,7 +109,7 @@ def test_a_port_in_use_is_reported(tmp_path):
         status, line = up(tmp_path, "--listen", endpoint)
     assert status == 1
     assert f"cannot listen on {endpoint}" in line
-    assert "such as --listen tcp/127.0.0.1:" in line
+    assert "for example --listen tcp/127.0.0.1:" in line
 
 
 @pytest.mark.parametrize(
