@@ -146,7 +146,7 @@ def validate_moves(
                 raise ModelError(f"{placement.name} is fixed by {holder}; only its joints can move it")
             if record.held_by:
                 raise ModelError(
-                    f"{placement.name} is attached to {record.held_by}; to move it, first run:"
+                    f"{placement.name} is attached to {record.held_by}; to move it, first:"
                     f" semmap detach {placement.name}"
                 )
             _check_reach(placement.pose)

@@ -256,7 +256,7 @@ def test_entities_of_a_checkpoint_by_other_code_are_read_again(semantic_map, mon
     before = semantic_map.snapshot()
     assert [e.provenance.commit for e in before.entities] == [2]
     with monkeypatch.context() as other:
-        other.setattr(conclusions_format, "mark", lambda: b"other")
+        other.setattr(conclusions_format, "format_mark", lambda: b"other")
         semantic_map.update_entities(
             [structs.replace(entity, class_="Stool") for entity in semantic_map.entities()]
         )

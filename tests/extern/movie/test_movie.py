@@ -82,7 +82,7 @@ def test_a_place_or_a_camera_can_be_filmed(data, tmp_path):
         ({"until": 9}, errors.Refused, "there is no commit 9 yet"),
         ({"place": "kitchn1"}, errors.UnknownName, "did you mean kitchen1"),
         ({"place": "chair1"}, errors.Refused, "chair1 is not a place"),
-        ({"camera": "nose"}, errors.BadRequest, "the world has no camera 'nose'"),
+        ({"camera": "nose"}, errors.BadRequest, "unknown camera 'nose'"),
         (
             {"camera": "nose", "place": "kitchen1"},
             errors.BadRequest,

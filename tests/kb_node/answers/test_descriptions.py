@@ -112,7 +112,7 @@ def test_the_description_is_of_the_newest_commit(descriptions, room):
     assert "Problems: cup1, not seen where it should stand. The kitchen has" in told.text
     assert "with 3 chairs round it" in told.text
     assert (
-        "Not as it should be: not seen where it should stand."
+        "Problems: not seen where it should stand."
         in descriptions.describe(Tell(name="cup1")).text
     )
     assert "Not as" not in descriptions.describe(Tell(name="cup2")).text
@@ -139,12 +139,12 @@ def test_a_large_map_is_described_by_numbers_only(descriptions, room, monkeypatc
 def test_an_empty_map_and_an_unknown_name(descriptions, semantic_map):
     told = descriptions.describe(Tell())
     assert structs.asdict(told) == {"text": "The map is empty.", "words": 4, "left_out": 0, "commit": 0}
-    with pytest.raises(errors.UnknownName, match="nothing is named or called 'cup1'"):
+    with pytest.raises(errors.UnknownName, match="no entity has the name, label or class 'cup1'"):
         descriptions.describe(Tell(name="cup1"))
 
 
 def test_an_ambiguous_word_is_rejected(descriptions, room):
-    with pytest.raises(errors.BadRequest, match="'cup' may mean cup1 and cup2; name one of them"):
+    with pytest.raises(errors.BadRequest, match="'cup' is ambiguous: cup1 and cup2; name one of them"):
         descriptions.describe(Tell(name="cup"))
 
 
@@ -152,7 +152,7 @@ def test_denied_assertions_are_not_repeated(descriptions, room):
     said = Statement(property="isOn", values=("table1",))
     room(2, edit=(Edit(name="chair3", set=(said,)),))
     told = descriptions.describe(Tell(name="chair3")).text
-    assert "Not as it should be: chair3 was asserted to be on table1; it stands" in told
+    assert "Problems: chair3 was asserted to be on table1; it stands" in told
     assert "It is on table1" not in told
 
 

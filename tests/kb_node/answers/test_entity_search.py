@@ -180,7 +180,7 @@ def test_a_superlative_reports_the_measurement_and_a_direction_needs_a_viewpoint
     found = EntitySearch(flat).find(Find(text="the lowest book")).found
     assert "at a height of 0.74 m" in found.candidates[0].reasons
     found = EntitySearch(flat).find(Find(text="the third book")).found
-    assert found.question.startswith("The third from where?")
+    assert found.question.startswith("From where is the third counted?")
     found = EntitySearch(flat).find(Find(text="the third book", viewpoint=(7.4, 6.5, 0.0, 0.0))).found
     assert "from where" not in found.question
 
@@ -206,7 +206,7 @@ def test_neighbours_and_doors_between_places_are_found(flat, text, meant):
 def test_an_unknown_viewer_or_asker_is_rejected(flat):
     with pytest.raises(errors.UnknownName):
         EntitySearch(flat).find(Find(text="my cup", asker="ghost9"))
-    with pytest.raises(errors.BadRequest, match="depend on who looks"):
+    with pytest.raises(errors.BadRequest, match="require a viewpoint"):
         EntitySearch(flat).find(Find(text="the leftmost book"))
     with pytest.raises(errors.BadRequest, match="'chair' may mean"):
         EntitySearch(flat).find(Find(text="the leftmost book", viewer="chair"))

@@ -50,7 +50,7 @@ def test_completed_parts_are_not_repeated(semantic_map):
 def test_the_error_of_a_part_reports_the_completed_parts(semantic_map):
     wrong = (CHAIRS[5][0][0], CHAIRS[5][0][1], CHAIRS[5][0][2].replace("Chair", "Kitchen"))
     parts = split(transaction("load", [*LOAD.insert[: 6 * len(CHAIRS[0])], wrong]), 2 * len(CHAIRS[0]))
-    with pytest.raises(errors.Inconsistent, match=r"part 3 of 3: .* \(commits 1 to 2\) and stays"):
+    with pytest.raises(errors.Inconsistent, match=r"part 3 of 3: .* \(commits 1 to 2\), the rest is not"):
         commit_each(parts, semantic_map.commit, lambda _: None)
     assert len(semantic_map) == 4
 

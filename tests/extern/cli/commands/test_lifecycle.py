@@ -75,8 +75,8 @@ def test_a_part_whose_map_is_elsewhere_remembers_its_world(data):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["up", "--only", "brain"], "there is no node 'brain'; --only takes any of kb, coordinator, sim,"),
-        (["up", "--only", ","], "--only takes the names of nodes: "),
+        (["up", "--only", "brain"], "--only: unknown node 'brain'; use a comma-separated list of kb, coordinator, sim,"),
+        (["up", "--only", ","], "--only requires names of nodes: "),
         (["up", "--only", "sim", "--no-sim"], "--only and --no-sim exclude each other"),
         (["up", "--only", "sim", "--perception"], "remove --perception"),
         (["node", "sim_node", "--only", "sim"], "--only applies to semmap up"),

@@ -38,7 +38,7 @@ def shown(explanation):
 
 
 def test_premises_are_below_their_conclusion(reasoner):
-    told = shown(proofs.message(reasoner.explain(is_a("beer1", "Food"))))
+    told = shown(proofs.to_message(reasoner.explain(is_a("beer1", "Food"))))
     assert told[0] == (0, "beer1 is a Food", "inferred")
     assert (1, "beer1 is a Drink", "inferred") in told
     assert (2, "beer1 is a beer", "asserted") in told
@@ -47,14 +47,14 @@ def test_premises_are_below_their_conclusion(reasoner):
 
 
 def test_asserted_facts_have_one_line(reasoner):
-    told = shown(proofs.message(reasoner.explain(is_a("beer1", "Beer"))))
+    told = shown(proofs.to_message(reasoner.explain(is_a("beer1", "Beer"))))
     assert told == [(0, "beer1 is a beer", "asserted")]
 
 
 def test_contradictions_show_both_facts(reasoner):
     with pytest.raises(Inconsistent) as refused:
         reasoner.apply(insert=[is_a("beer1", "Chair")])
-    told = shown(proofs.message(refused.value.explanation))
+    told = shown(proofs.to_message(refused.value.explanation))
     assert told[0] == (0, "these facts contradict one another", "contradiction")
     assert (1, "beer1 is a Chair", "asserted") in told
     assert (1, "beer1 is a Drink", "inferred") in told
