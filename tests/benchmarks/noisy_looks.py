@@ -58,7 +58,7 @@ def gone(seconds: float = 120.0, seed: int = 1) -> tuple[int, int]:
         for entity in true:
             track = tracks[entity.name] = tracks[entity.name].see(_look(entity, dice), config)
             before = known.get(entity.name)
-            if before is None and track.looks >= config.confirm_frames:
+            if before is None and track.frames >= config.confirm_frames:
                 (added,) = additions([track], set(), classes).values()
                 assert added.at is not None
                 pose = Pose(position_m=added.at, orientation_wxyz=added.orientation or (1.0, 0.0, 0.0, 0.0))

@@ -100,7 +100,8 @@ def test_a_missing_certificate_is_reported_immediately(capsys):
 
 
 @pytest.mark.parametrize(
-    ("identity", "told"), [("unknown", "there is no file"), ("ca", "is not an identity: the certificate has no role")]
+    ("identity", "told"),
+    [("unknown", "there is no file"), ("ca", "is not an identity: the certificate has no role")],
 )
 def test_an_invalid_identity_is_reported(keys, capsys, identity, told):
     assert execute(["list", "--identity", str(keys / identity)]) == 2

@@ -111,11 +111,8 @@ def test_the_description_is_of_the_newest_commit(descriptions, room):
     assert told.commit == 2
     assert "Problems: cup1, not seen where it should stand. The kitchen has" in told.text
     assert "with 3 chairs round it" in told.text
-    assert (
-        "Problems: not seen where it should stand."
-        in descriptions.describe(Tell(name="cup1")).text
-    )
-    assert "Not as" not in descriptions.describe(Tell(name="cup2")).text
+    assert "Problems: not seen where it should stand." in descriptions.describe(Tell(name="cup1")).text
+    assert "Problems" not in descriptions.describe(Tell(name="cup2")).text
 
 
 def test_chairs_are_at_a_table_that_is_in_no_place(descriptions, semantic_map):

@@ -208,7 +208,7 @@ def test_an_unknown_viewer_or_asker_is_rejected(flat):
         EntitySearch(flat).find(Find(text="my cup", asker="ghost9"))
     with pytest.raises(errors.BadRequest, match="require a viewpoint"):
         EntitySearch(flat).find(Find(text="the leftmost book"))
-    with pytest.raises(errors.BadRequest, match="'chair' may mean"):
+    with pytest.raises(errors.BadRequest, match="'chair' is ambiguous"):
         EntitySearch(flat).find(Find(text="the leftmost book", viewer="chair"))
 
 

@@ -34,7 +34,7 @@ def test_an_entity_has_its_labels_and_property_values_as_search_terms():
 
 
 @pytest.fixture(scope="module")
-def to_words():
+def spoken():
     reasoner = Reasoner(household())
     return terms(reasoner, ClassTable(reasoner))
 

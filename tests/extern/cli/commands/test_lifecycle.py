@@ -75,7 +75,10 @@ def test_a_part_whose_map_is_elsewhere_remembers_its_world(data):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["up", "--only", "brain"], "--only: unknown node 'brain'; use a comma-separated list of kb, coordinator, sim,"),
+        (
+            ["up", "--only", "brain"],
+            "--only: unknown node 'brain'; use a comma-separated list of kb, coordinator, sim,",
+        ),
         (["up", "--only", ","], "--only requires names of nodes: "),
         (["up", "--only", "sim", "--no-sim"], "--only and --no-sim exclude each other"),
         (["up", "--only", "sim", "--perception"], "remove --perception"),
