@@ -80,7 +80,7 @@ def test_an_error_is_the_reply_and_the_node_keeps_running(network):
 
 def test_an_unknown_command_is_reported_with_the_available_ones(network):
     _, client = network
-    with pytest.raises(errors.UnknownVerb, match="there are: check, explain, get, infer"):
+    with pytest.raises(errors.UnknownVerb, match="available: check, explain, get, infer"):
         bus.ask(client, PREFIX, "fly", commands.Get(name="x"), replies.Done)
 
 
@@ -111,7 +111,7 @@ def test_a_verb_is_left_to_the_node_that_serves_it():
                 assert [get(client, "get", first_hand=True) for _ in range(20)] == ["first"] * 20
                 assert get(client, "list", first_hand=True) == "other"
                 assert get(client, "list") == "other"
-                with pytest.raises(errors.UnknownVerb, match="there are: get, list"):
+                with pytest.raises(errors.UnknownVerb, match="available: get, list"):
                     bus.ask(client, PREFIX, "*", commands.Get(name="x"), replies.Done)
                 away.set()
                 nodes[0].stop()
@@ -346,7 +346,7 @@ def overloaded(node, client, monkeypatch, *, each=3):
     def fill(names):
         """Let one request wait among the events, and then one in the queue for each name."""
         send()
-        until(lambda: node._is_at_once, "it waits among the events")
+        until(lambda: node._is_immediate, "it waits among the events")
         for number, name in enumerate(names, start=1):
             send(name=name)
             until(lambda number=number: len(node._requests) == number, "it waits")
@@ -431,7 +431,7 @@ def test_without_room_requests_wait_and_urgent_ones_and_events_do_not(network):
 
 def test_the_newest_publications_are_kept(network, monkeypatch):
     node, client = network
-    monkeypatch.setattr(loop, "_FOLLOWED", 5)
+    monkeypatch.setattr(loop, "_MAX_WAITING", 5)
     seen, release = [], threading.Event()
     come = publications_kept(monkeypatch)
     topic = keys.Topic("semmap/test/beats", Health, "lossless")
