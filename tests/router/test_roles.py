@@ -40,7 +40,7 @@ BY_A_NODE = keys.health_key("after")
 def settle(sessions, *names):
     """Wait until the router has all messages of these sessions, and they have all of the router.
 
-    Then it knows their subscribers, and publishers know their followers: without those they would send nothing.
+    Then it knows their subscribers, and publishers know their followers.
     """
     for name in names:
         with Heard(sessions["coordinator"], BY_EVERYBODY) as heard:
