@@ -108,8 +108,8 @@ def test_a_verb_is_left_to_the_node_that_serves_it():
         try:
             with bus.open_session(bus.Network(connect=(endpoint,))) as client:
                 assert [get(client, "get") for _ in range(20)] == ["first"] * 20
-                assert [get(client, "get", first_hand=True) for _ in range(20)] == ["first"] * 20
-                assert get(client, "list", first_hand=True) == "other"
+                assert [get(client, "get", prefer_complete=True) for _ in range(20)] == ["first"] * 20
+                assert get(client, "list", prefer_complete=True) == "other"
                 assert get(client, "list") == "other"
                 with pytest.raises(errors.UnknownVerb, match="available: get, list"):
                     bus.ask(client, PREFIX, "*", commands.Get(name="x"), replies.Done)
@@ -121,7 +121,7 @@ def test_a_verb_is_left_to_the_node_that_serves_it():
                 here.close()
                 until(lambda: not firsts.matching_status.matching, "the client knows that the first is gone")
                 assert get(client, "get") == "other"
-                assert get(client, "get", first_hand=True) == "other"
+                assert get(client, "get", prefer_complete=True) == "other"
         finally:
             for node, thread in zip(nodes, threads, strict=True):
                 node.stop()
@@ -394,9 +394,9 @@ def test_a_busy_reply_is_retried_automatically(network, monkeypatch):
     node, client = network
     _, fill, release, _, _ = overloaded(node, client, monkeypatch)
     fill("xxx")
-    pause_s = query_client.Patience.pause_s
+    pause_s = query_client.BusyBackoff.pause_s
     # there is room at the retry
-    monkeypatch.setattr(query_client.Patience, "pause_s", lambda *told: release.set() or pause_s(*told))
+    monkeypatch.setattr(query_client.BusyBackoff, "pause_s", lambda *told: release.set() or pause_s(*told))
     question = commands.Get(name="patient")
     assert bus.ask(client, "semmap/held", "get", question, replies.Done).text == "patient"
     assert release.is_set()
