@@ -1,10 +1,10 @@
-"""A camera of one's own that feeds perception: python examples/own_camera.py [SECONDS].
+"""Publish frames of a custom camera to perception: python examples/own_camera.py [SECONDS].
 
-Beside:
+Start this system first:
 
     semmap up --data /tmp/seen --abox none --world empty --truth perceived --perception --camera-hz 0
 
-Here the "camera" draws a table with a box on it; a real one puts its own planes and pose in their place.
+The example renders a table with a box on it. Replace the images and the pose by those of your camera.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ FLOOR = (200, 195, 185)
 
 
 def map_from_camera() -> NDArray[np.float64]:
-    """(4, 4): the optical frame (x right, y down, z into the scene) at EYE_M, looking at TARGET_M."""
+    """Return the (4, 4) pose of the optical frame (x right, y down, z forward) at EYE_M, facing TARGET_M."""
     forward = (TARGET_M - EYE_M) / np.linalg.norm(TARGET_M - EYE_M)
     right = np.cross(forward, (0.0, 0.0, 1.0))
     right /= np.linalg.norm(right)
@@ -40,13 +40,13 @@ def map_from_camera() -> NDArray[np.float64]:
     return pose
 
 
-def picture() -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-    """Colour (HEIGHT, WIDTH, 3) and depth (HEIGHT, WIDTH) [m] of the boxes and the floor."""
+def render() -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+    """Return colour (HEIGHT, WIDTH, 3) and depth (HEIGHT, WIDTH) [m] of the boxes and the floor."""
     columns, rows = np.meshgrid(np.arange(WIDTH) + 0.5, np.arange(HEIGHT) + 0.5)
     rays = np.stack(
         [(columns - WIDTH / 2) / FOCAL_PX, (rows - HEIGHT / 2) / FOCAL_PX, np.ones_like(rows)], -1
     )
-    rays = rays @ map_from_camera()[:3, :3].T  # of depth one, in the map
+    rays = rays @ map_from_camera()[:3, :3].T  # with depth 1, in the map frame
     with np.errstate(divide="ignore"):
         depth = np.where(rays[..., 2] < 0.0, -EYE_M[2] / rays[..., 2], np.inf)
         colour = np.broadcast_to(np.array(FLOOR, np.uint8), (*depth.shape, 3)).copy()
@@ -60,9 +60,9 @@ def picture() -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
 
 
 def main() -> None:
-    """Publish five frames a second, and print what perception makes of them."""
+    """Publish five frames a second, and print the observations and the resulting entities."""
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 20.0
-    planes = {"rgb": picture()[0].tobytes(), "depth": picture()[1].tobytes()}
+    planes = {"rgb": render()[0].tobytes(), "depth": render()[1].tobytes()}
     pose = tuple(map_from_camera().ravel().tolist())
     lens = (FOCAL_PX, 0.0, WIDTH / 2, 0.0, FOCAL_PX, HEIGHT / 2, 0.0, 0.0, 1.0)
     with semmap.connect(agent="own camera") as client:

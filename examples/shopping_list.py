@@ -1,4 +1,4 @@
-"""Which things the kitchen lacks: python examples/shopping_list.py Milk Bread Tomato."""
+"""List the objects that are not in the kitchen: python examples/shopping_list.py Milk Bread Tomato."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ import semmap
 
 
 def shopping_list(client: semmap.Client, wanted: list[str], place: str = "kitchen") -> list[str]:
-    """The classes of which nothing is in a place; also what is a kind of one counts (a Beer is a Drink)."""
+    """Return the classes without an instance in `place`; subclasses count (a Beer is a Drink)."""
     return [class_ for class_ in wanted if not client.list(class_, in_=place)]
 
 
 def main() -> None:
-    """Print what to buy."""
+    """Print the missing classes."""
     wanted = sys.argv[1:] or ["Milk", "Bread", "Tomato"]
     with semmap.connect(agent="shopping list") as client:
         try:
             missing = shopping_list(client, wanted)
         except semmap.UnknownClass as error:
-            sys.exit(error.text)  # with the nearest names
+            sys.exit(error.text)  # suggests similar class names
     print("buy:", ", ".join(missing) if missing else "nothing")
 
 

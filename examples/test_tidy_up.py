@@ -1,4 +1,4 @@
-"""A pytest of a robot's program, with a system of its own: pytest examples/test_tidy_up.py."""
+"""Test a robot program in a separate system: pytest examples/test_tidy_up.py."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from semmap.testing import own_system
 
 
 def tidy_up(client: semmap.Client) -> list[str]:
-    """The robot's program: every cup goes onto the counter, side by side; answers which it moved."""
+    """Put every cup onto the counter, side by side, and return the names of the moved cups."""
     counter = client.get("counter1")
     x, y, z = counter.pose.position_m
     moved = []
@@ -34,11 +34,11 @@ def test_cups_are_put_on_the_counter(client):
     assert client.history("cup1")[-1].reason == "tidy up"
 
 
-def test_what_the_robot_did_can_be_taken_back(client):
+def test_the_changes_of_the_robot_can_be_undone(client):
     client.undo()
     assert client.get("cup1").pose.position_m == (3.0, 3.0, 0.0)
 
 
-def test_the_map_refuses_nonsense(client):
+def test_an_unknown_class_is_rejected(client):
     with pytest.raises(semmap.UnknownClass, match="did you mean"):
         client.add("Cupp", at=(0.0, 0.0, 0.0))

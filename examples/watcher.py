@@ -1,4 +1,4 @@
-"""Who changes what, and the drinks that come and go, for a minute: python examples/watcher.py [SECONDS]."""
+"""Print commits, and drinks that are added or removed, for a minute: python examples/watcher.py [SECONDS]."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ DRINKS = "SELECT ?drink { ?drink a dm:Drink }"
 
 
 def watch_drinks(client: semmap.Client, seconds: float) -> None:
-    """A standing query: its rows now, then which appear and disappear, and with which commit."""
+    """Print the rows of a standing query, then the rows that appear and disappear."""
     with client.watch(DRINKS, inferred=True) as standing:
         print("drinks:", *sorted(semmap.local_name(drink) for (drink,) in standing.rows), flush=True)
         try:
@@ -22,11 +22,11 @@ def watch_drinks(client: semmap.Client, seconds: float) -> None:
                 for (drink,) in change.disappeared:
                     print(f"a drink went: {semmap.local_name(drink)}", flush=True)
         except semmap.NoAnswer:
-            pass  # nothing happened for that long
+            pass  # no change within the timeout
 
 
-def tell(commits: Iterator[semmap.Commit]) -> None:
-    """Every commit, as it comes."""
+def print_commits(commits: Iterator[semmap.Commit]) -> None:
+    """Print every commit when it arrives."""
     try:
         for commit in commits:
             who = commit.agent or commit.source
@@ -36,12 +36,12 @@ def tell(commits: Iterator[semmap.Commit]) -> None:
 
 
 def main() -> None:
-    """Both at once, until nothing happens for some time."""
+    """Print commits and drinks concurrently until there is no change for `SECONDS`."""
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 60.0
     with semmap.connect(agent="watcher") as client, client.commits(timeout=seconds) as commits:
         drinks = threading.Thread(target=watch_drinks, args=(client, seconds))
         drinks.start()
-        tell(commits)
+        print_commits(commits)
         drinks.join()
 
 
