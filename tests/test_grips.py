@@ -193,7 +193,7 @@ def test_what_is_held_is_neither_moved_nor_left_behind(held):
 
 @pytest.mark.usefixtures("held")
 def test_on_the_command_line(system):
-    assert "tray1 holds cup1 already" in system.cli("attach", "cup1", "--to", "tray1")
+    assert "cup1 is already attached to tray1" in system.cli("attach", "cup1", "--to", "tray1")
     assert "from the attachment to tray1" in system.cli("get", "cup1")
     assert "dry run" in system.cli("detach", "cup1", "--dry-run")
 

@@ -50,7 +50,7 @@ async def _session(agent: Agent, client: Client) -> None:
     second = await agent("propose", **moved)
     done = await agent("commit", token=second["token"])
     await agent.refused("commit", token=second["token"])
-    say("An agent cannot change a class or label that an operator stated, or a class that it is not permitted to change.")
+    say("An agent cannot change a class or label that an operator set, or a class outside its permissions.")
     await agent.refused("propose", verb="update", name="cup1", ref="ashtray", reason="it has ash in it")
     await agent.refused("propose", verb="update", name="chair1", at=[7.3, 2.4, 0.0], reason="in the way")
     say("An instruction was written into the map. It is returned as data, with its author.")

@@ -80,7 +80,10 @@ def commands(page):
 
 def said_of_files(words, said):
     """Is it only that the reader's own file is not here?"""
-    return any(f"there is no file {word}" in said and not (ROOT / word).exists() for word in words)
+    missing = [word for word in words if not (ROOT / word).exists()]
+    return any(
+        f"there is no {what} {word}" in said for word in missing for what in ("file", "file or folder")
+    )
 
 
 def programs(page):
@@ -101,7 +104,7 @@ PROGRAMS = [
 
 @pytest.fixture(scope="module")
 def flat(flat_scene):
-    """The shipped flat, and a folder as the repository's is to whoever reads."""
+    """The shipped flat, and a folder like the checkout."""
     return flat_scene
 
 

@@ -66,7 +66,10 @@ def tried(monkeypatch):
 
 
 def test_a_refused_connection_is_reported_at_once(tried):
-    with pytest.raises(errors.NoAnswer, match="start one with: semmap up"), open_session(free_endpoint(), ""):
+    with (
+        pytest.raises(errors.NoAnswer, match="start a system with: semmap up"),
+        open_session(free_endpoint(), ""),
+    ):
         pass
     assert tried == [0.0]
 

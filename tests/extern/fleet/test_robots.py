@@ -102,7 +102,7 @@ def test_an_endpoint_that_does_not_answer_is_named(two_robots):
     system = two_robots[0]
     said = system.cli("status", "--robots", "*", "--connect", f"{system.endpoint},tcp/127.0.0.1:1", status=3)
     assert "arm2 (commit " in said
-    assert "at tcp/127.0.0.1:1: no system answers" in said
+    assert "at tcp/127.0.0.1:1: no response" in said
 
 
 def test_no_robot_at_all(two_robots):

@@ -76,7 +76,7 @@ def test_the_last_commit_equals_the_present_map(flat):
 
 
 def test_before_the_first_commit_there_is_no_map(flat):
-    with pytest.raises(errors.Refused, match="there was no map then"):
+    with pytest.raises(errors.Refused, match="there was no map at that time"):
         asked(flat, 0)
     with pytest.raises(errors.Refused, match="there is no commit 9 yet"):
         asked(flat, 9)

@@ -58,7 +58,7 @@ def commits(client) -> list[tuple[int, str]]:
 def test_it_begins_where_it_last_stood(tmp_path, truth):
     words = (*WORDS, "--truth", truth)
     with running(tmp_path, *words) as system, system.client() as client:
-        assert not any("last stood" in line for line in system.said)
+        assert not any("last committed position" in line for line in system.said)
         until(lambda: {*ROBOT} <= {e.name for e in client.list()}, "the robot")
         client.drive("robot1", to=((1.6, 0.8),), yaw=1.0, wait=True)
         until(lambda: abs(client.get("robot1").pose.position_m[1] - 0.8) < 0.05, "the commit")
@@ -80,6 +80,6 @@ def test_it_begins_where_it_last_stood(tmp_path, truth):
         agree(client)
         assert [client.get(name).pose for name in ROBOT] == stood
         assert commits(client) == committed
-        (said,) = [line for line in system.said if "last stood" in line]
+        (said,) = [line for line in system.said if "last committed position" in line]
         assert said.startswith("robot1 ")
         assert said.rstrip().endswith("not at --robot-at; to move it: semmap move robot1 --at 1 0 0")

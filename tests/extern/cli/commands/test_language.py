@@ -137,7 +137,7 @@ def test_another_text_than_a_command_is_reported(system, monkeypatch, capsys):
     assert "unknown verb: frobnicate" in capsys.readouterr().err
     text, status = said(system, monkeypatch, "understand", "🤖")
     assert (text, status) == ("", 2)
-    assert "there are no words" in capsys.readouterr().err
+    assert "contains no words" in capsys.readouterr().err
     with system.client() as client:
         with pytest.raises(errors.BadRequest, match="the maximum is 200"):
             client.understand("go " * 300)
@@ -181,7 +181,7 @@ def test_what_is_ambiguous_is_asked_back_and_what_is_not_there_is_reported(kitch
 @pytest.mark.parametrize(
     ("text", "because"),
     [
-        ("🤖", "there are no words"),
+        ("🤖", "contains no words"),
         ("", "1 to 1000 characters"),
         ("cup " * 100, "the maximum is 60"),
         ("the cup that was on the table", "asks about the past"),
