@@ -13,7 +13,12 @@ from semmap.nodes.extern.cli.angles import yaw_option
 from semmap.nodes.extern.cli.calling import carrying, frame_option, given, print_lines, talks, vector_option
 from semmap.nodes.extern.cli.completing import class_names, entity_names
 from semmap.nodes.extern.cli.negative_numbers import NegativeNumbers
-from semmap.nodes.extern.cli.ontology_options import import_option, spatial_root_option
+from semmap.nodes.extern.cli.ontology_options import (
+    import_option,
+    require_there,
+    spatial_root_option,
+    tbox_file,
+)
 from semmap.nodes.extern.cli.output import lines
 from semmap.nodes.extern.cli.output.printable import say
 from semmap.nodes.extern.plan_files import is_plan, read_plan
@@ -176,17 +181,19 @@ def clear(client: Client, dry_run: bool) -> None:
 
 
 @click.command()
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("file", type=click.Path())
 @click.option("--replace", is_flag=True, help="Replace the present entities.")
 @click.option("--skip-unknown", is_flag=True, help="Skip entities of unknown classes.")
 @click.option("--strict", is_flag=True, help="Refuse files that refer to undescribed things.")
-@click.option("--tbox", is_flag=True, help="FILE is a TBox (or a folder) that replaces the present one.")
+@click.option(
+    "--tbox", is_flag=True, help="FILE (or folder, or household) is a TBox that replaces the present one."
+)
 @click.option("--parts", is_flag=True, help="Load in several commits, for files of any size.")
 @import_option
 @spatial_root_option
 @_dry_run
 @talks
-def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **how: Any) -> None:
+def load(client: Client, file: str, imports: tuple[tuple[str, Path], ...], **how: Any) -> None:
     """Load a map, a scene or a TBox from a file.
 
     A map is an ABox in any syntax of RDF or OWL, a JSON scene or a HuRIC map; a TBox comes with its imports.
@@ -194,14 +201,17 @@ def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **ho
     """
     from semmap.nodes.extern.cli.output.progress import progress
 
+    path = tbox_file(file) if how["tbox"] else Path(file)
+    if how["tbox"]:
+        require_there(path)
     with progress(client):
         try:
-            reply = client.load(file, imports=dict(imports), **how)
+            reply = client.load(path, imports=dict(imports), **how)
         except errors.NoAnswer as error:
             raise errors.NoAnswer(
-                f"{error.text}; whether {file.name} was loaded is unknown; to find out: semmap history"
+                f"{error.text}; whether {path.name} was loaded is unknown; to find out: semmap history"
             ) from None
     print_lines(lines.changed(reply))
-    if is_plan(file) and not how["tbox"]:
-        for line in read_plan(file).lines:
+    if is_plan(path) and not how["tbox"]:
+        for line in read_plan(path).lines:
             say(f"  {line}")

@@ -15,7 +15,12 @@ from msgspec import structs
 
 from semmap.nodes import bus
 from semmap.nodes.extern.cli.calling import complain
-from semmap.nodes.extern.cli.ontology_options import import_option, spatial_root_option
+from semmap.nodes.extern.cli.ontology_options import (
+    TBoxFile,
+    import_option,
+    require_there,
+    spatial_root_option,
+)
 from semmap.nodes.extern.cli.output.printable import say
 from semmap.nodes.extern.files import read_label_map
 from semmap.nodes.identity import SUPERVISOR
@@ -42,16 +47,17 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
 
     @click.option(
         "--tbox",
-        type=_path,
+        type=TBoxFile(),
         multiple=True,
-        help="Ontology (file or folder), with its imports; may be repeated. Default: the household's.",
+        help="Ontology (file or folder), with its imports, or the word household; may be repeated. Default:"
+        " household.",
     )
     @import_option
     @spatial_root_option
     @click.option(
         "--abox",
-        help="ABox file, or none for an empty map. Default: the flat; none if perceived, with --tbox, or with"
-        " --truth scene and a --world.",
+        help="ABox file, or none for an empty map. Default: the flat; none if perceived, with --tbox other"
+        " than household, or with --truth scene and a --world.",
     )
     @click.option(
         "--world", help="MJCF file, JSON scene, or the word empty. Default: as before, else the flat's."
@@ -239,7 +245,9 @@ def down(data: Path | None, connect: str | None) -> None:
 
 @click.command()
 @click.option("--data", type=_path, default=None, help="Data folder of the map; its system must be stopped.")
-@click.option("--tbox", type=_path, default=None, help="TBox file to use if the stored one is damaged, too.")
+@click.option(
+    "--tbox", type=TBoxFile(), default=None, help="TBox file to use if the stored one is damaged, too."
+)
 def repair(data: Path | None, tbox: Path | None) -> None:
     """Restore the last good commit of a damaged map.
 
@@ -306,7 +314,9 @@ def _settings(
             f"--spatial-root is ignored: there is a map in {folder}; for its TBox use:"
             " semmap load --tbox FILE --spatial-root CLASS"
         )
-    of_the_flat = abox is None and not tbox
+    for path in tbox:
+        require_there(path)
+    of_the_flat = abox is None and (not tbox or HOUSEHOLD_TTL in tbox)
     if world is None:
         world = before.world if before is not None else str(FLAT_WORLD if of_the_flat else EMPTY_WORLD)
     if truth is None:

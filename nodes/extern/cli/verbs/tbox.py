@@ -8,7 +8,12 @@ from pathlib import Path
 import click
 
 from semmap.nodes.extern.cli.calling import print_json, print_lines
-from semmap.nodes.extern.cli.ontology_options import import_option, spatial_root_option
+from semmap.nodes.extern.cli.ontology_options import (
+    TBoxFile,
+    import_option,
+    require_there,
+    spatial_root_option,
+)
 from semmap.nodes.extern.cli.output import show_tbox
 from semmap.nodes.runtime import extras
 from semmap.schemas import errors
@@ -20,7 +25,7 @@ def tbox() -> None:
 
 
 @tbox.command()
-@click.argument("files", type=click.Path(path_type=Path), nargs=-1, required=True)
+@click.argument("files", type=TBoxFile(), nargs=-1, required=True)
 @import_option
 @spatial_root_option
 @click.option("--format", type=click.Choice(["text", "json"]), default="text", show_default=True)
@@ -29,11 +34,13 @@ def check(
 ) -> None:
     """Show what is in ontologies, and what of it is wrong.
 
-    That includes what of them is inert, and how quick changes will be. FILES (or folders) are checked
-    together, with what they import. Exit status 1 says that they contradict themselves, or that nothing can
-    be of some class; 2 that a file cannot be read.
+    That includes what of them is inert, and how quick changes will be. FILES (or folders, or the word
+    household) are checked together, with what they import. Exit status 1 says that they contradict
+    themselves, or that nothing can be of some class; 2 that a file cannot be read.
     """
     extras.require("semmap tbox check", "kb")
+    for file in files:
+        require_there(file)
     from semmap.nodes.kb_node.documents.tbox.tbox_check import check as check_files
 
     report = check_files(files, dict(imports), spatial_root)

@@ -40,7 +40,9 @@ def check(named: Sequence[Path], imports: Mapping[str, Path], spatial_root: Sequ
     `spatial_root` are classes of things in space. Raises BadFile for what cannot be read, UnknownClass.
     """
     gathered = ontology_files.gather(named, imports)
-    tbox = tbox_declarations.declared(gathered.triples, of_file=gathered.prefixes, spatial_root=spatial_root)
+    tbox = tbox_declarations.declared(
+        gathered.triples, of_file=gathered.prefixes, spatial_root=spatial_root, files=named
+    )
     began_s = time.process_time()
     try:
         reasoner = Reasoner(tbox)

@@ -6,11 +6,12 @@ Both become triples of the TBox, so they hold over restarts, are in its history 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 from types import MappingProxyType
 
 from semmap.nodes.kb_node.entities import alignments
 from semmap.nodes.kb_node.entities.class_table import ClassTable
-from semmap.ontology import prefixes
+from semmap.ontology import HOUSEHOLD_TTL, prefixes
 from semmap.ontology import vocabulary as v
 from semmap.ontology.name_index import Ambiguous, Named, NameIndex
 from semmap.ontology.prefixes import Prefixes
@@ -25,18 +26,22 @@ def declared(
     *,
     of_file: Prefixes = MappingProxyType({}),
     spatial_root: Sequence[str] = (),
+    files: Sequence[Path] = (),
 ) -> list[Triple]:
     """`tbox` with the prefixes of its file, and with the classes that are roots of what is in space.
 
     What its alignments set aside is left out, and that is said of whatever it was about.
 
-    Each word of `spatial_root` is an IRI or a class's name. Raises UnknownClass.
+    Each word of `spatial_root` is an IRI or a class's name. If the household TBox is one of several `files`,
+    its classes of things in space remain such beside these roots. Raises UnknownClass.
     """
     triples = _without_what_is_set_aside(list(tbox))
     triples += prefixes.declarations(of_file, triples)
     if spatial_root:
         find = _ClassFinder(triples)
         triples += [(find(word), v.SPATIAL, _TRUE) for word in spatial_root]
+    if len(files) > 1 and HOUSEHOLD_TTL in files and any(p == v.SPATIAL for _, p, _ in triples):
+        triples.append((v.PHYSICAL_THING, v.SPATIAL, _TRUE))
     return list(dict.fromkeys(triples))
 
 
