@@ -188,7 +188,7 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
 
 
 class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Let the TBox of a document, in any RDF syntax, take the place of the present one.
+    """Let the TBox of a document, in any RDF syntax, replace the present one, or be added to it (`extend`).
 
     `spatial_root` are the classes of things in space, by IRI or name, where that is not known by itself.
     """
@@ -204,6 +204,7 @@ class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=Tr
     content: bytes
     filename: str
     spatial_root: tuple[str, ...] = ()
+    extend: bool = False
     dry_run: bool = False
 
 

@@ -293,8 +293,9 @@ class Load(Command[Changed], frozen=True, tag="load"):
     `replace` takes the present entities out in the same commit. `skip_unknown` leaves out what is of a
     class that the TBox does not have; without it, one such refuses the whole file. `strict` refuses a file
     that relates things to what neither it nor the map describes; without it, that is noted. With `tbox` the
-    file is a TBox that replaces the present one, unless the map does not fit it; `spatial_root` are
-    classes of it whose instances are things in space, where that is not known by itself.
+    file is a TBox that replaces the present one, unless the map does not fit it; with `extend`, too, its
+    statements are added to the present one. `spatial_root` are classes of it whose instances are things in
+    space, where that is not known by itself.
 
     A file is one commit, or with `parts` as many as it takes, so that memory is bounded by a part's needs;
     when one part is refused, those before it stay, and the error says so.
@@ -311,6 +312,7 @@ class Load(Command[Changed], frozen=True, tag="load"):
     spatial_root: tuple[ClassName, ...] = ()
     parts: bool = False
     dry_run: bool = False
+    extend: bool = False
 
 
 # To ask

@@ -192,6 +192,7 @@ def _load(
     skip_unknown: bool = False,
     strict: bool = False,
     tbox: bool = False,
+    extend: bool = False,
     parts: bool = False,
     imports: Mapping[str, str | Path] = MappingProxyType({}),
     spatial_root: Sequence[str] = (),
@@ -210,7 +211,10 @@ def _load(
     With `tbox` the file (or folder) is a TBox that replaces the present one, with all that it
     imports: from the files that `imports` has for IRIs, that a catalogue names, or that lie beside it.
     `spatial_root` are classes, by IRI or name, whose instances are things in space.
+    With `extend`, too, the statements of the file are added to the present TBox.
     """
+    if extend and not tbox:
+        raise errors.BadRequest("--extend applies to TBoxes only; add --tbox")
     if imports and not tbox:
         raise errors.BadRequest("--import applies to TBoxes only; add --tbox")
     if tbox:
@@ -226,6 +230,7 @@ def _load(
         skip_unknown=skip_unknown,
         strict=strict,
         tbox=tbox,
+        extend=extend,
         spatial_root=tuple(spatial_root),
         parts=parts,
         dry_run=dry_run,

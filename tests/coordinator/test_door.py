@@ -476,6 +476,11 @@ def test_what_takes_the_place_of_something_else_is_one_commit(door):
         door.change(c.Load(content=b"x", filename="t.ttl", parts=True, tbox=True))
 
 
+def test_extend_is_for_a_tbox(door):
+    with pytest.raises(errors.BadRequest, match="--extend applies to TBoxes only; add --tbox"):
+        door.change(c.Load(content=five_chairs(), filename="five.json", extend=True))
+
+
 def test_a_property_is_set_and_unset(door):
     add(door, name="chair1", set=("isOpen=no",))
     assert door.map.entity("chair1").properties == {"isOpen": False}

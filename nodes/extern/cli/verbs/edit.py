@@ -188,6 +188,7 @@ def clear(client: Client, dry_run: bool) -> None:
 @click.option(
     "--tbox", is_flag=True, help="FILE (or folder, or household) is a TBox that replaces the present one."
 )
+@click.option("--extend", is_flag=True, help="With --tbox: add FILE to the present TBox.")
 @click.option("--parts", is_flag=True, help="Load in several commits, for files of any size.")
 @import_option
 @spatial_root_option

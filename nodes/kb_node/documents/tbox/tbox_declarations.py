@@ -59,6 +59,35 @@ def _without_what_is_set_aside(triples: list[Triple]) -> list[Triple]:
     return triples
 
 
+def extension(
+    new: Iterable[Triple],
+    present: frozenset[Triple],
+    classes: ClassTable,
+    *,
+    of_file: Prefixes = MappingProxyType({}),
+    spatial_root: Sequence[str] = (),
+) -> list[Triple]:
+    """Return the triples that extend the present TBox by `new`, with what `declared` adds to both together.
+
+    The present prefixes and spatial classes remain. Raises UnknownClass.
+    """
+    namespaces = set(classes.prefixes.values())
+
+    def is_free(prefix: str, namespace: str) -> bool:
+        return prefix not in classes.prefixes and namespace not in namespaces
+
+    new = [(s, p, o) for s, p, o in new if p != prefixes.PREFERRED_PREFIX or is_free(v.lexical(o), v.bare(s))]
+    free = {prefix: namespace for prefix, namespace in of_file.items() if is_free(prefix, namespace)}
+    whole = declared([*sorted(present), *new], of_file=free, spatial_root=spatial_root)
+    added = [t for t in whole if t not in present]
+    roots = {o for s, p, o in added if (s, p) == (v.HAS_POSITION, v.RDFS_DOMAIN)}
+    roots |= {v.PHYSICAL_THING} & _classes(added)
+    if not classes.declared_roots and (any(p == v.SPATIAL for _, p, _ in added) or roots):
+        roots.update(classes.spatial_roots)  # which would otherwise be superseded by those of the file
+        added += [(c, v.SPATIAL, _TRUE) for c in sorted(roots)]
+    return list(dict.fromkeys(added))
+
+
 def keeping_roots(tbox: Sequence[Triple], before: ClassTable) -> list[Triple]:
     """A TBox that declares no spatial roots itself, with those of the one before, as far as it has these."""
     if any(p == v.SPATIAL for _, p, _ in tbox):
