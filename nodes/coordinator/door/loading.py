@@ -199,7 +199,7 @@ def _sort_out(
         known.append((item, found))
         notes.update(dict.fromkeys(classes.note(item.class_, found)))
     if unknown and not skip_unknown:
-        raise errors.UnknownClass(errors.unknown_classes(unknown, classes.by_name))
+        raise classes.unknown(unknown)
     skipped = tuple(f"{name} (unknown class '{c}')" for c, names in unknown.items() for name in names)
     return known, skipped, tuple(notes)
 
