@@ -38,6 +38,8 @@ class TBoxReport(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     classes: int
     spatial_classes: int | None
     """How many of the classes are of things in space; None where that cannot be told."""
+    spatial_candidate: str = ""
+    """If no class is of things in space: the class above most others, as a candidate for a spatial root."""
     object_properties: int
     data_properties: int
     annotation_properties: int
