@@ -188,7 +188,7 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
 
 
 class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Replace the TBox by that of a document in any RDF syntax.
+    """Replace the TBox by that of a document in any RDF syntax, or extend it by the document (`extend`).
 
     `spatial_root` are the classes of physical things, by IRI or name, if the TBox does not show it.
     """
@@ -204,6 +204,7 @@ class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=Tr
     content: bytes
     filename: str
     spatial_root: tuple[str, ...] = ()
+    extend: bool = False
     dry_run: bool = False
 
 

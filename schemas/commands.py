@@ -297,8 +297,9 @@ class Load(Command[Changed], frozen=True, tag="load"):
     `replace` removes the present entities in the same commit. `skip_unknown` skips entities of classes that
     the TBox lacks; otherwise one such entity causes the file to be rejected. `strict` rejects a file that
     refers to undefined individuals; otherwise they are reported in a note. With `tbox`, the file is a TBox
-    that replaces the present one, unless the map is invalid under it. `spatial_root` are the classes whose
-    instances are physical things, if the TBox does not show it.
+    that replaces the present one, unless the map is invalid under it; with `extend`, its statements are added
+    to the present TBox. `spatial_root` are the classes whose instances are physical things, if the TBox does
+    not show it.
 
     A file is loaded in one commit, or with `parts` in several commits, which bounds the memory. If a part is
     rejected, the earlier parts stay, and the error reports them.
@@ -315,6 +316,7 @@ class Load(Command[Changed], frozen=True, tag="load"):
     spatial_root: tuple[ClassName, ...] = ()
     parts: bool = False
     dry_run: bool = False
+    extend: bool = False
 
 
 # Queries

@@ -13,6 +13,7 @@ SemmapError
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import ClassVar
 
 from msgspec import Struct
@@ -223,9 +224,16 @@ def enumerated(names: Sequence[str]) -> str:
     return " or ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
-def unknown_classes(users: Mapping[str, Sequence[str]], known: Iterable[str]) -> str:
-    """Return a sentence about the unknown classes of a file, their entities, and how to skip them."""
-    return f"{_unknown('class', 'classes', users, known)}{SKIP_UNKNOWN}"
+def unknown_classes(
+    users: Mapping[str, Sequence[str]],
+    known: Iterable[str],
+    hints: Mapping[str, str] = MappingProxyType({}),
+) -> str:
+    """Return a sentence about the unknown classes of a file, their entities, and how to skip them.
+
+    `hints` replace the similar names of a class: `; did you mean ...?`.
+    """
+    return f"{_unknown('class', 'classes', users, known, hints)}{SKIP_UNKNOWN}"
 
 
 def unknown_properties(users: Mapping[str, Sequence[str]], known: Iterable[str]) -> str:
@@ -233,10 +241,17 @@ def unknown_properties(users: Mapping[str, Sequence[str]], known: Iterable[str])
     return _unknown("property", "properties", users, known)
 
 
-def _unknown(one: str, many: str, users: Mapping[str, Sequence[str]], known: Iterable[str]) -> str:
+def _unknown(
+    one: str,
+    many: str,
+    users: Mapping[str, Sequence[str]],
+    known: Iterable[str],
+    hints: Mapping[str, str] = MappingProxyType({}),
+) -> str:
     known, few = list(known), max(1, _FEW // len(users))
     described = [
-        f"'{name}' (of {_some(whose, few)}{did_you_mean(name, known)})" for name, whose in users.items()
+        f"'{name}' (of {_some(whose, few)}{hints.get(name) or did_you_mean(name, known)})"
+        for name, whose in users.items()
     ]
     return f"unknown {one if len(described) == 1 else many} {_some(described, _MANY)}"
 

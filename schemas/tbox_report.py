@@ -38,6 +38,8 @@ class TBoxReport(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     classes: int
     spatial_classes: int | None
     """The number of classes of physical things; None if it cannot be determined."""
+    spatial_candidate: str = ""
+    """If no class is spatial: the class with the most subclasses, a candidate for a spatial root."""
     object_properties: int
     data_properties: int
     annotation_properties: int

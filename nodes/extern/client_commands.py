@@ -198,6 +198,7 @@ def _load(
     skip_unknown: bool = False,
     strict: bool = False,
     tbox: bool = False,
+    extend: bool = False,
     parts: bool = False,
     imports: Mapping[str, str | Path] = MappingProxyType({}),
     spatial_root: Sequence[str] = (),
@@ -215,8 +216,11 @@ def _load(
 
     With `tbox`, the file (or folder) is a TBox that replaces the current one, including its imports. These
     are found by `imports` (a file for each IRI), by a catalogue, or in the same folder. `spatial_root` are
-    classes, by IRI or name, whose instances have a position.
+    classes, by IRI or name, whose instances have a position. With `extend`, the statements of the file are
+    added to the current TBox.
     """
+    if extend and not tbox:
+        raise errors.BadRequest("--extend applies to TBoxes only; add --tbox")
     if imports and not tbox:
         raise errors.BadRequest("--import applies to TBoxes only; add --tbox")
     if tbox:
@@ -232,6 +236,7 @@ def _load(
         skip_unknown=skip_unknown,
         strict=strict,
         tbox=tbox,
+        extend=extend,
         spatial_root=tuple(spatial_root),
         parts=parts,
         dry_run=dry_run,

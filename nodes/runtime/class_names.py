@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 
 from semmap.ontology.name_index import Ambiguous, Named, NameIndex
 from semmap.schemas.entities import ClassInfo
@@ -38,6 +38,10 @@ class ClassNames:
         if name is None:
             raise UnknownClass(f"unknown class '{word}'{self._index.did_you_mean(word)}")
         return self.by_name[name]
+
+    def unknown(self, users: Mapping[str, Sequence[str]]) -> UnknownClass:
+        """Return the error for the unknown classes of a file: each word with the names of its entities."""
+        return UnknownClass(self._index.unknown_classes(users))
 
     def has(self, word: str) -> bool:
         """Return whether a word names one class of objects in space."""

@@ -56,4 +56,7 @@ def test_imports_are_for_tboxes(file):
 
     with pytest.raises(errors.BadRequest, match="applies to TBoxes only"):
         Client().load(file, imports={"http://o.org/b": file})
+    with pytest.raises(errors.BadRequest, match="--extend applies to TBoxes only; add --tbox"):
+        Client().load(file, extend=True)
     assert Client().load(file, tbox=True).tbox
+    assert Client().load(file, tbox=True, extend=True).extend

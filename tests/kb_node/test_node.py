@@ -24,6 +24,7 @@ from semmap.schemas.bridge import (
     Recall,
     SnapshotQuery,
     StarQuery,
+    TakeBack,
     Transactions,
 )
 from semmap.schemas.calls import reply_type
@@ -188,6 +189,36 @@ def test_loading_the_current_tbox_changes_nothing(session):
     (more,) = ask(session, "recall", Recall(seqs=(seq,)))
     assert (len(more.inserted), more.retracted) == (1, ())  # blank nodes keep their labels
     assert load(3, TBOX_TURTLE).commit.seq == commit.seq + 2
+
+
+STOOL = (
+    PREFIXES
+    + "dm:Stool a owl:Class ; rdfs:subClassOf dm:Chair , [ a owl:Restriction ; owl:onProperty dm:near ;"
+    " owl:allValuesFrom [ owl:unionOf ( dm:Chair dm:Door ) ] ] ."
+)
+
+
+def test_a_tbox_is_extended_once(session):
+    def extend(number, text=STOOL, **how):
+        fields = {"source": "file", "content": text.encode(), "filename": "stool.ttl", "extend": True}
+        return ask(session, "load-tbox", LoadTBox(id=f"extend{number}", **fields, **how))
+
+    tried = extend(0, dry_run=True).commit
+    assert tried.trial is not None
+    commit = extend(1).commit
+    (whole,) = ask(session, "recall", Recall(seqs=(commit.seq,)))
+    assert commit.tbox
+    assert whole.retracted == ()
+    assert (v.dm("Stool"), v.RDFS_SUB_CLASS_OF, v.dm("Chair")) in whole.inserted
+    assert extend(2).commit is None  # its blank nodes are those that are there
+    assert extend(1).commit == commit
+    with pytest.raises(errors.BadFile, match="load a map leave out --tbox --extend"):
+        extend(3, PREFIXES + ":stool1 a dm:Stool .")
+    only_label = extend(4, PREFIXES + "dm:Stool rdfs:label 'taburete'@es .").commit
+    undone = ask(session, "undo", TakeBack(id="e5", source="operator", commit=only_label.seq))
+    assert undone.tbox
+    assert ask(session, "undo", TakeBack(id="e6", source="operator", commit=commit.seq)).tbox
+    assert extend(7).commit.seq == commit.seq + 4
 
 
 def test_two_clients_see_one_map(bench, session):

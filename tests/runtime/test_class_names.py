@@ -107,3 +107,21 @@ def test_an_unknown_class_is_reported_with_similar_ones():
 def test_nothing_can_be_of_an_abstract_class():
     with pytest.raises(UnknownClass, match="is not a spatial class"):
         NAMES.spatial("Color")
+
+
+@pytest.mark.parametrize("word", ["http://y.org/z#Chair", "<http://y.org/z#Chair>", "urn:z:chair"])
+def test_an_iri_in_a_wrong_namespace_is_suggested_in_the_right_one(word):
+    with pytest.raises(UnknownClass) as caught:
+        NAMES.find(word)
+    assert caught.value.text == f"unknown class '{word}'; did you mean <http://x#Chair>?"
+
+
+def test_the_prefix_of_the_right_namespace_is_named():
+    names = ClassNames([structs.replace(info("Chair"), prefixed="x:Chair")])
+    with pytest.raises(UnknownClass, match=r"did you mean <http://x#Chair> \(prefix x:\)\?"):
+        names.find("http://y#Chair")
+
+
+def test_an_iri_without_a_namesake_is_compared_by_its_local_name():
+    with pytest.raises(UnknownClass, match=r"unknown class 'http://x#Chiar'; did you mean Chair\?"):
+        NAMES.find("http://x#Chiar")

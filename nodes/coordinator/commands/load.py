@@ -56,6 +56,8 @@ def load(view: MapView, command: Load) -> KbCoroutine[Changed]:
         return (yield from _load_tbox(view, command))
     if command.spatial_root:
         raise errors.BadRequest("--spatial-root is for a TBox: add --tbox")
+    if command.extend:
+        raise errors.BadRequest("--extend applies to TBoxes only; add --tbox")
     if command.replace:
         require_authority(command, view.entities.values())
     kind = kind_of(command.content, command.filename)
@@ -143,28 +145,40 @@ def _load_tbox(view: MapView, command: Load) -> KbCoroutine[Changed]:
     if command.replace or command.skip_unknown or command.strict:
         raise errors.BadRequest(
             "--replace, --skip-unknown and --strict apply to maps only: a TBox always replaces the present"
-            " one and leaves the map as it is"
+            " one (or extends it, with --extend) and leaves the map as it is"
         )
-    require_operator(command, "replace the TBox")
+    require_operator(command, "extend the TBox" if command.extend else "replace the TBox")
+    file = command.filename or "the file"
     order = LoadTBox(
         id=command.id,
         source=command.source,
         agent=command.agent,
-        reason=command.reason or f"load the TBox {command.filename}",
+        reason=command.reason or f"{'extend' if command.extend else 'load'} the TBox {command.filename}",
         content=command.content,
         filename=command.filename,
         spatial_root=command.spatial_root,
+        extend=command.extend,
         dry_run=command.dry_run,
     )
     loaded = yield from ask(order)
     if (commit := loaded.commit) is None:
-        text = f"unchanged: the TBox is already that of {command.filename or 'the file'}"
+        text = f"unchanged: the TBox {'already contains' if command.extend else 'is already that of'} {file}"
         return Changed(commit=None, text=text, notes=loaded.notes)
+    before = len(view.classes.by_name)
     yield from apply_with_classes(view, commit)
-    text = f"{len(view.classes.by_name)} classes from {command.filename or 'the file'}"
+    count = len(view.classes.by_name)
+    text = f"{count} classes from {file}"
+    if command.extend:
+        text = f"the TBox extended by {file}: {_classes(count - before)} added, {count} in total"
     if commit.trial is not None:
-        text = f"the TBox of {command.filename or 'the file'} replaces the present one"
+        text = f"the TBox of {file} replaces the present one"
+        if command.extend:
+            text = f"the TBox extended by {file}"
     return make_reply(commit, text, names=commit.names, notes=loaded.notes)
+
+
+def _classes(count: int) -> str:
+    return "1 class" if count == 1 else f"{count} classes"
 
 
 def _sort_out(
@@ -185,7 +199,7 @@ def _sort_out(
         known.append((item, found))
         notes.update(dict.fromkeys(classes.note(item.class_, found)))
     if unknown and not skip_unknown:
-        raise errors.UnknownClass(errors.unknown_classes(unknown, classes.by_name))
+        raise classes.unknown(unknown)
     skipped = tuple(f"{name} (unknown class '{c}')" for c, names in unknown.items() for name in names)
     return known, skipped, tuple(notes)
 

@@ -8,6 +8,35 @@ from typing import Any
 
 import click
 
+from semmap.ontology import HOUSEHOLD_TTL
+from semmap.schemas import errors
+
+HOUSEHOLD = "household"
+"""The word for the TBox that comes with semmap; the file of that name is `./household`."""
+
+
+def tbox_file(word: str) -> Path:
+    """Return the file or folder of a TBox, or for `household` the shipped one."""
+    return HOUSEHOLD_TTL if word == HOUSEHOLD else Path(word)
+
+
+def require_there(tbox: Path) -> None:
+    """Raises BadFile for a path where no file or folder is."""
+    if not tbox.exists():
+        is_word = not tbox.suffix and str(tbox) == tbox.name != HOUSEHOLD
+        hint = f"; for the TBox of semmap use: {HOUSEHOLD}" if is_word else ""
+        raise errors.BadFile(f"there is no file {tbox}{hint}")
+
+
+class TBoxFile(click.Path):
+    """A file or folder with a TBox, or the word `household`."""
+
+    name = "path"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the path that the word stands for."""
+        return value if isinstance(value, Path) else tbox_file(str(super().convert(value, param, ctx)))
+
 
 class _Import(click.ParamType[tuple[str, Path]]):
     name = "import"

@@ -60,12 +60,11 @@ def filter_document(
     strange = own - known
     unknown = sorted((s, o) for s, _, o in types_said if o in strange) if strange else []
     users: dict[str, list[str]] = {}
-    namesakes = set(classes.names.values())
     for s, c in unknown:
-        name = v.local_name(c)
-        users.setdefault(c if name in namesakes else name, []).append(_display_name(s))
+        name = c if classes.index.namesakes(c) else v.local_name(c)
+        users.setdefault(name, []).append(_display_name(s))
     if unknown and not skip_unknown:
-        raise errors.UnknownClass(errors.unknown_classes(users, classes.names.values()))
+        raise errors.UnknownClass(classes.index.unknown_classes(users))
     words = [f"{name} (unknown class '{c}')" for c, names in users.items() for name in names]
     kept = triples
     if unknown:

@@ -7,6 +7,7 @@ from operator import is_
 
 from semmap.nodes.kb_node.documents import abox_document, rdf
 from semmap.nodes.kb_node.documents.tbox import tbox_declarations, tbox_validation
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.schemas import errors, wording
 from semmap.schemas.bridge import LoadDocument, LoadTBox
@@ -51,22 +52,40 @@ def _outside(triples: list[Triple], tbox: frozenset[Triple]) -> Iterable[Triple]
 
 
 def read_tbox(semantic_map: SemanticMap, load: LoadTBox, *, label_prefix: str) -> list[Triple]:
-    """Return the triples of a TBox with its prefixes and spatial roots.
+    """Return the triples of a TBox, or those that an extension adds, with prefixes and spatial roots.
 
     The spatial roots that the present TBox declares stay until others are declared. Raises BadFile,
     UnknownClass.
     """
     content = unpacked(load.content, load.filename)
+    parsed = rdf.parse(content, load.filename, label_prefix=label_prefix)
+    if load.extend:
+        _require_schema(semantic_map, load, parsed)
+        return tbox_declarations.find_extension(
+            parsed,
+            semantic_map.tbox,
+            semantic_map.classes,
+            of_file=rdf.prefixes(content),
+            spatial_root=load.spatial_root,
+        )
     triples = tbox_declarations.with_declarations(
-        rdf.parse(content, load.filename, label_prefix=label_prefix),
-        of_file=rdf.prefixes(content),
-        spatial_root=load.spatial_root,
+        parsed, of_file=rdf.prefixes(content), spatial_root=load.spatial_root
     )
     return (
         triples
         if load.spatial_root
         else tbox_declarations.with_spatial_roots_of(triples, semantic_map.classes)
     )
+
+
+def _require_schema(semantic_map: SemanticMap, load: LoadTBox, triples: Iterable[Triple]) -> None:
+    """Raise BadFile for a file that neither has an axiom nor describes a term of the present TBox."""
+    known = {s for s, _, _ in semantic_map.tbox}
+    if not any(s in known or is_schema((s, p, o)) for s, p, o in triples):
+        raise errors.BadFile(
+            f"{load.filename or 'the file'} has no axiom to extend the TBox by; to load a map leave out"
+            " --tbox --extend"
+        )
 
 
 def require_no_map(semantic_map: SemanticMap, load: LoadTBox, tbox: Iterable[Triple]) -> None:

@@ -99,9 +99,14 @@ class LoadHandlers:
         return (tried.trial.changed if tried is not None and tried.trial is not None else (), tried)
 
     def on_load_tbox(self, load: LoadTBox) -> Loaded:
-        """Load another TBox in one commit, or in none if it is the current one, and return notes on it."""
+        """Load another TBox, or extend the current one, in one commit, and return notes on it.
+
+        There is no commit if nothing changes.
+        """
         read = document_change.read_tbox(self._map, load, label_prefix=f"t{uuid.uuid4().hex[:8]}")
         tbox = blank_nodes.relabel_like(read, self._map.tbox)
+        if load.extend:
+            tbox |= self._map.tbox
         document_change.require_no_map(self._map, load, tbox)
         transaction = document_change.make_tbox_transaction(self._map, load, tbox)
         if transaction is None:
@@ -119,8 +124,11 @@ class LoadHandlers:
             made = self._changing.run_change(replace, dry_run=False)
             return Loaded(commit=made, skipped=(), notes=self._notes())
         except tbox_validation.DoesNotFit as error:
+            if load.extend:
+                raise
             raise tbox_validation.DoesNotFit(
-                f"{error.text}; it would replace the current TBox, so it must include whatever is to stay"
+                f"{error.text}; it would replace the current TBox, so it must include whatever is to stay;"
+                " to add it to the current TBox use --extend"
             ) from None
 
     def _commit(self, transaction: Transaction, *, told: bool) -> Commit | None:

@@ -50,7 +50,7 @@ def seed(
     name = ", ".join(map(str, tboxes))
     gathered = ontology_files.gather(tboxes, imports)
     tbox_triples = tbox_declarations.with_declarations(
-        gathered.triples, of_file=gathered.prefixes, spatial_root=spatial_root
+        gathered.triples, of_file=gathered.prefixes, spatial_root=spatial_root, files=tboxes
     )
     reasoner = tbox_validation.compile_tbox(tbox_triples, name)
     closed = reasoner.closed  # before the ABox may add to the schema

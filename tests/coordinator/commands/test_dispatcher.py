@@ -503,6 +503,11 @@ def test_a_replacement_is_one_commit(dispatcher):
         dispatcher.change(c.Load(content=b"x", filename="t.ttl", parts=True, tbox=True))
 
 
+def test_extend_requires_a_tbox(dispatcher):
+    with pytest.raises(errors.BadRequest, match="--extend applies to TBoxes only; add --tbox"):
+        dispatcher.change(c.Load(content=five_chairs(), filename="five.json", extend=True))
+
+
 def test_a_property_is_set_and_unset(dispatcher):
     add(dispatcher, name="chair1", set=("isOpen=no",))
     assert dispatcher.map.entity("chair1").properties == {"isOpen": False}

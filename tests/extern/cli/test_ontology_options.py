@@ -2,7 +2,9 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from semmap.nodes.extern.cli.ontology_options import import_option
+from semmap.nodes.extern.cli.ontology_options import import_option, require_there, tbox_file
+from semmap.ontology import HOUSEHOLD_TTL
+from semmap.schemas import errors
 
 
 @click.command()
@@ -46,3 +48,25 @@ def test_what_is_neither_is_reported(run, word, said):
     result = run("--import", word)
     assert result.exit_code == 2
     assert said in result.output
+
+
+def test_the_word_household_is_the_shipped_tbox_and_a_path_is_a_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "household").write_text("")
+    assert tbox_file("household") == HOUSEHOLD_TTL
+    assert tbox_file("./household").resolve() == tmp_path / "household"
+
+
+@pytest.mark.parametrize(
+    ("word", "text"),
+    [
+        ("my.ttl", "there is no file my.ttl"),
+        ("./household", "there is no file household"),
+        ("houshold", "there is no file houshold; for the TBox of semmap use: household"),
+    ],
+)
+def test_a_tbox_that_does_not_exist_is_reported(tmp_path, monkeypatch, word, text):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(errors.BadFile) as caught:
+        require_there(tbox_file(word))
+    assert caught.value.text == text

@@ -35,10 +35,31 @@ def test_all_unknown_classes_are_named(classes):
     )
 
 
-def test_an_unknown_class_with_a_known_local_name_is_reported_by_its_iri(classes):
+@pytest.mark.parametrize("namespace", ["http://lab.org/x#", v.TBOX.replace("_domain_model", ""), v.ABOX])
+def test_a_class_in_a_wrong_namespace_is_suggested_in_the_right_one(classes, namespace):
     with pytest.raises(errors.UnknownClass) as caught:
-        abox_document.filter_document(turtle(":c a <http://lab.org/x#Chair> ."), classes, skip_unknown=False)
-    assert caught.value.text.startswith("unknown class '<http://lab.org/x#Chair>' (of c)")
+        abox_document.filter_document(turtle(f":c a <{namespace}Chair> ."), classes, skip_unknown=False)
+    assert caught.value.text == (
+        f"unknown class '<{namespace}Chair>' (of c; did you mean <{v.TBOX}Chair> (prefix dm:)?);"
+        " --skip-unknown leaves these out"
+    )
+
+
+def test_of_many_classes_in_a_wrong_namespace_one_is_named(classes):
+    triples = turtle(":c a :Chair . :d a :Door . :k a :Kitchen . :x a dm:Xylophone .")
+    with pytest.raises(errors.UnknownClass) as caught:
+        abox_document.filter_document(triples, classes, skip_unknown=False)
+    assert caught.value.text == (
+        f"unknown classes '<{v.ABOX}Chair>' (of c, d, k; did you mean <{v.TBOX}Chair> (prefix dm:), and so"
+        " for 2 more classes?), 'Xylophone' (of x); --skip-unknown leaves these out"
+    )
+    _, words, _ = abox_document.filter_document(triples, classes, skip_unknown=True)
+    assert len(words) == 4
+
+
+def test_a_class_in_the_right_namespace_is_suggested_by_its_name(classes):
+    with pytest.raises(errors.UnknownClass, match=r"'chair' \(of c; did you mean Chair\?\)"):
+        abox_document.filter_document(turtle(":c a dm:chair ."), classes, skip_unknown=False)
 
 
 def test_a_skipped_entity_is_skipped_with_its_nodes(classes):

@@ -1,6 +1,6 @@
 import pytest
 
-from semmap.nodes.kb_node.documents import document_change
+from semmap.nodes.kb_node.documents import document_change, rdf
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.bridge import LoadDocument, LoadTBox
@@ -120,3 +120,24 @@ def test_a_map_is_not_accepted_as_a_tbox(semantic_map):
         "f.ttl cannot be the TBox: it describes 1 entity of the map (a); load a map without --tbox"
     )
     document_change.require_no_map(semantic_map, order, turtle("dm:Chair a owl:Class . :b a dm:Chair ."))
+
+
+def test_an_extension_survives_a_restart_and_a_replay(semantic_map, tmp_path):
+    semantic_map.commit(transaction(1, chair()))
+    stool = "dm:Stool a owl:Class ; rdfs:subClassOf dm:Chair , [ owl:unionOf ( dm:Seat dm:Object ) ] ."
+    content = (home.PREFIXES + stool).encode()
+    load = LoadTBox(**{**SIGNED, "content": content}, extend=True)
+    added = document_change.tbox_of(semantic_map, load, label_prefix="x")
+    tbox = semantic_map.tbox | frozenset(added)
+    assert set(semantic_map.tbox) < tbox
+    commit = semantic_map.replace_tbox(transaction(2), tbox)
+    semantic_map.commit(transaction(3, turtle(":stool1 a dm:Stool .")))
+    (tmp_path / "other").mkdir()
+    other = home.new_map(tmp_path / "other")
+    other.commit(transaction(1, chair()))
+    other.restate(commit, rdf.serialise(tbox, "ntriples"))
+    again = home.reopened(semantic_map)
+    assert again.tbox == other.tbox == tbox
+    assert "Chair" in again.entity("stool1").types
+    home.close(again)
+    home.close(other)

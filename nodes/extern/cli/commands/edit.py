@@ -19,7 +19,12 @@ from semmap.nodes.extern.cli.common import (
     vector_option,
     with_client,
 )
-from semmap.nodes.extern.cli.ontology_options import import_option, spatial_root_option
+from semmap.nodes.extern.cli.ontology_options import (
+    import_option,
+    require_there,
+    spatial_root_option,
+    tbox_file,
+)
 from semmap.nodes.extern.cli.output import lines
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.shell_completion import class_names, entity_names
@@ -185,17 +190,20 @@ def clear(client: Client, dry_run: bool) -> None:
 
 
 @command(example="semmap load demo/flat.ttl --replace")
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("file", type=click.Path())
 @click.option("--replace", is_flag=True, help="Replace the current entities.")
 @click.option("--skip-unknown", is_flag=True, help="Skip entities of unknown classes.")
 @click.option("--strict", is_flag=True, help="Reject files that refer to undescribed entities.")
-@click.option("--tbox", is_flag=True, help="FILE is a TBox (or a folder) that replaces the current one.")
+@click.option(
+    "--tbox", is_flag=True, help="FILE (or folder, or household) is a TBox that replaces the current one."
+)
+@click.option("--extend", is_flag=True, help="With --tbox: add FILE to the current TBox.")
 @click.option("--parts", is_flag=True, help="Load in several commits, for files of any size.")
 @import_option
 @spatial_root_option
 @_dry_run
 @with_client
-def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **how: Any) -> None:
+def load(client: Client, file: str, imports: tuple[tuple[str, Path], ...], **how: Any) -> None:
     """Load a map, a scene or a TBox from a file.
 
     A map is an ABox in any RDF or OWL syntax, a JSON scene or a HuRIC map. A TBox is loaded with its imports.
@@ -204,14 +212,17 @@ def load(client: Client, file: Path, imports: tuple[tuple[str, Path], ...], **ho
     """
     from semmap.nodes.extern.cli.output.progress import progress
 
+    path = tbox_file(file) if how["tbox"] else Path(file)
+    if how["tbox"]:
+        require_there(path)
     with progress(client):
         try:
-            reply = client.load(file, imports=dict(imports), **how)
+            reply = client.load(path, imports=dict(imports), **how)
         except errors.NoAnswer as error:
             raise errors.NoAnswer(
-                f"{error.text}; {file.name} may or may not have been loaded; see: semmap history"
+                f"{error.text}; {path.name} may or may not have been loaded; see: semmap history"
             ) from None
     print_lines(lines.format_change(reply))
-    if is_plan(file) and not how["tbox"]:
-        for line in read_plan(file).lines:
+    if is_plan(path) and not how["tbox"]:
+        for line in read_plan(path).lines:
             print_escaped(f"  {line}")

@@ -16,7 +16,12 @@ from msgspec import structs
 from semmap.nodes import bus
 from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import print_error
-from semmap.nodes.extern.cli.ontology_options import import_option, spatial_root_option
+from semmap.nodes.extern.cli.ontology_options import (
+    TBoxFile,
+    import_option,
+    require_there,
+    spatial_root_option,
+)
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.files import read_label_map
 from semmap.nodes.identity import SUPERVISOR
@@ -43,16 +48,17 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
 
     @click.option(
         "--tbox",
-        type=_path,
+        type=TBoxFile(),
         multiple=True,
-        help="Ontology (file or folder) with its imports; may be repeated. Default: the household ontology.",
+        help="Ontology (file or folder) with its imports, or the word household; may be repeated."
+        " Default: household.",
     )
     @import_option
     @spatial_root_option
     @click.option(
         "--abox",
-        help="ABox file, or none for an empty map. Default: the flat; none with --tbox, --truth perceived, or"
-        " --truth scene with --world.",
+        help="ABox file, or none for an empty map. Default: the flat; none with --tbox other than household,"
+        " --truth perceived, or --truth scene with --world.",
     )
     @click.option(
         "--world",
@@ -257,7 +263,7 @@ def down(data: Path | None, connect: str | None) -> None:
 
 @command(example="semmap repair --data maps/flat")
 @click.option("--data", type=_path, default=None, help="Data folder of the map; its system must be stopped.")
-@click.option("--tbox", type=_path, default=None, help="TBox file to use if the stored TBox is damaged.")
+@click.option("--tbox", type=TBoxFile(), default=None, help="TBox file to use if the stored TBox is damaged.")
 def repair(data: Path | None, tbox: Path | None) -> None:
     """Recover a damaged map up to its last intact commit.
 
@@ -324,7 +330,9 @@ def _settings(
             f"warning: --spatial-root is ignored: {folder} has a map; for its TBox use:"
             " semmap load --tbox FILE --spatial-root CLASS"
         )
-    of_the_flat = abox is None and not tbox
+    for path in tbox:
+        require_there(path)
+    of_the_flat = abox is None and (not tbox or HOUSEHOLD_TTL in tbox)
     if world is None:
         world = before.world if before is not None else str(FLAT_WORLD if of_the_flat else EMPTY_WORLD)
     if truth is None:

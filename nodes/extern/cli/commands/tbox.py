@@ -9,7 +9,12 @@ import click
 
 from semmap.nodes.extern.cli.command import group
 from semmap.nodes.extern.cli.common import print_json, print_lines
-from semmap.nodes.extern.cli.ontology_options import import_option, spatial_root_option
+from semmap.nodes.extern.cli.ontology_options import (
+    TBoxFile,
+    import_option,
+    require_there,
+    spatial_root_option,
+)
 from semmap.nodes.extern.cli.output import show_tbox
 from semmap.nodes.runtime import extras
 from semmap.schemas import errors
@@ -21,7 +26,7 @@ def tbox() -> None:
 
 
 @tbox.command(example="semmap tbox check household.ttl")
-@click.argument("files", type=click.Path(path_type=Path), nargs=-1, required=True)
+@click.argument("files", type=TBoxFile(), nargs=-1, required=True)
 @import_option
 @spatial_root_option
 @click.option("--format", type=click.Choice(["text", "json"]), default="text", show_default=True)
@@ -31,10 +36,12 @@ def check(
     """Show the contents of ontologies, and their errors.
 
     The report includes axioms outside OWL 2 RL, which have no effect, and the expected time of a change.
-    FILES (or folders) are checked together, with their imports. The exit status is 1 if they are inconsistent
-    or have an unsatisfiable class, and 2 if a file cannot be read.
+    FILES (or folders, or the word household) are checked together, with their imports. The exit status is 1
+    if they are inconsistent or have an unsatisfiable class, and 2 if a file cannot be read.
     """
     extras.require("semmap tbox check", "kb")
+    for file in files:
+        require_there(file)
     from semmap.nodes.kb_node.documents.tbox.tbox_check import check as check_files
 
     report = check_files(files, dict(imports), spatial_root)

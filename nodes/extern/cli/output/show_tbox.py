@@ -15,6 +15,12 @@ def report(found: TBoxReport) -> Iterator[str]:
     for iri, version in found.ontologies.items():
         yield _line("ontology", iri + (f" ({version})" if version else ""))
     yield _line("contents", _contents(found))
+    if found.spatial_classes == 0:
+        root = (
+            f"add --spatial-root CLASS, such as {found.spatial_candidate}" if found.spatial_candidate else ""
+        )
+        household = "extend the household TBox: semmap up --tbox household --tbox FILE"
+        yield _line("in space", f"nothing can be placed; {', or '.join(filter(None, (root, household)))}")
     for iri, file in found.imports.items():
         yield _line("imports", f"{iri} from {file}")
     for iri in found.missing:

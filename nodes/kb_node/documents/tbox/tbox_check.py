@@ -41,7 +41,7 @@ def check(named: Sequence[Path], imports: Mapping[str, Path], spatial_root: Sequ
     """
     gathered = ontology_files.gather(named, imports)
     tbox = tbox_declarations.with_declarations(
-        gathered.triples, of_file=gathered.prefixes, spatial_root=spatial_root
+        gathered.triples, of_file=gathered.prefixes, spatial_root=spatial_root, files=named
     )
     began_s = time.process_time()
     try:
@@ -96,6 +96,7 @@ def _report(
         triples=len(triples),
         classes=len(classes),
         spatial_classes=spatial_classes,
+        spatial_candidate=_spatial_candidate(tbox) if spatial_classes == 0 else "",
         object_properties=len(_of(triples, v.OWL_OBJECT_PROPERTY)),
         data_properties=len(_of(triples, v.OWL_DATATYPE_PROPERTY)),
         annotation_properties=len(_of(triples, v.OWL_ANNOTATION_PROPERTY)),
@@ -135,6 +136,27 @@ def _spatial(reasoner: Reasoner) -> int | None:
         return len(ClassTable(reasoner).spatial)
     except errors.BadFile:
         return None
+
+
+def _spatial_candidate(tbox: Collection[Triple]) -> str:
+    """Return the name of the class with the most subclasses, or an empty text if there is no class."""
+    classes = _classes(tbox)
+    above: dict[Term, set[Term]] = {c: set() for c in classes}
+    for s, p, o in tbox:
+        if p == v.RDFS_SUB_CLASS_OF and s in above and o in above:
+            above[s].add(o)
+    below = dict.fromkeys(classes, 0)
+    for c in classes:
+        seen, rest = {c}, [c]
+        while rest:
+            more = above[rest.pop()] - seen
+            seen |= more
+            rest += more
+        for ancestor in seen - {c}:
+            below[ancestor] += 1
+    known = prefixes.prefixes_of((prefixes.split(c)[0] for c in classes), prefixes.declared_in(tbox))
+    names = prefixes.names(classes, known)
+    return names[min(classes, key=lambda c: (-below[c], c))] if classes else ""
 
 
 def _unsatisfiable(reasoner: Reasoner, classes: Iterable[Term]) -> Iterator[tuple[Term, str]]:

@@ -6,11 +6,12 @@ They become triples of the TBox, so they survive restarts and are part of its hi
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 from types import MappingProxyType
 
 from semmap.nodes.kb_node.entities import alignments
 from semmap.nodes.kb_node.entities.class_table import ClassTable
-from semmap.ontology import prefixes
+from semmap.ontology import HOUSEHOLD_TTL, prefixes
 from semmap.ontology import vocabulary as v
 from semmap.ontology.name_index import Ambiguous, Named, NameIndex
 from semmap.ontology.prefixes import Prefixes
@@ -25,17 +26,21 @@ def with_declarations(
     *,
     of_file: Prefixes = MappingProxyType({}),
     spatial_root: Sequence[str] = (),
+    files: Sequence[Path] = (),
 ) -> list[Triple]:
     """Return `tbox` with the prefixes of its file and with declared spatial roots.
 
     Statements that its alignments ignore are left out, with a note on their subjects. Each word of
-    `spatial_root` is an IRI or a class name. Raises UnknownClass.
+    `spatial_root` is an IRI or a class name. If the household TBox is one of several `files`, its spatial
+    classes remain spatial beside these roots. Raises UnknownClass.
     """
     triples = _without_ignored_statements(list(tbox))
     triples += prefixes.declarations(of_file, triples)
     if spatial_root:
         find = _ClassFinder(triples)
         triples += [(find(word), v.SPATIAL, _TRUE) for word in spatial_root]
+    if len(files) > 1 and HOUSEHOLD_TTL in files and any(p == v.SPATIAL for _, p, _ in triples):
+        triples.append((v.PHYSICAL_THING, v.SPATIAL, _TRUE))
     return list(dict.fromkeys(triples))
 
 
@@ -53,6 +58,35 @@ def _without_ignored_statements(triples: list[Triple]) -> list[Triple]:
             triples.append((subject, v.SET_ASIDE, v.literal(text)))
             triples += [ignored.instead] if ignored.instead is not None else []
     return triples
+
+
+def find_extension(
+    new: Iterable[Triple],
+    present: frozenset[Triple],
+    classes: ClassTable,
+    *,
+    of_file: Prefixes = MappingProxyType({}),
+    spatial_root: Sequence[str] = (),
+) -> list[Triple]:
+    """Return the triples that extend the present TBox by `new`, with the declarations of both together.
+
+    The present prefixes and spatial classes remain. Raises UnknownClass.
+    """
+    namespaces = set(classes.prefixes.values())
+
+    def is_free(prefix: str, namespace: str) -> bool:
+        return prefix not in classes.prefixes and namespace not in namespaces
+
+    new = [(s, p, o) for s, p, o in new if p != prefixes.PREFERRED_PREFIX or is_free(v.lexical(o), v.bare(s))]
+    free = {prefix: namespace for prefix, namespace in of_file.items() if is_free(prefix, namespace)}
+    whole = with_declarations([*sorted(present), *new], of_file=free, spatial_root=spatial_root)
+    added = [t for t in whole if t not in present]
+    roots = {o for s, p, o in added if (s, p) == (v.HAS_POSITION, v.RDFS_DOMAIN)}
+    roots |= {v.PHYSICAL_THING} & _classes(added)
+    if not classes.declared_roots and (any(p == v.SPATIAL for _, p, _ in added) or roots):
+        roots.update(classes.spatial_roots)  # the roots of the file would replace them
+        added += [(c, v.SPATIAL, _TRUE) for c in sorted(roots)]
+    return list(dict.fromkeys(added))
 
 
 def with_spatial_roots_of(tbox: Sequence[Triple], before: ClassTable) -> list[Triple]:

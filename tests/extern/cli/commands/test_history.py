@@ -197,3 +197,22 @@ def test_another_tbox(system, tmp_path):
             client.add("Throne")
         then = client.list("Throne", as_of=throne.provenance.commit)
         assert [e.name for e in then] == ["throne1"]
+
+
+def test_an_extension_of_the_tbox(system, tmp_path):
+    file = tmp_path / "more.ttl"
+    file.write_text(MORE)
+    refusal = system.cli("load", "--tbox", file, status=1)
+    assert refusal.strip().endswith("to add it to the current TBox use --extend")
+    assert "--extend applies to TBoxes only" in system.cli("load", "--extend", file, status=2)
+    extend = ("load", "--tbox", "--extend", file)
+    assert "it would be: the TBox extended by more.ttl" in system.cli(*extend, "--dry-run")
+    assert "the TBox extended by more.ttl: 1 class added, " in system.cli(*extend)
+    assert "unchanged: the TBox already contains more.ttl" in system.cli(*extend)
+    system.cli("add", "Throne", "throne2", "--at", "6", "6", "0", "--default")
+    with system.client() as client:
+        assert "Chair" in client.get("throne2").types
+        client.remove("throne2")
+        client.undo(client.get("throne2", as_of=client.status().commit - 1).provenance.commit - 1)
+        with pytest.raises(errors.UnknownClass):
+            client.add("Throne")

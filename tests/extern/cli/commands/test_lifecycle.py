@@ -8,7 +8,7 @@ from msgspec import structs
 from semmap.nodes.extern.cli.app import execute
 from semmap.nodes.extern.cli.commands.lifecycle import _settings_before, settings_options
 from semmap.nodes.supervisor.settings import JOURNAL, SETTINGS, Settings
-from semmap.ontology import EMPTY_WORLD, FLAT_WORLD
+from semmap.ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from semmap.schemas import codec
 
 
@@ -89,3 +89,28 @@ def test_what_only_cannot_mean_is_refused(tmp_path, capsys, words, said):
     assert execute([*words, "--data", str(tmp_path / "d")]) == 2
     assert said in capsys.readouterr().err
     assert not (tmp_path / "d").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "abox", "world"),
+    [
+        (["--tbox", "household", "--tbox", "my.ttl"], FLAT_TTL, FLAT_WORLD),
+        (["--tbox", "household"], FLAT_TTL, FLAT_WORLD),
+        (["--tbox", "household", "--abox", "none"], None, EMPTY_WORLD),
+        (["--tbox", "my.ttl"], None, EMPTY_WORLD),
+    ],
+)
+def test_the_flat_is_the_map_of_the_household_tbox(tmp_path, monkeypatch, words, abox, world):
+    @click.command()
+    @settings_options
+    def show(settings: Settings):
+        files = [str(path) for path in settings.tboxes]
+        click.echo(f"{settings.abox} {settings.world} {files}")
+
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "my.ttl").touch()
+    files = [str(HOUSEHOLD_TTL if word == "household" else tmp_path / word) for word in words[1:4:2]]
+    if "--abox" in words:
+        files = files[:1]
+    shown = CliRunner().invoke(show, ["--data", str(tmp_path / "data"), *words])
+    assert shown.stdout == f"{abox} {world} {files}\n"

@@ -57,3 +57,22 @@ def test_several_files_are_checked_together(file, tmp_path, capsys):
     (tmp_path / "m.ttl").write_text("<http://o.org/m> a <http://www.w3.org/2002/07/owl#Ontology> .")
     assert execute(["tbox", "check", file(SOUND), str(tmp_path)]) == 0
     assert "2 files" in capsys.readouterr().out
+
+
+def test_an_extension_is_checked_with_the_household_tbox(file, capsys):
+    words = ["tbox", "check", "household", file(SOUND), "--spatial-root", "A", "--format", "json"]
+    assert execute(words) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["missing"] == ["http://o.org/m"]
+    assert report["spatial_classes"] > 200  # those of the household remain
+
+
+def test_without_classes_of_things_in_space_the_next_step_is_shown(file, capsys):
+    below = " Declaration(Class(<http://o.org/o#B>)) SubClassOf(<http://o.org/o#A> <http://o.org/o#B>))"
+    assert execute(["tbox", "check", file(SOUND[:-1] + below)]) == 0
+    assert (
+        "in space        nothing can be placed; add --spatial-root CLASS, such as B, or extend the household"
+        " TBox: semmap up --tbox household --tbox FILE\n"
+    ) in capsys.readouterr().out
+    assert execute(["tbox", "check", file(SOUND), "--spatial-root", "A"]) == 0
+    assert "in space   " not in capsys.readouterr().out

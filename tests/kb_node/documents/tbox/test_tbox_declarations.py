@@ -1,12 +1,19 @@
 """Prefixes, spatial roots and ignored statements are declared in the TBox and kept."""
 
+from pathlib import Path
+
 import pytest
 
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.documents.tbox import tbox_notes
-from semmap.nodes.kb_node.documents.tbox.tbox_declarations import with_declarations, with_spatial_roots_of
+from semmap.nodes.kb_node.documents.tbox.tbox_declarations import (
+    find_extension,
+    with_declarations,
+    with_spatial_roots_of,
+)
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.ontology import HOUSEHOLD_TTL
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 
@@ -108,3 +115,60 @@ def test_statements_that_make_every_map_inconsistent_are_ignored_and_reported():
     )
     assert with_declarations(tbox) == tbox
     assert tbox_notes.ignored_statements_note(triples()) == ""
+
+
+HOME = f"""
+@prefix dm: <{v.TBOX}> . @prefix owl: <http://www.w3.org/2002/07/owl#> .
+@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
+dm:Physical_Thing a owl:Class . dm:Cup a owl:Class ; rdfs:subClassOf dm:Physical_Thing .
+"""
+
+
+def extended(present, new, **fields):
+    present = frozenset(present)
+    return table(present | frozenset(find_extension(new, present, table(present), **fields)))
+
+
+def test_an_extension_leaves_the_spatial_classes():
+    after = extended(triples(HOME), triples(), spatial_root=["Animal"])
+    assert {after.names[c] for c in after.spatial} == {"Physical_Thing", "Cup", "Animal", "Cat"}
+
+
+def test_spatial_roots_of_another_vocabulary_are_added_to_those_declared():
+    after = extended(with_declarations(triples(), spatial_root=["Animal"]), triples(HOME))
+    assert {"Animal", "Cat"} <= {after.names[c] for c in after.spatial}
+
+
+def test_an_extension_by_the_household_s_words_leaves_the_roots_of_an_alignment():
+    thing = "<http://www.ontologydesignpatterns.org/ont/dul/DUL.owl#PhysicalObject>"
+    present = rdf.parse(f"{thing} a <http://www.w3.org/2002/07/owl#Class> .".encode(), "dul")
+    after = extended(present, triples(HOME))
+    assert {after.names[c] for c in after.spatial} == {"PhysicalObject", "Physical_Thing", "Cup"}
+
+
+def test_an_extension_leaves_the_prefixes():
+    present = with_declarations(triples(), of_file={"z": "http://zoo.org/zoo#"})
+    other = triples(ZOO.replace("zoo.org", "a.org"))
+    for declares in ({"z": "http://a.org/zoo#"}, {"a": "http://zoo.org/zoo#"}, {}):
+        after = extended(present, other, of_file=declares)
+        assert after.prefixes["z"] == "http://zoo.org/zoo#"
+        assert set(after.names.values()) >= {"z:Cat", "z:Animal"}
+    kept = with_declarations(other, of_file={"z": "http://a.org/zoo#"})  # as a client sends several files
+    assert extended(present, kept).prefixes["z"] == "http://zoo.org/zoo#"
+
+
+def test_what_is_there_extends_nothing():
+    present = frozenset(
+        with_declarations(triples(), of_file={"z": "http://zoo.org/zoo#"}, spatial_root=["Cat"])
+    )
+    again = {"of_file": {"z": "http://zoo.org/zoo#"}, "spatial_root": ["Cat"]}
+    assert find_extension(triples(), present, table(present), **again) == []
+
+
+def test_the_household_s_things_remain_in_space_beside_declared_roots():
+    files = [HOUSEHOLD_TTL, Path("zoo.ttl")]
+    both = [*triples(HOME), *triples()]
+    spatial = table(with_declarations(both, spatial_root=["Animal"], files=files)).spatial_roots
+    assert set(spatial) == {ANIMAL, v.PHYSICAL_THING}
+    alone = table(with_declarations(triples(HOME), spatial_root=["Cup"], files=files[:1]))
+    assert alone.spatial_roots == (v.dm("Cup"),)
