@@ -20,7 +20,7 @@ def report(found: TBoxReport) -> Iterator[str]:
             f"add --spatial-root CLASS, such as {found.spatial_candidate}" if found.spatial_candidate else ""
         )
         household = "extend the household TBox: semmap up --tbox household --tbox FILE"
-        yield _line("in space", f"nothing can be placed; {', or '.join(filter(None, (root, household)))}")
+        yield _line("spatial", f"nothing can be placed; {', or '.join(filter(None, (root, household)))}")
     for iri, file in found.imports.items():
         yield _line("imports", f"{iri} from {file}")
     for iri in found.missing:

@@ -71,8 +71,8 @@ def test_without_classes_of_things_in_space_the_next_step_is_shown(file, capsys)
     below = " Declaration(Class(<http://o.org/o#B>)) SubClassOf(<http://o.org/o#A> <http://o.org/o#B>))"
     assert execute(["tbox", "check", file(SOUND[:-1] + below)]) == 0
     assert (
-        "in space        nothing can be placed; add --spatial-root CLASS, such as B, or extend the household"
+        "spatial         nothing can be placed; add --spatial-root CLASS, such as B, or extend the household"
         " TBox: semmap up --tbox household --tbox FILE\n"
     ) in capsys.readouterr().out
     assert execute(["tbox", "check", file(SOUND), "--spatial-root", "A"]) == 0
-    assert "in space   " not in capsys.readouterr().out
+    assert "spatial  " not in capsys.readouterr().out
