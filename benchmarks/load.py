@@ -22,7 +22,7 @@ from pathlib import Path
 from threading import Thread
 from typing import Any
 
-import psutil  # type: ignore[import-untyped]
+import psutil
 import zenoh
 
 from semmap.nodes import bus

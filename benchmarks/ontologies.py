@@ -20,7 +20,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import psutil  # type: ignore[import-untyped]
+import psutil
 
 from semmap.nodes.kb_node.documents import catalogue, ontology_files
 from semmap.nodes.kb_node.documents.tbox import tbox_check

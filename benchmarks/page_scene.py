@@ -21,7 +21,7 @@ import time
 from collections.abc import Iterator
 
 import numpy as np
-import psutil  # type: ignore[import-untyped]
+import psutil
 import viser
 from numpy.typing import NDArray
 from playwright.sync_api import Browser, Frame, Page, ViewportSize, WebSocket, sync_playwright

@@ -115,7 +115,7 @@ class System:
     def spawned(self, *words: str, **streams: int) -> Iterator[subprocess.Popen[str]]:
         """Run `semmap WORDS` as a process, which is ended with Ctrl-C."""
         environment = {**os.environ, "SEMMAP_CONNECT": self.endpoint}
-        command = [_BIN / "semmap", *words]
+        command: list[str | Path] = [_BIN / "semmap", *words]
         with subprocess.Popen(
             command, env=environment, stdout=subprocess.PIPE, text=True, **streams
         ) as process:
@@ -203,7 +203,7 @@ def running(data: Path, *words: str | Path, endpoint: str | None = None) -> Iter
     said = [*map(str, words)]
     if (abox := _begins_with(data, said)) is not None:
         shutil.copytree(_begun(abox), data, dirs_exist_ok=True)
-    command = [_BIN / "semmap", "up", "--data", str(data), "--listen", endpoint, *said]
+    command: list[str | Path] = [_BIN / "semmap", "up", "--data", str(data), "--listen", endpoint, *said]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     system = System(data, endpoint, process)
     reader = threading.Thread(target=_read, args=(system,), daemon=True)

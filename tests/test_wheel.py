@@ -119,11 +119,19 @@ def run_a_system(python: Path, folder: Path, *words: str) -> str:
     lay_traps(folder)
     endpoint = free_endpoint()
     away = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "VIRTUAL_ENV")}
-    up = [python.with_name("semmap"), "up", "--data", folder / "map", "--listen", endpoint, *words]
+    up: list[str | Path] = [
+        python.with_name("semmap"),
+        "up",
+        "--data",
+        folder / "map",
+        "--listen",
+        endpoint,
+        *words,
+    ]
     with subprocess.Popen(up, cwd=folder, env=away, stdout=subprocess.PIPE, text=True) as system:
         try:
             assert any(line.startswith("stop ") for line in system.stdout), "it did not start"
-            command = [python, "-c", CLIENT, endpoint, *words]
+            command: list[str | Path] = [python, "-c", CLIENT, endpoint, *words]
             return subprocess.check_output(command, cwd=folder, env=away, text=True)
         finally:
             system.send_signal(signal.SIGINT)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import owlrl
-import psutil  # type: ignore[import-untyped]
+import psutil
 import rdflib
 
 from benchmarks.kb.made import Figures, each, entities, pose, tbox, timed

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from importlib.util import find_spec
 from typing import NamedTuple
 
-import psutil  # type: ignore[import-untyped]
+import psutil
 import pyoxigraph
 
 from benchmarks.kb.made import cost

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import psutil  # type: ignore[import-untyped]
+import psutil
 
 from benchmarks.kb.busy_cores import awake_cores
 from benchmarks.kb.made import CLASSES, Figures, each, pose

@@ -6,7 +6,7 @@ import gc
 from time import perf_counter
 
 import numpy as np
-import psutil  # type: ignore[import-untyped]
+import psutil
 
 from benchmarks.sim.generated_scenes import MODELS, order
 from benchmarks.table import Row

@@ -9,7 +9,7 @@ import time
 from multiprocessing.sharedctypes import Synchronized
 from pathlib import Path
 
-import psutil  # type: ignore[import-untyped]
+import psutil
 
 from benchmarks.kb.wire import running
 from benchmarks.table import Row

@@ -14,7 +14,7 @@ import threading
 import time
 from pathlib import Path
 
-import psutil  # type: ignore[import-untyped]
+import psutil
 
 _LOOK_S = 0.25
 _STOP_S = 5.0

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, NamedTuple
 
-import psutil  # type: ignore[import-untyped]
+import psutil
 
 SILENT_S: Final = 4.0
 """A node without a heartbeat for this time hangs, unless it is working."""

@@ -51,7 +51,7 @@ class Cuts:
         module = [sys.executable, "-m", "tests.faults.cut_hosts", str(self.seconds)]
         # Into files, because child processes of a hanging run would keep pipes open.
         with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
-            command = ["unshare", "-rn", *module, *self.words]
+            command: list[str | Path] = ["unshare", "-rn", *module, *self.words]
             process = subprocess.Popen(command, stdout=out, stderr=err, start_new_session=True)
             try:
                 process.wait(timeout=_PATIENCE_S)

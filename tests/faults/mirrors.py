@@ -46,7 +46,13 @@ def _kill_again_and_again(ground: Ground, *, server_too: bool) -> None:
 @contextlib.contextmanager
 def _mirror(ground: Ground, server: Oxigraph, told: list[str]) -> Iterator[None]:
     """Run `semmap fleet mirror`, and end it with kill -9."""
-    command = [Path(sys.executable).with_name("semmap"), "fleet", "mirror", "--connect", ground.endpoint]
+    command: list[str | Path] = [
+        Path(sys.executable).with_name("semmap"),
+        "fleet",
+        "mirror",
+        "--connect",
+        ground.endpoint,
+    ]
     where = ["--sparql-update", server.update_url]
     with tempfile.TemporaryFile("w+") as said:
         with subprocess.Popen([*command, *where], stdout=said, stderr=said) as process:

@@ -83,7 +83,7 @@ def kill_everybody_above_and_go_down(ground: Ground) -> None:
         time.sleep(0.001)
     os.kill(pids["kb_node"], signal.SIGSTOP)  # not before: the kernel ends whom it sees stopped and orphaned
     up.wait(30)
-    down = [Path(sys.executable).with_name("semmap"), "down", "--data", str(ground.data)]
+    down: list[str | Path] = [Path(sys.executable).with_name("semmap"), "down", "--data", str(ground.data)]
     status = subprocess.run(down, timeout=60, capture_output=True).returncode
     assert status in (0, 3), status  # 3 where the kernel has ended it before `semmap down` looked
     assert not any(map(_runs, pids.values()))

@@ -73,11 +73,11 @@ def damaged_journal(ground: Ground) -> None:
     with contextlib.closing(sqlite3.connect(ground.data / "journal.sqlite")) as db, db:
         (seq,) = db.execute("SELECT max(seq) / 2 FROM commits").fetchone()
         db.execute("UPDATE commits SET body = zeroblob(length(body)) WHERE seq = ?", (seq,))
-    up = [_BIN / "semmap", "up", "--data", ground.data, "--listen", ground.endpoint]
+    up: list[str | Path] = [_BIN / "semmap", "up", "--data", ground.data, "--listen", ground.endpoint]
     refused = subprocess.run([*up, "--no-sim", "--no-record"], capture_output=True, text=True, timeout=90)
     assert refused.returncode == 1, refused
     assert f"commit {seq} is damaged" in refused.stdout + refused.stderr, refused
-    repair = [_BIN / "semmap", "repair", "--data", ground.data]
+    repair: list[str | Path] = [_BIN / "semmap", "repair", "--data", ground.data]
     told = subprocess.run(repair, capture_output=True, text=True, timeout=90)
     assert told.returncode == 0, told
     assert f"(commit {seq} is damaged; its changes were restored from the checkpoint" in told.stdout, told
@@ -90,7 +90,7 @@ def restored_backup(ground: Ground) -> None:
     before = set(ground.load.added)
     with ground.client() as client:
         client.backup(file, overwrite=True)
-    restore = [_BIN / "semmap", "restore", file, "--data", other, "--replace"]
+    restore: list[str | Path] = [_BIN / "semmap", "restore", file, "--data", other, "--replace"]
     subprocess.run(restore, check=True, capture_output=True, timeout=120)
     with contextlib.closing(sqlite3.connect(other / "journal.sqlite")) as db:
         there = {name for (name,) in db.execute("SELECT name FROM touches")}

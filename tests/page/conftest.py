@@ -57,7 +57,7 @@ class Web:
 @contextlib.contextmanager
 def serving(endpoint: str, *words: str) -> Iterator[Web]:
     """Run `semmap web` for the system at `endpoint` on a free port, and end it with Ctrl-C."""
-    command = [_BIN / "semmap", "web", "--port", "0", *words]
+    command: list[str | Path] = [_BIN / "semmap", "web", "--port", "0", *words]
     environment = {**os.environ, "SEMMAP_CONNECT": endpoint}
     with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None

@@ -20,7 +20,14 @@ BASE = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping"
 
 def up(data: Path, *words: str | Path) -> tuple[int, str]:
     """Return the exit status and the last stderr line of a failing `semmap up`."""
-    command = [Path(sys.executable).parent / "semmap", "up", "--data", data, "--listen", free_endpoint()]
+    command: list[str | Path] = [
+        Path(sys.executable).parent / "semmap",
+        "up",
+        "--data",
+        data,
+        "--listen",
+        free_endpoint(),
+    ]
     run = subprocess.run([*command, *words], capture_output=True, text=True, timeout=2 * PATIENCE_S)
     lines = run.stderr.strip().splitlines()
     assert len(lines) == 1, run.stderr
@@ -29,7 +36,7 @@ def up(data: Path, *words: str | Path) -> tuple[int, str]:
 
 def down(*words: str | Path) -> tuple[int, str]:
     """Return the exit status and output of `semmap down`."""
-    command = [Path(sys.executable).parent / "semmap", "down", *words]
+    command: list[str | Path] = [Path(sys.executable).parent / "semmap", "down", *words]
     run = subprocess.run(command, capture_output=True, text=True, timeout=2 * PATIENCE_S)
     return run.returncode, (run.stdout + run.stderr).strip()
 

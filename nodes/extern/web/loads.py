@@ -6,7 +6,7 @@ import contextlib
 import socket
 from collections.abc import Iterable
 
-import psutil  # type: ignore[import-untyped]
+import psutil
 
 from semmap.nodes.extern.web.views.system_status import Load
 from semmap.schemas.health import Health

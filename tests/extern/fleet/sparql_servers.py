@@ -90,7 +90,7 @@ class Virtuoso:
         grant.write_text('GRANT SPARQL_UPDATE TO "SPARQL";\n')
         deadline_s = time.monotonic() + 2 * PATIENCE_S
         while True:
-            command = ["isql-vt", self._sql, "dba", "dba", grant]
+            command: list[str | Path] = ["isql-vt", self._sql, "dba", "dba", grant]
             done = subprocess.run(command, capture_output=True, text=True)
             said = done.stdout + done.stderr
             if ("Done." in said and "Error" not in said) or "already have role" in said:
