@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from semmap.nodes.coordinator.access.authority import is_placing, require_authority
 from semmap.nodes.coordinator.commands import attachment_rules, transactions
-from semmap.nodes.coordinator.commands.commit import commit, idempotent, make_reply, new_id, reload_map
+from semmap.nodes.coordinator.commands.commit import commit, make_reply, new_id, reload_map
 from semmap.nodes.coordinator.commands.joint_state import require_openable
 from semmap.nodes.coordinator.commands.map_view import MapView
 from semmap.nodes.coordinator.commands.plausibility import find_doubts, require_carry, require_same_nature
+from semmap.nodes.coordinator.commands.registration import handles
 from semmap.nodes.coordinator.kb_coroutines import KbCoroutine, ask
 from semmap.nodes.coordinator.reconciler.observed_state import ObservedState, describe_joint_change
 from semmap.nodes.coordinator.scene.manual_moves import Attribution
@@ -36,7 +37,7 @@ _TRIES = 4
 """How often another name is tried if a generated name turns out to be taken."""
 
 
-@idempotent
+@handles(Add)
 def add(view: MapView, command: Add) -> KbCoroutine[Changed]:
     """Add an entity to the map."""
     found = view.classes.spatial(command.class_)
@@ -71,7 +72,7 @@ def _add(view: MapView, command: Add, found: ClassInfo) -> KbCoroutine[Changed]:
     )
 
 
-@idempotent
+@handles(Update)
 def update(view: MapView, command: Update) -> KbCoroutine[Changed]:
     """Change an entity; omitted fields keep their values."""
     entity, found = resolve_update(view, command)
@@ -116,14 +117,14 @@ def notes_for(
     )
 
 
-@idempotent
+@handles(Set)
 def set_(view: MapView, command: Set) -> KbCoroutine[Changed]:
     """Set a property of an entity."""
     require_openable(view, command)
     return (yield from _change_property(view, command, transactions.set_property(command)))
 
 
-@idempotent
+@handles(Unset)
 def unset(view: MapView, command: Unset) -> KbCoroutine[Changed]:
     """Remove the values of a property of an entity, or one of them."""
     return (yield from _change_property(view, command, transactions.unset_property(command)))
@@ -181,7 +182,7 @@ def _find_changed(made: Effects | None, name: str) -> Entity | None:
     return next((e for e in made.changed if e.name == name), None) if made is not None else None
 
 
-@idempotent
+@handles(Track)
 def track(view: MapView, command: Track) -> KbCoroutine[Changed]:
     """Start or stop tracking an entity. Raises Refused for a place."""
     entity = view.entity(command.name)
@@ -195,7 +196,7 @@ def track(view: MapView, command: Track) -> KbCoroutine[Changed]:
     return make_reply(made, _describe(entity, made), names=(entity.name,))
 
 
-@idempotent
+@handles(Remove)
 def remove(view: MapView, command: Remove) -> KbCoroutine[Changed]:
     """Remove entities: all of them, or none if one is unknown."""
     if not command.names:
@@ -206,7 +207,7 @@ def remove(view: MapView, command: Remove) -> KbCoroutine[Changed]:
     return (yield from _remove(view, command, f"remove {' '.join(e.name for e in leaving)}", leaving))
 
 
-@idempotent
+@handles(Clear)
 def clear(view: MapView, command: Clear) -> KbCoroutine[Changed]:
     """Remove all entities."""
     require_authority(command, view.entities.values())

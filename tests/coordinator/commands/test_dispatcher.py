@@ -11,6 +11,7 @@ from msgspec import structs
 from semmap.nodes.coordinator.commands import load
 from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
 from semmap.nodes.coordinator.commands.map_view import MapView
+from semmap.nodes.coordinator.commands.registration import HANDLERS
 from semmap.nodes.coordinator.kb_coroutines import run_async
 from semmap.nodes.coordinator.reconciler.observed_state import ObservedState
 from semmap.nodes.coordinator.scheduler import Scheduler
@@ -19,6 +20,7 @@ from semmap.ontology import vocabulary as v
 from semmap.schemas import commands as c
 from semmap.schemas import errors
 from semmap.schemas.bridge import LoadDocument
+from semmap.schemas.calls import reply_type
 from semmap.schemas.commits import Commit, Transaction
 from semmap.schemas.entities import Pose, orientation_from_yaw
 from semmap.schemas.replies import Changed
@@ -26,6 +28,11 @@ from semmap.schemas.replies import Changed
 
 def add(dispatcher: CommandDispatcher, class_: str = "Chair", name: str | None = None, **fields) -> Changed:
     return dispatcher.change(c.Add(class_=class_, name=name, **fields))
+
+
+def test_every_command_that_returns_a_commit_has_a_handler():
+    returned = {kind for kind in c.COMMANDS.values() if reply_type(kind) is Changed}
+    assert {kind.__name__ for kind in returned ^ HANDLERS.keys()} == set()
 
 
 def everything(semantic_map) -> set:
