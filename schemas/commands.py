@@ -94,6 +94,7 @@ __all__ = [
     "Properties",
     "Relations",
     "Remove",
+    "Rename",
     "Renew",
     "Reset",
     "Set",
@@ -269,6 +270,27 @@ class Unset(Command[Changed], frozen=True, tag="unset"):
     unchanged: tuple[Word, ...] = ()
     since: Since = 0
     dry_run: bool = False
+
+
+class Rename(Command[Changed], frozen=True, tag="rename"):
+    """Rename an entity, in one commit: all references to it in the map refer to the `new` name.
+
+    Its body in the scene is replaced by one with the new name. The command is rejected for tracked entities,
+    for attached ones and those that others are attached to, for robots, and for bodies of the world file.
+    """
+
+    ROLES: ClassVar[Roles] = OPERATORS
+
+    name: Word
+    new: Name
+    unchanged: tuple[Word, ...] = ()
+    since: Since = 0
+    dry_run: bool = False
+
+    def __post_init__(self) -> None:
+        """Convert the names to Unicode's composed form."""
+        super().__post_init__()
+        structs.force_setattr(self, "new", composed(self.new))
 
 
 class Track(Command[Changed], frozen=True, tag="track"):

@@ -36,7 +36,8 @@ PUBLIC = {
     "semmap.commands": """
         Add Approve Attach Backup Batch Check Classes Clear Close Command Compact Could Detach Diff
         Drive Explain Export Find FindWay Forget Get History Infer LastSeen Learn Learned List
-        ListFrames Load Move Open Pause PlanFloor Properties Relations Remove Renew Reset Set Sparql
+        ListFrames Load Move Open Pause PlanFloor Properties Relations Remove Rename Renew Reset Set
+        Sparql
         Status StepOnce Submit TakePicture Tell Track Understand Undo Unset Update WasWhen Watch
     """,
     "semmap.fleet": "Answer CopiedRobot FleetAnswer Frame Mirror Robots mirror robots sparql",

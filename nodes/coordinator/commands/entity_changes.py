@@ -1,4 +1,4 @@
-"""Handlers that change entities: add, update, set, unset, track, remove, clear."""
+"""Handlers that change entities: add, update, set, unset, rename, track, remove, clear."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from semmap.nodes.coordinator.scene.manual_moves import Attribution
 from semmap.ontology import vocabulary as v
 from semmap.ontology.name_index import Ambiguous, Named, NameIndex
 from semmap.schemas import changes, errors, wording
+from semmap.schemas.attachments import holder_of
 from semmap.schemas.commands import (
     Add,
     Clear,
@@ -22,12 +23,13 @@ from semmap.schemas.commands import (
     Infer,
     Properties,
     Remove,
+    Rename,
     Set,
     Track,
     Unset,
     Update,
 )
-from semmap.schemas.commits import Effects, Transaction
+from semmap.schemas.commits import Edit, Effects, Transaction
 from semmap.schemas.entities import ClassInfo, Entity, Pose, Value
 from semmap.schemas.replies import Changed
 from semmap.schemas.scene_files import pose_of
@@ -180,6 +182,41 @@ def _other_names(made: Effects | None, name: str) -> tuple[str, ...]:
 def _find_changed(made: Effects | None, name: str) -> Entity | None:
     """Return the entity after a commit, if the commit changes it."""
     return next((e for e in made.changed if e.name == name), None) if made is not None else None
+
+
+@handles(Rename)
+def rename(view: MapView, command: Rename) -> KbCoroutine[Changed]:
+    """Rename an entity. Raises Refused if its name is fixed by something else, NameTaken."""
+    entity = view.entity(command.name)
+    if command.new == entity.name:
+        return make_reply(None, f"unchanged: the name is already {entity.name}", names=(entity.name,))
+    if command.new in view.entities:
+        raise errors.NameTaken(f"the name '{command.new}' is taken; see: semmap get {command.new}")
+    _require_renamable(view, entity)
+    reason = f"rename {entity.name} to {command.new}"
+    renaming = Edit(name=entity.name, rename=command.new)
+    made = yield from commit(view, transactions.build(command, reason, edit=[renaming]))
+    now = _find_changed(made, command.new)
+    notes: tuple[str, ...] = ()
+    if now is not None and now.model != entity.model:
+        notes = (f"the model of its body follows its name: {now.model} instead of {entity.model}",)
+    return make_reply(made, f"renamed {entity.name} to {command.new}", names=(command.new,), notes=notes)
+
+
+def _require_renamable(view: MapView, entity: Entity) -> None:
+    """Raise Refused for a robot, a body of the world file, and for a tracked or attached entity."""
+    name, body = entity.name, view.bodies().get(entity.name)
+    is_robot = "Robot" in entity.types or (body is not None and body.robot)
+    if is_robot or (body is not None and (body.part_of or not body.entity)):
+        is_ = "a robot or a part of one" if is_robot else "a body of the world file"
+        raise errors.Refused(
+            f"{name} is {is_}, so its name is fixed; to label it: semmap update {name} --ref TEXT"
+        )
+    if entity.tracked:
+        raise errors.Refused(f"{name} is tracked; to rename it, first: semmap track {name} --off")
+    if by := holder_of(entity):
+        raise errors.Refused(f"{name} is attached to {by}; to rename it, first: semmap detach {name}")
+    attachment_rules.require_no_attachments((name,), view.held)
 
 
 @handles(Track)
