@@ -192,6 +192,7 @@ def rename(view: MapView, command: Rename) -> KbCoroutine[Changed]:
         return make_reply(None, f"unchanged: the name is already {entity.name}", names=(entity.name,))
     if command.new in view.entities:
         raise errors.NameTaken(f"the name '{command.new}' is taken; see: semmap get {command.new}")
+    require_authority(command, [entity])
     _require_renamable(view, entity)
     reason = f"rename {entity.name} to {command.new}"
     renaming = Edit(name=entity.name, rename=command.new)

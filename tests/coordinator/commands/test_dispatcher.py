@@ -208,6 +208,8 @@ def test_a_rename_is_executed_once_and_tried_without_effect(dispatcher, semantic
     first = dispatcher.change(c.Rename(name="chair1", new="throne", id="7"))
     assert dispatcher.change(c.Rename(name="chair1", new="throne", id="7")).commit == first.commit
     assert dispatcher.change(c.Rename(name="throne", new="throne")).commit is None
+    with pytest.raises(errors.Refused, match="throne was defined by an operator"):
+        dispatcher.change(c.Rename(name="throne", new="seat1", source="perception"))
 
 
 @pytest.mark.parametrize(
