@@ -53,8 +53,66 @@ from semmap.schemas.replies import (
     Sighting,
     SystemStatus,
 )
+from semmap.schemas.role_names import ADMINS, ANYBODY, NODES, OBSERVERS, OPERATORS, Roles
 from semmap.schemas.scenes import Picture, Point
 from semmap.schemas.sparql import SparqlResult, Watching
+
+__all__ = [
+    "Add",
+    "Approve",
+    "Attach",
+    "Backup",
+    "Batch",
+    "Check",
+    "Classes",
+    "Clear",
+    "Close",
+    "Command",
+    "Compact",
+    "Could",
+    "Detach",
+    "Diff",
+    "Drive",
+    "Explain",
+    "Export",
+    "Find",
+    "FindWay",
+    "Forget",
+    "Get",
+    "History",
+    "Infer",
+    "LastSeen",
+    "Learn",
+    "Learned",
+    "List",
+    "ListFrames",
+    "Load",
+    "Move",
+    "Open",
+    "Pause",
+    "PlanFloor",
+    "Properties",
+    "Relations",
+    "Remove",
+    "Rename",
+    "Renew",
+    "Reset",
+    "Set",
+    "Sparql",
+    "Status",
+    "StepOnce",
+    "Submit",
+    "TakePicture",
+    "Tell",
+    "Track",
+    "Understand",
+    "Undo",
+    "Unset",
+    "Update",
+    "WasWhen",
+    "Watch",
+]
+"""The names of `semmap.commands`: the commands that programs may send. A test names a missing one."""
 
 RDF_FORMATS = ("rdfxml", "turtle", "ntriples", "jsonld")
 RdfFormat = Literal["rdfxml", "turtle", "ntriples", "jsonld"]
@@ -79,6 +137,9 @@ class Command(
 
     A command that is sent twice with the same `id` is executed once; both requests get the same reply.
     """
+
+    ROLES: ClassVar[Roles] = NODES
+    """The roles that may send the command; each command sets its own."""
 
     id: Annotated[str, Meta(max_length=200)] = ""
     source: Source = "operator"
@@ -115,6 +176,8 @@ class Add(Command[Changed], frozen=True, tag="add"):
     `unchanged` was removed, or changed by a commit after `since`.
     """
 
+    ROLES: ClassVar[Roles] = OBSERVERS
+
     class_: ClassName = field(name="class")
     name: Name | None = None
     at: Vector | None = None
@@ -148,6 +211,8 @@ class Update(Command[Changed], frozen=True, tag="update"):
     an extent is moved by setting a new one.
     """
 
+    ROLES: ClassVar[Roles] = OBSERVERS
+
     name: Word
     class_: ClassName | None = field(name="class", default=None)
     at: Vector | None = None
@@ -180,6 +245,8 @@ class Set(Command[Changed], frozen=True, tag="set"):
     with `if_unset` unless the property has none.
     """
 
+    ROLES: ClassVar[Roles] = OBSERVERS
+
     name: Word
     property: Text
     values: tuple[Value, ...]
@@ -194,6 +261,8 @@ class Set(Command[Changed], frozen=True, tag="set"):
 class Unset(Command[Changed], frozen=True, tag="unset"):
     """Remove one value of an entity's property, or all of them; `if_is` as for `set`."""
 
+    ROLES: ClassVar[Roles] = OBSERVERS
+
     name: Word
     property: Text
     value: Value | None = None
@@ -203,12 +272,35 @@ class Unset(Command[Changed], frozen=True, tag="unset"):
     dry_run: bool = False
 
 
+class Rename(Command[Changed], frozen=True, tag="rename"):
+    """Rename an entity, in one commit: all references to it in the map refer to the `new` name.
+
+    Its body in the scene is replaced by one with the new name. The command is rejected for tracked entities,
+    for attached ones and those that others are attached to, for robots, and for bodies of the world file.
+    """
+
+    ROLES: ClassVar[Roles] = OPERATORS
+
+    name: Word
+    new: Name
+    unchanged: tuple[Word, ...] = ()
+    since: Since = 0
+    dry_run: bool = False
+
+    def __post_init__(self) -> None:
+        """Convert the names to Unicode's composed form."""
+        super().__post_init__()
+        structs.force_setattr(self, "new", composed(self.new))
+
+
 class Track(Command[Changed], frozen=True, tag="track"):
     """Track an entity's pose live: from a publisher (`stream`) or from the simulator (`sim`).
 
     Live poses are published on `semmap/live/<name>`, and the newest is used. A pose is committed only when
     the entity stops. With `off`, tracking ends, and the entity stays at its last pose.
     """
+
+    ROLES: ClassVar[Roles] = OPERATORS
 
     name: Word
     from_: Tracking = field(name="from", default="stream")
@@ -230,6 +322,8 @@ class Attach(Command[Changed], frozen=True, tag="attach"):
     detached. Objects in `leave`, and objects that only they support, stay.
     """
 
+    ROLES: ClassVar[Roles] = OPERATORS
+
     name: Word
     to: Word
     at: Vector | None = None
@@ -247,6 +341,8 @@ class Detach(Command[Changed], frozen=True, tag="detach"):
     Objects that were attached with it (`carry`) are detached, too.
     """
 
+    ROLES: ClassVar[Roles] = OPERATORS
+
     name: Word
     unchanged: tuple[Word, ...] = ()
     since: Since = 0
@@ -261,6 +357,7 @@ class Batch(Command[Changed], frozen=True, tag="batch"):
     `confidence`, `unchanged`, `since` and `dry_run` belong to the batch. Positions are in the map frame.
     """
 
+    ROLES: ClassVar[Roles] = OBSERVERS
     LARGEST: ClassVar[int] = MANY
 
     changes: Annotated[tuple[Update | Set | Unset, ...], Meta(max_length=10_000)]
@@ -273,6 +370,7 @@ class Batch(Command[Changed], frozen=True, tag="batch"):
 class Remove(Command[Changed], frozen=True, tag="remove"):
     """Remove entities from the map and the scene: all of them or, if a name is unknown, none."""
 
+    ROLES: ClassVar[Roles] = OBSERVERS
     LARGEST: ClassVar[int] = MANY
 
     names: tuple[Word, ...]
@@ -287,6 +385,8 @@ class Remove(Command[Changed], frozen=True, tag="remove"):
 
 class Clear(Command[Changed], frozen=True, tag="clear"):
     """Remove all entities from the map and the scene. The TBox stays."""
+
+    ROLES: ClassVar[Roles] = OPERATORS
 
     dry_run: bool = False
 
@@ -305,6 +405,7 @@ class Load(Command[Changed], frozen=True, tag="load"):
     rejected, the earlier parts stay, and the error reports them.
     """
 
+    ROLES: ClassVar[Roles] = OPERATORS
     LARGEST: ClassVar[int] = DOCUMENT
 
     content: bytes
@@ -333,6 +434,8 @@ class List(Command[tuple[Entity, ...] | dict[str, Any]], frozen=True, tag="list"
     the format is not `json`.
     """
 
+    ROLES: ClassVar[Roles] = ANYBODY
+
     class_: ClassName | None = field(name="class", default=None)
     format: ListFormat = "json"
     as_of: When | None = None
@@ -360,6 +463,8 @@ class Relations(Command[tuple[Relation, ...]], frozen=True, tag="relations"):
     adds left of, right of, in front of and behind, as seen from there.
     """
 
+    ROLES: ClassVar[Roles] = ANYBODY
+
     name: Word
     other: Word | None = None
     viewer: Word | None = None
@@ -374,6 +479,8 @@ class Get(Command[Described], frozen=True, tag="get"):
     hold (only for the current map). With a `frame`, its current pose is given in that frame.
     """
 
+    ROLES: ClassVar[Roles] = ANYBODY
+
     name: Word
     as_of: When | None = None
     where: bool = False
@@ -387,17 +494,23 @@ class ListFrames(Command[tuple[Frame, ...]], frozen=True, tag="frames"):
     `semmap/frame/<name>`. Parents precede their children.
     """
 
+    ROLES: ClassVar[Roles] = ANYBODY
+
     name: Word | None = None
 
 
 class Check(Command[Checked], frozen=True, tag="check"):
     """Check whether the map is consistent, and explain why not. `owlrl` is a slow, independent reasoner."""
 
+    ROLES: ClassVar[Roles] = ANYBODY
+
     engine: Literal["semmap", "owlrl"] = "semmap"
 
 
 class Infer(Command[Inferred], frozen=True, tag="infer"):
     """List the inferred facts about one individual, or about all entities."""
+
+    ROLES: ClassVar[Roles] = ANYBODY
 
     name: Word | None = None
 
@@ -408,6 +521,8 @@ class Explain(Command[Explanation], frozen=True, tag="explain"):
     `name`, `predicate` and `value` are local names, IRIs in <> or literals. Triples that no rule derives are
     decided by refutation: two individuals are different if identity would be a contradiction.
     """
+
+    ROLES: ClassVar[Roles] = ANYBODY
 
     name: Word
     predicate: Word
@@ -422,6 +537,8 @@ class Could(Command[Possible], frozen=True, tag="could"):
     a data property's value.
     """
 
+    ROLES: ClassVar[Roles] = ANYBODY
+
     name: Word
     predicate: Word
     value: str
@@ -430,12 +547,16 @@ class Could(Command[Possible], frozen=True, tag="could"):
 class Diff(Command[Difference], frozen=True, tag="diff"):
     """List what changed between `since` and `until` (or now), which are commits or times."""
 
+    ROLES: ClassVar[Roles] = ANYBODY
+
     since: When
     until: When | None = None
 
 
 class WasWhen(Command[Spells], frozen=True, tag="when"):
     """List when an entity was on, inside, in or attached to another, as computed after each commit."""
+
+    ROLES: ClassVar[Roles] = ANYBODY
 
     name: Word
     relation: KeptRelation
@@ -448,6 +569,8 @@ class Tell(Command[Account], frozen=True, tag="tell"):
     The most important facts come first, similar things are counted together, and omissions are reported.
     """
 
+    ROLES: ClassVar[Roles] = ANYBODY
+
     name: Word | None = None
     words: Annotated[int, Meta(ge=20, le=5000)] = 150
 
@@ -457,6 +580,8 @@ class Understand(Command[Understood], frozen=True, tag="understand"):
 
     Without a `language`, it is detected.
     """
+
+    ROLES: ClassVar[Roles] = ANYBODY
 
     text: Text
     language: Language | None = None
@@ -468,6 +593,8 @@ class Find(Command[Found], frozen=True, tag="find"):
     `viewer` (a name, or a label or class of only one entity) or `viewpoint` defines left, right and behind.
     "My" refers to `asker`.
     """
+
+    ROLES: ClassVar[Roles] = ANYBODY
 
     text: Text
     viewer: Word | None = None
@@ -481,6 +608,8 @@ class PlanFloor(Command[Plan], frozen=True, tag="floorplan"):
     The command line converts them to occupancy grids, SVG and GeoJSON.
     """
 
+    ROLES: ClassVar[Roles] = ANYBODY
+
     as_of: When | None = None
 
 
@@ -491,6 +620,8 @@ class FindWay(Command[Way], frozen=True, tag="route"):
     Objects with a part within `heights` [m] above the floor, and forbidden places, are obstacles. If the path
     leads through closed doors, the reply lists them. Raises Refused, with the reason, if there is no path.
     """
+
+    ROLES: ClassVar[Roles] = ANYBODY
 
     from_: Word = field(name="from")
     to: Word
@@ -505,6 +636,8 @@ class Export(Command[Document], frozen=True, tag="export"):
     With `as_of`, the map of that time is exported; its inferred and computed facts are computed again.
     """
 
+    ROLES: ClassVar[Roles] = ANYBODY
+
     format: RdfFormat = "rdfxml"
     inferred: bool = False
     as_of: When | None = None
@@ -513,9 +646,13 @@ class Export(Command[Document], frozen=True, tag="export"):
 class Classes(Command[tuple[ClassInfo, ...]], frozen=True, tag="classes"):
     """List the classes of the TBox, with the number of entities of each."""
 
+    ROLES: ClassVar[Roles] = ANYBODY
+
 
 class Properties(Command[tuple[PropertyInfo, ...]], frozen=True, tag="properties"):
     """List the data and object properties of the TBox that `set` accepts, with their ranges and labels."""
+
+    ROLES: ClassVar[Roles] = ANYBODY
 
 
 class Status(Command[SystemStatus], frozen=True, tag="status"):
@@ -523,6 +660,8 @@ class Status(Command[SystemStatus], frozen=True, tag="status"):
 
     With `names`, `in_agreement`, `pending` and `displaced` cover only these entities.
     """
+
+    ROLES: ClassVar[Roles] = ANYBODY
 
     names: tuple[Word, ...] = ()
 
@@ -532,6 +671,8 @@ class Status(Command[SystemStatus], frozen=True, tag="status"):
 
 class History(Command[tuple[LoggedCommit, ...]], frozen=True, tag="history"):
     """List the newest commits, or those that changed an entity, from `since` to `until` (inclusive)."""
+
+    ROLES: ClassVar[Roles] = ANYBODY
 
     name: Word | None = None
     since: When | None = None
@@ -545,6 +686,8 @@ class LastSeen(Command[Sighting], frozen=True, tag="last-seen"):
     The reply distinguishes entities that were observed to be absent from those not observed since.
     """
 
+    ROLES: ClassVar[Roles] = ANYBODY
+
     name: Word
 
 
@@ -554,6 +697,8 @@ class Undo(Command[Changed], frozen=True, tag="undo"):
     Without `commit`, the newest commit that a client requested is undone, with the settling that followed it.
     A `move`, `open`, `close` or `drive` that is not committed yet is stopped instead of undoing a commit.
     """
+
+    ROLES: ClassVar[Roles] = OPERATORS
 
     commit: Annotated[int, Meta(ge=1, le=1 << 53)] | None = None
     dry_run: bool = False
@@ -569,6 +714,8 @@ class Submit(Command[Request], frozen=True, tag="submit"):
     the agent that submitted the change makes it after the approval.
     """
 
+    ROLES: ClassVar[Roles] = OPERATORS
+
     text: Annotated[str, Meta(min_length=1, max_length=2000)]
     follows: Annotated[Consequences, Meta(max_length=200)] = ()
 
@@ -578,6 +725,8 @@ class Approve(Command[tuple[Request, ...]], frozen=True, tag="approve"):
 
     `reject` with `all` rejects all pending requests.
     """
+
+    ROLES: ClassVar[Roles] = OPERATORS
 
     number: Annotated[int, Meta(ge=1, le=1 << 53)] | None = None
     reject: bool = False
@@ -594,6 +743,8 @@ class Backup(Command[BackupPart], frozen=True, tag="backup"):
     `schemas/backups.py`.
     """
 
+    ROLES: ClassVar[Roles] = ADMINS
+
     at: str = ""
 
 
@@ -603,6 +754,8 @@ class Compact(Command[Compacted], frozen=True, tag="compact"):
     The history begins there afterwards: earlier commits cannot be queried or undone. With `dry_run`, nothing
     is changed, and the reply contains what would be removed.
     """
+
+    ROLES: ClassVar[Roles] = ADMINS
 
     keep: str = "30d"
     dry_run: bool = False
@@ -623,6 +776,8 @@ class Sparql(Command[SparqlResult], frozen=True, tag="sparql"):
     rejected.
     """
 
+    ROLES: ClassVar[Roles] = ANYBODY
+
     query: QueryText
     inferred: bool = False
     as_of: When | None = None
@@ -639,6 +794,8 @@ class Watch(Command[Watching], frozen=True, tag="watch"):
     `watch` is its name (generated if omitted); a client that subscribes to the key first misses no change.
     The query is evaluated again when a commit may affect it, and ends `lease` seconds after the last `renew`.
     """
+
+    ROLES: ClassVar[Roles] = ANYBODY
 
     query: QueryText | None = None
     inferred: bool = False
@@ -660,6 +817,8 @@ class Watch(Command[Watching], frozen=True, tag="watch"):
 class Renew(Command[Done], frozen=True, tag="renew"):
     """Renew the lease of a standing query or, with `end`, end it."""
 
+    ROLES: ClassVar[Roles] = ANYBODY
+
     watch: Name
     end: bool = False
 
@@ -674,6 +833,8 @@ class Move(Command[Moved], frozen=True, tag="move"):
     body and are committed together, except those in `leave`. `frame` is as for `add`. `wait` delays the reply
     until the commit exists, or until it is certain that there is none; it has no effect while time is paused.
     """
+
+    ROLES: ClassVar[Roles] = OPERATORS
 
     name: Word
     at: Vector
@@ -692,6 +853,8 @@ class Open(Command[Moved], frozen=True, tag="open"):
     stop the movement.
     """
 
+    ROLES: ClassVar[Roles] = OPERATORS
+
     name: Word
     to: Probability = 1.0
     joint: Word | None = None
@@ -700,6 +863,8 @@ class Open(Command[Moved], frozen=True, tag="open"):
 
 class Close(Command[Moved], frozen=True, tag="close"):
     """Close an object; as for `open`."""
+
+    ROLES: ClassVar[Roles] = OPERATORS
 
     name: Word
     joint: Word | None = None
@@ -714,6 +879,8 @@ class Drive(Command[Moved], frozen=True, tag="drive"):
     it at its current position. `wait` delays the reply until it has arrived and the map is updated, as for
     `move`. Raises Refused if the robot is blocked or falls over.
     """
+
+    ROLES: ClassVar[Roles] = OPERATORS
 
     name: Word
     to: tuple[Point, ...] = ()
@@ -731,6 +898,8 @@ class Learn(Command[LessonTold], frozen=True, tag="learn"):
     TBox. `shown` describes the origin of the views.
     """
 
+    ROLES: ClassVar[Roles] = OPERATORS
+
     class_: ClassName = field(name="class")
     entity: Word | None = None
     views: Annotated[tuple[ShownView, ...], Meta(max_length=200)] = ()
@@ -740,9 +909,13 @@ class Learn(Command[LessonTold], frozen=True, tag="learn"):
 class Learned(Command[tuple[LessonTold, ...]], frozen=True, tag="learned"):
     """List the exemplars that perception was taught, in order."""
 
+    ROLES: ClassVar[Roles] = ANYBODY
+
 
 class Forget(Command[LessonTold], frozen=True, tag="forget"):
     """Remove an exemplar of perception."""
+
+    ROLES: ClassVar[Roles] = OPERATORS
 
     number: Annotated[int, Meta(ge=1)]
 
@@ -750,11 +923,15 @@ class Forget(Command[LessonTold], frozen=True, tag="forget"):
 class Pause(Command[Done], frozen=True, tag="pause"):
     """Pause simulated time, or resume it with `off`."""
 
+    ROLES: ClassVar[Roles] = OPERATORS
+
     off: bool = False
 
 
 class StepOnce(Command[Done], frozen=True, tag="step"):
     """Advance paused time by `seconds`; rejected while time is running."""
+
+    ROLES: ClassVar[Roles] = OPERATORS
 
     seconds: Annotated[float, Meta(gt=0.0, le=60.0)] = 0.1
 
@@ -762,12 +939,16 @@ class StepOnce(Command[Done], frozen=True, tag="step"):
 class Reset(Command[Done], frozen=True, tag="reset"):
     """Move every body to its pose in the map."""
 
+    ROLES: ClassVar[Roles] = OPERATORS
+
 
 class TakePicture(Command[Picture], frozen=True, tag="picture"):
     """Render the scene, from one of the world's cameras or from above, or render one `place`.
 
     With `labels`, the image shows the names of the entities.
     """
+
+    ROLES: ClassVar[Roles] = ANYBODY
 
     camera: Word | None = None
     place: Word | None = None

@@ -60,10 +60,12 @@ class Edit(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=Tr
     which replaces the value of a functional property and adds values to other properties. The edit is
     rejected with `PreconditionFailed` unless the properties of `only_if` have one of the given values (or no
     value, if none is given). With `carry`, objects on the entity or inside it move with it as one rigid body,
-    except those in `leave`. An empty `tracked` ends tracking.
+    except those in `leave`. An empty `tracked` ends tracking. `rename` is the new name, which must be free;
+    other individuals then refer to the entity under it.
     """
 
     name: str
+    rename: Name | None = None
     class_iri: str | None = None
     at: Vector | None = None
     yaw: Angle | None = None

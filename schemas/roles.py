@@ -1,75 +1,21 @@
-"""Access control: the table from which the router's rules and the checks of commands are derived.
+"""Access control: the tables from which the router's rules and the checks of commands are derived.
 
 The router grants each identity access to its own `semmap/as/<name>/cmd/*`, and to other keys according to
 `GRANTS`. The coordinator, which decodes commands, rejects those that `COMMANDS` does not grant to the
-sender's role.
+sender's role. `COMMANDS` is derived from the definitions of the commands.
 """
 
 from __future__ import annotations
 
 from typing import Final, Literal, NamedTuple, get_args
 
-from semmap.schemas import keys
+from semmap.schemas import commands, keys
 from semmap.schemas.commands import Command, Load
 from semmap.schemas.entities import Source
 from semmap.schemas.errors import enumerated
+from semmap.schemas.role_names import ADMINS, ANYBODY, NODES, ROLES, Role, Roles
 
-Role = Literal["viewer", "operator", "perception", "robot", "admin", "node"]
-ROLES: Final[tuple[Role, ...]] = get_args(Role)
-Roles = frozenset[Role]
-
-ANYBODY: Final[Roles] = frozenset(ROLES)
-_OPERATORS: Final[Roles] = frozenset(("operator", "admin", "node"))
-_OBSERVERS: Final[Roles] = _OPERATORS | {"perception"}
-_ADMINS: Final[Roles] = frozenset(("admin", "node"))
-_NODES: Final[Roles] = frozenset(("node",))
-
-_COMMANDS_OF: Final[dict[Roles, tuple[str, ...]]] = {
-    ANYBODY: (
-        *(
-            "list",
-            "get",
-            "check",
-            "infer",
-            "explain",
-            "could",
-            "relations",
-            "understand",
-            "tell",
-            "find",
-            "diff",
-            "when",
-            "export",
-            "classes",
-            "properties",
-        ),
-        *("status", "history", "last-seen", "sparql", "watch", "renew", "picture", "floorplan", "route"),
-        "frames",
-        "learned",
-    ),
-    _OBSERVERS: ("add", "update", "set", "unset", "batch", "remove"),
-    _OPERATORS: (
-        "clear",
-        "load",
-        "undo",
-        "track",
-        "attach",
-        "detach",
-        "learn",
-        "forget",
-        "submit",
-        "approve",
-        "move",
-        "drive",
-        "open",
-        "close",
-        "pause",
-        "step",
-        "reset",
-    ),
-    _ADMINS: ("backup", "compact"),
-}
-COMMANDS: Final[dict[str, Roles]] = {name: roles for roles, names in _COMMANDS_OF.items() for name in names}
+COMMANDS: Final[dict[str, Roles]] = {name: kind.ROLES for name, kind in commands.COMMANDS.items()}
 """Command to the roles that may send it; `load --tbox` requires an admin."""
 
 SOURCES: Final[dict[Role, frozenset[Source]]] = {
@@ -89,13 +35,13 @@ class Grant(NamedTuple):
     roles: Roles
 
 
-def _topic(topic: keys.Topic, *, follow: Roles = ANYBODY, publish: Roles = _NODES) -> tuple[Grant, Grant]:
-    return Grant("follow", topic.key, follow), Grant("publish", topic.key, publish | _NODES)
+def _topic(topic: keys.Topic, *, follow: Roles = ANYBODY, publish: Roles = NODES) -> tuple[Grant, Grant]:
+    return Grant("follow", topic.key, follow), Grant("publish", topic.key, publish | NODES)
 
 
 GRANTS: Final[tuple[Grant, ...]] = (
     *_topic(keys.COMMIT),
-    *_topic(keys.COMMIT_EFFECTS, follow=_NODES),
+    *_topic(keys.COMMIT_EFFECTS, follow=NODES),
     *_topic(keys.ENTITY),
     *_topic(keys.QUERY),
     *_topic(keys.POSES, publish=frozenset(("robot",))),
@@ -109,17 +55,17 @@ GRANTS: Final[tuple[Grant, ...]] = (
     *_topic(keys.DETECTIONS, publish=frozenset(("perception",))),
     *_topic(keys.MASKS, publish=frozenset(("perception",))),
     *_topic(keys.CAMERA, publish=frozenset(("robot",))),
-    *_topic(keys.ACK, follow=_NODES),
+    *_topic(keys.ACK, follow=NODES),
     Grant("ask", f"{keys.BRIDGE}/snapshot", ANYBODY),
     Grant("ask", f"{keys.BRIDGE}/recall", ANYBODY),
     Grant("ask", f"{keys.BRIDGE}/copy", ANYBODY),
-    Grant("ask", f"{keys.BRIDGE}/*", _NODES),
+    Grant("ask", f"{keys.BRIDGE}/*", NODES),
     Grant("ask", f"{keys.SIM}/snapshot", ANYBODY),
     Grant("ask", f"{keys.SIM}/surfaces", ANYBODY),
     Grant("ask", f"{keys.SIM}/world", ANYBODY),
-    Grant("ask", f"{keys.SIM}/*", _NODES),
-    Grant("ask", f"{keys.PERCEPTION}/*", _NODES),
-    Grant("ask", f"{keys.CMD}/*", _NODES),
+    Grant("ask", f"{keys.SIM}/*", NODES),
+    Grant("ask", f"{keys.PERCEPTION}/*", NODES),
+    Grant("ask", f"{keys.CMD}/*", NODES),
 )
 """All grants, except those of all roles: commands under the own name, and liveliness tokens."""
 
@@ -156,9 +102,9 @@ def default_source(role: str) -> Source:
 def refusal(role: str, command: Command) -> str | None:
     """Return the error text if a role may not send `command`, else None."""
     if isinstance(command, Load) and command.tbox:
-        name, allowed = "load --tbox", _ADMINS
+        name, allowed = "load --tbox", ADMINS
     else:
-        name, allowed = command.VERB, COMMANDS.get(command.VERB, _NODES)
+        name, allowed = command.VERB, COMMANDS.get(command.VERB, NODES)
     if role not in allowed:
         others = enumerated([f"'{r}'" for r in ROLES if r in allowed and r != "node"] or ["'node'"])
         return f"role '{role}' of your certificate may not use '{name}'; required role: {others}"
@@ -169,5 +115,5 @@ def refusal(role: str, command: Command) -> str | None:
     return None
 
 
-_SIGNED: Final = frozenset(n for roles, names in _COMMANDS_OF.items() if roles != ANYBODY for n in names)
+_SIGNED: Final = frozenset(name for name, roles in COMMANDS.items() if roles != ANYBODY)
 """The commands whose source is checked."""

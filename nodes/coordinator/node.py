@@ -13,6 +13,7 @@ from msgspec import structs
 from semmap.nodes.coordinator.access import admission, authority
 from semmap.nodes.coordinator.access.approvals import Approvals
 from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
+from semmap.nodes.coordinator.commands.registration import HANDLERS
 from semmap.nodes.coordinator.config import CoordinatorConfig
 from semmap.nodes.coordinator.early_commands import EarlyCommands
 from semmap.nodes.coordinator.exemplar_commands import ExemplarCommands
@@ -93,10 +94,9 @@ class Coordinator:
         dispatcher.map.pose_of, dispatcher.map.bodies = self._live.pose_of, lambda: scene.bodies
         relay = self._kb.relay
         of_the_map = calls.by_verb(
+            *(kind.answered_by(self._scheduler.change) for kind in HANDLERS),  # unless it has a row below
             c.Add.answered_by(frames.in_map_frame(self._change_and_wait_for_body)),
             c.Update.answered_by(frames.in_map_frame(self._change_and_wait_for_body)),
-            c.Set.answered_by(self._scheduler.change),
-            c.Unset.answered_by(self._scheduler.change),
             c.Batch.answered_by(self._change_with_note),
             c.Track.answered_by(self._track),
             c.Remove.answered_by(self._change_with_note),
@@ -289,7 +289,7 @@ class Coordinator:
         def guarded(command: Any) -> Any:
             if not self._has_map:
                 return self._early.wait(lambda: guarded(command))
-            if isinstance(command, Change):
+            if type(command) in HANDLERS:
                 return handle(command)
             return self._scheduler.run_after(lambda: handle(command))
 

@@ -17,20 +17,7 @@ from typing import Any, NamedTuple
 
 from semmap.nodes.coordinator.reconciler.observed_state import ObservedState
 from semmap.nodes.runtime.futures import SingleThreadFuture, settle
-from semmap.schemas.commands import (
-    Add,
-    Attach,
-    Batch,
-    Clear,
-    Detach,
-    Load,
-    Remove,
-    Set,
-    Track,
-    Undo,
-    Unset,
-    Update,
-)
+from semmap.schemas.commands import Add, Command, Set, Track, Unset, Update
 from semmap.schemas.replies import Changed
 
 MAX_GROUP_SIZE = 16
@@ -38,21 +25,8 @@ MAX_GROUP_SIZE = 16
 MAX_GROUPS = 2
 """Largest number of groups under way: the knowledge base works on one while the other waits there."""
 
-Change = (
-    Add
-    | Update
-    | Set
-    | Unset
-    | Batch
-    | Track
-    | Attach
-    | Detach
-    | Remove
-    | Clear
-    | Load
-    | Undo
-    | ObservedState
-)
+Change = Command[Changed] | ObservedState
+"""A command with a handler in `commands/`, or the state of bodies."""
 Results = list[Changed | Exception]
 
 
@@ -154,11 +128,11 @@ def _entity(change: Change) -> str | None:
     """Return the entity that a change is about; None if the change depends on others or is sent alone."""
     if isinstance(change, ObservedState):
         return change.names[0] if len(change.names) == 1 else None
-    if change.dry_run:
-        return None
     if isinstance(change, Add):
-        return change.name if change.at is not None else None
-    return change.name if isinstance(change, (Update, Set, Unset, Track)) else None
+        return change.name if change.at is not None and not change.dry_run else None
+    if isinstance(change, (Update, Set, Unset, Track)) and not change.dry_run:
+        return change.name
+    return None
 
 
 def _result(result: Changed | Exception) -> Changed:

@@ -425,6 +425,7 @@ class CommandMethods:
     set = CommandMethod(_set)
     unset = CommandMethod(commands.Unset)
     batch = CommandMethod(_batch)
+    rename = CommandMethod(commands.Rename)
     track = CommandMethod(commands.Track)
     remove = CommandMethod(_remove)
     clear = CommandMethod(commands.Clear)

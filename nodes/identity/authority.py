@@ -25,7 +25,7 @@ from semmap.nodes.identity.identity import AUTHORITY, SUPERVISOR
 from semmap.nodes.identity.register import FILE, Member, Register, lock_folder
 from semmap.schemas import errors, keys
 from semmap.schemas.keys import ROUTER
-from semmap.schemas.roles import Role
+from semmap.schemas.role_names import Role
 
 OWN: Final = (ROUTER, SUPERVISOR, *keys.NODES)
 """The names of the system's own certificates."""

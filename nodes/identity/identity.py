@@ -29,7 +29,7 @@ class Identity(Struct, frozen=True):
     def read(cls, path: Path | str) -> Identity:
         """Read the identity `DIR/NAME`: `DIR/NAME.crt`, `DIR/NAME.key` and `DIR/ca.crt`. Raises BadFile."""
         from semmap.nodes.identity import certificate  # most clients show none
-        from semmap.schemas.roles import ROLES
+        from semmap.schemas.role_names import ROLES
 
         path = Path(path).expanduser()
         path = path.with_suffix("") if path.suffix in (".crt", ".key") else path

@@ -14,7 +14,7 @@ from typing import Final
 import msgspec
 
 from semmap.schemas import codec, errors
-from semmap.schemas.roles import Role
+from semmap.schemas.role_names import Role
 
 FILE: Final = "identities.json"
 

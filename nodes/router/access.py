@@ -16,7 +16,7 @@ from typing import Any, Final, Literal
 
 from semmap.nodes.identity.register import Member
 from semmap.schemas import keys, roles
-from semmap.schemas.roles import Role
+from semmap.schemas.role_names import Role
 
 Flow = Literal["ingress", "egress"]
 

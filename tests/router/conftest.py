@@ -12,7 +12,7 @@ from semmap.nodes import bus
 from semmap.nodes.identity import Identity, authority
 from semmap.nodes.identity.register import Register
 from semmap.nodes.router.access import access_control
-from semmap.schemas.roles import ROLES
+from semmap.schemas.role_names import ROLES
 from tests.conftest import free_endpoint, until
 
 

@@ -10,7 +10,8 @@ import pytest
 import zenoh
 
 from semmap.schemas import keys, roles
-from semmap.schemas.roles import GRANTS, ROLES
+from semmap.schemas.role_names import ROLES
+from semmap.schemas.roles import GRANTS
 from tests.conftest import PATIENCE_S, until
 from tests.router.conftest import Heard
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from semmap.nodes.coordinator.commands import attachment_rules, transactions
-from semmap.nodes.coordinator.commands.commit import commit, idempotent, make_reply
+from semmap.nodes.coordinator.commands.commit import commit, make_reply
 from semmap.nodes.coordinator.commands.map_view import MapView
 from semmap.nodes.coordinator.commands.plausibility import require_carry
+from semmap.nodes.coordinator.commands.registration import handles
 from semmap.nodes.coordinator.kb_coroutines import KbCoroutine, ask
 from semmap.schemas import errors, wording
 from semmap.schemas.attachments import holder_of
@@ -15,7 +16,7 @@ from semmap.schemas.entities import Entity, Pose, rounded
 from semmap.schemas.replies import Changed
 
 
-@idempotent
+@handles(Attach)
 def attach(view: MapView, command: Attach) -> KbCoroutine[Changed]:
     """Attach an entity to another. Raises Refused if that is not possible."""
     require_carry(command)
@@ -55,7 +56,7 @@ def attach(view: MapView, command: Attach) -> KbCoroutine[Changed]:
     return make_reply(made, text, names=tuple(one.name for one in taken), notes=notes)
 
 
-@idempotent
+@handles(Detach)
 def detach(view: MapView, command: Detach) -> KbCoroutine[Changed]:
     """Detach an entity, and what was attached together with it. Raises Refused if it is not attached."""
     entity = view.entity(command.name)

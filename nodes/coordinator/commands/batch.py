@@ -7,10 +7,11 @@ from typing import Final, NamedTuple
 from msgspec import structs
 
 from semmap.nodes.coordinator.commands import transactions
-from semmap.nodes.coordinator.commands.commit import commit, idempotent, make_reply
+from semmap.nodes.coordinator.commands.commit import commit, make_reply
 from semmap.nodes.coordinator.commands.entity_changes import UNCHANGED, notes_for, resolve_update
 from semmap.nodes.coordinator.commands.joint_state import normalize_property, properties_in, require_openable
 from semmap.nodes.coordinator.commands.map_view import MapView
+from semmap.nodes.coordinator.commands.registration import handles
 from semmap.nodes.coordinator.kb_coroutines import KbCoroutine
 from semmap.schemas import errors, wording
 from semmap.schemas.commands import Batch, Command, Set, Unset, Update
@@ -37,7 +38,7 @@ class _Wanted(NamedTuple):
     transaction: Transaction
 
 
-@idempotent
+@handles(Batch)
 def batch(view: MapView, command: Batch) -> KbCoroutine[Changed]:
     """Make all changes, or none. Raises the error of the first change that is rejected."""
     if not command.changes:

@@ -2,46 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
+from typing import Final
 
 from semmap.nodes.coordinator.commands import attachment, batch, entity_changes, load, undo
 from semmap.nodes.coordinator.commands.map_view import MapView
+from semmap.nodes.coordinator.commands.registration import HANDLERS
 from semmap.nodes.coordinator.kb_coroutines import Ask, KbCoroutine, gather, run, run_single
 from semmap.nodes.coordinator.reconciler.observed_state import ObservedState
 from semmap.nodes.coordinator.scene.manual_moves import Attribution, ManualMoves
 from semmap.nodes.coordinator.scheduler import Change
-from semmap.schemas.commands import (
-    Add,
-    Attach,
-    Batch,
-    Clear,
-    Command,
-    Detach,
-    Load,
-    Remove,
-    Set,
-    Track,
-    Undo,
-    Unset,
-    Update,
-)
 from semmap.schemas.replies import Changed
 
-_CHANGING: Mapping[type[Command], Callable[[MapView, Any], KbCoroutine[Changed]]] = {
-    Add: entity_changes.add,
-    Update: entity_changes.update,
-    Set: entity_changes.set_,
-    Unset: entity_changes.unset,
-    Batch: batch.batch,
-    Track: entity_changes.track,
-    Attach: attachment.attach,
-    Detach: attachment.detach,
-    Remove: entity_changes.remove,
-    Clear: entity_changes.clear,
-    Load: load.load,
-    Undo: undo.undo,
-}
+_MODULES: Final = (attachment, batch, entity_changes, load, undo)
+"""The modules with handlers, which are registered when they are imported."""
 
 
 class CommandDispatcher:
@@ -69,7 +43,7 @@ class CommandDispatcher:
     def _handle(self, command: Change) -> KbCoroutine[Changed]:
         if isinstance(command, ObservedState):
             return self._adopt(command)
-        return _CHANGING[type(command)](self.map, command)
+        return HANDLERS[type(command)](self.map, command)
 
     def _adopt(self, observed: ObservedState) -> KbCoroutine[Changed]:
         """Commit the observed state of one entity, or of those that were moved together."""

@@ -1,19 +1,21 @@
-"""Handlers that change entities: add, update, set, unset, track, remove, clear."""
+"""Handlers that change entities: add, update, set, unset, rename, track, remove, clear."""
 
 from __future__ import annotations
 
 from semmap.nodes.coordinator.access.authority import is_placing, require_authority
 from semmap.nodes.coordinator.commands import attachment_rules, transactions
-from semmap.nodes.coordinator.commands.commit import commit, idempotent, make_reply, new_id, reload_map
+from semmap.nodes.coordinator.commands.commit import commit, make_reply, new_id, reload_map
 from semmap.nodes.coordinator.commands.joint_state import require_openable
 from semmap.nodes.coordinator.commands.map_view import MapView
 from semmap.nodes.coordinator.commands.plausibility import find_doubts, require_carry, require_same_nature
+from semmap.nodes.coordinator.commands.registration import handles
 from semmap.nodes.coordinator.kb_coroutines import KbCoroutine, ask
 from semmap.nodes.coordinator.reconciler.observed_state import ObservedState, describe_joint_change
 from semmap.nodes.coordinator.scene.manual_moves import Attribution
 from semmap.ontology import vocabulary as v
 from semmap.ontology.name_index import Ambiguous, Named, NameIndex
 from semmap.schemas import changes, errors, wording
+from semmap.schemas.attachments import holder_of
 from semmap.schemas.commands import (
     Add,
     Clear,
@@ -21,12 +23,13 @@ from semmap.schemas.commands import (
     Infer,
     Properties,
     Remove,
+    Rename,
     Set,
     Track,
     Unset,
     Update,
 )
-from semmap.schemas.commits import Effects, Transaction
+from semmap.schemas.commits import Edit, Effects, Transaction
 from semmap.schemas.entities import ClassInfo, Entity, Pose, Value
 from semmap.schemas.replies import Changed
 from semmap.schemas.scene_files import pose_of
@@ -36,7 +39,7 @@ _TRIES = 4
 """How often another name is tried if a generated name turns out to be taken."""
 
 
-@idempotent
+@handles(Add)
 def add(view: MapView, command: Add) -> KbCoroutine[Changed]:
     """Add an entity to the map."""
     found = view.classes.spatial(command.class_)
@@ -71,7 +74,7 @@ def _add(view: MapView, command: Add, found: ClassInfo) -> KbCoroutine[Changed]:
     )
 
 
-@idempotent
+@handles(Update)
 def update(view: MapView, command: Update) -> KbCoroutine[Changed]:
     """Change an entity; omitted fields keep their values."""
     entity, found = resolve_update(view, command)
@@ -116,14 +119,14 @@ def notes_for(
     )
 
 
-@idempotent
+@handles(Set)
 def set_(view: MapView, command: Set) -> KbCoroutine[Changed]:
     """Set a property of an entity."""
     require_openable(view, command)
     return (yield from _change_property(view, command, transactions.set_property(command)))
 
 
-@idempotent
+@handles(Unset)
 def unset(view: MapView, command: Unset) -> KbCoroutine[Changed]:
     """Remove the values of a property of an entity, or one of them."""
     return (yield from _change_property(view, command, transactions.unset_property(command)))
@@ -181,7 +184,43 @@ def _find_changed(made: Effects | None, name: str) -> Entity | None:
     return next((e for e in made.changed if e.name == name), None) if made is not None else None
 
 
-@idempotent
+@handles(Rename)
+def rename(view: MapView, command: Rename) -> KbCoroutine[Changed]:
+    """Rename an entity. Raises Refused if its name is fixed by something else, NameTaken."""
+    entity = view.entity(command.name)
+    if command.new == entity.name:
+        return make_reply(None, f"unchanged: the name is already {entity.name}", names=(entity.name,))
+    if command.new in view.entities:
+        raise errors.NameTaken(f"the name '{command.new}' is taken; see: semmap get {command.new}")
+    require_authority(command, [entity])
+    _require_renamable(view, entity)
+    reason = f"rename {entity.name} to {command.new}"
+    renaming = Edit(name=entity.name, rename=command.new)
+    made = yield from commit(view, transactions.build(command, reason, edit=[renaming]))
+    now = _find_changed(made, command.new)
+    notes: tuple[str, ...] = ()
+    if now is not None and now.model != entity.model:
+        notes = (f"the model of its body follows its name: {now.model} instead of {entity.model}",)
+    return make_reply(made, f"renamed {entity.name} to {command.new}", names=(command.new,), notes=notes)
+
+
+def _require_renamable(view: MapView, entity: Entity) -> None:
+    """Raise Refused for a robot, a body of the world file, and for a tracked or attached entity."""
+    name, body = entity.name, view.bodies().get(entity.name)
+    is_robot = "Robot" in entity.types or (body is not None and body.robot)
+    if is_robot or (body is not None and (body.part_of or not body.entity)):
+        is_ = "a robot or a part of one" if is_robot else "a body of the world file"
+        raise errors.Refused(
+            f"{name} is {is_}, so its name is fixed; to label it: semmap update {name} --ref TEXT"
+        )
+    if entity.tracked:
+        raise errors.Refused(f"{name} is tracked; to rename it, first: semmap track {name} --off")
+    if by := holder_of(entity):
+        raise errors.Refused(f"{name} is attached to {by}; to rename it, first: semmap detach {name}")
+    attachment_rules.require_no_attachments((name,), view.held)
+
+
+@handles(Track)
 def track(view: MapView, command: Track) -> KbCoroutine[Changed]:
     """Start or stop tracking an entity. Raises Refused for a place."""
     entity = view.entity(command.name)
@@ -195,7 +234,7 @@ def track(view: MapView, command: Track) -> KbCoroutine[Changed]:
     return make_reply(made, _describe(entity, made), names=(entity.name,))
 
 
-@idempotent
+@handles(Remove)
 def remove(view: MapView, command: Remove) -> KbCoroutine[Changed]:
     """Remove entities: all of them, or none if one is unknown."""
     if not command.names:
@@ -206,7 +245,7 @@ def remove(view: MapView, command: Remove) -> KbCoroutine[Changed]:
     return (yield from _remove(view, command, f"remove {' '.join(e.name for e in leaving)}", leaving))
 
 
-@idempotent
+@handles(Clear)
 def clear(view: MapView, command: Clear) -> KbCoroutine[Changed]:
     """Remove all entities."""
     require_authority(command, view.entities.values())

@@ -13,11 +13,11 @@ from semmap.nodes.coordinator.commands.commit import (
     apply,
     apply_with_classes,
     commit,
-    idempotent,
     make_reply,
     reload_map,
 )
 from semmap.nodes.coordinator.commands.map_view import MapView
+from semmap.nodes.coordinator.commands.registration import handles
 from semmap.nodes.coordinator.files import huric
 from semmap.nodes.coordinator.files.content import kind_of
 from semmap.nodes.coordinator.free_names import FreeNames
@@ -42,7 +42,7 @@ READERS: Mapping[str, Callable[[bytes, str], tuple[Described, ...]]] = {
 }
 
 
-@idempotent
+@handles(Load)
 def load(view: MapView, command: Load) -> KbCoroutine[Changed]:
     """Add the entities of a file to the map."""
     if command.source == "operator":

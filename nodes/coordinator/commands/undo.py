@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
-from semmap.nodes.coordinator.commands.commit import apply_with_classes, idempotent, make_reply
+from semmap.nodes.coordinator.commands.commit import apply_with_classes, make_reply
 from semmap.nodes.coordinator.commands.map_view import MapView
+from semmap.nodes.coordinator.commands.registration import handles
 from semmap.nodes.coordinator.kb_coroutines import KbCoroutine, ask
 from semmap.schemas import changes, errors, wording
 from semmap.schemas.bridge import TakeBack
@@ -23,7 +24,7 @@ _NAMED: Final = 3
 _VERBS: Final = frozenset(("moved", "turned", "tilted", "placed", "added", "removed"))
 
 
-@idempotent
+@handles(Undo)
 def undo(view: MapView, command: Undo) -> KbCoroutine[Changed]:
     """Undo a commit."""
     commit = yield from ask(

@@ -16,7 +16,7 @@ from semmap.schemas import errors
 
 _GROUPS: Final = {
     "Map": {
-        "edit": ("add", "update", "set", "unset", "remove", "clear", "load"),
+        "edit": ("add", "update", "set", "unset", "rename", "remove", "clear", "load"),
         "batch": ("batch",),
         "history": ("undo",),
         "run": ("run",),

@@ -95,7 +95,7 @@ class Draft:
         """Change an entity. Individuals that describe it are reused unless others use them, too.
 
         Raises BadRequest for an invalid pose, property or value, UnknownClass, UnknownName for an individual
-        that does not exist, PreconditionFailed, and Refused for an entity of the TBox.
+        that does not exist, PreconditionFailed, NameTaken, and Refused for an entity of the TBox.
         """
         iri = v.iri(entity.iri)
         asserted = self._reasoner.about(iri)
@@ -139,6 +139,30 @@ class Draft:
             self._retract((iri, v.TRACKED_FROM, o) for o in asserted.get(v.TRACKED_FROM, ()))
             if edit.tracked:
                 self._insert([(iri, v.TRACKED_FROM, v.literal(edit.tracked))])
+        if edit.rename is not None and edit.rename != entity.name:
+            self._rename(entity, edit.rename)
+
+    def _rename(self, entity: Entity, name: str) -> None:
+        """Replace the local name of an entity's IRI in all triples about it and all that refer to it.
+
+        The individuals that hold its pose, size and labels keep their names.
+        """
+        iri = v.iri(entity.iri)
+        new = f"{iri[: -1 - len(v.local_name(iri))]}{name}>"
+        if name in self._entities:
+            raise errors.NameTaken(f"the name '{name}' is taken; see: semmap get {name}")
+        if new in self._new or self._is_described(new):
+            raise errors.NameTaken(
+                f"the name '{name}' is taken by an individual that is not an entity; use another name"
+            )
+        asserted = {*self._reasoner.asserted(iri), *self._reasoner.asserted(None, None, iri)}
+        triples = sorted(
+            t for t in (*asserted, *self.insert) if iri in (t[0], t[2]) and t not in self.retract
+        )
+        self._retract(asserted)
+        self.insert = [t for t in self.insert if iri not in (t[0], t[2])]
+        self._insert((new if s == iri else s, p, new if o == iri else o) for s, p, o in triples)
+        self._new.add(new)
 
     def _require(self, name: str, asserted: Objects, only_if: Sequence[Statement]) -> None:
         """Raise PreconditionFailed unless each property has one of the values, or none if none is given."""

@@ -10,6 +10,8 @@ import time
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime
 
+from msgspec import structs
+
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
 from semmap.nodes.kb_node.entities import entity_reading
@@ -17,9 +19,10 @@ from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.storage.changelog import Changelog
 from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.ontology import vocabulary as v
 from semmap.schemas import errors, wording
 from semmap.schemas.changes import Change
-from semmap.schemas.commands import History
+from semmap.schemas.commands import History, Rename
 from semmap.schemas.commits import Commit
 from semmap.schemas.entities import Entity, Provenance
 from semmap.schemas.moments import When, read_moment
@@ -37,22 +40,45 @@ class HistoryReader:
         """Return the commits of a time span, newest last. Raises UnknownName, BadRequest.
 
         Times are compared with the stamps of commits, between which the clock may have been set back. After
-        compaction, the start of the history is returned as a commit, too.
+        compaction, the start of the history is returned as a commit, too. The commits of a renamed entity
+        include those under its earlier names.
         """
         if query.name is not None:
             self._require_known(query.name)
-        seqs = self._list_span(query)
         beginning = self._journal.beginning.seq
-        shown = [seq for seq in seqs if seq > beginning]
-        if beginning in seqs and (query.name is None or query.name in self.initial_entities()):
-            shown.insert(0, beginning)
         changes = Changelog(self._journal, self.initial_entities)
         return tuple(
             _describe_beginning(self._journal)
             if seq == beginning
-            else _to_logged_commit(commit := self._journal.commit(seq), changes.of(commit, query.name))
-            for seq in shown[-query.limit :]
+            else _to_logged_commit(commit := self._journal.commit(seq), changes.of(commit, name))
+            for seq, name in self._list_shown(query)
         )
+
+    def _list_shown(self, query: History) -> list[tuple[int, str | None]]:
+        """Return the newest of the requested commits in order, with the name of the entity at each."""
+        beginning, before = self._journal.beginning.seq, self._journal.last + 1
+        newest_first: list[tuple[int, str | None]] = []
+        name, is_renamed = query.name, True
+        while is_renamed:
+            is_renamed = False
+            seqs = [seq for seq in self._list_span(structs.replace(query, name=name)) if seq < before]
+            for seq in reversed(seqs[-query.limit :]):
+                if seq > beginning or name is None or name in self.initial_entities():
+                    newest_first.append((seq, name))
+                if name is not None and (earlier := self._find_earlier_name(seq, name)) is not None:
+                    name, before, is_renamed = earlier, seq, len(newest_first) < query.limit
+                    break
+        return newest_first[: query.limit][::-1]
+
+    def _find_earlier_name(self, seq: int, name: str) -> str | None:
+        """Return the name that an entity had before a commit that renamed it, or None."""
+        if seq <= self._journal.beginning.seq:
+            return None
+        commit = self._journal.commit(seq)
+        if commit.verb != Rename.VERB or len(commit.removed) != 1:
+            return None
+        is_new = any(p == v.RDF_TYPE and v.entity_name(s) == name for s, p, _ in commit.inserted)
+        return commit.removed[0].name if is_new else None
 
     def _list_span(self, query: History) -> Sequence[int]:
         """Return the numbers of the requested commits, in order."""

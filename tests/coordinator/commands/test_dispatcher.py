@@ -11,6 +11,7 @@ from msgspec import structs
 from semmap.nodes.coordinator.commands import load
 from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
 from semmap.nodes.coordinator.commands.map_view import MapView
+from semmap.nodes.coordinator.commands.registration import HANDLERS
 from semmap.nodes.coordinator.kb_coroutines import run_async
 from semmap.nodes.coordinator.reconciler.observed_state import ObservedState
 from semmap.nodes.coordinator.scheduler import Scheduler
@@ -19,13 +20,20 @@ from semmap.ontology import vocabulary as v
 from semmap.schemas import commands as c
 from semmap.schemas import errors
 from semmap.schemas.bridge import LoadDocument
+from semmap.schemas.calls import reply_type
 from semmap.schemas.commits import Commit, Transaction
 from semmap.schemas.entities import Pose, orientation_from_yaw
 from semmap.schemas.replies import Changed
+from semmap.schemas.scenes import Body
 
 
 def add(dispatcher: CommandDispatcher, class_: str = "Chair", name: str | None = None, **fields) -> Changed:
     return dispatcher.change(c.Add(class_=class_, name=name, **fields))
+
+
+def test_every_command_that_returns_a_commit_has_a_handler():
+    returned = {kind for kind in c.COMMANDS.values() if reply_type(kind) is Changed}
+    assert {kind.__name__ for kind in returned ^ HANDLERS.keys()} == set()
 
 
 def everything(semantic_map) -> set:
@@ -164,6 +172,102 @@ def test_the_same_command_id_is_executed_once(dispatcher):
     assert dispatcher.change(c.Remove(names=("chair1",), id="43")).commit == gone.commit
     assert add(dispatcher, name="chair1", id="42").commit == first.commit
     assert dispatcher.map.entities == {}
+
+
+def test_a_renamed_entity_keeps_everything_and_its_references(dispatcher, semantic_map):
+    add(dispatcher, name="chair1", at=(1.0, 2.0, 0.0), size=(1.0, 1.0, 1.0), ref="seat", alt=("a",))
+    add(dispatcher, name="chair2", at=(5.0, 2.0, 0.0), set=("isDirectPartOf=chair1",))
+    before, was = everything(semantic_map), dispatcher.map.entity("chair1")
+    reply = dispatcher.change(c.Rename(name="chair1", new="throne"))
+    assert (reply.text, reply.names, reply.commit) == ("renamed chair1 to throne", ("throne",), 3)
+    now = dispatcher.map.entity("throne")
+    assert (now.pose, now.size_m, now.preferred_reference) == (was.pose, was.size_m, "seat")
+    assert dispatcher.map.entity("chair2").properties["isDirectPartOf"] == ("throne",)
+    assert set(dispatcher.map.entities) == {"chair2", "throne"}
+    assert dispatcher.change(c.Undo()).names == ("chair1", "chair2", "throne")
+    assert everything(semantic_map) == before
+    assert dispatcher.map.entity("chair2").properties["isDirectPartOf"] == ("chair1",)
+
+
+def test_the_old_name_is_free_after_a_rename(dispatcher):
+    add(dispatcher, name="chair1", at=(1.0, 2.0, 0.0))
+    dispatcher.change(c.Rename(name="chair1", new="throne"))
+    add(dispatcher, name="chair1", at=(5.0, 2.0, 0.0))
+    assert dispatcher.map.entity("chair1").pose.position_m == (5.0, 2.0, 0.0)
+    assert dispatcher.map.entity("throne").pose.position_m == (1.0, 2.0, 0.0)
+    dispatcher.change(c.Update(name="throne", at=(2.0, 2.0, 0.0)))
+    assert dispatcher.map.entity("chair1").pose.position_m == (5.0, 2.0, 0.0)
+
+
+def test_a_rename_is_executed_once_and_tried_without_effect(dispatcher, semantic_map):
+    add(dispatcher, name="chair1", at=(1.0, 2.0, 0.0))
+    before = everything(semantic_map)
+    tried = dispatcher.change(c.Rename(name="chair1", new="throne", dry_run=True))
+    assert tried.text == "dry run, nothing changed; it would be: renamed chair1 to throne"
+    assert everything(semantic_map) == before
+    first = dispatcher.change(c.Rename(name="chair1", new="throne", id="7"))
+    assert dispatcher.change(c.Rename(name="chair1", new="throne", id="7")).commit == first.commit
+    assert dispatcher.change(c.Rename(name="throne", new="throne")).commit is None
+    with pytest.raises(errors.Refused, match="throne was defined by an operator"):
+        dispatcher.change(c.Rename(name="throne", new="seat1", source="perception"))
+
+
+@pytest.mark.parametrize(
+    ("name", "new", "error", "text"),
+    [
+        ("chair1", "chair2", errors.NameTaken, "the name 'chair2' is taken; see: semmap get chair2"),
+        ("chair1", "chair2_coordinates", errors.NameTaken, "is taken by an individual"),
+        ("chair9", "throne", errors.UnknownName, "no entity is named 'chair9'"),
+        ("cart1", "cart2", errors.Refused, "cart1 is tracked; to rename it, first: semmap track cart1 --off"),
+        ("chair3", "throne", errors.Refused, "is attached to chair2; to rename it, first: semmap detach"),
+        ("chair2", "throne", errors.Refused, "chair3 is attached to chair2; first: semmap detach chair3"),
+    ],
+)
+def test_a_rename_is_rejected_with_the_next_step(dispatcher, semantic_map, name, new, error, text):
+    for i in range(1, 4):
+        add(dispatcher, name=f"chair{i}", at=(float(i), 2.0, 0.0))
+    add(dispatcher, name="cart1", at=(8.0, 2.0, 0.0), track="stream")
+    dispatcher.map.held["chair3"] = dispatcher.map.entities["chair3"] = structs.replace(
+        dispatcher.map.entity("chair3"), properties={"isGraspedBy": "chair2"}
+    )
+    before = everything(semantic_map)
+    with pytest.raises(error, match=text):
+        dispatcher.change(c.Rename(name=name, new=new))
+    assert everything(semantic_map) == before
+
+
+@pytest.mark.parametrize(
+    ("fields", "is_"),
+    [
+        ({"robot": True}, "a robot or a part of one"),
+        ({"part_of": "kitchen1"}, "a body of the world file"),
+        ({"entity": False}, "a body of the world file"),
+    ],
+)
+def test_the_names_of_bodies_that_the_map_did_not_create_stay(dispatcher, fields, is_):
+    add(dispatcher, name="chair1", at=(1.0, 2.0, 0.0))
+    body = Body(
+        **{
+            "name": "chair1",
+            "class_": "Chair",
+            "model": "chair",
+            "pose": Pose(position_m=(1.0, 2.0, 0.0)),
+            "size_m": (0.4, 0.4, 0.9),
+            "fixed": False,
+            "entity": True,
+            "ghost": False,
+            "resting": True,
+            "commit": 1,
+            "shape_commit": 1,
+            **fields,
+        }
+    )
+    dispatcher.map.bodies = lambda: {"chair1": body}
+    with pytest.raises(
+        errors.Refused,
+        match=f"chair1 is {is_}, so its name is fixed; to label it: semmap update chair1 --ref TEXT",
+    ):
+        dispatcher.change(c.Rename(name="chair1", new="throne"))
 
 
 def test_perception_may_move_but_not_redefine_what_an_operator_put_in(dispatcher):

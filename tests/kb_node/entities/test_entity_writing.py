@@ -282,3 +282,37 @@ def test_removing_an_unknown_entity_is_rejected(semantic_map):
     with pytest.raises(errors.UnknownName, match="chair9"):
         removed(semantic_map, "chair1", "chair9")
     assert len(semantic_map) == 1
+
+
+def test_a_rename_rewrites_every_triple_with_the_old_iri(semantic_map):
+    old, new = v.entity_iri("chair1"), v.entity_iri("throne")
+    beside = (v.entity_iri("chair2"), v.dm("isBeside"), old)
+    semantic_map.commit(transaction(1, [*chair(), *chair("chair2"), beside]))
+    before = set(semantic_map.abox())
+    entity = semantic_map.entity("chair1")
+    commit = edited(semantic_map, rename="throne")
+    swapped = {tuple(new if term == old else term for term in triple) for triple in before}
+    assert set(semantic_map.abox()) == swapped
+    assert {t for t in before if old in t} == set(commit.retracted)
+    assert [gone.name for gone in commit.removed] == ["chair1"]
+    assert {changed.name for changed in commit.changed} == {"throne", "chair2"}
+    renamed = semantic_map.entity("throne")
+    assert (renamed.pose, renamed.size_m, renamed.class_) == (entity.pose, entity.size_m, entity.class_)
+    assert semantic_map.is_asserted((*beside[:2], new))
+
+
+def test_a_rename_keeps_the_namespace_of_the_iri(semantic_map):
+    named = v.iri("http://example.org/site#chair1")
+    own = v.entity_iri("chair1")
+    semantic_map.commit(transaction(1, [tuple(named if t == own else t for t in row) for row in chair()]))
+    edited(semantic_map, rename="throne")
+    assert semantic_map.entity("throne").iri == "http://example.org/site#throne"
+
+
+def test_the_names_of_entities_and_of_their_nodes_are_taken(semantic_map):
+    semantic_map.commit(transaction(1, [*chair(), *chair("chair2")]))
+    with pytest.raises(errors.NameTaken, match="the name 'chair2' is taken; see: semmap get chair2"):
+        edited(semantic_map, rename="chair2")
+    with pytest.raises(errors.NameTaken, match="an individual that is not an entity; use another name"):
+        edited(semantic_map, rename="chair2_coordinates")
+    assert edited(semantic_map, rename="chair1") is None

@@ -7,6 +7,7 @@ from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commands import History
+from semmap.schemas.commits import Edit, Transaction
 from semmap.schemas.entities import Pose
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
@@ -194,4 +195,30 @@ def test_commits_are_found_after_a_clock_change(tmp_path, monkeypatch):
     assert len(past.entities(at(5.0))) == 5
     with pytest.raises(errors.Refused, match="the time is in the future"):
         past.entities(at(5.1))
+    home.close(semantic_map)
+
+
+def rename(semantic_map, name, new):
+    edit = (Edit(name=name, rename=new),)
+    semantic_map.commit(
+        Transaction(
+            id=f"{name} to {new}", source="operator", verb="rename", reason=f"{name} to {new}", edit=edit
+        )
+    )
+
+
+def test_the_history_of_a_renamed_entity_includes_its_earlier_names(tmp_path):
+    semantic_map = home.new_map(tmp_path)
+    semantic_map.commit(transaction(1, chair(), reason="a chair"))
+    rename(semantic_map, "chair1", "seat1")
+    semantic_map.commit(transaction(3, chair(), reason="another chair"))
+    semantic_map.commit(transaction(4, [(v.entity_iri("chair1"), v.dm("isBeside"), v.entity_iri("seat1"))]))
+    rename(semantic_map, "seat1", "throne")
+    past = HistoryReader(semantic_map._journal)
+    assert [commit.seq for commit in past.history(History(name="throne"))] == [1, 2, 5]
+    assert [commit.seq for commit in past.history(History(name="throne", limit=2))] == [2, 5]
+    assert [commit.seq for commit in past.history(History(name="throne", since=2))] == [2, 5]
+    assert [commit.seq for commit in past.history(History(name="seat1"))] == [1, 2, 5]
+    assert [commit.seq for commit in past.history(History(name="chair1"))] == [1, 2, 3, 4, 5]
+    assert [commit.seq for commit in past.history(History())] == [1, 2, 3, 4, 5]
     home.close(semantic_map)

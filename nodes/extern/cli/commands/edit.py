@@ -1,4 +1,4 @@
-"""The commands that change the map: `add`, `update`, `set`, `unset`, `track`, `remove`, `clear`, `load`."""
+"""The commands that change the map: `add`, `update`, `set`, `rename`, `remove`, `load` and others."""
 
 from __future__ import annotations
 
@@ -144,6 +144,20 @@ def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fi
 def unset(client: Client, **fields: Any) -> None:
     """Remove one value of a property of an entity, or all."""
     print_lines(lines.format_change(client.unset(**_drop_none(fields))))
+
+
+@command(example="semmap rename cup1 breakfast_cup")
+@click.argument("name", shell_complete=entity_names)
+@click.argument("new")
+@_id
+@_dry_run
+@with_client
+def rename(client: Client, **fields: Any) -> None:
+    """Rename an entity, with all references to it.
+
+    Its body in the scene gets the new name, too. The history of the new name includes earlier commits.
+    """
+    print_lines(lines.format_change(client.rename(**drop_unset(fields))))
 
 
 @command(example="semmap track robot1 --from stream")

@@ -13,7 +13,7 @@ from semmap.nodes.extern.cli.output.tables import table
 from semmap.nodes.identity.register import Member, Register
 from semmap.nodes.runtime import extras
 from semmap.schemas.keys import ROUTER
-from semmap.schemas.roles import ROLES, Role
+from semmap.schemas.role_names import ROLES, Role
 
 _path = click.Path(path_type=Path)
 _folder = click.option(
