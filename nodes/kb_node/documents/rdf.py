@@ -18,6 +18,7 @@ import pyoxigraph
 
 from semmap.nodes.kb_node.documents import plain_turtle
 from semmap.nodes.kb_node.documents.error_lines import find_error_line
+from semmap.nodes.kb_node.documents.nesting import require_shallow
 from semmap.nodes.kb_node.documents.owl import syntaxes as owl_syntaxes
 from semmap.nodes.kb_node.documents.owl.syntaxes import OwlSyntax
 from semmap.ontology import vocabulary as v
@@ -88,6 +89,7 @@ def parse(
     try:
         if syntax in ("rdfxml", "owlxml"):
             _require_well_formed(content)
+        require_shallow(content, syntax)
         if syntax == "functional" or syntax == "manchester" or syntax == "owlxml":
             return [
                 _labelled(triple, label_prefix) for triple in owl_syntaxes.parse(content.decode(), syntax)
@@ -182,6 +184,10 @@ def prefixes(content: bytes) -> dict[str, str]:
     """Return the prefixes that a document declares before its first triple, with their namespaces."""
     content = content.removeprefix(_BOM)
     syntax = syntax_of(content)
+    try:
+        require_shallow(content, syntax)
+    except ValueError:  # which `parse` reports
+        return {}
     if syntax == "functional" or syntax == "manchester" or syntax == "owlxml":
         return owl_syntaxes.prefixes(content.decode(), syntax)
     quads = pyoxigraph.parse(content, _SYNTAX[syntax], base_iri=v.ABOX, without_named_graphs=True)
