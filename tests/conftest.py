@@ -219,8 +219,9 @@ def running(data: Path, *words: str | Path, endpoint: str | None = None) -> Iter
 
 @pytest.fixture(scope="session")
 def _shared_map(tmp_path_factory: pytest.TempPathFactory) -> Iterator[System]:
-    """One system per worker without a simulator."""
-    with running(tmp_path_factory.mktemp("shared-map"), "--no-sim", "--no-record") as system:
+    """One system per worker without a simulator; a busy machine publishes frames less than 3 s apart."""
+    words = ("--no-sim", "--no-record", "--stale", "3")
+    with running(tmp_path_factory.mktemp("shared-map"), *words) as system:
         system.begun = "flat"
         yield system
 

@@ -8,13 +8,14 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 
 from semmap.nodes import bus
 from semmap.nodes.extern.client import connect
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
 from semmap.schemas import errors, keys
 from semmap.schemas.bridge import SnapshotQuery
@@ -211,8 +212,9 @@ def test_ctrl_c_ends_everything_and_the_map_survives(tmp_path):
         system.stop()
         assert system.process.returncode == 0
     assert not any(Path(f"/proc/{pid}").exists() for pid in pids)
-    with running(tmp_path, *words) as system, system.client() as client:
-        assert [e.name for e in client.list()] == ["table1"]
+    journal = Journal(tmp_path / FILENAME)
+    assert [entity.name for entity in SemanticMap(journal).entities()] == ["table1"]
+    journal.close()
 
 
 def test_two_systems_on_one_machine_do_not_meet(flat, client, empty_map):
@@ -258,30 +260,54 @@ def test_in_mode_scene_the_map_follows_what_stands_in_the_simulator(tmp_path):
         until(lambda: client.status(names=("mug",)).in_agreement, "map and scene agree on the mug")
 
 
-def test_a_world_in_json_becomes_the_map_and_so_does_what_is_put_in_later(tmp_path):
-    world = tmp_path / "world.json"
-    world.write_text('{"entities": [{"class": "Chair", "name": "chair_7", "at": [1, 1, 0]}]}')
-    words = ("--abox", "none", "--world", world, "--truth", "scene", "--no-record")
-    with running(tmp_path / "data", *words) as system, system.client() as client:
-        until(lambda: [e.name for e in client.list()] == ["chair_7"], "the chair becomes an entity")
-        pose = Pose(position_m=(2.0, 0.0, 0.0))
+FURNITURE = {
+    name: {"class": class_, "name": name, "at": [i, 2, 0]}
+    for i, (name, class_) in enumerate(
+        [
+            ("chair_7", "Chair"),
+            ("milk", "Milk"),
+            ("beer", "Beer"),
+            ("water", "Water"),
+            ("coffee", "Coffee"),
+            ("dining_table", "Dining_Table"),
+            ("door", "Door"),
+        ]
+    )
+}
+
+
+@pytest.fixture(scope="module")
+def furniture(tmp_path_factory):
+    """A JSON scene, and a system with it as its world, where the scene is the truth."""
+    folder = tmp_path_factory.mktemp("furniture")
+    file = folder / "scene.json"
+    file.write_text(json.dumps({"entities": [*FURNITURE.values()]}))
+    words = ("--abox", "none", "--world", file, "--truth", "scene", "--no-record")
+    with running(folder / "data", *words) as system:
+        yield file, system
+
+
+def test_a_world_in_json_becomes_the_map_and_so_does_what_is_put_in_later(furniture):
+    _, system = furniture
+    with system.client() as client:
+        until(lambda: {e.name for e in client.list()} == {*FURNITURE}, "the furniture becomes entities")
+        assert {e.name: e.class_ for e in client.list()} == {n: f["class"] for n, f in FURNITURE.items()}
+        pose = Pose(position_m=(2.0, -2.0, 0.0))
         order = BodyOrder(name="cup_1", class_="Cup", model="cup", pose=pose, commit=0)
         bus.ask(client.session, keys.SIM, "spawn", Spawn(bodies=(order,)), Spawned)
-        until(lambda: {e.name for e in client.list()} == {"chair_7", "cup_1"}, "the cup follows")
+        until(lambda: {e.name for e in client.list()} == {*FURNITURE, "cup_1"}, "the cup follows")
         assert client.get("cup_1").class_ == "Cup"
+        client.remove("cup_1")
 
 
-def test_a_file_makes_the_same_bodies_as_a_world_and_when_it_is_loaded(empty_scene, tmp_path):
-    file = tmp_path / "scene.json"
-    classes = ("Milk", "Beer", "Water", "Coffee", "Dining_Table", "Door")
-    described = [{"class": c, "name": c.lower(), "at": [i, 2, 0]} for i, c in enumerate(classes)]
-    file.write_text(json.dumps({"entities": described}))
-    words = ("--abox", "none", "--no-record", "--world", file)
-    with running(tmp_path / "world", *words) as system, system.client() as client:
-        as_world = bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene).bodies
+def test_a_file_makes_the_same_bodies_as_a_world_and_when_it_is_loaded(furniture, empty_scene):
+    file, system = furniture
+    with system.client() as client:
+        scene = bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene)
+        as_world = [body for body in scene.bodies if body.name in FURNITURE]
     with empty_scene.client() as client:
         client.load(file)
-        until(lambda: client.status().bodies == len(classes), "the bodies stand")
+        until(lambda: client.status().bodies == len(FURNITURE), "the bodies stand")
         loaded = bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene).bodies
         entities = client.list()
     assert described_by(as_world) == described_by(loaded)
@@ -295,14 +321,11 @@ def described_by(bodies):
 
 
 @pytest.mark.long
-def test_a_node_that_hangs_is_killed_and_restarted(tmp_path):
-    with running(tmp_path, "--abox", "none", "--no-record") as system, system.client() as client:
-        pid = system.pid("sim_node")
+def test_a_node_that_hangs_is_killed_and_restarted(empty_scene):
+    with empty_scene.client() as client:
+        pid = empty_scene.pid("sim_node")
         os.kill(pid, signal.SIGSTOP)
-        deadline = time.monotonic() + 90
-        while time.monotonic() < deadline and system.pid("sim_node") == pid:
-            time.sleep(1)
-        assert system.pid("sim_node") != pid
+        until(lambda: empty_scene.pid("sim_node") != pid, "another simulator")
         until(lambda: client.status().in_agreement, "map and scene agree")
     assert not Path(f"/proc/{pid}").exists()
 

@@ -5,16 +5,16 @@ import pytest
 from semmap.nodes import bus
 from semmap.schemas import errors, keys
 from semmap.schemas.scenes import JointOrder, JointsMoving, MoveJoints
-from tests.conftest import running, until
+from tests.conftest import until
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
-    with running(tmp_path_factory.mktemp("joints"), "--abox", "none", "--world", "empty") as system:
-        with system.client() as client:
-            client.add("Fridge", "fridge1", at=(0.0, 0.0, 0.0), wait=True)
-            client.add("Cup", "cup1", at=(2.0, 0.0, 0.0), wait=True)
-        yield system
+def system(empty_scene):
+    """A system with a fridge and a cup, beside the walls of the flat."""
+    with empty_scene.client() as client:
+        client.add("Fridge", "fridge1", at=(-5.0, 0.0, 0.0), wait=True)
+        client.add("Cup", "cup1", at=(-3.0, 0.0, 0.0), wait=True)
+    return empty_scene
 
 
 @pytest.fixture
@@ -72,8 +72,8 @@ def test_a_robot_that_opens_it_changes_the_map(client):
 
 
 def test_what_is_in_a_drawer_is_inside_it_open_or_shut(client):
-    client.add("Drawer", "chest1", at=(0.0, 3.0, 0.0), wait=True)
-    client.add("Apple", "apple1", at=(0.05, 3.1, 0.72), wait=True)
+    client.add("Drawer", "chest1", at=(-5.0, 3.0, 0.0), wait=True)
+    client.add("Apple", "apple1", at=(-4.95, 3.1, 0.72), wait=True)
 
     def inside():
         found = client.list(in_="chest1")
@@ -81,13 +81,13 @@ def test_what_is_in_a_drawer_is_inside_it_open_or_shut(client):
 
     assert inside()
     client.open("chest1", joint="drawer_1")
-    assert client.get("apple1").pose.position_m[0] > 0.25
+    assert client.get("apple1").pose.position_m[0] > -4.75
     assert inside()
     why = client.explain("apple1", "isInside", "chest1")
     assert "within drawer_1 of chest1, which is open to 100%" in why.text
     assert "cannot be seen" not in client.last_seen("apple1").text
     client.close("chest1")
-    assert client.get("apple1").pose.position_m[0] < 0.1
+    assert client.get("apple1").pose.position_m[0] < -4.9
     assert inside()
     assert "not observable: chest1 has been closed since" in client.last_seen("apple1").text
     client.open("chest1", joint="drawer_2")

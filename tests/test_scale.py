@@ -22,6 +22,13 @@ UP = ("--abox", "none", "--no-sim", "--no-record")
 COUNTED = f"SELECT (COUNT(?c) AS ?n) {{ ?c a <{v.bare(v.dm('Cup'))}> }}"
 
 
+@pytest.fixture
+def system(empty_map):
+    """The shared system without a simulator, with an empty map at commit 1 for each test."""
+    empty_map.begin_anew("none")
+    return empty_map
+
+
 def scene(file, count=COUNT):
     entities = [
         {"class": "Fridge" if i % 100 == 0 else "Cup", "name": f"thing{i}", "at": [i % 100, i // 100, 0]}
@@ -67,10 +74,10 @@ def checkpointed(data, copy):
         return db.execute("SELECT max(seq) FROM checkpoints").fetchone()[0]
 
 
-def test_a_checkpoint_follows_a_very_large_commit_and_a_kill_loses_nothing(tmp_path):
-    data, count = tmp_path / "data", 8000
+def test_a_checkpoint_follows_a_very_large_commit_and_a_kill_loses_nothing(system, tmp_path):
+    data, count = system.data, 8000
     big_files.write_turtle(tmp_path / "many.ttl", count)
-    with running(data, *UP) as system, system.client() as client:
+    with system.client() as client:
         loaded = client.load(tmp_path / "many.ttl")
         client.add("Cup", "later", at=(0, 0, 0))
         until(lambda: checkpointed(data, tmp_path / "copy") >= loaded.commit, "a checkpoint is written")
@@ -86,7 +93,7 @@ def test_a_checkpoint_follows_a_very_large_commit_and_a_kill_loses_nothing(tmp_p
 
 
 @pytest.mark.parametrize("kind", [pytest.param("scene", marks=pytest.mark.long), "turtle"])
-def test_a_load_in_parts(tmp_path, kind):
+def test_a_load_in_parts(system, tmp_path, kind):
     file = scene(tmp_path / "many.json")
     if kind == "turtle":
         file = tmp_path / "many.ttl"
@@ -94,28 +101,26 @@ def test_a_load_in_parts(tmp_path, kind):
             f'<{v.ABOX}thing{i}> a <{v.TBOX}Cup> ; <{v.RDFS}label> "cup {i}" .\n' for i in range(6 * COUNT)
         )
         file.write_text("".join(stars))
-    with running(tmp_path / "data", *UP) as system:
-        said = system.cli("load", file, "--parts")
-        with system.client() as client:
-            newest, *_ = reversed(client.history())
-            assert ", part 2 of 2" in newest.reason
-            assert client.status().commit == newest.seq
-            assert client.get(f"thing{COUNT - 1}").provenance.commit <= newest.seq
-            until(lambda: client.status().entities == (COUNT if kind == "scene" else 6 * COUNT), "all of it")
-        assert f"loaded {COUNT if kind == 'scene' else 6 * COUNT} entities" in said
+    said = system.cli("load", file, "--parts")
+    with system.client() as client:
+        newest, *_ = reversed(client.history())
+        assert ", part 2 of 2" in newest.reason
+        assert client.status().commit == newest.seq
+        assert client.get(f"thing{COUNT - 1}").provenance.commit <= newest.seq
+        until(lambda: client.status().entities == (COUNT if kind == "scene" else 6 * COUNT), "all of it")
+    assert f"loaded {COUNT if kind == 'scene' else 6 * COUNT} entities" in said
 
 
-def test_a_part_that_is_refused_says_what_stays(tmp_path):
+def test_a_part_that_is_refused_says_what_stays(system, tmp_path):
     file = scene(tmp_path / "many.json")
     document = json.loads(file.read_text())
     document["entities"][-1]["class"] = "Kitchen"
     document["entities"][-1]["affords"] = ["containing"]
     document["entities"].append({"class": "Cup", "name": "thing0"})
     file.write_text(json.dumps(document))
-    with running(tmp_path / "data", *UP) as system:
-        assert "the name 'thing0' is given twice" in system.cli("load", file, "--parts", status=1)
-        with system.client() as client:
-            assert client.status().entities == 0
+    assert "the name 'thing0' is given twice" in system.cli("load", file, "--parts", status=1)
+    with system.client() as client:
+        assert client.status().entities == 0
 
 
 @pytest.mark.long

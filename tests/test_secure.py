@@ -66,10 +66,8 @@ def test_a_stranger_sees_nothing(system):
 def test_who_comes_with_a_certificate_of_another_authority_is_turned_away_at_once(system, tmp_path):
     authority.init(tmp_path / "L")
     authority.add(tmp_path / "L", "bob", "operator")
-    began = time.monotonic()
     said = system.cli("status", "--identity", tmp_path / "L" / "bob", status=3)
-    assert "rejects the certificate of bob" in said
-    assert time.monotonic() - began < 10  # it does not wait for a system that is starting
+    assert "rejects the certificate of bob" in said  # not: "has not started yet", as after waiting
 
 
 def test_queries_are_answered_and_forbidden_changes_are_rejected(system, folder):
@@ -340,11 +338,19 @@ def test_only_operators_have_things_held_tracked_and_driven(as_, name):
 
 
 def test_live_data_cannot_be_forged_without_the_role(as_, raw):
-    with as_("bob") as bob, raw("vera") as vera, raw("bob") as forger:
-        bob.add("Ball", "ball8", at=(3.0, 3.0, 0.0), track="stream")
-        for session in (vera, forger):
+    with as_("bob") as bob, as_("spot") as spot, raw("vera") as vera, raw("bob") as forger:
+        for ball in ("ball8", "ball9"):
+            bob.add("Ball", ball, at=(3.0, 3.0, 0.0), track="stream")
+        for name, session in (("vera", vera), ("bob", forger)):
             session.put("semmap/live/ball8", json.dumps({"at": [0, 0, 0]}), encoding="application/json")
             session.put("semmap/frame/dock8", json.dumps({"parent": "map", "fixed": True}))
-        time.sleep(1.0)
+            # The reply comes after the router has handled the publications of this session.
+            bus.ask(session, keys.commands_as(name), "get", commands.Get(name="ball8"), object)
+
+        def is_live():
+            spot.publish_pose("ball9", at=(2.0, 3.0, 0.0))
+            return bob.get("ball9").live
+
+        until(is_live, "a later pose of a robot")
         assert bob.get("ball8").live is None
         assert "dock8" not in {frame.name for frame in bob.frames()}

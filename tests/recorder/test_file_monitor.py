@@ -11,6 +11,7 @@ import pytest
 from semmap.nodes.recorder import file_monitor
 from semmap.nodes.recorder.file_monitor import FileMonitor
 from semmap.nodes.recorder.recording import open_recording
+from tests.conftest import PATIENCE_S
 
 
 @pytest.fixture
@@ -92,6 +93,9 @@ with open_recording(Path(sys.argv[1]), None) as recording:
 
 def test_a_real_recording_that_finds_no_room_is_told(tmp_path):
     run = subprocess.run(
-        [sys.executable, "-c", FULL, tmp_path / "full.rrd"], capture_output=True, text=True, timeout=60
+        [sys.executable, "-c", FULL, tmp_path / "full.rrd"],
+        capture_output=True,
+        text=True,
+        timeout=2 * PATIENCE_S,
     )
     assert "is no longer written" in run.stdout, run.stderr

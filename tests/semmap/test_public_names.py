@@ -19,6 +19,7 @@ import semmap.nodes
 import semmap.ontology
 import semmap.schemas
 from semmap.schemas.calls import reply_type
+from tests.conftest import until
 
 PUBLIC = {
     "semmap": """
@@ -53,7 +54,7 @@ PUBLIC = {
 
 MEASURE = """
 import sys, time
-wall_s, cpu_s = time.perf_counter(), time.process_time()
+cpu_s = time.process_time()
 import semmap
 [getattr(semmap, name) for name in semmap.__all__ if name[0].isupper() or name == "connect"]
 print(__import__("json").dumps([time.process_time() - cpu_s, sorted(m for m in sys.modules if "." not in m)]))
@@ -127,15 +128,19 @@ def test_what_is_not_there_is_an_attribute_error():
         _ = semmap.conect
 
 
+def measured():
+    """Import `semmap` in a new process; return its CPU seconds and modules."""
+    return json.loads(subprocess.check_output([sys.executable, "-c", MEASURE]))
+
+
 @pytest.fixture(scope="module")
 def imported():
-    """CPU seconds that `import semmap` takes, the least of some tries, and the modules that came with it."""
-    tries = [json.loads(subprocess.check_output([sys.executable, "-c", MEASURE])) for _ in range(4)]
-    return min(cpu_s for cpu_s, _ in tries), set(tries[0][1])
+    """The modules that come with `import semmap`."""
+    return set(measured()[1])
 
 
-def test_it_is_imported_in_a_quarter_of_a_second(imported):
-    assert imported[0] < 0.25
+def test_it_is_imported_in_a_quarter_of_a_second():
+    until(lambda: measured()[0] < 0.25, "one of some tries takes so little CPU time")
 
 
 def test_it_brings_nothing_that_only_a_node_or_the_command_line_needs(imported):
@@ -151,8 +156,8 @@ def test_it_brings_nothing_that_only_a_node_or_the_command_line_needs(imported):
         "click",
         "rich",
     }
-    assert "zenoh" in imported[1]
-    assert not imported[1] & heavy
+    assert "zenoh" in imported
+    assert not imported & heavy
 
 
 @pytest.mark.parametrize("package", [semmap, semmap.nodes, semmap.schemas, semmap.ontology])

@@ -10,13 +10,12 @@ import threading
 import pytest
 
 from semmap.schemas import errors
-from tests.conftest import PATIENCE_S, running, until
+from tests.conftest import PATIENCE_S, until
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
-    with running(tmp_path_factory.mktemp("frames"), "--no-record", "--no-sim", "--stale", "3") as system:
-        yield system
+def system(flat_map):
+    return flat_map
 
 
 @contextlib.contextmanager
@@ -101,7 +100,8 @@ def test_cycles_and_unknown_frames_are_rejected_with_a_reason(system):
         with pytest.raises(errors.BadRequest, match="--near with a position requires a distance"):
             client.list(near="1,2,0")
         client.withdraw_frame("hook")
-        until(lambda: "hook" not in [f.name for f in client.frames()], "that it is gone")
+        client.withdraw_frame("dock")
+        until(lambda: {"dock", "hook"}.isdisjoint(f.name for f in client.frames()), "that they are gone")
 
 
 def test_a_change_that_comes_again_is_done_once_though_its_frame_is_gone(system):

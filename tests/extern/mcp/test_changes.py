@@ -3,7 +3,6 @@
 import asyncio
 import contextlib
 import json
-import time
 
 import pytest
 
@@ -304,23 +303,22 @@ def test_commits_that_wait_for_approval_do_not_block_others(client, flat):
     flat.cli("approve", "--reject", "--all")
 
     async def talk(a):
-        began = time.monotonic()
         tokens = [(await a("propose", **a_cup(name=f"cup{n}0")))["token"] for n in range(1, 16)]
         waiting = [asyncio.create_task(a("commit", token=token)) for token in tokens]
         await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
         for _ in range(10):
             await a("propose", **a_cup())
-        took_s = time.monotonic() - began
+        still_waiting = sum(not each.done() for each in waiting)
         flat.cli("approve", "--reject", "--all")
         found = [str(each) for each in await asyncio.gather(*waiting, return_exceptions=True)]
         again = asyncio.create_task(a.refused("commit", token=tokens[-1]))
         while "no pending requests" in flat.cli("approve"):
             await asyncio.sleep(0.05)
         flat.cli("approve", "--reject", "--all")
-        return took_s, found, await again
+        return still_waiting, found, await again
 
-    took_s, found, again = agent(client, talk, approve=True, patience_s=30.0)
-    assert took_s < 15.0
+    still_waiting, found, again = agent(client, talk, approve=True, patience_s=600.0)
+    assert still_waiting >= 2
     assert sum("was rejected by" in text for text in found) == 2  # the others get it when they call again
     assert sum("10 of your requests already wait" in text for text in found) == 5
     assert "was rejected by" in again  # its token was still good

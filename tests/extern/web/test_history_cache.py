@@ -240,13 +240,11 @@ def test_the_newest_rows_of_a_long_history_are_kept(monkeypatch):
 
     async def scenario():
         live = Map(18)
-        cache = HistoryCache(live)
-        cache.start_reading()
-        await asyncio.sleep(0.05)
+        cache = await whole(live)
         assert (cache.first, cache.is_complete) == (1, True)
         for _ in range(5):
             live.grow()
-            await asyncio.sleep(0.01)
+            await cache.read()
         assert [row.seq for row in cache.rows] == list(range(4, 24))
         assert not cache.is_complete
         assert cache.row(3) is None
