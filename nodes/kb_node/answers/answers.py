@@ -15,9 +15,10 @@ from semmap.nodes.kb_node.documents.abox_document import undeclared_classes
 from semmap.nodes.kb_node.owlrl.consistency_check import find_owlrl_faults
 from semmap.nodes.kb_node.reasoner import GivenFacts, Inconsistent, Reasoner
 from semmap.nodes.kb_node.relations.facts import contradictions
-from semmap.nodes.kb_node.relations.facts.pair_facts import MIRRORED, PairFacts
+from semmap.nodes.kb_node.relations.facts.pair_facts import PairFacts
 from semmap.nodes.kb_node.relations.facts.pair_properties import PairProperties
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
+from semmap.nodes.kb_node.relations.measuring.relation_table import MIRRORED
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.ontology import prefixes

@@ -17,7 +17,7 @@ from semmap.nodes.kb_node.relations.facts.contradictions import (
 )
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.facts.rules import COMPUTED
-from semmap.nodes.kb_node.relations.measuring.phrases import PHRASES
+from semmap.nodes.kb_node.relations.measuring.relation_table import PHRASES
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.relation_reports import explain_relation, list_locations, list_relations
 from semmap.nodes.kb_node.relations.selection import resolve_single, select_entities

@@ -9,7 +9,7 @@ from typing import Final
 
 from semmap.nodes.kb_node.answers.differences import find_spells
 from semmap.nodes.kb_node.answers.search_vocabulary import item
-from semmap.nodes.kb_node.relations.measuring.phrases import PHRASES
+from semmap.nodes.kb_node.relations.measuring.relation_table import PHRASES
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal

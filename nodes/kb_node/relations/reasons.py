@@ -11,21 +11,15 @@ from semmap.nodes.kb_node.relations.measuring.arrangement import (
     measure_next_to,
 )
 from semmap.nodes.kb_node.relations.measuring.phrases import (
-    SIDES,
     explain_measure,
     format_height,
     format_length,
     phrase_relation,
 )
+from semmap.nodes.kb_node.relations.measuring.relation_table import NEEDS_SIZES, SIDES
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.viewing import list_intrinsic_sides
 from semmap.schemas.relations import RelationName
-
-_OF_SIZES = frozenset(
-    {"isOn", "isInside", "isAttachedTo", "isUnder", "isAbove", "touches", "isNear", "isNextTo"}
-)
-"""The relations that require known sizes."""
-
 
 _UNSUPPORTED = "has no known support"
 
@@ -52,7 +46,7 @@ def explain_absence(space: Space, relation: RelationName, solid: Solid, other: S
         if one.is_place:
             return f"{one.name} is a place, and this relation holds between objects only"
     for one in (solid, other):
-        if relation in _OF_SIZES and not one.is_measured:
+        if relation in NEEDS_SIZES and not one.is_measured:
             return f"the size of {one.name} is unknown"
     match relation:
         case "isOn":

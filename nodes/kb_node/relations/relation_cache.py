@@ -11,6 +11,7 @@ from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.arrangement import find_between, measure_attachment
+from semmap.nodes.kb_node.relations.measuring.relation_table import PAIR_MEASURES
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.viewing import View, is_on_side
 from semmap.nodes.kb_node.relations.reasons import stands_on_floor
@@ -195,12 +196,10 @@ def _is_beside(relation: RelationName) -> _Measured:
 
 _NEXT_TO: Final = _is_beside("isNextTo")
 _RELATIONS: Final[Mapping[str, _Measured]] = {
+    **{name: _is_beside(name) for name in PAIR_MEASURES},
     "isOn": _is_on,
     "isInside": _is_in,
     "isLocatedIn": _is_in,
     "isNear": _is_near,
     "isNextTo": _is_next_to,
-    "isUnder": _is_beside("isUnder"),
-    "isAbove": _is_beside("isAbove"),
-    "touches": _is_beside("touches"),
 }

@@ -18,11 +18,11 @@ from semmap.nodes.kb_node.relations.measuring.arrangement import (
 )
 from semmap.nodes.kb_node.relations.measuring.measures import Measure
 from semmap.nodes.kb_node.relations.measuring.phrases import (
-    SIDES,
     explain_measure,
     format_length,
     phrase_relation,
 )
+from semmap.nodes.kb_node.relations.measuring.relation_table import SIDES
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.viewing import (
     View,

@@ -4,7 +4,7 @@ import pytest
 
 from semmap.nodes.kb_node.answers import entity_queries, fact_intervals, questions
 from semmap.nodes.kb_node.documents import rdf
-from semmap.nodes.kb_node.relations.measuring.phrases import PHRASES
+from semmap.nodes.kb_node.relations.measuring.relation_table import PHRASES
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL

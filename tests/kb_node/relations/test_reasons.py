@@ -2,7 +2,7 @@
 
 import pytest
 
-from semmap.nodes.kb_node.relations.measuring.phrases import PHRASES
+from semmap.nodes.kb_node.relations.measuring.relation_table import PHRASES
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.relation_reports import explain_relation, list_relations
 from semmap.schemas import errors

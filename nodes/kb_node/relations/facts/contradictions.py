@@ -10,7 +10,8 @@ from semmap.nodes.kb_node.entities.alignments import shipped
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import measures
-from semmap.nodes.kb_node.relations.measuring.phrases import PHRASES, explain_measure, format_length
+from semmap.nodes.kb_node.relations.measuring.phrases import explain_measure, format_length
+from semmap.nodes.kb_node.relations.measuring.relation_table import PHRASES
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Term, Triple

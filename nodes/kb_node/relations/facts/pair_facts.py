@@ -6,7 +6,7 @@ In a crowd only counted objects are compared (`measuring.crowds`), so that the w
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Set
+from collections.abc import Iterable, Iterator, Set
 from typing import Final
 
 from semmap.nodes.kb_node.relations.facts.place_facts import Changed, Fact
@@ -14,29 +14,12 @@ from semmap.nodes.kb_node.relations.geometry.forms import Bounds
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import measures
-from semmap.nodes.kb_node.relations.measuring.arrangement import measure_next_to
 from semmap.nodes.kb_node.relations.measuring.measures import Measure
+from semmap.nodes.kb_node.relations.measuring.relation_table import MIRRORED, PAIR_MEASURES
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.schemas.entities import Entity
 from semmap.schemas.relations import RelationName
 
-MIRRORED: Final[dict[RelationName, RelationName]] = {
-    "touches": "touches",
-    "isUnder": "isAbove",
-    "isAbove": "isUnder",
-    "isNextTo": "isNextTo",
-    "isNear": "isNear",
-}
-"""The relations measured here, each with its inverse."""
-_MEASURES: Final[dict[RelationName, Callable[[Space, Solid, Solid], Measure | None]]] = {
-    "touches": lambda space, one, other: (
-        None if other.is_place else measures.touches(one, other, space.limits)
-    ),
-    "isUnder": lambda space, one, other: measures.beneath(one, other, space.limits),
-    "isAbove": lambda space, one, other: measures.beneath(other, one, space.limits),
-    "isNextTo": measure_next_to,
-    "isNear": lambda space, one, other: measures.near(one, other, space.limits),
-}
 _ALL: Final = frozenset(MIRRORED)
 _SupportState = tuple[str | None, frozenset[str]]
 """What an object is inside, and what it is on."""
@@ -54,7 +37,7 @@ def measure_pair(
     else:
         names = ("touches",) if "touches" in wanted else ()
     for name in names:
-        made = _MEASURES[name](space, solid, other)
+        made = PAIR_MEASURES[name](space, solid, other)
         if made is not None:
             yield name, made
 

@@ -6,8 +6,9 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Set
 from typing import Final
 
-from semmap.nodes.kb_node.relations.facts.pair_facts import MIRRORED, PairFacts
+from semmap.nodes.kb_node.relations.facts.pair_facts import PairFacts
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
+from semmap.nodes.kb_node.relations.measuring.relation_table import MIRRORED
 from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Term, Triple
 from semmap.schemas.relations import RelationName

@@ -2,33 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 from semmap.nodes.kb_node.relations.geometry.opening import joint_at
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring.measures import Measure, hollow_around
+from semmap.nodes.kb_node.relations.measuring.relation_table import PHRASES
 from semmap.schemas.joints import OPEN_FROM, Joint, in_words
 from semmap.schemas.relations import RelationName
-
-PHRASES: Final[dict[RelationName, str]] = {
-    "isOn": "is on",
-    "isInside": "is inside",
-    "isLocatedIn": "is in",
-    "isAttachedTo": "is attached to",
-    "touches": "touches",
-    "isUnder": "is under",
-    "isAbove": "is above",
-    "isNear": "is near",
-    "isNextTo": "is next to",
-    "isLeftOf": "is left of",
-    "isRightOf": "is right of",
-    "isInFrontOf": "is in front of",
-    "isBehind": "is behind",
-    "isBetween": "is between",
-    "isVisibleFrom": "is visible from",
-}
-SIDES: Final[tuple[RelationName, ...]] = ("isLeftOf", "isRightOf", "isInFrontOf", "isBehind")
-"""The relations that name a side of another object."""
 
 _LEVEL_M = 0.00005
 """Smaller distances would be printed as 0.0 mm."""

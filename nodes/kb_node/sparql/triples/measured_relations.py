@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
-from semmap.nodes.kb_node.relations.facts.pair_facts import MIRRORED, PairFacts
+from semmap.nodes.kb_node.relations.facts.pair_facts import PairFacts
 from semmap.nodes.kb_node.relations.facts.pair_properties import PairProperties
 from semmap.nodes.kb_node.relations.facts.place_facts import Changed, Fact
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
+from semmap.nodes.kb_node.relations.measuring.relation_table import MIRRORED
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.sparql.protocol import Placements
 from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, Delta

@@ -5,10 +5,11 @@ import random
 import pytest
 from msgspec import structs
 
-from semmap.nodes.kb_node.relations.facts.pair_facts import MIRRORED, PairFacts, measure_pair
+from semmap.nodes.kb_node.relations.facts.pair_facts import PairFacts, measure_pair
 from semmap.nodes.kb_node.relations.facts.pair_properties import PairProperties
 from semmap.nodes.kb_node.relations.measuring import crowds
 from semmap.nodes.kb_node.relations.measuring.crowds import MOST
+from semmap.nodes.kb_node.relations.measuring.relation_table import MIRRORED
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import Pose
