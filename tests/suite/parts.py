@@ -13,9 +13,9 @@ from tests.suite.failures import Failure, read_failures
 
 PARTS: tuple[tuple[str, ...], ...] = (
     ("-n", "3", "--dist", "worksteal", "--deal", "--ignore", "tests/page"),  # many wait for a system
-    ("tests/page",),  # in one process: its tests share a system and a browser
+    ("tests/page",),  # alone: Chromium renders with both cores
 )
-"""Arguments for pytest. The parts run side by side."""
+"""Arguments for pytest. The parts run one after the other."""
 _MEMORY = Path("/dev/shm")
 _ENOUGH_BYTES = 1 << 30
 """The suite's temporary files take about 100 MB."""
