@@ -86,7 +86,7 @@ def test_doors_are_committed_when_the_reply_comes(client):
     assert client.undo().text.startswith(f"undid commit {opened.commit}")
     client.open("fridge9", joint="door")
     closed = client.close("fridge9")
-    assert client.history(limit=1)[-1].seq == closed.commit
+    assert client.history(limit=1)[-1].seq == closed.commit, closed
 
 
 def test_a_robot_is_committed_where_it_was_driven_and_an_undo_takes_that_back(client):

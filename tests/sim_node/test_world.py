@@ -222,7 +222,7 @@ def test_time_goes_on_while_much_is_made(monkeypatch):
     world.spawn(
         [order(f"can{i}", "can", pose(1 + 0.5 * (i % 15), 1 + 0.5 * (i // 15))) for i in range(2, 200)]
     )
-    assert len(told) > 2
+    assert len(told) > 1  # time went on while the model was compiled
     assert all(poses.names == ("shelf1", "can1") for poses in told)
     fallen_s = told[-1].sim_time_s
     assert fallen_s > told[0].sim_time_s
