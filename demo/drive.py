@@ -26,7 +26,7 @@ def drive(t: Tour) -> None:
     t.do("explain", "milk1", "type", "Chilled_Food", holds="100% of its volume is within a hollow of fridge1")
 
     t.heading("Attach the apple to the gripper: it moves with the robot")
-    t.do("attach", "apple1", "--to", "robot1_gripper", "--at", "0.06", "0", "0", holds="holds apple1")
+    t.do("attach", "apple1", "--to", "robot1_gripper", "--at", "0.06", "0", "0", holds="is attached to")
     t.do("drive", "robot1", "--to", "6.75", "1.2", "--yaw", "-90deg", holds="robot1 is at")
     t.do("list", "--nearest", "3", "--to", "robot1", holds="fridge1")
     t.do("get", "apple1", holds="from the attachment to robot1_gripper")
