@@ -215,11 +215,14 @@ class Reconciler:
         return then(reply, lambda moved: self.scene.add(moved.bodies))
 
     def when_placed(self, name: str, execute: Callable[[], Future[T]]) -> Future[T]:
-        """Return the result of `execute()`, which is called once the body is placed as the map says."""
+        """Return the result of `execute()`, called once body and joints have the orders of the map."""
         return self._waiting.run(name, execute)
 
     def _is_to_be_placed(self, name: str) -> bool:
-        return self.scene.known and bool(self.wanted((name,)).place)
+        if not self.scene.known:
+            return False
+        wanted = self.wanted((name,))
+        return bool(wanted.place or wanted.joints)
 
     def place_all(self) -> Future[Any]:
         """Put every body back to its committed pose, and try again to create failed bodies.

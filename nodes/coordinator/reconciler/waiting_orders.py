@@ -14,7 +14,7 @@ T = TypeVar("T")
 class WaitingOrders:
     """Holds back orders for a body until an earlier commit has been carried out in the scene.
 
-    Otherwise the order would be lost, because the body is placed by that commit afterwards.
+    Otherwise the order would be lost, because that commit places the body, or moves its joints, afterwards.
     """
 
     def __init__(self, must_wait: Callable[[str], bool]) -> None:

@@ -60,7 +60,10 @@ class JointCommands:
             immediate = Moved(name=command.name, text=_on_its_way(command, switch))
             return self._completion.begin(command, immediate, lambda rests: _arrived(command, rests), reply)
 
-        return and_then(self._ask(MoveJoints(orders=(order,))), moving)
+        def execute() -> Future[Moved]:
+            return and_then(self._ask(MoveJoints(orders=(order,))), moving)
+
+        return self._reconciler.when_placed(command.name, execute)
 
 
 def _share(command: c.Open | c.Close) -> float:

@@ -19,7 +19,7 @@ from semmap.schemas import commands as c
 from semmap.schemas import errors
 from semmap.schemas.entities import Pose
 from semmap.schemas.joints import Joint
-from semmap.schemas.scenes import Body, JointsMoving
+from semmap.schemas.scenes import Body, JointsMoving, Poses
 from tests.coordinator.conftest import immediate
 
 
@@ -109,6 +109,22 @@ def test_open_moves_joints_to_the_requested_share_and_close_to_zero(opening, sim
     (order,) = simulator.orders
     assert (order.name, order.joint, order.openness) == ("thing1", command.joint or "", openness)
     assert order.commit is None  # a manual order: the map follows it
+
+
+def test_an_order_waits_until_the_joints_are_ordered_as_the_map_says(
+    opening, dispatcher, simulator, reconciler
+):
+    """Otherwise it would be lost, for example when an undo has just closed the door."""
+    dispatcher.change(c.Set(name="thing1", property="isOpen", values=(True,)))
+    reply = opening.move(c.Close(name="thing1"))
+    assert not reply.done()
+    assert simulator.orders == []
+    commit = dispatcher.map.entity("thing1").joints_said.commit
+    executed = structs.replace(reconciler.scene.bodies["thing1"], joint_commit=commit)
+    reconciler.scene.bodies["thing1"] = executed
+    nothing = {"names": (), "poses": (), "resting": (), "commits": ()}
+    reconciler.on_poses(Poses(run="r", version=1, stamp_ns=1, sim_time_s=0.0, **nothing))
+    assert [order.openness for order in simulator.orders] == [0.0]
 
 
 @pytest.mark.parametrize(
