@@ -148,7 +148,7 @@ class Applier:
         except BaseException:
             reasoner.change(tuple(islice(insert, inserted)), tuple(islice(delete, deleted)))
             raise
-        return Change.merge(changes)
+        return Change.together(changes)
 
     def _with_effects(self, commit: Commit, owners: Set[Term], change: Change, new: Set[Term]) -> Commit:
         state = self._state

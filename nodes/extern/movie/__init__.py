@@ -38,7 +38,7 @@ def movie(
     Raises Refused for a period that is not in the history, and BadRequest for invalid settings.
     """
     file, data = Path(file), None if data is None else Path(data)
-    wanted.validate()
+    wanted.require_sound()
     if file.suffix.lower() != ".mp4":
         raise errors.BadRequest(f"{file}: the suffix must be .mp4, as in {file.stem or 'movie'}.mp4")
     if file.exists() and not overwrite:

@@ -39,7 +39,7 @@ class Film(Struct, frozen=True, kw_only=True):
     graphics: bool = True
     """False uses ray casting, even if OpenGL is available."""
 
-    def validate(self) -> None:
+    def require_sound(self) -> None:
         """Raise BadRequest for invalid settings."""
         playback_clock.require_speed(self.speed)
         playback_clock.require_longest(self.longest_s)

@@ -24,7 +24,7 @@ class Change(NamedTuple):
     unknown or were not requested."""
 
     @classmethod
-    def merge(cls, changes: Sequence[Change]) -> Change:
+    def together(cls, changes: Sequence[Change]) -> Change:
         """Return several consecutive changes as one."""
         others = frozenset[Term]().union(*(change.others for change in changes))
         return cls(others, tuple(chain.from_iterable(change.alike for change in changes)))
