@@ -2,7 +2,7 @@
 
 The fields are the same on the command line (`semmap add Chair --at 1 2 0`), in a selector
 (`semmap/cmd/add?class=Chair;at=1,2,0`) and in a message (`{"verb": "add", "class": "Chair", ...}`).
-Positions and sizes are in metres in the map frame, angles in radians.
+Positions and sizes are in metres in the map frame, angles in radians, or texts such as `90deg`.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 
 from msgspec import Meta, field, structs
 
+from semmap.schemas import errors
 from semmap.schemas.approvals import Consequences, Request
 from semmap.schemas.backups import BackupPart
 from semmap.schemas.calls import DOCUMENT, MANY, Call, R
@@ -31,6 +32,7 @@ from semmap.schemas.entities import (
     Vector,
     Word,
     composed,
+    parse_angle,
 )
 from semmap.schemas.exemplars import LessonTold, ShownView
 from semmap.schemas.explanations import Explanation
@@ -152,9 +154,14 @@ class Command(
         return self.VERB not in _SLOW
 
     def __post_init__(self) -> None:
-        """Convert the name to Unicode's composed form, in which names are compared."""
+        """Convert the name to Unicode's composed form, in which names are compared, and `yaw` to radians."""
         if isinstance(name := getattr(self, "name", None), str) and not name.isascii():
             structs.force_setattr(self, "name", composed(name))
+        if (yaw := getattr(self, "yaw", None)) is not None:
+            try:
+                structs.force_setattr(self, "yaw", parse_angle(yaw))
+            except ValueError as error:
+                raise errors.BadRequest(str(error)) from None
 
 
 # Changes
