@@ -8,6 +8,8 @@ New individuals are named after the entity, not after their text, which can be a
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Iterable
 from functools import lru_cache
 
 from semmap.ontology import vocabulary as v
@@ -99,3 +101,11 @@ def _numbers(node: Term, properties: tuple[Term, ...], values: tuple[float, ...]
         (node, predicate, f'"{float(value)!r}{_FLOAT}')  # a number needs no escaping
         for predicate, value in zip(properties, values, strict=True)
     ]
+
+
+def group_by_property(triples: Iterable[Triple]) -> dict[Term, list[Triple]]:
+    """Return the triples of each property, in their order."""
+    found = defaultdict[Term, list[Triple]](list)
+    for triple in triples:
+        found[triple[1]].append(triple)
+    return dict(found)

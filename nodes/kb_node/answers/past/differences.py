@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, get_args
 
-from semmap.nodes.kb_node.answers.fact_intervals import PoseChanges, find_intervals
+from semmap.nodes.kb_node.answers.past.fact_intervals import PoseChanges, find_intervals
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact, Facts
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
