@@ -23,9 +23,8 @@ from typing import (
     overload,
 )
 
-from semmap.nodes.extern.files import read_file
-from semmap.nodes.extern.ontology_upload import ontology
-from semmap.nodes.extern.plan_files import is_plan, read_plan
+from semmap.nodes.extern.files import read_file, read_ontology
+from semmap.nodes.extern.floorplans import is_plan, read_plan
 from semmap.schemas import commands, errors, replies
 from semmap.schemas.calls import reply_type
 from semmap.schemas.commands import Command
@@ -224,7 +223,7 @@ def _load(
     if imports and not tbox:
         raise errors.BadRequest("--import applies to TBoxes only; add --tbox")
     if tbox:
-        content, filename = ontology(Path(path), imports)
+        content, filename = read_ontology(Path(path), imports)
     elif is_plan(Path(path)):
         content, filename = read_plan(Path(path)).content, Path(path).name
     else:

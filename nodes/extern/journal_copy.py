@@ -73,8 +73,8 @@ def _data_folder(where: str | None, namespace: str | None) -> Path | None:
 
 
 def _fetch_backup(folder: Path, where: str | None, identity: str | None, namespace: str | None) -> None:
+    from semmap.nodes.extern.backup import restore
     from semmap.nodes.extern.client import connect
-    from semmap.nodes.extern.restore import restore
 
     file = folder / "map.backup"
     with connect(where, identity=identity, namespace=namespace) as client:

@@ -24,9 +24,8 @@ from semmap.nodes.extern.mcp import limits, queries, requests
 from semmap.nodes.extern.mcp.answers import Answer, attribute_text, format_author
 from semmap.nodes.extern.mcp.consistent_read import known, newest, read_at_one_commit
 from semmap.nodes.extern.mcp.hints import translate_hints
-from semmap.nodes.extern.mcp.limits import Limits, Touched
+from semmap.nodes.extern.mcp.limits import Limits, Rate, Touched
 from semmap.nodes.extern.mcp.proposals import Proposal, Proposals
-from semmap.nodes.extern.mcp.rate_limit import Rate
 from semmap.nodes.extern.mcp.requests import Summary
 from semmap.schemas import codec, commands, errors
 from semmap.schemas.approvals import Request

@@ -7,8 +7,7 @@ import json
 import pytest
 
 from semmap.nodes.extern.mcp.changes import Changes
-from semmap.nodes.extern.mcp.limits import Limits
-from semmap.nodes.extern.mcp.rate_limit import Rate
+from semmap.nodes.extern.mcp.limits import Limits, Rate
 from semmap.nodes.extern.mcp.server import server
 from semmap.nodes.extern.mcp.tools import Tools, change_tools
 from semmap.schemas import errors

@@ -29,7 +29,7 @@ from semmap.nodes.extern.cli.ontology_options import (
 from semmap.nodes.extern.cli.output import lines
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.shell_completion import class_names, entity_names
-from semmap.nodes.extern.plan_files import is_plan, read_plan
+from semmap.nodes.extern.floorplans import is_plan, read_plan
 from semmap.schemas import errors
 
 if TYPE_CHECKING:

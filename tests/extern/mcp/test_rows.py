@@ -1,6 +1,6 @@
 import json
 
-from semmap.nodes.extern.mcp.overview import BUDGET, overview
+from semmap.nodes.extern.mcp.rows import OVERVIEW_BUDGET, overview
 from semmap.schemas.entities import Entity, Pose, Provenance
 from semmap.schemas.replies import SystemStatus
 
@@ -62,7 +62,7 @@ def test_a_thousand_entities_of_many_classes_in_many_places_fit():
     entities += [entity(f"thing{n}", f"Rather_Long_Class_Name_{n % 97}" * 2) for n in range(850)]
     where = {f"thing{n}": {"in": [f"room{n % 150}"]} for n in range(800)}
     found = overview(status("a problem " * 100, "another"), entities, where)
-    assert length(found) <= BUDGET
+    assert length(found) <= OVERVIEW_BUDGET
     assert found["entities"] == 1000
     assert found["places"], "some are shown"
     assert found["more_places"] + len(found["places"]) == 150

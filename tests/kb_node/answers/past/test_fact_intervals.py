@@ -5,7 +5,7 @@ import random
 import pytest
 from msgspec import structs
 
-from semmap.nodes.kb_node.answers.fact_intervals import PoseChanges, find_fact_starts
+from semmap.nodes.kb_node.answers.past.fact_intervals import PoseChanges, find_fact_starts
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.schemas import codec

@@ -6,7 +6,9 @@ import time
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, get_args
 
-from semmap.nodes.kb_node.answers.fact_intervals import PoseChanges, find_intervals
+from msgspec import structs
+
+from semmap.nodes.kb_node.answers.past.fact_intervals import PoseChanges, find_intervals
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact, Facts
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
@@ -35,13 +37,18 @@ def compute_difference(journal: Journal, past: HistoryReader, query: Diff, limit
     if first > last:
         raise errors.BadRequest(f"commit {first} comes after commit {last}; give the earlier one first")
     then, now = ({entity.name: entity for entity in past.entities(seq)} for seq in (first, last))
+    if come := now.keys() - then.keys():
+        later = past.find_later_names(then.keys() - now.keys(), last)
+        known_as = {name: new for name, new in later.items() if new in come}
+        then = {known_as.get(name, name): entity for name, entity in then.items()}
     changes: list[Change] = []
     for name in sorted(then.keys() | now.keys()):
         if name in now:
             changes += between(then.get(name), now[name])
         else:
             changes.append(removed(name, then[name].class_))
-    was, is_ = (_facts(entities.values(), limits) for entities in (then, now))
+    kept = [structs.replace(entity, name=name) for name, entity in then.items()]
+    was, is_ = (_facts(entities, limits) for entities in (kept, now.values()))
     differing = sorted([(fact, False) for fact in was - is_] + [(fact, True) for fact in is_ - was])
     relations = tuple(
         Related(subject=s, relation=_KEPT[relation], object=o, came=came, text=_phrase(relation, came, o))

@@ -1,6 +1,6 @@
 import pytest
 
-from semmap.nodes.extern.mcp.rate_limit import Rate
+from semmap.nodes.extern.mcp.limits import Rate
 
 
 class Clock:

@@ -1,6 +1,6 @@
 """Relations as lines."""
 
-from semmap.nodes.extern.web.scene.relation_lines import relation_lines
+from semmap.nodes.extern.web.scene.map_overlay import relation_lines
 from semmap.schemas.relations import Relation
 
 MIDDLES = {

@@ -1,7 +1,7 @@
 import asyncio
 import threading
 
-from semmap.nodes.extern.web.panels.query_subscription import QuerySubscription
+from semmap.nodes.extern.web.panels.standing_queries import QuerySubscription
 from semmap.schemas import errors
 from semmap.schemas.sparql import RowsChanged
 

@@ -1,8 +1,8 @@
 import numpy as np
 
 from semmap.nodes.perception_node.recognition.features import features_of
+from semmap.nodes.perception_node.recognition.recognise import reclassify_trimmed, trim
 from semmap.nodes.perception_node.recognition.recognition_model import shipped
-from semmap.nodes.perception_node.recognition.trimming import reclassify_trimmed, trim
 from semmap.nodes.perception_node.recognition.vote import leaf_probabilities
 from tests.perception_node.recognition.test_features import ALONE, WITH_A_SCRAP
 

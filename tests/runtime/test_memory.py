@@ -2,7 +2,7 @@ import gc
 
 import pytest
 
-from semmap.nodes.runtime import gc_pause
+from semmap.nodes.runtime import memory
 
 
 @pytest.fixture(autouse=True)
@@ -14,28 +14,28 @@ def unfrozen():
 
 
 def test_nothing_is_collected_during_the_pause():
-    with gc_pause.uncollected():
+    with memory.uncollected():
         assert not gc.isenabled()
-        with gc_pause.uncollected():
+        with memory.uncollected():
             pass
         assert not gc.isenabled()
     assert gc.isenabled()
 
 
 def test_it_is_collected_again_after_an_error():
-    with pytest.raises(ZeroDivisionError), gc_pause.uncollected():
+    with pytest.raises(ZeroDivisionError), memory.uncollected():
         raise ZeroDivisionError
     assert gc.isenabled()
 
 
 def test_many_new_objects_are_frozen_and_few_on_request():
-    with gc_pause.uncollected():
+    with memory.uncollected():
         few = [[] for _ in range(10)]
     assert gc.get_freeze_count() == 0
-    with gc_pause.uncollected():
-        many = [[] for _ in range(gc_pause._MANY + 1)]
+    with memory.uncollected():
+        many = [[] for _ in range(memory._MANY + 1)]
     assert gc.get_freeze_count() > len(many)
     gc.unfreeze()
-    with gc_pause.uncollected(freeze=True):
+    with memory.uncollected(freeze=True):
         pass
     assert gc.get_freeze_count() > len(few)

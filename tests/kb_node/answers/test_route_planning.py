@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from msgspec import structs
 
-from semmap.nodes.kb_node.answers.plans import plan_of
+from semmap.nodes.kb_node.answers.route_planning import plan_of
 from semmap.schemas.plans import Outline
 from tests.kb_node.relations.entities import CORNER, ROOM, TABLE, TOP, thing
 

@@ -3,7 +3,7 @@
 import pytest
 
 from semmap.nodes.kb_node.answers import answers
-from semmap.nodes.kb_node.answers.past_map import export_past, load_past_map, query_past
+from semmap.nodes.kb_node.answers.past.past_map import export_past, load_past_map, query_past
 from semmap.nodes.kb_node.derived_facts import DerivedChanges
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
