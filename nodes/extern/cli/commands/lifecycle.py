@@ -15,7 +15,7 @@ from msgspec import structs
 
 from semmap.nodes import bus
 from semmap.nodes.extern.cli.command import command
-from semmap.nodes.extern.cli.common import ENDPOINT, print_error
+from semmap.nodes.extern.cli.common import ENDPOINT, json_option, print_error, print_result
 from semmap.nodes.extern.cli.ontology_options import (
     TBoxFile,
     import_option,
@@ -258,6 +258,7 @@ def up(settings: Settings) -> None:
     metavar="EP",
     help="Endpoint that the system listens on.",
 )
+@json_option
 def down(data: Path | None, connect: str | None) -> None:
     """Stop a system that runs on this machine."""
     extras.require("semmap down", "kb")
@@ -271,12 +272,13 @@ def down(data: Path | None, connect: str | None) -> None:
             raise errors.NoAnswer(f"no system of this user listens on {connect}")
         (data,) = found
     Supervisor((data or default_data()).resolve()).shut_down()
-    click.echo("stopped")
+    print_result({"text": "stopped"}, lambda reply: [reply["text"]])
 
 
 @command(example="semmap repair --data maps/flat")
 @click.option("--data", type=_path, default=None, help="Data folder of the map; its system must be stopped.")
 @click.option("--tbox", type=TBoxFile(), default=None, help="TBox file to use if the stored TBox is damaged.")
+@json_option
 def repair(data: Path | None, tbox: Path | None) -> None:
     """Recover a damaged map up to its last intact commit.
 
@@ -285,7 +287,8 @@ def repair(data: Path | None, tbox: Path | None) -> None:
     extras.require("semmap repair", "kb")
     from semmap.nodes.kb_node.storage.repair.repair import repair as repair_journal
 
-    click.echo(repair_journal((data or default_data()).resolve(), print_error, tbox=tbox))
+    text = repair_journal((data or default_data()).resolve(), print_error, tbox=tbox)
+    print_result({"text": text}, lambda reply: [reply["text"]])
 
 
 @command(example="semmap node sim_node --connect tcp/192.168.1.10:7447")

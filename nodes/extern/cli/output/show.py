@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final
 
 from rich.console import Console
 from rich.table import Table
@@ -27,7 +29,7 @@ from semmap.schemas import wording
 from semmap.schemas.attachments import holder_of
 from semmap.schemas.changes import value_in_words
 from semmap.schemas.commits import Commit
-from semmap.schemas.entities import ClassInfo, Entity, PropertyInfo, Value
+from semmap.schemas.entities import ClassInfo, Entity, Pose, PropertyInfo, Value
 from semmap.schemas.frames import Frame
 from semmap.schemas.joints import in_words
 from semmap.schemas.relations import Described, Relation
@@ -36,6 +38,9 @@ from semmap.schemas.replies import LoggedCommit, Sighting, SystemStatus
 _WIDE = 100_000
 _LEVEL = 1e-3
 """A quaternion with smaller x and y is a rotation about the z axis."""
+ENTITY_COLUMNS: Final = ("name", "class", "x", "y", "z", "yaw", "size", "label", "body")
+_NUMBERS: Final = ("x", "y", "z", "yaw")
+_HEADERS: Final = {"yaw": "yaw°", "size": "size [m]"}
 _FOLDED = ("class", "size [m]", "label")
 
 
@@ -50,15 +55,43 @@ def console(piped_width: int = _WIDE) -> Console:
     return Console(highlight=False, soft_wrap=True, markup=False, width=piped_width)
 
 
-def entity_table(entities: Iterable[Entity]) -> Table:
-    """Return a table with one row per entity."""
-    rows = table("name", "class", "x", "y", "z", "yaw°", "size [m]", "label", "body", fold=_FOLDED)
-    for column in rows.columns[2:6]:
-        column.justify = "right"
-    for e in entities:
-        pose = e.pose if e.live is None else e.live.pose
-        rows.add(e.name, e.class_, *pose_cells(pose), size_text(e), e.preferred_reference or "", _body(e))
+def entity_table(entities: Iterable[Entity], columns: Sequence[str] = ENTITY_COLUMNS) -> Table:
+    """Return a table with one row per entity. `columns` are some of `ENTITY_COLUMNS`."""
+    rows = table(*(_HEADERS.get(name, name) for name in columns), fold=_FOLDED)
+    for name, column in zip(columns, rows.columns, strict=True):
+        column.justify = "right" if name in _NUMBERS else "left"
+    for entity in entities:
+        cells = _cells(entity)
+        rows.add(*(cells[name] for name in columns))
     return rows
+
+
+def _cells(e: Entity) -> dict[str, str]:
+    x, y, z, yaw = pose_cells(_pose(e))
+    label = e.preferred_reference or ""
+    values = (e.name, e.class_, x, y, z, yaw, size_text(e), label, _body(e))
+    return dict(zip(ENTITY_COLUMNS, values, strict=True))
+
+
+def sort_entities(entities: Sequence[Entity], column: str | None) -> list[Entity]:
+    """Return the entities in the order of one of `ENTITY_COLUMNS`; those without a value come last."""
+    if column is None:
+        return list(entities)
+
+    def key(entity: Entity) -> tuple[bool, Any]:
+        pose = _pose(entity)
+        if column in _NUMBERS and pose is not None:
+            return False, (*pose.position_m, pose.yaw_rad)[_NUMBERS.index(column)]
+        if column == "size" and entity.size_m is not None:
+            return False, math.prod(entity.size_m)
+        text = "" if column in (*_NUMBERS, "size") else _cells(entity)[column]
+        return not text, text or 0.0
+
+    return sorted(entities, key=key)
+
+
+def _pose(e: Entity) -> Pose | None:
+    return e.pose if e.live is None else e.live.pose
 
 
 def entity_line(entities: Sequence[Entity]) -> str:

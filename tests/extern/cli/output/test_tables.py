@@ -53,9 +53,10 @@ TABLES = {
 }
 
 
-def drawn(table, width):
+def drawn(table, width, *, is_terminal=True):
     out = io.StringIO()
-    Console(file=out, width=width, highlight=False, soft_wrap=True, markup=False).print(table)
+    terminal = {"force_terminal": is_terminal, "color_system": None}
+    Console(file=out, width=width, highlight=False, soft_wrap=True, markup=False, **terminal).print(table)
     return out.getvalue()
 
 
@@ -75,11 +76,33 @@ def test_very_many_rows_are_the_same_without_being_laid_out():
     few = [entity(f"chair{i}") for i in range(500)] + [entity("a\nb"), entity("椅子")]
     text, longer = drawn(show.entity_table(few), 1000), drawn(show.entity_table(few * 3), 1000)
     assert "a\\nb" in longer
-    assert longer.count(" chair7 ") == 3
+    assert longer.count("chair7 ") == 3
     lines = [line.rstrip() for line in text.splitlines() if line.strip()]
-    assert [line.split() for line in longer.splitlines()[2 : len(lines)]] == [x.split() for x in lines[2:]]
-    columns = {line.index("Alternative") for line in longer.splitlines()[2:] if line.isascii()}
+    assert [line.split() for line in longer.splitlines()[1 : len(lines) - 1]] == [
+        x.split() for x in lines[2:]
+    ]
+    columns = {line.index("Alternative") for line in longer.splitlines()[1:] if line.isascii()}
     assert columns == {longer.splitlines()[0].index("class")}
+
+
+def test_in_a_pipe_it_is_the_header_and_a_line_for_each_row():
+    text = drawn(show.entity_table([entity("cup2"), entity("a\nb")], ("name", "z")), 40, is_terminal=False)
+    assert [line.split() for line in text.splitlines()] == [
+        ["name", "z"],
+        ["cup2", "0.761"],
+        [r"a\nb", "0.761"],
+    ]
+
+
+def test_entities_are_sorted_by_a_column_and_those_without_a_value_come_last():
+    low, high, lost = entity("b"), entity("a"), structs.replace(entity("c"), pose=None)
+    low = structs.replace(low, pose=Pose(position_m=(0.0, 0.0, -1.0)), size_m=(3.0, 3.0, 3.0))
+    names = {
+        column: [e.name for e in show.sort_entities([lost, low, high], column)]
+        for column in ["z", "name", "size"]
+    }
+    assert names == {"z": ["b", "a", "c"], "name": ["a", "b", "c"], "size": ["c", "a", "b"]}
+    assert show.sort_entities([lost, low], None) == [lost, low]
 
 
 def test_a_list_of_very_many_rows_takes_no_time():
