@@ -11,7 +11,6 @@ from msgspec import Struct, structs
 from semmap.schemas import errors
 from semmap.schemas.calls import DOCUMENT, Call
 from semmap.schemas.entities import (
-    Angle,
     CommandId,
     Entity,
     Name,
@@ -19,6 +18,7 @@ from semmap.schemas.entities import (
     Probability,
     Provenance,
     Quaternion,
+    Radians,
     Remark,
     Size,
     Source,
@@ -69,7 +69,7 @@ class Edit(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=Tr
     rename: Name | None = None
     class_iri: str | None = None
     at: Vector | None = None
-    yaw: Angle | None = None
+    yaw: Radians | None = None
     orientation: Quaternion | None = None
     size: Size | None = None
     ref: Text | None = None

@@ -12,6 +12,7 @@ from semmap.nodes.kb_node.answers import answers as kb_answers
 from semmap.nodes.kb_node.answers import dry_runs
 from semmap.nodes.kb_node.answers.pages import Pages
 from semmap.nodes.kb_node.handlers.changes import effects
+from semmap.nodes.kb_node.relations.free_room import find_room
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.kb_node.undo import undo
@@ -66,6 +67,9 @@ def dispatcher(semantic_map):
             if isinstance(result, errors.SemmapError)
             else Outcome(commit=effects(result))
             for result in semantic_map.commit_together(several.transactions)
+        ),
+        "find-room": lambda query: find_room(
+            semantic_map.places.space(), query, semantic_map.find(query.name)
         ),
         "infer": lambda query: kb_answers.infer(semantic_map, query.name),
         "properties": lambda _: tuple(semantic_map.classes.property_table.rows()),

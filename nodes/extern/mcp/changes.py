@@ -184,8 +184,8 @@ class Changes:
             raise errors.BadRequest(
                 f"propose: {verb} has no field {unknown[0]}; valid fields: {', '.join(valid)}"
             )
-        if verb == "add" and "at" not in fields:
-            raise errors.BadRequest("propose: missing field at: the position as [x, y, z] in metres")
+        if verb == "add" and not fields.keys() & {"at", "on", "in", "next_to"}:
+            raise errors.BadRequest("propose: missing field at, on, in or next_to; at is [x, y, z] in metres")
         try:
             return codec.convert({**fields, "source": "agent", "agent": self._agent}, COMMANDS[verb])
         except errors.BadRequest as error:

@@ -23,6 +23,7 @@ from semmap.nodes.kb_node.answers.sightings import Sightings, describe_closed, f
 from semmap.nodes.kb_node.reasoner import GivenFacts
 from semmap.nodes.kb_node.reasoner.entailment.explaining import nearby
 from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from semmap.nodes.kb_node.relations.free_room import find_room
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.storage import history
@@ -32,10 +33,12 @@ from semmap.schemas import errors
 from semmap.schemas.bridge import (
     CopyQuery,
     Entities,
+    FindRoom,
     LoadOf,
     MapCopy,
     PlanOf,
     Recall,
+    Room,
     SnapshotQuery,
     StarQuery,
     WayOf,
@@ -119,6 +122,7 @@ class QueryHandlers:
             Recall.answered_by(self.on_recall),
             StarQuery.answered_by(self.on_star),
             LoadOf.answered_by(self.on_load_of),
+            FindRoom.answered_by(self.on_find_room),
             Classes.answered_by(self.on_classes),
             Properties.answered_by(self.on_properties),
             Entities.answered_by(self.on_list),
@@ -181,6 +185,12 @@ class QueryHandlers:
     def on_load_of(self, query: LoadOf) -> tuple[str, ...]:
         """Return what an object supports."""
         return tuple(self._map.places.supported_by(query.name, query.leave))
+
+    def on_find_room(self, query: FindRoom) -> Room:
+        """Return a free pose for an object on, in or next to another one."""
+        contents = self._map.places.supported_by(query.name) if query.carry else ()
+        with self.live.applied():
+            return find_room(self._map.places.space(), query, self._map.find(query.name), contents)
 
     def on_classes(self, _: Classes) -> tuple[ClassInfo, ...]:
         """Return the class table."""
