@@ -160,7 +160,10 @@ class HistoryReader:
         return entity
 
     def last_seen(self, name: str) -> Sighting:
-        """Return the last pose of an entity and its provenance. Raises UnknownName."""
+        """Return the last pose of an entity and its provenance.
+
+        Raises UnknownName, also for the earlier name of a renamed entity.
+        """
         self._require_known(name)
         removed: Provenance | None = None
         for seq in reversed(self._journal.touching(name)):
@@ -168,6 +171,11 @@ class HistoryReader:
             entity = _entities_after(commit).get(name)
             if entity is not None:
                 return make_sighting(entity, removed)
+            later = {was: now for now, was in find_earlier_names(commit).items()}.get(name)
+            if removed is None and later is not None:
+                raise errors.UnknownName(
+                    f"{name} was renamed to {later} in commit {seq}; see: semmap last-seen {later}"
+                )
             removed = commit.provenance
         return make_sighting(self.initial_entities()[name], removed)
 
