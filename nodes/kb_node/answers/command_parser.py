@@ -11,6 +11,7 @@ from semmap.nodes.kb_node.answers.entity_search import EntitySearch
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.language import lexicon
+from semmap.nodes.language.steps.reading import read_steps
 from semmap.nodes.language.understanding.grounding import Scene, Thing, scene
 from semmap.nodes.language.understanding.interpretation import shipped
 from semmap.nodes.language.vocabulary import Vocabulary, vocabulary
@@ -53,7 +54,27 @@ class CommandParser:
         )
         questions = (self._search.question(names, found.language) for names in open_still)
         doubts = dict.fromkeys(doubt for frame in found.frames for doubt in self._doubts(frame))
-        return structs.replace(found, question=" ".join(questions), doubts=tuple(doubts))
+        found = structs.replace(found, question=" ".join(questions), doubts=tuple(doubts))
+        return found if found.language != "english" else self._with_steps(query.text, found)
+
+    def _with_steps(self, text: str, found: Understood) -> Understood:
+        """Add the steps. If there are any, doubts, unknown verbs and questions are about them, not about the frames."""
+        with self._search.world(self._there().vocabulary.above) as world:
+            read = read_steps(text, world)
+        if not read.steps:
+            return structs.replace(
+                found,
+                doubts=tuple(dict.fromkeys((*found.doubts, *read.doubts))),
+                unknown=tuple(dict.fromkeys((*found.unknown, *read.unknown))),
+            )
+        questions = (self._search.question(names, found.language) for names in dict.fromkeys(read.ambiguous))
+        return structs.replace(
+            found,
+            steps=tuple(read.steps),
+            question=" ".join(questions),
+            doubts=tuple(read.doubts),
+            unknown=tuple(read.unknown),
+        )
 
     def _doubts(self, frame: SemanticFrame) -> Iterator[str]:
         """Yield the parts of a frame that do not match the map."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import NamedTuple
 
 from msgspec import structs
@@ -19,6 +21,7 @@ from semmap.nodes.language.reference_resolution.map_index import MapIndex
 from semmap.nodes.language.reference_resolution.missing import Missing, missing
 from semmap.nodes.language.reference_resolution.resolution import find
 from semmap.nodes.language.reference_resolution.resolver import Resolver
+from semmap.nodes.language.steps.meaning import World
 from semmap.schemas import errors
 from semmap.schemas.commands import Find
 from semmap.schemas.entities import Entity
@@ -91,6 +94,14 @@ class EntitySearch:
         around = RelationCache(space, None, self._map.derived_facts.suppressed_measurements)
         with space.caching():
             return clarification.clarifying_question(names, Resolver(self.known(), around, language))
+
+    @contextmanager
+    def world(self, above: Mapping[str, frozenset[str]]) -> Iterator[World]:
+        """Yield the map as commands need it; `above` maps the classes of the TBox to their superclasses."""
+        space = self._map.places.space()
+        around = RelationCache(space, None, self._map.derived_facts.suppressed_measurements)
+        with space.caching():
+            yield World(self.known(), around, above, self.where)
 
     def known(self) -> MapIndex:
         """Return the search items after the last commit; unchanged entities are not read again."""
