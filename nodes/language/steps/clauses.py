@@ -57,6 +57,8 @@ class Parsed:
     clauses: list[Clause] = field(default_factory=list)
     unknown: list[str] = field(default_factory=list)
     unused: list[str] = field(default_factory=list)
+    context: list[tuple[int, NounPhrase]] = field(default_factory=list)
+    """Persons that a part which is not understood mentions, each with the number of clauses before it."""
 
 
 class ClauseReader:
@@ -77,6 +79,7 @@ class ClauseReader:
         negated = False
         conditions: list[str] = []
         times: list[str] = []
+        front: tuple[str, PlacePhrase] | None = None
         while i < len(self._words):
             if self._t.ends_sentence(i):
                 self._close(first_of_sentence, conditions)
@@ -97,16 +100,24 @@ class ClauseReader:
                 i = self._special(i, conditions, times)
             elif (length := max(self._g.match(kind, self._words, i) for kind in _SKIPPED)) and length >= self._g.verb(self._words, i)[0]:
                 i += length
-            elif self._g.verb(self._words, i)[0]:
+            elif self._words[i] in ("go", "come") and self._g.verb(self._words, i)[0] == 1 and self._g.verb(self._words, i + 1)[0]:
+                i += 1  # go get the milk
+            elif (fronted := self._fronted(i)) is not None:
+                front, i = fronted, fronted[1].end
+            elif self._g.verb(self._words, i)[0] or self._lets_know(i):
                 before = len(self.found.clauses)
                 i = self._clause(i)
                 for clause in self.found.clauses[before:]:
                     clause.negated = negated
                     clause.times += times
-                times, negated = [], False
+                if front is not None:
+                    self._add_front(self.found.clauses[before], *front)
+                times, negated, front = [], False, None
             else:
                 i = self._unread(i)
         self._close(first_of_sentence, conditions)
+        if front is not None:
+            self.found.unused.append(self._t.between(front[1].first, front[1].end))
         if times and self.found.clauses:
             self.found.clauses[-1].times += times
         elif times:
@@ -114,6 +125,34 @@ class ClauseReader:
         if conditions and not self.found.clauses:
             self.found.unused += conditions
         return self.found
+
+    def _fronted(self, i: int) -> tuple[str, PlacePhrase] | None:
+        """Return the kind and the phrase of a place before the verb: in the kitchen, find Anna."""
+        for kind in ("from", "place"):
+            if length := self._g.match(kind, self._words, i):
+                phrase = self._np.read(i + length)
+                if phrase is not None and phrase.end > i + length and (self._t.is_mark(phrase.end) or self.starts_clause(phrase.end)):
+                    return kind, PlacePhrase(" ".join(self._words[i : i + length]), phrase, i, phrase.end)
+        return None
+
+    def _add_front(self, clause: Clause, kind: str, place: PlacePhrase) -> None:
+        """Add a place that stands before the verb to a clause: as a role, or to its object."""
+        roles = self._g.frames[clause.frame].roles
+        role = roles.get(kind) if kind == "from" or clause.frame == "Locating" else None
+        main = clause.role(roles.get("object", "")) or clause.role("Topic")
+        if role is not None and clause.role(role) is None:
+            clause.roles.append(Role(role, place.first, place.end, place.other.head, [place.other]))
+        elif main is not None and main.phrases and main.phrases[-1].kind != "pronoun":
+            main.phrases[-1].places.append(place)
+        else:
+            self.found.unused.append(self._t.between(place.first, place.end))
+
+    def _lets_know(self, i: int) -> bool:
+        """Return whether *let me know* begins at `i`."""
+        if self._words[i] != "let":
+            return False
+        phrase = self._np.read(i + 1)
+        return phrase is not None and self._words[phrase.end : phrase.end + 1] in (("know",), ("hear",))
 
     def _close(self, first: int, conditions: list[str]) -> None:
         """Give the conditions of a sentence to all of its clauses."""
@@ -144,6 +183,8 @@ class ClauseReader:
         if g.match("negation", words, j) or g.match("condition", words, j) or self._found_at(j) or self._asks(j):
             return True
         length, _ = g.verb(words, j)
+        if self._lets_know(j) or (g.is_a(words[j], "untaught") and not self._np.is_known(j, j + 1)):
+            return True
         if not length or self._is_gerund(j):
             return False
         if length > 1:
@@ -166,7 +207,10 @@ class ClauseReader:
 
     def _asks(self, i: int) -> bool:
         """Return whether a question begins at `i`: how many cups are there, where is Anna."""
-        if not self._g.match("question", self._words, i):
+        is_yes_no = self._g.is_a(self._words[i], "be") and self._words[i] in ("is", "are")
+        if not self._g.match("question", self._words, i) and not is_yes_no:
+            return False
+        if is_yes_no and i and self._words[i - 1] not in (".", "?", "!", ";", "robot"):
             return False
         if i and self._words[i - 1] not in (",", ".", "?", "!", ";", "and", "then", "robot", "please", "hey", "hello", "hi", "also", "so", "okay", "ok", "but"):
             return False
@@ -181,6 +225,8 @@ class ClauseReader:
             )
         if words[i : i + 1] == ("there",) and i + 1 < len(words) and g.is_a(words[i + 1], "be"):
             return True
+        if self._states_place(i):
+            return True
         subject = i < len(words) and (words[i] in ("he", "she", "they", "it") or (self._t.tokens[i].is_capital and not g.verb(words, i)[0] and i + 1 < len(words)))
         if not subject:
             return False
@@ -188,6 +234,20 @@ class ClauseReader:
         while j < len(words) and (g.is_a(words[j], "modal") or words[j] in ("probably", "usually", "likely", "currently", "most")):
             j += 1
         return j < len(words) and g.is_a(words[j], "be") and g.match("place", words, j + 1 + (words[j + 1 : j + 2] in (("located",), ("standing",), ("sitting",), ("waiting",), ("lying",), ("probably",), ("usually",)))) > 0
+
+    def _states_place(self, i: int) -> bool:
+        """Return whether a statement about a person begins at `i`: somebody in the kitchen is waving."""
+        if i >= len(self._words) or not (self._g.match("determiner", self._words, i) or self._words[i].startswith(("some", "any", "every"))):
+            return False
+        if i and self._words[i - 1] not in (",", ".", "!", ";", "?", "and", "then"):
+            return False
+        phrase = self._np.read(i)
+        if phrase is None or phrase.kind != "person" or phrase.end + 1 >= len(self._words):
+            return False
+        behind = phrase.end + 1
+        return self._g.is_a(self._words[phrase.end], "be") and bool(
+            self._g.is_a(self._words[behind], "posture") or self._g.match("place", self._words, behind)
+        )
 
     def _condition(self, i: int) -> int:
         """Return the end of a subordinate clause that begins at `i`, or `i`."""
@@ -250,12 +310,15 @@ class ClauseReader:
             self.found.unknown.append(self._words[i])
         if self._g.match("polite", self._words, i) < end - i:
             self.found.unused.append(text)
+        phrase = self._np.read(i)
+        if phrase is not None and (phrase.kind == "person" or (self._is_person(phrase) and self._t.tokens[phrase.head].is_capital)):
+            self.found.context.append((len(self.found.clauses), phrase))
         return end
 
     # One clause
 
     def _clause(self, i: int) -> int:
-        length, frame = self._g.verb(self._words, i)
+        length, frame = self._g.verb(self._words, i) if not self._lets_know(i) else (1, "Telling")
         clause = Clause(frame, self._t.between(i, i + length), i)
         self.found.clauses.append(clause)
         j = i + length
@@ -266,6 +329,13 @@ class ClauseReader:
                 return self._ask(clause, j)
             case "Communication_response":
                 return self._answer(clause, j)
+            case "Counting" if self._words[j : j + 2] == ("how", "many") and (counted := self._np.read(j + 2)) is not None:
+                counted = self._predicate(counted)
+                clause.roles.append(Role("Theme", j + 2, counted.end, counted.head, [counted]))
+                return self._arguments(clause, counted.end)
+            case "Inspecting" | "Telling" if self._g.match("question", self._words, j) and self._words[j] != "whether":
+                clause.frame = "Telling"  # check how many cups there are
+                return self._told(clause, j)
             case "Inspecting" if j < len(self._words) and self._words[j] in ("if", "whether", "that"):
                 end = self._clause_end(j)
                 clause.roles.append(Role("Desired_state", j, end, j))
@@ -327,6 +397,8 @@ class ClauseReader:
         if phrase.kind == "here" and "object" in roles and clause.role(role) is not None or (phrase.kind == "here" and "object" not in roles):
             clause.roles.append(Role(roles.get("to") or roles.get("place") or "Goal", phrase.first, phrase.end, phrase.head, [phrase]))
             return
+        if clause.verb.lower() == "show" and phrase.noun == "way":
+            return  # show Anna the way to the kitchen
         if phrase.kind == "robot" and clause.frame not in ("Introducing",) and "object" in roles:
             return
         if len(objects) == 2 and "receiver" in roles and (first := clause.role(role)) is not None and first.phrases[-1] is objects[0]:
@@ -365,6 +437,8 @@ class ClauseReader:
                 other = Clause(clause.frame, clause.verb, i + 1, conditions=clause.conditions, times=clause.times)
                 self.found.clauses.append(other)
                 return self._arguments(other, i + 1)
+        if phrase.kind == "name" and not self._t.tokens[phrase.head].is_capital:
+            return self._unread(i + 1)
         if last is None or not last.phrases:
             self.found.unused.append(self._t.between(i + 1, phrase.end))
             return phrase.end
@@ -383,6 +457,14 @@ class ClauseReader:
         phrase = self._np.read(i + length)
         if phrase is None or phrase.end == i + length:
             return None
+        if kind == "for" and clause.frame == "Perception_active":  # look in the kitchen for a cup
+            clause.frame = "Locating"
+            for other in clause.roles:
+                other.role = "Ground" if other.role in ("Location", "Phenomenon") else other.role
+            clause.roles.append(Role("Sought_entity", i, phrase.end, phrase.head, [phrase]))
+            return phrase.end
+        if kind == "for" and phrase.kind == "speaker" and "for" not in roles:
+            return phrase.end
         role = self._role(clause, kind, roles, phrase)
         object_role = clause.role(roles.get("object", "")) if "object" in roles else None
         if phrase.excluded and object_role is not None and object_role.phrases:
@@ -483,6 +565,10 @@ class ClauseReader:
                 return i + length
         if g.match("question", words, i) or words[i] in ("if",):
             return self._question(clause, i)
+        if words[i] == "that":
+            end = self._message_end(i)
+            clause.roles.append(Role("Message", i, end, i))
+            return self._addressed(clause, end)
         prop = i + g.match("determiner", words, i)
         if prop < len(words) and g.is_a(words[prop], "property"):
             if words[prop + 1 : prop + 2] == ("of",) and (topic := self._np.read(prop + 2)) is not None and self._is_topic(topic):
@@ -576,6 +662,11 @@ class ClauseReader:
                 topic = self._predicate(topic)
                 clause.roles.append(Role("Topic", j, topic.end, topic.head, [topic]))
                 return self._addressed(clause, topic.end)
+        if text == "which" and words[j : j + 1] == ("of",) and (topic := self._np.read(j + 1)) is not None:
+            clause.roles.append(Role("Message", i, j, i))
+            topic = self._predicate(topic)
+            clause.roles.append(Role("Topic", j, topic.end, topic.head, [topic]))
+            return self._addressed(clause, topic.end)
         if text == "which" and not self._t.is_mark(j) and not g.is_a(words[j], "be"):  # which drinks are on the desk
             topic = self._np.read(j)
             if topic is not None and self._is_topic(topic):
@@ -705,6 +796,8 @@ class ClauseReader:
             clause.roles.append(Role("Addressee", end, of.end, of.head, [of]))
             return self._addressed(clause, of.end)
         clause.roles.append(Role("Trigger", i, end, phrase.head))
+        if phrase.owner is not None and phrase.owner.kind == "pronoun" and phrase.owner.noun not in ("your", "its"):
+            clause.roles.append(Role("Addressee", i, i + 1, i, [phrase.owner]))
         if words[end : end + 1] in (("from",), ("of",), ("by",)) and (of := self._np.read(end + 1)) is not None:
             clause.roles.append(Role("Addressee", end, of.end, of.head, [of]))
             end = of.end
@@ -718,12 +811,23 @@ class ClauseReader:
         if self._asks(i):
             clause = Clause("Telling", self._words[i], i, asks=True)
             self.found.clauses.append(clause)
-            end = self._question(clause, i)
+            end = self._question(clause, i) if self._g.match("question", self._words, i) else self._yes_no(clause, i)
         else:
             end = self._being_located(i)
         for clause in self.found.clauses[before:]:
             clause.times += times
         return max(end, i + 1)
+
+    def _yes_no(self, clause: Clause, i: int) -> int:
+        """Read *is the milk on the desk*."""
+        j = i + 1 + (self._words[i + 1 : i + 2] == ("there",))
+        phrase = self._np.read(j)
+        clause.roles.append(Role("Message", i, j, i))
+        if phrase is None:
+            return self._unread(j)
+        self._np.continue_phrase(phrase, after_be=True)
+        clause.roles.append(Role("Topic", phrase.first, phrase.end, phrase.head, [phrase]))
+        return self._addressed(clause, phrase.end)
 
     def _being_located(self, i: int) -> int:
         words, g = self._words, self._g
@@ -742,6 +846,10 @@ class ClauseReader:
         j = phrase.end
         role = Role("Theme", phrase.first, phrase.end, phrase.head, [phrase])
         clause.roles.append(role)
+        if phrase.kind == "person" and j + 1 < len(words) and g.is_a(words[j], "be") and g.is_a(words[j + 1], "posture"):
+            clause.verb = clause.verb or words[j]
+            phrase = self._predicate(phrase)
+            role.end = j = phrase.end
         while j < len(words) and (g.is_a(words[j], "be") or g.is_a(words[j], "modal") or words[j] in ("probably", "usually", "likely", "currently", "most", "located", "standing", "sitting", "waiting", "lying")):
             clause.verb = clause.verb or words[j]
             j += 1

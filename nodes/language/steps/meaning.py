@@ -372,6 +372,8 @@ class Meanings:
     def _description(self, phrase: NounPhrase, names: Sequence[str], relations: Sequence[tuple[PlacePhrase, Names]], is_any: bool) -> ThingDescription:
         classes = self._nouns.whole.get(phrase.key, set()) or self._nouns.classes.get(phrase.key, set())
         own = {self._index.items[name].class_name for name in names}
+        if names and all(name in self._nouns.exact.get(phrase.key, ()) for name in names):
+            classes = {name for name in classes if any(self._is_of_class(entity, name) for entity in names)}
         class_name = next(iter(sorted(classes)), "") if classes else (next(iter(own)) if len(own) == 1 else "Object")
         if phrase.purpose:
             class_name = self._g.purposes[phrase.purpose]

@@ -212,6 +212,9 @@ class NounPhraseReader:
                 continue
             if any(g.match(kind, words, i) for kind in _PREPOSITIONS) and word not in ("nearest", "closest"):
                 break
+            if word == "can" and i > start - 1 and not seen and self._is_noun_can(i):
+                i, seen = i + 1, True
+                continue
             if any(g.is_a(word, kind) for kind in _NEVER_INSIDE) or word in _ADVERBS or word.startswith("n't"):
                 break
             if i > start and word == "one":
@@ -220,6 +223,8 @@ class NounPhraseReader:
                 break
             if seen and (g.is_a(word, "posture") or g.is_a(word, "particle") or word in _ALWAYS_VERBS):
                 break
+            if i > start and self._is_bare_name(start) and not self._t.tokens[i].is_capital:
+                break  # let ANNA know
             if seen and word.endswith("s") and (word[:-1],) in g.verbs:
                 break  # how the person looks
             if seen and (g.match("time", words, i) or word in ("called", "named")):
@@ -228,6 +233,16 @@ class NounPhraseReader:
             seen = seen or g.is_a(self._bases[i], "anything") or self._t.tokens[i].is_capital
             i += 1
         return i
+
+    def _is_bare_name(self, i: int) -> bool:
+        """Return whether a capital letter without a determiner begins a name at `i`."""
+        before = self._words[i - 1] if i else ""
+        return bool(before) and self._t.tokens[i].is_capital and not self._g.is_a(before, "determiner") and not self._is_modifier(i)
+
+    def _is_noun_can(self, i: int) -> bool:
+        """Return whether *can* at `i` is the noun: after a determiner or adjective, and before no verb."""
+        before = self._words[i - 1] if i else ""
+        return (self._g.is_a(before, "determiner") or self._is_modifier(i - 1)) if before else False
 
     def _is_kind(self, i: int) -> bool:
         return self._g.is_a(self._bases[i], "kind_of_person")
@@ -331,9 +346,13 @@ class NounPhraseReader:
         i = phrase.end
         self._after_the_noun(phrase, True)
         if phrase.end == i and after_be and not self._t.is_mark(i):
-            end = self._group_end(i)
-            phrase.attributes += [self._t.between(i, end)] if end > i else []
-            phrase.end = end
+            start = i + self._g.match("determiner", self._words, i)
+            end = self._group_end(start)
+            if end > start and (length := self._superlative(start, end + 1)):
+                phrase.superlative = " ".join(self._words[start : start + length])
+            elif end > i:
+                phrase.attributes.append(self._t.between(i, end))
+            phrase.end = max(end, i)
 
     def _after_the_noun(self, phrase: NounPhrase, with_places: bool) -> None:
         """Read what follows the noun: places, relative clauses, participles, purposes, exceptions."""
@@ -350,6 +369,10 @@ class NounPhraseReader:
                 phrase.name, phrase.end = self._t.between(i + 1, end), max(end, i + 1)
             elif phrase.noun and words[i] == "to" and i + 1 < len(words) and words[i + 1] in g.purposes:
                 phrase.purpose, phrase.end = words[i + 1], i + 2
+            elif words[i] == "," and phrase.kind != "pronoun" and words[i + 1 : i + 2] in (("who",), ("which",)):
+                if not self._relative(phrase, i + 1, with_places):
+                    return
+                phrase.end += words[phrase.end : phrase.end + 1] == (",",)
             elif g.is_a(words[i], "relative") and i + 1 < len(words):
                 if not self._relative(phrase, i, with_places):
                     return
@@ -402,7 +425,8 @@ class NounPhraseReader:
             has_have = has_have or g.is_a(words[j], "have")
             negated = negated or words[j] in ("not", "n't", "never")
             j += 1
-        if self._t.is_mark(j):
+        is_that_clause = words[i] == "that" and j == i + 1 and (phrase.kind != "thing" or phrase.key in self._nouns.entities)
+        if self._t.is_mark(j) or (is_that_clause and not g.is_a(words[j], "posture")):
             return False
         if (has_be or not has_have) and g.is_a(words[j], "posture"):
             self._participle(phrase, j, i if negated else j, negated=negated)

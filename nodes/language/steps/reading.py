@@ -60,7 +60,11 @@ class _StepReader:
         nouns = self._world.index.nouns["english"]
         parsed = ClauseReader(self._t, self._g, nouns, self._meanings.is_person, self._world.above).read()
         found = self._found
-        for clause in parsed.clauses:
+        for number, clause in enumerate(parsed.clauses):
+            for _, phrase in (mention for mention in parsed.context if mention[0] == number):
+                meaning = self._meanings.of(phrase, may_be_none=True)
+                filler = Filler(self._t.between(phrase.first, phrase.end), self._t.words[phrase.head], meaning.names, meaning.description)
+                self._mentions.append(_Mention(0, "", filler, True, phrase.is_plural, False))
             found.steps.append(self._step(clause, len(found.steps) + 1))
         found.unknown = list(dict.fromkeys(parsed.unknown))
         found.asks = any(clause.asks for clause in parsed.clauses)
@@ -141,10 +145,12 @@ class _StepReader:
     def _pronoun(self, phrase: NounPhrase, text: str, head: str, clause: Clause, role: Role, number: int, mentions: list[_Mention]) -> Filler:
         antecedent = self._antecedent(phrase, clause, role, mentions)
         if antecedent is None:
+            if self._g.is_a(phrase.noun, "possessive") and phrase.noun not in ("her",):
+                return Filler(text, head)
             self._found.doubts.append(f"'{phrase.noun}' refers to nothing that was mentioned")
             return Filler(text, head)
         description = antecedent.filler.description
-        filler = Filler(text, head, antecedent.filler.entities, description, Reference(antecedent.step, antecedent.role))
+        filler = Filler(text, head, antecedent.filler.entities, description, Reference(antecedent.step, antecedent.role) if antecedent.step else None)
         mentions.append(_Mention(number, role.role, filler, antecedent.is_person, antecedent.is_plural, antecedent.is_place))
         return filler
 
