@@ -55,10 +55,11 @@ class CommandParser:
         questions = (self._search.question(names, found.language) for names in open_still)
         doubts = dict.fromkeys(doubt for frame in found.frames for doubt in self._doubts(frame))
         found = structs.replace(found, question=" ".join(questions), doubts=tuple(doubts))
-        return found if found.language != "english" else self._with_steps(query.text, found)
+        is_read = found.language == "english" and found.mood != "past"
+        return self._with_steps(query.text, found) if is_read else found
 
     def _with_steps(self, text: str, found: Understood) -> Understood:
-        """Add the steps. If there are any, doubts, unknown verbs and questions are about them, not about the frames."""
+        """Add the steps; if there are any, doubts, unknown verbs and questions are about them."""
         with self._search.world(self._there().vocabulary.above) as world:
             read = read_steps(text, world)
         if not read.steps:

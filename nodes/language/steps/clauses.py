@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Final
 
 from semmap.nodes.language.lexicon.commands import Grammar
@@ -12,13 +12,17 @@ from semmap.nodes.language.steps.noun_phrase import NounPhrase, NounPhraseReader
 from semmap.nodes.language.steps.tokens import Text
 
 _SKIPPED: Final = ("then", "polite")
-_PLACED: Final = ("Locating", "Placing", "Being_located", "Motion", "Arriving", "Inspecting", "Pouring", "Perception_active")
+_PLACED: Final = (
+    "Locating",
+    "Placing",
+    "Being_located",
+    "Motion",
+    "Arriving",
+    "Inspecting",
+    "Pouring",
+    "Perception_active",
+)
 """Frames of which a place after the object is a role of its own."""
-_WITH_PERSON: Final = frozenset(
-    ("Cotheme", "Guiding", "Make_acquaintance", "Greeting", "Introducing", "Telling", "Communication_response", "Questioning",
-     "Request")
-)  # fmt: skip
-"""Frames whose object or receiver is a person."""
 
 
 @dataclass(slots=True)
@@ -89,6 +93,7 @@ class ClauseReader:
                 i += 1
             elif (end := self._condition(i)) > i:
                 conditions.append(self._t.between(i, end))
+                self._mention(i + self._g.match("condition", self._words, i))
                 i = end
             elif length := starts_time(self._g, self._words, i):
                 times.append(self._t.between(i, i + length))
@@ -96,11 +101,21 @@ class ClauseReader:
             elif length := self._g.match("negation", self._words, i):
                 negated = True
                 i += length
+            elif wish := self._wish(i):
+                i = self._wished(i, wish)
+                self.found.clauses[-1].times += times
+                times, negated = [], False
             elif self._asks(i) or self._found_at(i):
                 i = self._special(i, conditions, times)
-            elif (length := max(self._g.match(kind, self._words, i) for kind in _SKIPPED)) and length >= self._g.verb(self._words, i)[0]:
+            elif (
+                length := max(self._g.match(kind, self._words, i) for kind in _SKIPPED)
+            ) and length >= self._g.verb(self._words, i)[0]:
                 i += length
-            elif self._words[i] in ("go", "come") and self._g.verb(self._words, i)[0] == 1 and self._g.verb(self._words, i + 1)[0]:
+            elif (
+                self._words[i] in ("go", "come")
+                and self._g.verb(self._words, i)[0] == 1
+                and self._g.verb(self._words, i + 1)[0]
+            ):
                 i += 1  # go get the milk
             elif (fronted := self._fronted(i)) is not None:
                 front, i = fronted, fronted[1].end
@@ -131,7 +146,11 @@ class ClauseReader:
         for kind in ("from", "place"):
             if length := self._g.match(kind, self._words, i):
                 phrase = self._np.read(i + length)
-                if phrase is not None and phrase.end > i + length and (self._t.is_mark(phrase.end) or self.starts_clause(phrase.end)):
+                if (
+                    phrase is not None
+                    and phrase.end > i + length
+                    and (self._t.is_mark(phrase.end) or self.starts_clause(phrase.end))
+                ):
                     return kind, PlacePhrase(" ".join(self._words[i : i + length]), phrase, i, phrase.end)
         return None
 
@@ -147,6 +166,20 @@ class ClauseReader:
         else:
             self.found.unused.append(self._t.between(place.first, place.end))
 
+    def _wish(self, i: int) -> int:
+        """Return the number of words of a wish at `i`: I need, I would like, can I have; or 0."""
+        length = self._g.match("wish", self._words, i)
+        return 0 if self._words[i + length : i + length + 1] in (("to",), ("you",)) else length
+
+    def _wished(self, i: int, length: int) -> int:
+        """Read a wish for a thing: it is to be brought to the speaker."""
+        speaker = i + next(k for k, word in enumerate(self._words[i:]) if word in ("i", "we"))
+        clause = Clause("Bringing", self._t.between(i, i + length), i)
+        phrase = NounPhrase(speaker, speaker + 1, speaker, "speaker", self._words[speaker])
+        clause.roles.append(Role("Beneficiary", speaker, speaker + 1, speaker, [phrase]))
+        self.found.clauses.append(clause)
+        return self._arguments(clause, i + length)
+
     def _lets_know(self, i: int) -> bool:
         """Return whether *let me know* begins at `i`."""
         if self._words[i] != "let":
@@ -157,7 +190,9 @@ class ClauseReader:
     def _close(self, first: int, conditions: list[str]) -> None:
         """Give the conditions of a sentence to all of its clauses."""
         clauses = self.found.clauses[first:]
-        every = list(dict.fromkeys((*conditions, *(text for clause in clauses for text in clause.conditions))))
+        every = list(
+            dict.fromkeys((*conditions, *(text for clause in clauses for text in clause.conditions)))
+        )
         for clause in clauses:
             clause.conditions = list(every)
         if conditions and not clauses:
@@ -180,7 +215,14 @@ class ClauseReader:
             j += length
         if self._t.is_mark(j):
             return True
-        if g.match("negation", words, j) or g.match("condition", words, j) or self._found_at(j) or self._asks(j):
+        if self._wish(j):
+            return True
+        if (
+            g.match("negation", words, j)
+            or g.match("condition", words, j)
+            or self._found_at(j)
+            or self._asks(j)
+        ):
             return True
         length, _ = g.verb(words, j)
         if self._lets_know(j) or (g.is_a(words[j], "untaught") and not self._np.is_known(j, j + 1)):
@@ -201,9 +243,9 @@ class ClauseReader:
         words, g = self._words, self._g
         if i >= len(words):
             return False
-        return any(g.match(kind, words, i) for kind in ("determiner", "pronoun", "possessive", "speaker", "all")) or (
-            self._t.tokens[i].is_capital
-        )
+        return any(
+            g.match(kind, words, i) for kind in ("determiner", "pronoun", "possessive", "speaker", "all")
+        ) or (self._t.tokens[i].is_capital)
 
     def _asks(self, i: int) -> bool:
         """Return whether a question begins at `i`: how many cups are there, where is Anna."""
@@ -212,32 +254,84 @@ class ClauseReader:
             return False
         if is_yes_no and i and self._words[i - 1] not in (".", "?", "!", ";", "robot"):
             return False
-        if i and self._words[i - 1] not in (",", ".", "?", "!", ";", "and", "then", "robot", "please", "hey", "hello", "hi", "also", "so", "okay", "ok", "but"):
+        if i and self._words[i - 1] not in (
+            ",",
+            ".",
+            "?",
+            "!",
+            ";",
+            "and",
+            "then",
+            "robot",
+            "please",
+            "hey",
+            "hello",
+            "hi",
+            "also",
+            "so",
+            "okay",
+            "ok",
+            "but",
+        ):
             return False
-        return self._words[i] not in ("when", "whether") or (i + 1 < len(self._words) and self._words[i + 1] in ("is", "was", "did"))
+        if self._wish(i):
+            return False
+        return self._words[i] not in ("when", "whether") or (
+            i + 1 < len(self._words) and self._words[i + 1] in ("is", "was", "did")
+        )
 
     def _found_at(self, i: int) -> bool:
-        """Return whether a clause about a place begins at `i`: you can find him at the bed; she is at the bed; there is a cup."""
+        """Return whether a clause about a place begins at `i`: you find him at the bed; there is a cup."""
         words, g = self._words, self._g
         if words[i : i + 1] == ("you",) and i + 2 < len(words):
-            return (words[i + 1] in ("can", "may", "might", "will", "should", "could", "'ll") and words[i + 2] in ("find", "meet", "see", "spot", "probably", "likely", "also", "surely")) or (
-                words[i + 1] in ("find",)
-            )
+            return (
+                words[i + 1] in ("can", "may", "might", "will", "should", "could", "'ll")
+                and words[i + 2] in ("find", "meet", "see", "spot", "probably", "likely", "also", "surely")
+            ) or (words[i + 1] in ("find",))
         if words[i : i + 1] == ("there",) and i + 1 < len(words) and g.is_a(words[i + 1], "be"):
             return True
         if self._states_place(i):
             return True
-        subject = i < len(words) and (words[i] in ("he", "she", "they", "it") or (self._t.tokens[i].is_capital and not g.verb(words, i)[0] and i + 1 < len(words)))
+        subject = i < len(words) and (
+            words[i] in ("he", "she", "they", "it")
+            or (self._t.tokens[i].is_capital and not g.verb(words, i)[0] and i + 1 < len(words))
+        )
         if not subject:
             return False
         j = i + 1
-        while j < len(words) and (g.is_a(words[j], "modal") or words[j] in ("probably", "usually", "likely", "currently", "most")):
+        while j < len(words) and (
+            g.is_a(words[j], "modal") or words[j] in ("probably", "usually", "likely", "currently", "most")
+        ):
             j += 1
-        return j < len(words) and g.is_a(words[j], "be") and g.match("place", words, j + 1 + (words[j + 1 : j + 2] in (("located",), ("standing",), ("sitting",), ("waiting",), ("lying",), ("probably",), ("usually",)))) > 0
+        return (
+            j < len(words)
+            and g.is_a(words[j], "be")
+            and g.match(
+                "place",
+                words,
+                j
+                + 1
+                + (
+                    words[j + 1 : j + 2]
+                    in (
+                        ("located",),
+                        ("standing",),
+                        ("sitting",),
+                        ("waiting",),
+                        ("lying",),
+                        ("probably",),
+                        ("usually",),
+                    )
+                ),
+            )
+            > 0
+        )
 
     def _states_place(self, i: int) -> bool:
         """Return whether a statement about a person begins at `i`: somebody in the kitchen is waving."""
-        if i >= len(self._words) or not (self._g.match("determiner", self._words, i) or self._words[i].startswith(("some", "any", "every"))):
+        if i >= len(self._words) or not (
+            self._g.match("determiner", self._words, i) or self._words[i].startswith(("some", "any", "every"))
+        ):
             return False
         if i and self._words[i - 1] not in (",", ".", "!", ";", "?", "and", "then"):
             return False
@@ -252,7 +346,11 @@ class ClauseReader:
     def _condition(self, i: int) -> int:
         """Return the end of a subordinate clause that begins at `i`, or `i`."""
         length = self._g.match("condition", self._words, i)
-        if not length or self._g.match("then", self._words, i) >= length or starts_time(self._g, self._words, i):
+        if (
+            not length
+            or self._g.match("then", self._words, i) >= length
+            or starts_time(self._g, self._words, i)
+        ):
             return i
         j = i + length
         while j < len(self._words) and not self._t.ends_sentence(j):
@@ -260,11 +358,41 @@ class ClauseReader:
                 return j
             if self._words[j] == "then":
                 return j
-            if j > i + length + 1 and self._words[j - 1] not in ("to", "not", "n't", "and", "or", "'s", "the", "a", "i", "you", "we", "they", "he", "she", "it", "my", "your") and (
-                not self._g.is_a(self._words[j - 1], "modal") and not self._g.is_a(self._words[j - 1], "be") and not self._g.is_a(self._words[j - 1], "determiner")
+            if (
+                j > i + length + 1
+                and self._words[j - 1]
+                not in (
+                    "to",
+                    "not",
+                    "n't",
+                    "and",
+                    "or",
+                    "'s",
+                    "the",
+                    "a",
+                    "i",
+                    "you",
+                    "we",
+                    "they",
+                    "he",
+                    "she",
+                    "it",
+                    "my",
+                    "your",
+                )
+                and (
+                    not self._g.is_a(self._words[j - 1], "modal")
+                    and not self._g.is_a(self._words[j - 1], "be")
+                    and not self._g.is_a(self._words[j - 1], "determiner")
+                )
             ):
                 verb, _ = self._g.verb(self._words, j)
-                if verb and not self._is_gerund(j) and self._opens_phrase(j + verb) and self._has_verb(i + length, j):
+                if (
+                    verb
+                    and not self._is_gerund(j)
+                    and self._opens_phrase(j + verb)
+                    and self._has_verb(i + length, j)
+                ):
                     return j
                 if self._words[j] in ("please", "could", "can") and self._g.match("polite", self._words, j):
                     return j
@@ -278,7 +406,10 @@ class ClauseReader:
     def _has_verb(self, first: int, end: int) -> bool:
         """Return whether a subordinate clause has its verb."""
         return any(
-            self._g.is_a(word, "be") or self._g.is_a(word, "have") or self._g.is_a(word, "modal") or (word.endswith(("s", "ed", "ing")) and not self._np.is_known(k, k + 1))
+            self._g.is_a(word, "be")
+            or self._g.is_a(word, "have")
+            or self._g.is_a(word, "modal")
+            or (word.endswith(("s", "ed", "ing")) and not self._np.is_known(k, k + 1))
             for k, word in enumerate(self._words[first:end], first)
         )
 
@@ -296,24 +427,39 @@ class ClauseReader:
     def _excludes(self, i: int) -> bool:
         """Return whether an exception begins at `i`: but not the milk."""
         length = self._g.match("exclude", self._words, i)
-        return bool(length) and self._opens_phrase(i + length) and not self._g.verb(self._words, i + length)[0]
+        has_noun = self._opens_phrase(i + length) or (length == 2 and self._words[i + 1] == "no")
+        return bool(length) and has_noun and not self._g.verb(self._words, i + length)[0]
 
     def _unread(self, i: int) -> int:
         """Note the words of a clause that cannot be read; return where it ends."""
         end = i + 1
-        while end < len(self._words) and not self._t.is_mark(end) and not self.starts_clause(end):
+        while end < len(self._words) and not self._t.is_mark(end):
+            if (
+                self._g.is_a(self._words[end], "and") or self._g.match("then", self._words, end)
+            ) and self.starts_clause(end):
+                break
             end += 1
         text = self._t.between(i, end)
         takes = self._opens_phrase(i + 1) or i + 1 == end or self._np.is_known(i + 1, i + 2)
-        is_verb = takes and not self._opens_phrase(i) and not self._np.is_known(i, i + 1) and not self._is_gerund(i)
-        if is_verb and not any(self._g.match(kind, self._words, i) for kind in ("to", "from", "place", "with", "for")):
+        is_verb = (
+            takes and not self._opens_phrase(i) and not self._np.is_known(i, i + 1) and not self._is_gerund(i)
+        )
+        if is_verb and not any(
+            self._g.match(kind, self._words, i) for kind in ("to", "from", "place", "with", "for")
+        ):
             self.found.unknown.append(self._words[i])
         if self._g.match("polite", self._words, i) < end - i:
             self.found.unused.append(text)
-        phrase = self._np.read(i)
-        if phrase is not None and (phrase.kind == "person" or (self._is_person(phrase) and self._t.tokens[phrase.head].is_capital)):
-            self.found.context.append((len(self.found.clauses), phrase))
+        self._mention(i)
         return end
+
+    def _mention(self, i: int) -> None:
+        """Note the person at `i`, to whom a later pronoun may refer."""
+        phrase = self._np.read(i)
+        if phrase is not None and (
+            phrase.kind == "person" or (self._is_person(phrase) and self._t.tokens[phrase.head].is_capital)
+        ):
+            self.found.context.append((len(self.found.clauses), phrase))
 
     # One clause
 
@@ -329,11 +475,15 @@ class ClauseReader:
                 return self._ask(clause, j)
             case "Communication_response":
                 return self._answer(clause, j)
-            case "Counting" if self._words[j : j + 2] == ("how", "many") and (counted := self._np.read(j + 2)) is not None:
+            case "Counting" if (
+                self._words[j : j + 2] == ("how", "many") and (counted := self._np.read(j + 2)) is not None
+            ):
                 counted = self._predicate(counted)
                 clause.roles.append(Role("Theme", j + 2, counted.end, counted.head, [counted]))
                 return self._arguments(clause, counted.end)
-            case "Inspecting" | "Telling" if self._g.match("question", self._words, j) and self._words[j] != "whether":
+            case "Inspecting" | "Telling" if (
+                self._g.match("question", self._words, j) and self._words[j] != "whether"
+            ):
                 clause.frame = "Telling"  # check how many cups there are
                 return self._told(clause, j)
             case "Inspecting" if j < len(self._words) and self._words[j] in ("if", "whether", "that"):
@@ -354,12 +504,26 @@ class ClauseReader:
             elif length := starts_time(g, words, i):
                 clause.times.append(self._t.between(i, i + length))
                 i += length
+            elif clause.frame == "Motion" and clause.role("Goal") is not None and (to := self._next_goal(i)):
+                further = Clause(
+                    clause.frame, clause.verb, to, conditions=clause.conditions, times=list(clause.times)
+                )
+                self.found.clauses.append(further)
+                return self._arguments(further, to)
             elif words[i] == ",":
                 i += 1
-            elif self._excludes(i) and objects and (other := self._np.read(i + g.match("exclude", words, i))) is not None:
+            elif (
+                self._excludes(i)
+                and objects
+                and (other := self._np.read(i + g.match("exclude", words, i))) is not None
+            ):
                 objects[-1].excluded.append(other)
                 i = other.end
-            elif (g.is_a(words[i], "and") and (phrase := self._np.read(i + 1)) is not None and not self._t.is_mark(i + 1)):
+            elif (
+                g.is_a(words[i], "and")
+                and (phrase := self._np.read(i + 1)) is not None
+                and not self._t.is_mark(i + 1)
+            ):
                 i = self._coordinate(clause, i, phrase)
             elif length := g.match("manner", words, i):
                 clause.roles.append(Role("Manner", i, i + length, i))
@@ -375,16 +539,30 @@ class ClauseReader:
                 objects.append(phrase)
                 i = phrase.end
                 self._add_object(clause, objects, phrase)
-            elif length := max(g.match("polite", words, i), g.match("then", words, i), g.match("particle", words, i)):
+            elif length := max(
+                g.match("polite", words, i), g.match("then", words, i), g.match("particle", words, i)
+            ):
                 i += length
             else:
                 end = i + 1
-                while end < len(words) and not self._ends_clause(end) and not g.match("place", words, end) and not g.match("to", words, end):
+                while (
+                    end < len(words)
+                    and not self._ends_clause(end)
+                    and not g.match("place", words, end)
+                    and not g.match("to", words, end)
+                ):
                     end += 1
                 self.found.unused.append(self._t.between(i, end))
                 i = end
         self._finish(clause)
         return i
+
+    def _next_goal(self, i: int) -> int:
+        """Return the index of another goal after *then* at `i`, or 0: to the desk, then TO THE SHELF."""
+        j = i
+        while j < len(self._words) and (self._words[j] == "," or self._g.match("then", self._words, j)):
+            j += max(1, self._g.match("then", self._words, j))
+        return j if j > i and self._g.match("to", self._words, j) else 0
 
     def _object(self, clause: Clause, i: int) -> NounPhrase | None:
         phrase = self._np.read(i)
@@ -394,14 +572,29 @@ class ClauseReader:
         """Add an object: of two, the first is the receiver (bring me the cup)."""
         roles = self._g.frames[clause.frame].roles
         role = roles.get("object") or roles.get("place") or "Theme"
-        if phrase.kind == "here" and "object" in roles and clause.role(role) is not None or (phrase.kind == "here" and "object" not in roles):
-            clause.roles.append(Role(roles.get("to") or roles.get("place") or "Goal", phrase.first, phrase.end, phrase.head, [phrase]))
+        if (phrase.kind == "here" and "object" in roles and clause.role(role) is not None) or (
+            phrase.kind == "here" and "object" not in roles
+        ):
+            clause.roles.append(
+                Role(
+                    roles.get("to") or roles.get("place") or "Goal",
+                    phrase.first,
+                    phrase.end,
+                    phrase.head,
+                    [phrase],
+                )
+            )
             return
         if clause.verb.lower() == "show" and phrase.noun == "way":
             return  # show Anna the way to the kitchen
         if phrase.kind == "robot" and clause.frame not in ("Introducing",) and "object" in roles:
             return
-        if len(objects) == 2 and "receiver" in roles and (first := clause.role(role)) is not None and first.phrases[-1] is objects[0]:
+        if (
+            len(objects) == 2
+            and "receiver" in roles
+            and (first := clause.role(role)) is not None
+            and first.phrases[-1] is objects[0]
+        ):
             first.role = roles["receiver"]
             if clause.frame == "Taking":  # get me a drink
                 clause.frame = "Bringing"
@@ -416,7 +609,10 @@ class ClauseReader:
         if not self._g.is_a(self._words[i], "particle"):
             return None
         both = (*clause.verb.lower().split(), self._words[i])
-        if both in self._g.verbs and clause.role(self._g.frames[clause.frame].roles.get("object", "")) is not None:
+        if (
+            both in self._g.verbs
+            and clause.role(self._g.frames[clause.frame].roles.get("object", "")) is not None
+        ):
             frame = self._g.verbs[both]
             old, new = self._g.frames[clause.frame].roles, self._g.frames[frame].roles
             for role in clause.roles:
@@ -431,10 +627,23 @@ class ClauseReader:
         self._finish(clause)
         last = clause.roles[-1] if clause.roles else None
         roles = self._g.frames[clause.frame].roles
-        if last is not None and last.phrases and last.role != roles.get("object") and clause.role(roles.get("object", "")):
-            is_gap = bool(phrase.places) or self._g.match("to", self._words, phrase.end) or self._g.match("from", self._words, phrase.end)
-            if is_gap or clause.frame in ("Giving", "Bringing") and self._g.match("place", self._words, phrase.end):
-                other = Clause(clause.frame, clause.verb, i + 1, conditions=clause.conditions, times=clause.times)
+        if (
+            last is not None
+            and last.phrases
+            and last.role != roles.get("object")
+            and clause.role(roles.get("object", ""))
+        ):
+            is_gap = (
+                bool(phrase.places)
+                or self._g.match("to", self._words, phrase.end)
+                or self._g.match("from", self._words, phrase.end)
+            )
+            if is_gap or (
+                clause.frame in ("Giving", "Bringing") and self._g.match("place", self._words, phrase.end)
+            ):
+                other = Clause(
+                    clause.frame, clause.verb, i + 1, conditions=clause.conditions, times=clause.times
+                )
                 self.found.clauses.append(other)
                 return self._arguments(other, i + 1)
         if phrase.kind == "name" and not self._t.tokens[phrase.head].is_capital:
@@ -450,7 +659,10 @@ class ClauseReader:
         """Read a phrase with a preposition as a role; return its end."""
         g, words = self._g, self._words
         roles = g.frames[clause.frame].roles
-        best = max((g.match(kind, words, i), kind) for kind in ("to", "from", "place", "for", "about", "path", "with", "of"))
+        best = max(
+            (g.match(kind, words, i), kind)
+            for kind in ("to", "from", "place", "for", "about", "path", "with", "of")
+        )
         length, kind = best
         if not length:
             return None
@@ -472,15 +684,29 @@ class ClauseReader:
             phrase.excluded = []
         if role is None:
             if kind == "place" and object_role is not None and object_role.phrases:
-                object_role.phrases[-1].places.append(PlacePhrase(" ".join(words[i : i + length]), phrase, i, phrase.end))
+                object_role.phrases[-1].places.append(
+                    PlacePhrase(" ".join(words[i : i + length]), phrase, i, phrase.end)
+                )
                 object_role.end = max(object_role.end, phrase.end)
                 return phrase.end
             self.found.unused.append(self._t.between(i, phrase.end))
             return phrase.end
-        if kind == "for" and clause.frame == "Locating" and (first := clause.role("Sought_entity")) is not None:
+        if (
+            kind == "for"
+            and clause.frame == "Locating"
+            and (first := clause.role("Sought_entity")) is not None
+        ):
             first.role = "Ground"  # search the kitchen for a cup
-        clause.roles.append(Role(role, i, phrase.end, phrase.head, [phrase]))
-        return phrase.end
+        both = [phrase]
+        end = phrase.end
+        if (
+            words[i] == "between"
+            and words[end : end + 1] == ("and",)
+            and (second := self._np.read(end + 1)) is not None
+        ):
+            both, end = [phrase, second], second.end
+        clause.roles.append(Role(role, i, end, phrase.head, both))
+        return end
 
     def _role(self, clause: Clause, kind: str, roles: Mapping[str, str], phrase: NounPhrase) -> str | None:
         is_person = self._is_person(phrase) or phrase.kind == "speaker"
@@ -502,25 +728,49 @@ class ClauseReader:
             if is_last and clause.role(roles["place"]) is None:
                 place = phrase.places.pop()
                 phrase.end = main.end = place.first
-                clause.roles.append(Role(roles["place"], place.first, place.end, place.other.head, [place.other]))
+                both = [place.other] if place.other.second is None else [place.other, place.other.second]
+                clause.roles.append(Role(roles["place"], place.first, place.end, place.other.head, both))
+        given = clause.role("Theme")
+        if (
+            clause.frame == "Giving"
+            and given is not None
+            and given.phrases
+            and self._g.is_a(self._words[given.head], "property")
+        ):
+            self._tells(clause, given)
         if clause.frame == "Taking" and clause.role("Goal") is not None:
             clause.frame = "Bringing"
         if clause.frame == "Taking" and clause.role("Beneficiary") is not None:
             clause.frame = "Bringing"
         theme = clause.role("Theme")
-        if clause.frame in self._g.persons and theme is not None and theme.phrases and self._is_person(theme.phrases[0]):
+        if (
+            clause.frame in self._g.persons
+            and theme is not None
+            and theme.phrases
+            and self._is_person(theme.phrases[0])
+        ):
             clause.frame, theme.role = self._g.persons[clause.frame], "Cotheme"
             for role in clause.roles:
                 role.role = "Goal" if role.role == "Beneficiary" else role.role
-        if clause.frame == "Closure" and (opened := clause.role("Containing_object")) is not None and opened.phrases:
-            if any(name in ("Door", "Window") for name in self._nouns.classes.get(opened.phrases[0].key, ())) or opened.phrases[0].noun.endswith("door"):
-                opened.role = "Container_portal"
-            elif self._nouns.entities.get(opened.phrases[0].key) and opened.phrases[0].key in self._portals:
-                opened.role = "Container_portal"
+        if (
+            clause.frame == "Closure"
+            and (opened := clause.role("Containing_object")) is not None
+            and opened.phrases
+        ) and (
+            any(name in ("Door", "Window") for name in self._nouns.classes.get(opened.phrases[0].key, ()))
+            or opened.phrases[0].noun.endswith("door")
+        ):
+            opened.role = "Container_portal"
 
-    @property
-    def _portals(self) -> frozenset[str]:
-        return frozenset()
+    def _tells(self, clause: Clause, given: Role) -> None:
+        """Make Telling of *give me the name of the person*."""
+        of = given.phrases[0].of
+        clause.frame, given.role = "Telling", "Message"
+        for role in clause.roles:
+            role.role = "Addressee" if role.role == "Recipient" else role.role
+        if of is not None:
+            end, given.end, given.phrases = given.end, given.head + 1, []
+            clause.roles.append(Role("Topic", given.head + 1, end, of.head, [of]))
 
     def _clause_end(self, i: int) -> int:
         while i < len(self._words) and not self._ends_clause(i):
@@ -535,9 +785,24 @@ class ClauseReader:
         if clause.verb.lower() in ("inform", "notify") or not self._g.match("question", words, i):
             phrase = self._np.read(i)
             following = phrase is not None and phrase.end
-            if phrase is not None and clause.verb.lower() not in ("describe", "say", "report", "recite", "explain", "mention", "state", "announce", "name") and (
-                phrase.kind == "speaker" or self._is_person(phrase) or phrase.kind == "pronoun"
-            ) and phrase.kind != "robot" and self._words[i : i + 1] not in (("what",), ("which",)):
+            if (
+                phrase is not None
+                and clause.verb.lower()
+                not in (
+                    "describe",
+                    "say",
+                    "report",
+                    "recite",
+                    "explain",
+                    "mention",
+                    "state",
+                    "announce",
+                    "name",
+                )
+                and (phrase.kind == "speaker" or self._is_person(phrase) or phrase.kind == "pronoun")
+                and phrase.kind != "robot"
+                and self._words[i : i + 1] not in (("what",), ("which",))
+            ):
                 clause.roles.append(Role("Addressee", i, phrase.end, phrase.head, [phrase]))
                 i = int(following or i)
             elif words[i : i + 1] == ("to",) and (to := self._np.read(i + 1)) is not None:
@@ -559,26 +824,51 @@ class ClauseReader:
             return self._told(clause, end)
         if words[i] == "," and not self.starts_clause(i):
             return self._told(clause, i + 1)
-        if length := starts_time(g, words, i):
-            if self._ends_clause(i + length):
-                clause.times.append(self._t.between(i, i + length))
-                return i + length
+        if (length := starts_time(g, words, i)) and self._ends_clause(i + length):
+            clause.times.append(self._t.between(i, i + length))
+            return i + length
         if g.match("question", words, i) or words[i] in ("if",):
             return self._question(clause, i)
+        if words[i] == "to" and clause.role("Addressee") is not None and g.verb(words, i + 1)[0]:
+            clause.frame = "Request"  # tell Anna to come
+            end = self._message_end(i + 1)
+            clause.roles.append(Role("Message", i, end, i + 1))
+            return self._addressed(clause, end)
+        if words[i] == "back":
+            return self._told(clause, i + 1)
+        if words[i] == "to" and clause.role("Addressee") is None:
+            return self._addressed(clause, i)
         if words[i] == "that":
             end = self._message_end(i)
             clause.roles.append(Role("Message", i, end, i))
             return self._addressed(clause, end)
         prop = i + g.match("determiner", words, i)
-        if prop < len(words) and g.is_a(words[prop], "property"):
-            if words[prop + 1 : prop + 2] == ("of",) and (topic := self._np.read(prop + 2)) is not None and self._is_topic(topic):
-                clause.roles.append(Role("Message", i, prop + 1, prop))
-                clause.roles.append(Role("Topic", prop + 1, topic.end, topic.head, [topic]))
-                return self._addressed(clause, topic.end)
+        if (
+            prop < len(words)
+            and g.is_a(words[prop], "property")
+            and (
+                words[prop + 1 : prop + 2] == ("of",)
+                and (topic := self._np.read(prop + 2)) is not None
+                and self._is_topic(topic)
+            )
+        ):
+            clause.roles.append(Role("Message", i, prop + 1, prop))
+            clause.roles.append(Role("Topic", prop + 1, topic.end, topic.head, [topic]))
+            return self._addressed(clause, topic.end)
         phrase = self._np.read(i)
-        if phrase is not None and phrase.owner is not None and phrase.owner.kind != "speaker" and g.is_a(words[phrase.head], "property") and self._is_topic(phrase.owner):
-            clause.roles.append(Role("Message", phrase.head, phrase.head + 1, phrase.head))  # the person's name
-            clause.roles.append(Role("Topic", phrase.first, phrase.owner.end, phrase.owner.head, [phrase.owner]))
+        if (
+            phrase is not None
+            and phrase.owner is not None
+            and phrase.owner.kind != "speaker"
+            and g.is_a(words[phrase.head], "property")
+            and self._is_topic(phrase.owner)
+        ):
+            clause.roles.append(
+                Role("Message", phrase.head, phrase.head + 1, phrase.head)
+            )  # the person's name
+            clause.roles.append(
+                Role("Topic", phrase.first, phrase.owner.end, phrase.owner.head, [phrase.owner])
+            )
             return self._addressed(clause, phrase.end)
         if phrase is not None and self._is_topic(phrase) and phrase.owner is None:
             clause.roles.append(Role("Topic", i, phrase.end, phrase.head, [phrase]))
@@ -591,7 +881,7 @@ class ClauseReader:
         return self._addressed(clause, end)
 
     def _is_topic(self, phrase: NounPhrase) -> bool:
-        """Return whether a phrase denotes a thing or person of the world, and not a subject of conversation."""
+        """Return whether a phrase denotes a thing or person, and not a subject of conversation."""
         if phrase.kind in ("speaker", "robot", "here", "pronoun"):
             return phrase.kind == "pronoun" and phrase.noun not in ("that", "this")
         if phrase.kind == "name":
@@ -599,14 +889,23 @@ class ClauseReader:
         is_any = self._g.is_a(self._nouns.describing.base(self._words[phrase.head]), "anything")
         if is_any and phrase.noun in ("something", "anything", "everything"):
             return bool(phrase.places)
-        return self._is_person(phrase) or bool(phrase.key) or (is_any and bool(phrase.places or phrase.superlative))
+        return (
+            self._is_person(phrase)
+            or bool(phrase.key)
+            or (is_any and bool(phrase.places or phrase.superlative))
+        )
 
     def _message_end(self, i: int) -> int:
-        """Return the end of a message in words: before the person that it is for, or the end of the clause."""
+        """Return the end of a message in words: before its addressee, or the end of the clause."""
         words = self._words
         j = i
         while j < len(words) and not self._ends_clause(j):
-            if j > i and words[j] in ("to", "for") and (phrase := self._np.read(j + 1)) is not None and (phrase.kind == "speaker" or self._is_person(phrase) or phrase.kind == "pronoun"):
+            if (
+                j > i
+                and words[j] in ("to", "for")
+                and (phrase := self._np.read(j + 1)) is not None
+                and (phrase.kind == "speaker" or self._is_person(phrase) or phrase.kind == "pronoun")
+            ):
                 break
             if j > i and starts_time(self._g, words, j) and words[j] in ("at", "in", "every"):
                 break
@@ -630,7 +929,11 @@ class ClauseReader:
                 clause.times.append(self._t.between(i, end := i + length))
             elif words[i] == "," or self._g.match("polite", words, i):
                 end = i + max(1, self._g.match("polite", words, i))
-            elif self._g.match("place", words, i) and clause.role("Topic") is not None and (phrase := self._np.read(i + self._g.match("place", words, i))) is not None:
+            elif (
+                self._g.match("place", words, i)
+                and clause.role("Topic") is not None
+                and (phrase := self._np.read(i + self._g.match("place", words, i))) is not None
+            ):
                 topic = clause.role("Topic")
                 if topic is not None and topic.phrases:
                     preposition = " ".join(words[i : i + self._g.match("place", words, i)])
@@ -641,7 +944,9 @@ class ClauseReader:
                 end = self._clause_end(i)
                 if not self._g.is_a(words[i], "and"):
                     self.found.unused.append(self._t.between(i, end))
-                elif (phrase := self._np.read(i + 1)) is not None and clause.roles and clause.roles[-1].phrases:
+                elif (
+                    (phrase := self._np.read(i + 1)) is not None and clause.roles and clause.roles[-1].phrases
+                ):
                     clause.roles[-1].phrases.append(phrase)
                     clause.roles[-1].end = end = phrase.end
                 else:
@@ -667,7 +972,9 @@ class ClauseReader:
             topic = self._predicate(topic)
             clause.roles.append(Role("Topic", j, topic.end, topic.head, [topic]))
             return self._addressed(clause, topic.end)
-        if text == "which" and not self._t.is_mark(j) and not g.is_a(words[j], "be"):  # which drinks are on the desk
+        if (
+            text == "which" and not self._t.is_mark(j) and not g.is_a(words[j], "be")
+        ):  # which drinks are on the desk
             topic = self._np.read(j)
             if topic is not None and self._is_topic(topic):
                 clause.roles.append(Role("Message", i, j, i))
@@ -683,40 +990,86 @@ class ClauseReader:
                 return self._addressed(clause, place.end)
         if text in ("what", "which", "who", "where") and j < len(words) and g.is_a(words[j], "be"):
             topic = self._np.read(j + 1)
-            if topic is not None and topic.key and topic.kind == "thing" and g.is_a(words[topic.head], "property") and topic.of is not None:
+            if (
+                topic is not None
+                and topic.key
+                and topic.kind == "thing"
+                and g.is_a(words[topic.head], "property")
+                and topic.of is not None
+            ):
                 topic = None if not self._is_topic(topic.of) else topic
             prop = j + 1 + g.match("determiner", words, j + 1)
-            if prop < len(words) and g.is_a(words[prop], "property") and words[prop + 1 : prop + 2] == ("of",):
+            if (
+                prop < len(words)
+                and g.is_a(words[prop], "property")
+                and words[prop + 1 : prop + 2] == ("of",)
+            ):
                 return self._told(clause, j + 1)  # what is the name of the person
-            is_good = topic is not None and (self._is_topic(topic) and (text != "what" or topic.superlative or topic.places or topic.key))
-            if topic is not None and is_good and (self._ends_clause(topic.end) or words[topic.end] in ("to", "called")):
+            is_good = topic is not None and (
+                self._is_topic(topic) and (text != "what" or topic.superlative or topic.places or topic.key)
+            )
+            if (
+                topic is not None
+                and is_good
+                and (self._ends_clause(topic.end) or words[topic.end] in ("to", "called"))
+            ):
                 clause.roles.append(Role("Message", i, j + 1, i))
                 clause.roles.append(Role("Topic", j + 1, topic.end, topic.head, [topic]))
                 return self._addressed(clause, topic.end)
-            if place := self._np.read_place(j + 1):  # what is on the table
-                if text in ("what", "which"):
-                    phrase = NounPhrase(i, place.end, i, "thing", "object", places=[place], is_plural=True)
-                    clause.roles.append(Role("Message", i, j + 1, i))
-                    clause.roles.append(Role("Topic", i, place.end, i, [phrase]))
-                    return self._addressed(clause, place.end)
+            if (place := self._np.read_place(j + 1)) and text in ("what", "which"):  # what is on the table
+                phrase = NounPhrase(i, place.end, i, "thing", "object", places=[place], is_plural=True)
+                clause.roles.append(Role("Message", i, j + 1, i))
+                clause.roles.append(Role("Topic", i, place.end, i, [phrase]))
+                return self._addressed(clause, place.end)
         if text == "where" and not self._t.is_mark(j):  # where the cup is
             topic = self._np.read(j)
-            if topic is not None and self._is_topic(topic) and topic.end < len(words) and g.is_a(words[topic.end], "be"):
+            if (
+                topic is not None
+                and self._is_topic(topic)
+                and topic.end < len(words)
+                and g.is_a(words[topic.end], "be")
+            ):
                 clause.roles.append(Role("Message", i, j, i))
                 clause.roles.append(Role("Topic", j, topic.end, topic.head, [topic]))
                 return self._addressed(clause, topic.end + 1)
         if text in ("how", "what") and not self._t.is_mark(j):  # how the person at the sink looks
             topic = self._np.read(j)
-            if topic is not None and self._is_topic(topic) and not self._t.is_mark(topic.end) and topic.kind != "pronoun":
+            if (
+                topic is not None
+                and self._is_topic(topic)
+                and not self._t.is_mark(topic.end)
+                and topic.kind != "pronoun"
+            ):
                 last = topic.end
-                is_verb = words[last] in ("looks", "look", "feels", "is", "are", "does", "wears", "weighs") or words[last].endswith("s")
+                is_verb = words[last] in (
+                    "looks",
+                    "look",
+                    "feels",
+                    "is",
+                    "are",
+                    "does",
+                    "wears",
+                    "weighs",
+                ) or words[last].endswith("s")
                 if is_verb:
-                    end = last + 1 + (words[last + 1 : last + 2] in (("like",), ("wearing",), ("doing",), ("called",), ("named",)))
+                    end = (
+                        last
+                        + 1
+                        + (
+                            words[last + 1 : last + 2]
+                            in (("like",), ("wearing",), ("doing",), ("called",), ("named",))
+                        )
+                    )
                     clause.roles.append(Role("Message", last, end, last))
                     clause.roles.append(Role("Topic", j, topic.end, topic.head, [topic]))
                     return self._addressed(clause, end)
             kind = j
-            if text == "what" and g.is_a(words[kind], "property") and kind + 1 < len(words) and g.is_a(words[kind + 1], "be"):
+            if (
+                text == "what"
+                and g.is_a(words[kind], "property")
+                and kind + 1 < len(words)
+                and g.is_a(words[kind + 1], "be")
+            ):
                 topic = self._np.read(kind + 2)  # what color is the cup
                 if topic is not None and self._is_topic(topic):
                     clause.roles.append(Role("Message", i, kind + 1, kind))
@@ -734,9 +1087,19 @@ class ClauseReader:
             j = i
             if words[j : j + 1] == ("there",):
                 j += 1
-            if j < len(words) and (g.is_a(words[j], "be") or g.is_a(words[j], "have") or words[j] in ("do", "does", "can")):
+            if j < len(words) and (
+                g.is_a(words[j], "be") or g.is_a(words[j], "have") or words[j] in ("do", "does", "can")
+            ):
                 j += 1
-                while words[j : j + 1] in (("there",), ("you",), ("see",), ("currently",), ("i",), ("find",), ("we",)):
+                while words[j : j + 1] in (
+                    ("there",),
+                    ("you",),
+                    ("see",),
+                    ("currently",),
+                    ("i",),
+                    ("find",),
+                    ("we",),
+                ):
                     j += 1
             if j == i:
                 return phrase
@@ -751,12 +1114,21 @@ class ClauseReader:
         """Read *ask her to leave* as a Request and *ask her where she is from* as Questioning."""
         words = self._words
         phrase = self._np.read(i)
-        if phrase is not None and words[i : i + 1] != ("for",) and (self._is_person(phrase) or phrase.kind in ("pronoun", "speaker")):
+        if (
+            phrase is not None
+            and words[i : i + 1] != ("for",)
+            and (self._is_person(phrase) or phrase.kind in ("pronoun", "speaker"))
+        ):
             clause.roles.append(Role("Addressee", i, phrase.end, phrase.head, [phrase]))
             i = phrase.end
-        elif phrase is not None and phrase.key == "" and phrase.owner is not None and self._is_person(phrase.owner):
+        elif (
+            phrase is not None
+            and phrase.key == ""
+            and phrase.owner is not None
+            and self._is_person(phrase.owner)
+        ):
             pass
-        if i >= len(words) or self._ends_clause(i) and words[i] != ",":
+        if i >= len(words) or (self._ends_clause(i) and words[i] != ","):
             return i
         if words[i] in ("to", "not"):
             clause.frame = "Request"
@@ -766,9 +1138,12 @@ class ClauseReader:
                 break
             end += 1
         head = i + 1 if words[i] == "to" and end > i + 1 else i
-        if words[i] == "for" and (thing := self._np.read(i + 1)) is not None:
-            head = thing.head
-        elif words[i] not in ("to",) and not self._g.match("question", words, i) and (thing := self._np.read(i)) is not None and thing.end <= end:
+        if (words[i] == "for" and (thing := self._np.read(i + 1)) is not None) or (
+            words[i] not in ("to",)
+            and not self._g.match("question", words, i)
+            and (thing := self._np.read(i)) is not None
+            and thing.end <= end
+        ):
             head = thing.head
         elif words[i : i + 1] == ("how",):
             head = min(i + 1, end - 1)
@@ -781,13 +1156,19 @@ class ClauseReader:
         phrase = self._np.read(i, with_places=False)
         if phrase is None:
             return self._arguments(clause, i)
-        if self._is_person(phrase) and not self._g.is_a(words[phrase.head], "asked") and phrase.kind != "pronoun":
+        if (
+            self._is_person(phrase)
+            and not self._g.is_a(words[phrase.head], "asked")
+            and phrase.kind != "pronoun"
+        ):
             full = self._np.read(i) or phrase
             clause.roles.append(Role("Addressee", i, full.end, full.head, [full]))
             return self._addressed(clause, full.end)
         if phrase.owner is not None and phrase.owner.kind not in ("speaker", "pronoun"):
             clause.roles.append(Role("Trigger", phrase.head, phrase.head + 1, phrase.head))
-            clause.roles.append(Role("Addressee", phrase.owner.first, phrase.owner.end, phrase.owner.head, [phrase.owner]))
+            clause.roles.append(
+                Role("Addressee", phrase.owner.first, phrase.owner.end, phrase.owner.head, [phrase.owner])
+            )
             return self._addressed(clause, phrase.end)
         end = phrase.end if phrase.of is None else phrase.of.first - 1
         if phrase.of is not None:
@@ -796,11 +1177,18 @@ class ClauseReader:
             clause.roles.append(Role("Addressee", end, of.end, of.head, [of]))
             return self._addressed(clause, of.end)
         clause.roles.append(Role("Trigger", i, end, phrase.head))
-        if phrase.owner is not None and phrase.owner.kind == "pronoun" and phrase.owner.noun not in ("your", "its"):
+        if (
+            phrase.owner is not None
+            and phrase.owner.kind == "pronoun"
+            and phrase.owner.noun not in ("your", "its")
+        ):
             clause.roles.append(Role("Addressee", i, i + 1, i, [phrase.owner]))
-        if words[end : end + 1] in (("from",), ("of",), ("by",)) and (of := self._np.read(end + 1)) is not None:
-            clause.roles.append(Role("Addressee", end, of.end, of.head, [of]))
-            end = of.end
+        if (
+            words[end : end + 1] in (("from",), ("of",), ("by",))
+            and (asker := self._np.read(end + 1)) is not None
+        ):
+            clause.roles.append(Role("Addressee", end, asker.end, asker.head, [asker]))
+            end = asker.end
         return self._addressed(clause, end)
 
     # Other clauses
@@ -811,11 +1199,18 @@ class ClauseReader:
         if self._asks(i):
             clause = Clause("Telling", self._words[i], i, asks=True)
             self.found.clauses.append(clause)
-            end = self._question(clause, i) if self._g.match("question", self._words, i) else self._yes_no(clause, i)
+            end = (
+                self._question(clause, i)
+                if self._g.match("question", self._words, i)
+                else self._yes_no(clause, i)
+            )
         else:
             end = self._being_located(i)
         for clause in self.found.clauses[before:]:
             clause.times += times
+        if self.found.clauses[before:] and clause.asks and clause.role("Topic") is None:  # how are you
+            self.found.clauses.pop()
+            self.found.unused.append(self._t.between(i, end))
         return max(end, i + 1)
 
     def _yes_no(self, clause: Clause, i: int) -> int:
@@ -835,7 +1230,10 @@ class ClauseReader:
         j = i
         if words[i] == "you":
             j += 1
-            while j < len(words) and (g.is_a(words[j], "modal") or words[j] in ("probably", "likely", "also", "surely", "'ll", "most")):
+            while j < len(words) and (
+                g.is_a(words[j], "modal")
+                or words[j] in ("probably", "likely", "also", "surely", "'ll", "most")
+            ):
                 j += 1
             clause.verb, j = words[j], j + 1
         elif words[i] == "there":
@@ -846,21 +1244,33 @@ class ClauseReader:
         j = phrase.end
         role = Role("Theme", phrase.first, phrase.end, phrase.head, [phrase])
         clause.roles.append(role)
-        if phrase.kind == "person" and j + 1 < len(words) and g.is_a(words[j], "be") and g.is_a(words[j + 1], "posture"):
+        if (
+            phrase.kind == "person"
+            and j + 1 < len(words)
+            and g.is_a(words[j], "be")
+            and g.is_a(words[j + 1], "posture")
+        ):
             clause.verb = clause.verb or words[j]
             phrase = self._predicate(phrase)
             role.end = j = phrase.end
-        while j < len(words) and (g.is_a(words[j], "be") or g.is_a(words[j], "modal") or words[j] in ("probably", "usually", "likely", "currently", "most", "located", "standing", "sitting", "waiting", "lying")):
+        while j < len(words) and (
+            g.is_a(words[j], "be")
+            or g.is_a(words[j], "modal")
+            or words[j]
+            in (
+                "probably",
+                "usually",
+                "likely",
+                "currently",
+                "most",
+                "located",
+                "standing",
+                "sitting",
+                "waiting",
+                "lying",
+            )
+        ):
             clause.verb = clause.verb or words[j]
             j += 1
         self.found.clauses.append(clause)
-        return self._arguments_of_place(clause, j)
-
-    def _arguments_of_place(self, clause: Clause, j: int) -> int:
-        end = self._arguments(clause, j)
-        return end
-
-
-def copy_without_places(phrase: NounPhrase) -> NounPhrase:
-    """Return a noun phrase without its place phrases."""
-    return replace(phrase, places=[])
+        return self._arguments(clause, j)

@@ -1,4 +1,4 @@
-"""The meaning of noun phrases in the map: the entities that a whole description fits, and what contradicts the map."""
+"""The meaning of noun phrases: the entities that a whole description fits, and what contradicts the map."""
 
 from __future__ import annotations
 
@@ -8,22 +8,23 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from semmap.nodes.language.lexicon.commands import Grammar
-from semmap.nodes.language.nouns import with_count
-from semmap.nodes.language.reference_resolution.description import Description, Of, Quality, Restriction, Sized, State
+from semmap.nodes.language.reference_resolution.description import (
+    Description,
+    Of,
+    Quality,
+    Restriction,
+    Sized,
+    State,
+)
 from semmap.nodes.language.reference_resolution.map_geometry import MapGeometry
 from semmap.nodes.language.reference_resolution.map_index import MapIndex
 from semmap.nodes.language.reference_resolution.resolver import Resolver, Scope
 from semmap.nodes.language.steps.noun_phrase import NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.tokens import Text
-from semmap.schemas import errors
 from semmap.schemas.language import PlaceRelation, ThingDescription
 from semmap.schemas.relations import RelationName
 
 Names = tuple[str, ...]
-_CONTAINED: Final = frozenset(
-    ("in", "on", "at", "inside", "from", "off", "out of", "within", "over at", "over in", "over on", "down in", "up in", "somewhere in",
-     "out in", "inside of", "on top of", "off of", "from inside", "from on", "away from", "from off")
-)  # fmt: skip
 _FROM_VIEWER: Final = ("isLeftOf", "isRightOf", "isInFrontOf", "isBehind")
 _BY_MASS: Final = {"heaviest": -1, "lightest": 1}
 _BY_THICKNESS: Final = {"thickest": -1, "thinnest": 1}
@@ -67,7 +68,7 @@ class Meanings:
         self._resolver = Resolver(world.index, world.geometry, "english")
 
     def is_person(self, phrase: NounPhrase) -> bool:
-        """Return whether a phrase denotes a person: by noun, by an unknown name, or by the name of a known person."""
+        """Return whether a phrase denotes a person: by its noun, or by a known or unknown name."""
         if phrase.kind in ("person", "name"):
             return True
         if phrase.kind == "pronoun":
@@ -77,7 +78,9 @@ class Meanings:
         named = self._nouns.entities.get(phrase.key, {})
         if named:
             return all(self._is_of_class(name, "Person") for name in named)
-        return any("Person" in self._world.above.get(name, ()) for name in self._nouns.classes.get(phrase.key, ()))
+        return any(
+            "Person" in self._world.above.get(name, ()) for name in self._nouns.classes.get(phrase.key, ())
+        )
 
     def _is_of_class(self, name: str, class_name: str) -> bool:
         item = self._index.items[name]
@@ -87,8 +90,8 @@ class Meanings:
            as_place: bool = False, owner: Names = ()) -> Meaning:  # fmt: skip
         """Return the meaning of a phrase that is also at `places`.
 
-        `may_be_none` suppresses doubts about things that are not where the phrase states. `owner` are the entities of a
-        possessive pronoun.
+        `may_be_none` suppresses doubts about things that are not where the phrase states. `owner` are the
+        entities of a possessive pronoun.
         """
         if self.is_person(phrase):
             return self._person(phrase, places)
@@ -97,16 +100,20 @@ class Meanings:
     # Places
 
     def _relations(self, places: Iterable[PlacePhrase], meaning: Meaning) -> list[tuple[PlacePhrase, Names]]:
-        found = []
+        found: list[tuple[PlacePhrase, Names]] = []
         for place in places:
             if place.other.kind in ("pronoun", "speaker", "here", "robot"):
+                found.append((place, ()))
+                continue
+            if place.other.kind == "name" and not self._t.tokens[place.other.head].is_capital:
+                meaning.doubts.append(f"'{place.preposition} {place.other.name}' is not understood")
                 found.append((place, ()))
                 continue
             other = self.of(place.other, as_place=True)
             meaning.doubts += other.doubts
             names = other.names
-            if place.other.of is not None and place.preposition == "between":
-                names = (*names, *self.of(place.other.of).names)
+            if place.other.second is not None:
+                names = (*names, *self.of(place.other.second).names)
             found.append((place, names))
         return found
 
@@ -125,7 +132,7 @@ class Meanings:
             between = self._world.geometry.between(others[0], others[1])
             return [name for name in names if (name in between) != place.negated]
         relations: tuple[RelationName, ...] = ("isOn", "isInside")
-        if place.preposition not in _CONTAINED:
+        if not self._g.contains("contained", place.preposition):
             sense = self._nouns.describing.sense(tuple(place.preposition.split())).get("relations")
             if sense is None or sense in _FROM_VIEWER or sense == "outside":
                 return None
@@ -133,7 +140,10 @@ class Meanings:
         return [
             name
             for name in names
-            if any(name != other and related(relation, name, other) for other in others for relation in relations) != place.negated
+            if any(
+                name != other and related(relation, name, other) for other in others for relation in relations
+            )
+            != place.negated
         ]
 
     # Persons
@@ -148,12 +158,12 @@ class Meanings:
             "Person",
             name=name,
             attributes=tuple(phrase.attributes),
-            relation=tuple(self._relation(place, names) for place, names in relations if names or name or phrase.attributes or True),
+            relation=tuple(self._relation(place, names) for place, names in relations),
             superlative=phrase.superlative,
             quantity=phrase.quantity if phrase.quantity is not None else ("all" if phrase.all_of else None),
             excluded=tuple(self._t.between(other.first, other.end) for other in phrase.excluded),
         )
-        key = phrase.key if phrase.kind == "thing" else self._key(phrase.name) if phrase.name else ""
+        key = phrase.key if phrase.kind == "thing" else self.key(phrase.name) if phrase.name else ""
         if name:
             named = [n for n in self._nouns.entities.get(key, {}) if self._is_of_class(n, "Person")]
             exact = [n for n in named if n in self._nouns.exact.get(key, ())]
@@ -162,31 +172,62 @@ class Meanings:
             return meaning
         if phrase.owner is not None and phrase.owner.kind != "pronoun":
             return meaning
-        if not phrase.attributes and not phrase.superlative and relations and phrase.of is None and not phrase.excluded:
+        if (
+            not phrase.attributes
+            and not phrase.superlative
+            and relations
+            and phrase.of is None
+            and not phrase.excluded
+        ):
             there: list[str] | None = sorted(self._index.members.get("Person", {}))
             for place, names in relations:
                 there = self._at(there or (), place, names) if there else there
             meaning.names = tuple(there or ())
-            meaning.ambiguous = len(meaning.names) > 1 and phrase.is_definite and not phrase.is_plural and not phrase.all_of
+            meaning.ambiguous = (
+                len(meaning.names) > 1 and phrase.is_definite and not phrase.is_plural and not phrase.all_of
+            )
         return meaning
 
-    def _key(self, text: str) -> str:
+    def key(self, text: str) -> str:
+        """Return the key by which a noun or name is looked up."""
         return self._nouns.describing.key(self._nouns.describing.split(text))
 
     # Things and places
 
+    def _noun(self, phrase: NounPhrase) -> str:
+        """Return the noun of a phrase in the singular, for a doubt."""
+        before, space, last = phrase.noun.rpartition(" ")
+        return before + space + self._nouns.describing.base(last)
+
     def _thing(self, phrase: NounPhrase, places: Sequence[PlacePhrase], *, may_be_none: bool, as_place: bool,
                owner: Names) -> Meaning:  # fmt: skip
         meaning = Meaning()
-        is_any = self._g.is_a(self._nouns.describing.base(phrase.noun), "anything")
+        is_any = self._g.is_a(self._nouns.describing.base(phrase.noun), "anything") or phrase.noun in (
+            "one",
+            "ones",
+        )
         names = self._alike(phrase, is_any)
         meaning.is_place = bool(names) and all(self._index.items[name].is_place for name in names)
         relations = self._relations((*phrase.places, *places), meaning)
         is_open = False
         text = self._t.between(phrase.first, phrase.end)
+        if (
+            not names
+            and phrase.of is not None
+            and self._nouns.describing.base(phrase.noun) in self._nouns.describing.content
+        ):
+            names = list(self.of(phrase.of).names)
         if not names and not is_any and phrase.kind != "here":
-            known = [name for name in self._nouns.classes.get(phrase.key, ())]
-            meaning.doubts += [] if may_be_none and not known else [f"'{text}': no {phrase.noun} is known" if known else f"'{phrase.noun}' is not known"]
+            known = list(self._nouns.classes.get(phrase.key, ()))
+            meaning.doubts += (
+                []
+                if may_be_none and not known
+                else [
+                    f"'{text}': no {self._noun(phrase)} is known"
+                    if known
+                    else f"'{phrase.noun}' is not known"
+                ]
+            )
         meaning.alike = tuple(names)
         attributes = list(phrase.attributes)
         for attribute in attributes:
@@ -210,23 +251,45 @@ class Meanings:
             names, is_open = self._placed(names, place, others, is_open)
         if before and not names and not is_open and not may_be_none:
             meaning.doubts.append(self._elsewhere(before, relations, phrase))
-        if len(names) > 1 and phrase.is_definite and not phrase.is_plural and not phrase.superlative and not is_any:
+        if (
+            len(names) > 1
+            and phrase.is_definite
+            and not phrase.is_plural
+            and not phrase.superlative
+            and not is_any
+        ):
             exact = [name for name in names if self._index.is_exact_match(name, phrase.key, "english")]
             names = exact or names
         if phrase.superlative and names and not is_open:
             names = self._ordered(names, phrase)
-        elif phrase.quantity is not None and len(names) < phrase.quantity and meaning.alike and not is_open and not may_be_none and (
-            not meaning.doubts
+        elif (
+            phrase.quantity is not None
+            and len(names) < phrase.quantity
+            and meaning.alike
+            and not is_open
+            and not may_be_none
+            and (not meaning.doubts)
         ):
             meaning.doubts.append(f"'{text}': there {'is' if len(names) == 1 else 'are'} only {len(names)}")
-        wants_one = phrase.is_definite and not phrase.is_plural and not phrase.superlative and phrase.quantity in (None, 1)
+        wants_one = (
+            phrase.is_definite
+            and not phrase.is_plural
+            and not phrase.superlative
+            and phrase.quantity in (None, 1)
+        )
         meaning.names = () if is_open and not phrase.superlative else tuple(sorted(names))
         if is_open and (attributes or not phrase.superlative):
             meaning.names = ()
-        meaning.ambiguous = len(meaning.names) > 1 and wants_one and not phrase.all_of and not is_any and not phrase.purpose
-        if is_any and not relations and not phrase.attributes and not phrase.purpose and not phrase.superlative:
-            meaning.names = ()
-        elif is_any and wants_one and len(meaning.names) > 1:
+        meaning.ambiguous = (
+            len(meaning.names) > 1 and wants_one and not phrase.all_of and not is_any and not phrase.purpose
+        )
+        if (
+            is_any
+            and not relations
+            and not phrase.attributes
+            and not phrase.purpose
+            and not phrase.superlative
+        ) or (is_any and wants_one and len(meaning.names) > 1):
             meaning.names = ()
         meaning.description = self._description(phrase, names or meaning.alike, relations, is_any)
         return meaning
@@ -237,7 +300,9 @@ class Meanings:
             return sorted(self._index.members.get(self._g.purposes[phrase.purpose], {}))
         if is_any:
             return sorted(
-                name for name, item in self._index.items.items() if not item.is_place and not self._is_of_class(name, "Person")
+                name
+                for name, item in self._index.items.items()
+                if not item.is_place and not self._is_of_class(name, "Person")
             )
         return sorted(self._index.find_by_noun(phrase.key, "english")) if phrase.key else []
 
@@ -257,7 +322,9 @@ class Meanings:
             return Of(attribute, Description(attribute, "noun", key, attribute, is_definite=False))
         return None
 
-    def _fitting(self, names: list[str], restriction: Restriction, attribute: str, phrase: NounPhrase, meaning: Meaning) -> list[str]:
+    def _fitting(
+        self, names: list[str], restriction: Restriction, attribute: str, phrase: NounPhrase, meaning: Meaning
+    ) -> list[str]:
         described = Description(phrase.noun, "noun", phrase.key, phrase.noun)
         kind = tuple(names)
         fitting = [name for name in names if self._resolver.fits(name, restriction, described, kind, Scope())]
@@ -265,14 +332,16 @@ class Meanings:
             meaning.doubts.append(self._contradiction(names, restriction, attribute, phrase))
         return fitting
 
-    def _contradiction(self, names: list[str], restriction: Restriction, attribute: str, phrase: NounPhrase) -> str:
-        """Return the sentence that nothing known has an attribute, with the colour it has instead if it is one thing."""
+    def _contradiction(
+        self, names: list[str], restriction: Restriction, attribute: str, phrase: NounPhrase
+    ) -> str:
+        """Return the sentence that nothing known has an attribute; of one thing, with its own colour."""
         if len(names) == 1 and isinstance(restriction, Quality):
             values = self._index.items[names[0]].values
             own = sorted(str(v) for prop, all_ in values.items() if prop.endswith(_COLORS) for v in all_)
             if own:
                 return f"{names[0]} is not {attribute}; it is {self._index.label(own[0], 'english')}"
-        return f"no {attribute} {phrase.noun} is known"
+        return f"no {attribute} {self._noun(phrase)} is known"
 
     def _of(self, names: list[str], phrase: NounPhrase, meaning: Meaning) -> list[str]:
         """Return the things that belong to another, or the content of a container: a bottle of water."""
@@ -288,14 +357,23 @@ class Meanings:
     def _belongs(self, name: str, whole: str) -> bool:
         item, other = self._index.items[name], self._index.items[whole]
         related = self._world.geometry.related
-        return whole in item.all_values or name in other.all_values or related("isInside", name, whole) or related("isInside", whole, name)
+        return (
+            whole in item.all_values
+            or name in other.all_values
+            or related("isInside", name, whole)
+            or related("isInside", whole, name)
+        )
 
     def _owned(self, names: list[str], phrase: NounPhrase, owner: Names, meaning: Meaning) -> list[str]:
         by = phrase.owner
         if by is None or by.noun in ("your", "its"):
             return names
         if by.kind == "speaker" or by.kind == "pronoun":
-            owned = [name for name in names if owner and set(owner) & self._index.items[name].values.get("isOwnedBy", frozenset())]
+            owned = [
+                name
+                for name in names
+                if owner and set(owner) & self._index.items[name].values.get("isOwnedBy", frozenset())
+            ]
             if names and not owned:
                 meaning.doubts.append(f"'{by.noun} {phrase.noun}': the owner is not known")
             return owned or names
@@ -311,10 +389,12 @@ class Meanings:
             or (not owners.is_person and any(self._belongs(name, whole) for whole in owners.names))
         ]
         if names and not owned:
-            meaning.doubts.append(f"no {phrase.noun} is known that belongs to {text}")
+            meaning.doubts.append(f"no {self._noun(phrase)} is known that belongs to {text}")
         return owned
 
-    def _placed(self, names: list[str], place: PlacePhrase, others: Names, is_open: bool) -> tuple[list[str], bool]:
+    def _placed(
+        self, names: list[str], place: PlacePhrase, others: Names, is_open: bool
+    ) -> tuple[list[str], bool]:
         if not names:
             return names, is_open
         there = self._at(names, place, others)
@@ -324,25 +404,33 @@ class Meanings:
         """Return whether a phrase states in what food is wanted, and not where it is: some water in a cup."""
         if not phrase.places or phrase.places[-1].other.determiner not in ("a", "an"):
             return False
-        is_food = any("Food" in self._world.above.get(self._index.items[n].class_name, ()) for n in self._index.find_by_noun(phrase.key, "english"))
+        is_food = any(
+            "Food" in self._world.above.get(self._index.items[n].class_name, ())
+            for n in self._index.find_by_noun(phrase.key, "english")
+        )
         container = self._nouns.describing.base(self._t.words[phrase.places[-1].other.head])
         return is_food and container in self._nouns.describing.content
 
-    def _elsewhere(self, names: list[str], relations: Sequence[tuple[PlacePhrase, Names]], phrase: NounPhrase) -> str:
+    def _elsewhere(
+        self, names: list[str], relations: Sequence[tuple[PlacePhrase, Names]], phrase: NounPhrase
+    ) -> str:
         """Return the sentence that nothing of the kind is where the command states."""
         place = next((others[0] for _, others in relations if len(others) == 1), "")
         if any(relation.negated for relation, _ in relations):
-            return f"'{self._t.between(phrase.first, phrase.end)}': no such {phrase.noun} is known"
+            return f"'{self._t.between(phrase.first, phrase.end)}': no such {self._noun(phrase)} is known"
         if len(names) > 1 or not place:
             at = place or "there"
-            return f"no {phrase.noun} is known on or in {at}"
+            return f"no {self._noun(phrase)} is known on or in {at}"
         where = self._world.where(names[0])
         return f"{names[0]} is not on or in {place}" + (f"; it is {where}" if where else "")
 
     def _ordered(self, names: list[str], phrase: NounPhrase) -> list[str]:
         """Return the first of the things by a superlative, or all of them if the map cannot tell."""
         sign, values = self._values(names, phrase.superlative)
-        known = sorted((name for name in names if math.isfinite(values.get(name, math.inf))), key=lambda n: (sign * values[n], n))
+        known = sorted(
+            (name for name in names if math.isfinite(values.get(name, math.inf))),
+            key=lambda n: (sign * values[n], n),
+        )
         if not sign or len(known) < len(names):
             return names
         count = phrase.quantity or 1
@@ -351,7 +439,7 @@ class Meanings:
         return known[:count]
 
     def _values(self, names: list[str], superlative: str) -> tuple[int, dict[str, float]]:
-        """Return the sign of a superlative (1: the least comes first, 0: unknown) and the value of each entity."""
+        """Return the sign of a superlative (1: the least first, 0: unknown) and the value of each entity."""
         size = self._world.geometry.size
         if superlative in _BY_MASS:
             masses = {name: self._index.items[name].values.get("mass", frozenset()) for name in names}
@@ -369,12 +457,20 @@ class Meanings:
         }
         return sense[1], {name: measured[sense[0]](s) for name, s in sizes.items()}
 
-    def _description(self, phrase: NounPhrase, names: Sequence[str], relations: Sequence[tuple[PlacePhrase, Names]], is_any: bool) -> ThingDescription:
+    def _description(
+        self,
+        phrase: NounPhrase,
+        names: Sequence[str],
+        relations: Sequence[tuple[PlacePhrase, Names]],
+        is_any: bool,
+    ) -> ThingDescription:
         classes = self._nouns.whole.get(phrase.key, set()) or self._nouns.classes.get(phrase.key, set())
         own = {self._index.items[name].class_name for name in names}
         if names and all(name in self._nouns.exact.get(phrase.key, ()) for name in names):
             classes = {name for name in classes if any(self._is_of_class(entity, name) for entity in names)}
-        class_name = next(iter(sorted(classes)), "") if classes else (next(iter(own)) if len(own) == 1 else "Object")
+        class_name = (
+            next(iter(sorted(classes)), "") if classes else (next(iter(own)) if len(own) == 1 else "Object")
+        )
         if phrase.purpose:
             class_name = self._g.purposes[phrase.purpose]
         elif is_any:
@@ -383,17 +479,15 @@ class Meanings:
             class_name,
             called="" if classes or is_any else phrase.noun,
             attributes=tuple(phrase.attributes),
-            relation=tuple(self._relation(place, others) for place, others in relations[: len(phrase.places)]),
+            relation=tuple(
+                self._relation(place, others) for place, others in relations[: len(phrase.places)]
+            ),
             superlative=phrase.superlative,
             quantity=phrase.quantity if phrase.quantity is not None else ("all" if phrase.all_of else None),
             purpose=phrase.purpose,
             owner="" if phrase.owner is None else self._t.between(phrase.owner.first, phrase.owner.end),
             excluded=tuple(self._t.between(other.first, other.end) for other in phrase.excluded),
         )
-
-    def counted(self, count: int, noun: str) -> str:
-        """Return `a cup`, `2 cups`."""
-        return with_count(count, noun)
 
 
 def _number(values: frozenset[object]) -> float:
@@ -407,10 +501,3 @@ def _number(values: frozenset[object]) -> float:
             except ValueError:
                 continue
     return math.inf
-
-
-def require(meaning: Meaning | None) -> Meaning:
-    """Return a meaning. Raises InternalError for None."""
-    if meaning is None:
-        raise errors.InternalError("a phrase without a meaning")
-    return meaning

@@ -12,14 +12,38 @@ from semmap.nodes.language.steps.tokens import Text
 
 Kind = Literal["thing", "person", "name", "pronoun", "speaker", "robot", "here"]
 _PREPOSITIONS: Final = ("to", "from", "place", "for", "about", "with", "of", "path", "exclude")
-_NEVER_INSIDE: Final = ("and", "be", "have", "modal", "speaker", "condition", "question", "negation", "manner")
+_NEVER_INSIDE: Final = (
+    "and",
+    "be",
+    "have",
+    "modal",
+    "speaker",
+    "condition",
+    "question",
+    "negation",
+    "manner",
+)
 _ONLY_FIRST: Final = ("determiner", "all", "possessive", "pronoun", "relative")
-_POSTURES_WITH_PLACE: Final = frozenset(
-    ("sitting", "standing", "lying", "seated", "laying", "kneeling", "sat", "sits", "stands", "lies", "resting", "crouching",
-     "reclining", "leaning", "waving", "located")
-)  # fmt: skip
 _ALWAYS_VERBS: Final = frozenset(("bring", "take", "give", "put", "tell", "follow", "go", "find"))
-_ADVERBS: Final = frozenset(("please", "now", "again", "there", "here", "thanks", "then", "instead", "together", "immediately"))
+_ADVERBS: Final = frozenset(
+    (
+        "please",
+        "now",
+        "again",
+        "there",
+        "here",
+        "thanks",
+        "then",
+        "instead",
+        "together",
+        "immediately",
+        "only",
+        "back",
+        "maybe",
+        "perhaps",
+        "as",
+    )
+)
 _SEVERAL: Final = frozenset(("these", "those", "several", "a few", "both", "a pair of", "a couple of"))
 
 
@@ -38,7 +62,7 @@ class PlacePhrase:
 class NounPhrase:
     """A noun phrase: the indices of its words and what they say.
 
-    `noun` is the noun as written and `key` its base form. `attributes` are the qualities in the words of the text.
+    `noun` is the noun as written, `key` its base form, and `attributes` are qualities as written.
     """
 
     first: int
@@ -58,14 +82,25 @@ class NounPhrase:
     places: list[PlacePhrase] = field(default_factory=list)
     owner: NounPhrase | None = None
     of: NounPhrase | None = None
+    second: NounPhrase | None = None
+    """The other thing after *between*."""
     excluded: list[NounPhrase] = field(default_factory=list)
 
     @property
     def is_definite(self) -> bool:
         """Return whether the phrase denotes one particular thing."""
-        return self.determiner in ("the", "this", "that", "my", "your", "his", "her", "their", "its", "our") or (
-            self.owner is not None
-        )
+        return self.determiner in (
+            "the",
+            "this",
+            "that",
+            "my",
+            "your",
+            "his",
+            "her",
+            "their",
+            "its",
+            "our",
+        ) or (self.owner is not None)
 
 
 class NounPhraseReader:
@@ -81,7 +116,8 @@ class NounPhraseReader:
     ) -> None:
         """Read phrases of `text`.
 
-        `starts_clause` returns whether a new clause begins at an index. `above` maps classes to their superclasses.
+        `starts_clause` returns whether a new clause begins at an index. `above` maps classes to their
+        superclasses.
         """
         self._t, self._g, self._nouns, self._starts_clause = text, grammar, nouns, starts_clause
         self._above = above
@@ -154,7 +190,17 @@ class NounPhraseReader:
                 phrase.kind, phrase.head, phrase.end = "pronoun", i + length - 1, i + length
                 phrase.noun = " ".join(words[i : i + length])
                 return True
-        elif word in ("everyone", "everybody", "someone", "somebody", "anyone", "anybody", "nobody", "folks"):
+        elif word in (
+            "everyone",
+            "everybody",
+            "someone",
+            "somebody",
+            "anyone",
+            "anybody",
+            "nobody",
+            "folks",
+            "whoever",
+        ):
             phrase.kind, phrase.head, phrase.end, phrase.noun = "person", i, i + 1, word
             phrase.all_of = g.is_a(word, "everyone")
             return True
@@ -166,7 +212,9 @@ class NounPhraseReader:
     def _is_determiner(self, i: int, length: int) -> bool:
         """Return whether the word at `i` precedes a noun: her phone, that cup, this one."""
         word = self._words[i]
-        if length > 1 or not (self._g.is_a(word, "determiner") or self._g.is_a(word, "possessive") or word == "one"):
+        if length > 1 or not (
+            self._g.is_a(word, "determiner") or self._g.is_a(word, "possessive") or word == "one"
+        ):
             return False
         return self._group_end(i + 1) > i + 1
 
@@ -187,9 +235,15 @@ class NounPhraseReader:
                 i += length
             elif g.is_a(words[i], "possessive"):
                 phrase.determiner = words[i]
-                phrase.owner = NounPhrase(i, i + 1, i, "speaker" if words[i] in ("my", "our") else "pronoun", words[i])
+                phrase.owner = NounPhrase(
+                    i, i + 1, i, "speaker" if words[i] in ("my", "our") else "pronoun", words[i]
+                )
                 i += 1
-            elif number is not None and (words[i] != "one" or not phrase.determiner) and self._group_end(i + 1) > i + 1:
+            elif (
+                number is not None
+                and (words[i] != "one" or not phrase.determiner)
+                and self._group_end(i + 1) > i + 1
+            ):
                 phrase.quantity, phrase.is_plural = number, number > 1
                 i += 1
                 if words[i : i + 2] == ("of", "the"):
@@ -206,7 +260,9 @@ class NounPhraseReader:
         i, seen = start, False
         while not self._t.is_mark(i):
             word = words[i]
-            known = next((n for n in range(min(MOST_WORDS, len(words) - i), 1, -1) if self.is_known(i, i + n)), 0)
+            known = next(
+                (n for n in range(min(MOST_WORDS, len(words) - i), 1, -1) if self.is_known(i, i + n)), 0
+            )
             if known and not any(self._g.is_a(words[j], "and") for j in range(i, i + known)):
                 i, seen = i + known, True
                 continue
@@ -215,7 +271,11 @@ class NounPhraseReader:
             if word == "can" and i > start - 1 and not seen and self._is_noun_can(i):
                 i, seen = i + 1, True
                 continue
-            if any(g.is_a(word, kind) for kind in _NEVER_INSIDE) or word in _ADVERBS or word.startswith("n't"):
+            if (
+                any(g.is_a(word, kind) for kind in _NEVER_INSIDE)
+                or (word in _ADVERBS and not self._follows_article(i))
+                or word.startswith("n't")
+            ):
                 break
             if i > start and word == "one":
                 return i + 1
@@ -234,10 +294,18 @@ class NounPhraseReader:
             i += 1
         return i
 
+    def _follows_article(self, i: int) -> bool:
+        return i > 0 and self._g.is_a(self._words[i - 1], "determiner")
+
     def _is_bare_name(self, i: int) -> bool:
         """Return whether a capital letter without a determiner begins a name at `i`."""
         before = self._words[i - 1] if i else ""
-        return bool(before) and self._t.tokens[i].is_capital and not self._g.is_a(before, "determiner") and not self._is_modifier(i)
+        return (
+            bool(before)
+            and self._t.tokens[i].is_capital
+            and not self._g.is_a(before, "determiner")
+            and not self._is_modifier(i)
+        )
 
     def _is_noun_can(self, i: int) -> bool:
         """Return whether *can* at `i` is the noun: after a determiner or adjective, and before no verb."""
@@ -290,7 +358,11 @@ class NounPhraseReader:
                 noun = start
         phrase.noun, phrase.key = " ".join(words[noun:end]), self.key(noun, end)
         several = describing.base(words[head]) != words[head] and words[head].endswith(("s", "en", "people"))
-        phrase.is_plural = phrase.is_plural or (several and words[head] not in describing.pluralia) or words[head] == "people"
+        phrase.is_plural = (
+            phrase.is_plural
+            or (several and words[head] not in describing.pluralia)
+            or words[head] == "people"
+        )
         self._modifiers(phrase, start, noun)
 
     def _unknown_noun(self, start: int, end: int) -> int:
@@ -369,18 +441,28 @@ class NounPhraseReader:
                 phrase.name, phrase.end = self._t.between(i + 1, end), max(end, i + 1)
             elif phrase.noun and words[i] == "to" and i + 1 < len(words) and words[i + 1] in g.purposes:
                 phrase.purpose, phrase.end = words[i + 1], i + 2
-            elif words[i] == "," and phrase.kind != "pronoun" and words[i + 1 : i + 2] in (("who",), ("which",)):
+            elif (
+                words[i] == ","
+                and phrase.kind != "pronoun"
+                and words[i + 1 : i + 2] in (("who",), ("which",))
+            ):
                 if not self._relative(phrase, i + 1, with_places):
                     return
                 phrase.end += words[phrase.end : phrase.end + 1] == (",",)
             elif g.is_a(words[i], "relative") and i + 1 < len(words):
                 if not self._relative(phrase, i, with_places):
                     return
-            elif g.is_a(words[i], "posture"):
-                self._participle(phrase, i, i)
-            elif words[i] == "with" and (phrase.kind == "person" or self._is_with(i)):
-                self._participle(phrase, i, i)
-            elif words[i] in ("in", "dressed") and phrase.kind == "person" and self._is_clothing(i + 1):
+            elif phrase.noun == "whoever" and g.is_a(words[i], "be"):
+                if not self._relative(phrase, i - 1, with_places):
+                    return
+            elif phrase.superlative and words[i] == "from" and (length := self._counted_from(i)):
+                phrase.superlative = f"{phrase.superlative} {' '.join(words[i : i + length])}"
+                phrase.end = i + length
+            elif (
+                g.is_a(words[i], "posture")
+                or (words[i] == "with" and (phrase.kind == "person" or self._is_with(i)))
+                or (words[i] in ("in", "dressed") and phrase.kind == "person" and self._is_clothing(i + 1))
+            ):
                 self._participle(phrase, i, i)
             elif words[i] == "of" and phrase.of is None and not self._t.is_mark(i + 1):
                 other = self.read(i + 1, with_places=with_places)
@@ -392,6 +474,15 @@ class NounPhraseReader:
                 phrase.end = place.end
             else:
                 return
+
+    def _counted_from(self, i: int) -> int:
+        """Return the number of words of *from the left* at `i`, or 0."""
+        length = 1 + (self._words[i + 1 : i + 2] == ("the",))
+        return (
+            length + 1
+            if self._words[i + length : i + length + 1] in (("left",), ("right",), ("top",), ("bottom",))
+            else 0
+        )
 
     def _place(self, i: int, negated: bool = False) -> PlacePhrase | None:
         """Return the place phrase that begins at `i`, or None."""
@@ -405,9 +496,7 @@ class NounPhraseReader:
         if preposition == "between" and self._words[other.end : other.end + 1] == ("and",):
             second = self.read(other.end + 1)
             if second is not None:
-                other.end = second.end
-                other.excluded = []
-                other.of = second
+                other.end, other.second = second.end, second
         return PlacePhrase(preposition, other, i, other.end, negated)
 
     def _starts_time(self, i: int) -> bool:
@@ -419,13 +508,20 @@ class NounPhraseReader:
         j = i + 1
         has_be = has_have = negated = False
         while j < len(words) and (
-            g.is_a(words[j], "be") or g.is_a(words[j], "have") or g.is_a(words[j], "modal") or words[j] in ("not", "n't", "never", "currently")
+            g.is_a(words[j], "be")
+            or g.is_a(words[j], "have")
+            or g.is_a(words[j], "modal")
+            or words[j] in ("not", "n't", "never", "currently")
         ):
             has_be = has_be or g.is_a(words[j], "be")
             has_have = has_have or g.is_a(words[j], "have")
             negated = negated or words[j] in ("not", "n't", "never")
             j += 1
-        is_that_clause = words[i] == "that" and j == i + 1 and (phrase.kind != "thing" or phrase.key in self._nouns.entities)
+        is_that_clause = (
+            words[i] == "that"
+            and j == i + 1
+            and (phrase.kind != "thing" or phrase.key in self._nouns.entities)
+        )
         if self._t.is_mark(j) or (is_that_clause and not g.is_a(words[j], "posture")):
             return False
         if (has_be or not has_have) and g.is_a(words[j], "posture"):
@@ -457,9 +553,14 @@ class NounPhraseReader:
         start = i + self._g.match("determiner", self._words, i)
         end = self._group_end(start)
         if end == start or self._words[i] in ("the", "my", "your", "this", "that"):
-            return self._words[i : i + 1] == ("the",) and bool(end > start and self._is_color(start) and not self.key(start, end))
+            return self._words[i : i + 1] == ("the",) and bool(
+                end > start and self._is_color(start) and not self.key(start, end)
+            )
         key = next((key for j in range(start, end) if (key := self.key(j, end))), "")
-        is_there = bool(key) and (key in self._nouns.entities or any("Location" in self._above.get(name, ()) for name in self._nouns.classes.get(key, ())))
+        is_there = bool(key) and (
+            key in self._nouns.entities
+            or any("Location" in self._above.get(name, ()) for name in self._nouns.classes.get(key, ()))
+        )
         return not is_there or self._is_color(start)
 
     def _is_color(self, i: int) -> bool:
@@ -469,25 +570,46 @@ class NounPhraseReader:
         """Read an attribute of several words at `i`: raising their left arm, pointing to the right."""
         g, words = self._g, self._words
         j, may_go_to = i + 1, True
-        takes_place = words[i] in _POSTURES_WITH_PLACE
+        takes_place = g.is_a(words[i], "posture_at")
         while not self._t.is_mark(j):
             if g.is_a(words[j], "and"):
-                if self._starts_clause(j) or self._starts_clause(j + 1) or takes_place and not g.is_a(words[j + 1], "posture"):
+                if (
+                    self._starts_clause(j)
+                    or self._starts_clause(j + 1)
+                    or (takes_place and not g.is_a(words[j + 1], "posture"))
+                ):
                     break
-            elif words[j] in ("to", "towards", "at") and may_go_to and not takes_place and self._is_direction(j, words[i]):
+            elif (
+                words[j] in ("to", "towards", "at")
+                and may_go_to
+                and not takes_place
+                and self._is_direction(j, words[i])
+            ):
                 may_go_to = False
                 j += 1
-                while not self._t.is_mark(j) and (g.match("determiner", words, j) or g.is_a(words[j], "possessive")):
+                while not self._t.is_mark(j) and (
+                    g.match("determiner", words, j) or g.is_a(words[j], "possessive")
+                ):
                     j += 1
-            elif words[j] in ("on", "over", "in", "above") and j + 1 < len(words) and g.is_a(words[j + 1], "possessive"):
+            elif (
+                words[j] in ("on", "over", "in", "above")
+                and j + 1 < len(words)
+                and g.is_a(words[j + 1], "possessive")
+            ):
                 j += 1  # with his hands on his head
             elif words[j] == "with" or words[j] == "of":
                 pass
-            elif any(g.match(kind, words, j) for kind in ("to", "from", "place", "for", "relative", "be", "condition")) and not (
-                g.is_a(words[j], "direction") and words[j] not in ("left of", "right of")
+            elif (
+                any(
+                    g.match(kind, words, j)
+                    for kind in ("to", "from", "place", "for", "relative", "be", "condition")
+                )
+                and not (g.is_a(words[j], "direction") and words[j] not in ("left of", "right of"))
+            ) or (
+                g.match("time", words, j)
+                or words[j] in ("please", "then", "and", "so")
+                or (g.is_a(words[j], "speaker"))
             ):
-                break
-            elif g.match("time", words, j) or words[j] in ("please", "then", "and", "so") or (g.is_a(words[j], "speaker")):
                 break
             j += 1
         text = self._t.between(i, j)
@@ -501,9 +623,10 @@ class NounPhraseReader:
             j += 1
         if j < len(self._words) and self._g.is_a(self._words[j], "direction"):
             return True
-        return verb in ("pointing", "points", "looking", "waving", "facing", "gesturing", "pointed") and self._words[i] != "to" or (
-            verb in ("pointing", "points")
-        )
+        return (
+            verb in ("pointing", "points", "looking", "waving", "facing", "gesturing", "pointed")
+            and self._words[i] != "to"
+        ) or (verb in ("pointing", "points"))
 
 
 def starts_time(g: Grammar, words: Sequence[str], i: int) -> int:
@@ -521,6 +644,12 @@ def starts_time(g: Grammar, words: Sequence[str], i: int) -> int:
         return g.is_a(text.removesuffix("s"), "unit")
 
     if word in ("at", "by", "around", "before", "after", "until", "from", "till", "about", "past"):
+        if (at(0) in ("half", "quarter", "a") and "past" in rest[1:3]) or (
+            "to" in rest[1:3] and at(0) == "quarter"
+        ):
+            k = 1 + (rest.index("past") if "past" in rest[1:3] else rest.index("to"))
+            if g.number(at(k)) is not None:
+                return k + 2
         k = 1 if at(0) in ("about", "around", "exactly", "half", "quarter") else 0
         if at(k) in ("noon", "midnight", "night", "lunchtime", "dinnertime"):
             return k + 2
@@ -538,7 +667,12 @@ def starts_time(g: Grammar, words: Sequence[str], i: int) -> int:
         number = g.number(at(k)) is not None
         if is_unit(at(k + number)) and (number or k):
             return k + number + 2
-        if at(0) in ("the", "a") and g.is_a(at(1), "day_part") and word in ("in", "during") and at(1) in ("morning", "evening", "afternoon", "night"):
+        if (
+            at(0) in ("the", "a")
+            and g.is_a(at(1), "day_part")
+            and word in ("in", "during")
+            and at(1) in ("morning", "evening", "afternoon", "night")
+        ):
             return 3
     if word in ("every", "each", "this", "next", "on") and at(0):
         if word == "on" and not at(0).removesuffix("s").endswith("day"):

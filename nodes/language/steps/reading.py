@@ -1,29 +1,32 @@
-"""Converts a command to steps: clauses, with roles that are resolved in the map and pronouns in the earlier steps."""
+"""Converts a command to steps: its roles are resolved in the map, and pronouns in the earlier steps."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Final
 
 from semmap.nodes.language.lexicon import commands
 from semmap.nodes.language.steps import tokens
 from semmap.nodes.language.steps.clauses import Clause, ClauseReader, Role
 from semmap.nodes.language.steps.meaning import Meaning, Meanings, Names, World
 from semmap.nodes.language.steps.noun_phrase import NounPhrase, PlacePhrase
-from semmap.schemas.language import Filler, Reference, Step, ThingDescription
+from semmap.schemas.language import Antecedent, CommandStep, Filler
 
-_LOCATED_BY = {"Taking": "Source", "Bringing": "Source", "Giving": "Source", "Locating": "Ground", "Removing": "Source",
-               "Placing": "Source", "Pouring": "Source"}  # fmt: skip
+_LOCATED_BY: Final = {
+    **dict.fromkeys(("Taking", "Bringing", "Giving", "Removing", "Placing", "Pouring"), "Source"),
+    "Locating": "Ground",
+}
 """Frames with the role that states where their object is."""
-_WORDS_ONLY = frozenset(("Message", "Trigger", "Desired_state", "Manner", "Direction"))
-_PLACES = frozenset(("Goal", "Source", "Ground", "Location", "Path"))
+_WORDS_ONLY: Final = frozenset(("Message", "Trigger", "Desired_state", "Manner", "Direction"))
+_PLACES: Final = frozenset(("Goal", "Source", "Ground", "Location", "Path"))
 
 
 @dataclass(slots=True)
 class Steps:
-    """The steps of a command; sets of entities of which one is meant; doubts, unknown verbs and the answer."""
+    """The steps of a command, the sets of entities of which one is meant, doubts and unknown verbs."""
 
-    steps: list[Step] = field(default_factory=list)
+    steps: list[CommandStep] = field(default_factory=list)
     ambiguous: list[Names] = field(default_factory=list)
     doubts: list[str] = field(default_factory=list)
     unknown: list[str] = field(default_factory=list)
@@ -40,6 +43,7 @@ class _Mention:
     is_person: bool
     is_plural: bool
     is_place: bool
+    phrase: NounPhrase | None = None
 
 
 def read_steps(text: str, world: World) -> Steps:
@@ -63,7 +67,12 @@ class _StepReader:
         for number, clause in enumerate(parsed.clauses):
             for _, phrase in (mention for mention in parsed.context if mention[0] == number):
                 meaning = self._meanings.of(phrase, may_be_none=True)
-                filler = Filler(self._t.between(phrase.first, phrase.end), self._t.words[phrase.head], meaning.names, meaning.description)
+                filler = Filler(
+                    self._t.between(phrase.first, phrase.end),
+                    self._t.words[phrase.head],
+                    meaning.names,
+                    meaning.description,
+                )
                 self._mentions.append(_Mention(0, "", filler, True, phrase.is_plural, False))
             found.steps.append(self._step(clause, len(found.steps) + 1))
         found.unknown = list(dict.fromkeys(parsed.unknown))
@@ -76,7 +85,7 @@ class _StepReader:
         found.doubts = list(dict.fromkeys(found.doubts))
         return found
 
-    def _step(self, clause: Clause, number: int) -> Step:
+    def _step(self, clause: Clause, number: int) -> CommandStep:
         roles: dict[str, tuple[Filler, ...]] = {}
         mentions: list[_Mention] = []
         where = self._where(clause)
@@ -84,7 +93,7 @@ class _StepReader:
             fillers = tuple(self._fillers(clause, role, number, where, mentions))
             roles[role.role] = (*roles.get(role.role, ()), *fillers)
         self._mentions += mentions
-        return Step(
+        return CommandStep(
             clause.frame,
             clause.verb.lower(),
             roles,
@@ -102,7 +111,9 @@ class _StepReader:
         preposition = " ".join(self._t.words[role.first : other.first])
         return [PlacePhrase(preposition or "in", other, role.first, role.end)]
 
-    def _fillers(self, clause: Clause, role: Role, number: int, where: list[PlacePhrase], mentions: list[_Mention]) -> Iterator[Filler]:
+    def _fillers(
+        self, clause: Clause, role: Role, number: int, where: list[PlacePhrase], mentions: list[_Mention]
+    ) -> Iterator[Filler]:
         words = self._t.words
         if role.role in _WORDS_ONLY or not role.phrases:
             yield Filler(self._t.between(role.first, role.end), words[role.head])
@@ -118,15 +129,45 @@ class _StepReader:
             if phrase.kind == "pronoun":
                 yield self._pronoun(phrase, text, head, clause, role, number, mentions)
                 continue
+            self._complete(phrase, mentions)
+            for other in phrase.excluded:
+                if other.noun in ("one", "ones"):  # any cup but not the red one
+                    other.noun, other.key = phrase.noun, phrase.key
             places = where if is_object and role.role not in _PLACES else []
             owner = self._owner(phrase)
             meaning = self._meanings.of(
-                phrase, places, may_be_none=role.role == "Topic" or clause.frame in ("Counting", "Being_located", "Removing"), as_place=role.role in _PLACES, owner=owner
+                phrase,
+                places,
+                may_be_none=role.role == "Topic" or clause.frame in ("Counting", "Being_located", "Removing"),
+                as_place=role.role in _PLACES,
+                owner=owner,
             )
             filler = Filler(text, head, meaning.names, meaning.description)
             self._note(clause, meaning)
-            mentions.append(_Mention(number, role.role, filler, meaning.is_person, phrase.is_plural, role.role in _PLACES or meaning.is_place))
+            mentions.append(
+                _Mention(
+                    number,
+                    role.role,
+                    filler,
+                    meaning.is_person,
+                    phrase.is_plural,
+                    role.role in _PLACES or meaning.is_place,
+                    phrase,
+                )
+            )
             yield filler
+
+    def _complete(self, phrase: NounPhrase, now: list[_Mention]) -> None:
+        """Give a phrase without a noun that of the last thing: the red one."""
+        if phrase.noun in ("one", "ones"):
+            before = (
+                m.phrase
+                for m in reversed((*self._mentions, *now))
+                if m.phrase is not None and not m.is_person and not m.is_place
+            )
+            if (like := next(before, None)) is not None:
+                noun = like.noun.rpartition(" ")[2]  # of "red cup" only "cup"
+                phrase.noun, phrase.key = noun, self._meanings.key(noun)
 
     def _note(self, clause: Clause, meaning: Meaning) -> None:
         self._found.doubts += meaning.doubts
@@ -142,7 +183,16 @@ class _StepReader:
 
     # Pronouns
 
-    def _pronoun(self, phrase: NounPhrase, text: str, head: str, clause: Clause, role: Role, number: int, mentions: list[_Mention]) -> Filler:
+    def _pronoun(
+        self,
+        phrase: NounPhrase,
+        text: str,
+        head: str,
+        clause: Clause,
+        role: Role,
+        number: int,
+        mentions: list[_Mention],
+    ) -> Filler:
         antecedent = self._antecedent(phrase, clause, role, mentions)
         if antecedent is None:
             if self._g.is_a(phrase.noun, "possessive") and phrase.noun not in ("her",):
@@ -150,18 +200,45 @@ class _StepReader:
             self._found.doubts.append(f"'{phrase.noun}' refers to nothing that was mentioned")
             return Filler(text, head)
         description = antecedent.filler.description
-        filler = Filler(text, head, antecedent.filler.entities, description, Reference(antecedent.step, antecedent.role) if antecedent.step else None)
-        mentions.append(_Mention(number, role.role, filler, antecedent.is_person, antecedent.is_plural, antecedent.is_place))
+        filler = Filler(
+            text,
+            head,
+            antecedent.filler.entities,
+            description,
+            Antecedent(antecedent.step, antecedent.role) if antecedent.step else None,
+        )
+        mentions.append(
+            _Mention(
+                number, role.role, filler, antecedent.is_person, antecedent.is_plural, antecedent.is_place
+            )
+        )
         return filler
 
-    def _antecedent(self, phrase: NounPhrase, clause: Clause, role: Role, now: list[_Mention]) -> _Mention | None:
+    def _antecedent(
+        self, phrase: NounPhrase, clause: Clause, role: Role, now: list[_Mention]
+    ) -> _Mention | None:
         g, word = self._g, phrase.noun
         mentions = [mention for mention in self._mentions if mention.filler.text]
         if role.role in ("Beneficiary", "Recipient", "Addressee") or g.is_a(word, "person_pronoun"):
             return next((m for m in reversed(mentions) if m.is_person), None)
         if g.is_a(word, "several_pronoun"):
-            people = clause.frame in ("Cotheme", "Guiding", "Make_acquaintance", "Greeting", "Introducing", "Being_located", "Locating")
-            last = next((m for m in reversed(mentions) if m.is_plural and not m.is_place and not (people and not m.is_person)), None)
+            people = clause.frame in (
+                "Cotheme",
+                "Guiding",
+                "Make_acquaintance",
+                "Greeting",
+                "Introducing",
+                "Being_located",
+                "Locating",
+            )
+            last = next(
+                (
+                    m
+                    for m in reversed(mentions)
+                    if m.is_plural and not m.is_place and not (people and not m.is_person)
+                ),
+                None,
+            )
             person = next((m for m in reversed(mentions) if m.is_person), None)
             if people and person is not None:
                 return person
@@ -170,14 +247,14 @@ class _StepReader:
             thing = next((m for m in reversed(mentions) if not m.is_place and not m.is_person), None)
             return thing or person
         things = [m for m in mentions if not m.is_person]
-        if role.role in _PLACES and (theme := next((m for m in now if not m.is_place and not m.is_person), None)) is not None:
-            things = [m for m in things if m.filler.entities != theme.filler.entities or not m.filler.entities]
+        if (
+            role.role in _PLACES
+            and (theme := next((m for m in now if not m.is_place and not m.is_person), None)) is not None
+        ):
+            things = [
+                m for m in things if m.filler.entities != theme.filler.entities or not m.filler.entities
+            ]
         acted_on = next((m for m in reversed(things) if not m.is_place), None)
         if acted_on is not None and clause.frame not in ("Motion", "Arriving"):
             return acted_on
         return next(reversed(things), None)
-
-
-def is_described(description: ThingDescription | None) -> bool:
-    """Return whether a description says anything."""
-    return description is not None and description != ThingDescription()

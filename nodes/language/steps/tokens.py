@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from semmap.nodes.language.words import without_markup
+
 _TOKEN: Final = re.compile(
     r"(?:mr|mrs|ms|dr)\.|\d{1,2}[:.]\d{2}|o'clock|[ap]\.m\.?|n't\b|'\w+|\d+(?:[.,]\d+)?"
     r"|[^\W\d_]+(?:-[^\W_]+)*(?=n't\b)|[^\W_]+(?:[-][^\W_]+)*|[,.;:!?]"
@@ -47,7 +49,7 @@ class Text:
 
 def read(text: str) -> Text:
     """Return a text with its tokens."""
-    plain = text.replace("’", "'").replace("`", "'")
+    plain = without_markup(text).replace("’", "'").replace("`", "'")
     lower = plain.lower()
     if len(lower) != len(plain):  # a letter whose lower case is longer
         plain = lower

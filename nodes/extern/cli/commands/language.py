@@ -102,7 +102,9 @@ def understand(client: Client, text: str, format: str, language: Language | None
         print_json(lu4r.document(found))
     else:
         done = found.steps or found.frames
-        print_lines([action.text for action in done] + [text for text in (found.answer, found.question) if text])
+        print_lines(
+            [action.text for action in done] + [text for text in (found.answer, found.question) if text]
+        )
     for doubt in found.doubts:
         print_error(doubt)
     if found.unknown:

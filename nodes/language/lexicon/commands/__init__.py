@@ -45,6 +45,10 @@ class Grammar:
         """Return whether a word alone is an expression of a class."""
         return (word,) in self.kinds[kind]
 
+    def contains(self, kind: str, text: str) -> bool:
+        """Return whether a text is an expression of a class."""
+        return tuple(text.split()) in self.kinds[kind]
+
     def verb(self, words: Sequence[str], i: int) -> tuple[int, str]:
         """Return the number of words and the frame of the longest verb that begins at `i`, or (0, "")."""
         for length in range(min(self.longest_verb, len(words) - i), 0, -1):
