@@ -15,12 +15,20 @@ RelationName = Literal[
     "isLeftOf", "isRightOf", "isInFrontOf", "isBehind", "isBetween", "isVisibleFrom"
 ]  # fmt: skip
 
+Placing = Literal["on", "in", "next_to"]
+"""How an object is placed relative to another one, without a position."""
+
 ViewPoint = tuple[Metres, Metres, Metres, Annotated[float, Meta(ge=-1e6, le=1e6)]]
 """Position and direction of a viewer: x, y, z [m] and yaw [rad], map frame."""
 
 
 _NUMBER: Final = r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*"
 _POSITION: Final = re.compile(",".join([_NUMBER] * 3))
+
+
+def placing_words(placing: Placing) -> str:
+    """Return how a sentence says it: `next to`."""
+    return placing.replace("_", " ")
 
 
 def position_in(word: str) -> Vector | None:

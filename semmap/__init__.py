@@ -28,8 +28,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     from semmap import aio, commands, fleet, reasoner, recordings, testing, wire
+    from semmap.nodes.extern.backup import restore
     from semmap.nodes.extern.client import Client, connect
-    from semmap.nodes.extern.restore import restore
     from semmap.nodes.extern.sparql_client import StandingQuery
     from semmap.ontology.vocabulary import local_name
     from semmap.schemas.approvals import Request
@@ -181,11 +181,11 @@ __all__ = [
 
 _MODULES: Final = frozenset({"aio", "commands", "fleet", "reasoner", "recordings", "testing", "wire"})
 _NAMES_OF: Final = {
+    "nodes.extern.backup": ("restore",),
     "nodes.extern.client": (
         "Client",
         "connect",
     ),
-    "nodes.extern.restore": ("restore",),
     "nodes.extern.sparql_client": ("StandingQuery",),
     "ontology.vocabulary": ("local_name",),
     "schemas.approvals": ("Request",),

@@ -31,7 +31,7 @@ from semmap.nodes.coordinator.scene.joint_commands import JointCommands
 from semmap.nodes.coordinator.scene.scene_commands import SceneCommands
 from semmap.nodes.coordinator.scene.wall_queries import WallQueries
 from semmap.nodes.coordinator.scheduler import Change, Results, Scheduler
-from semmap.nodes.runtime import heap
+from semmap.nodes.runtime import memory
 from semmap.nodes.runtime.class_names import ClassNames
 from semmap.nodes.runtime.futures import SingleThreadFuture, settle, then
 from semmap.nodes.runtime.loop import Node, open_node
@@ -303,7 +303,7 @@ class Coordinator:
 def _release_memory() -> None:
     """Free the memory of a large file: its coroutine is a reference cycle, which is collected late."""
     gc.collect()
-    heap.trim()
+    memory.trim()
     gc.freeze()
 
 

@@ -130,6 +130,8 @@ def _entity(change: Change) -> str | None:
         return change.names[0] if len(change.names) == 1 else None
     if isinstance(change, Add):
         return change.name if change.at is not None and not change.dry_run else None
+    if isinstance(change, Update) and not (change.on is change.in_ is change.next_to is None):
+        return None
     if isinstance(change, (Update, Set, Unset, Track)) and not change.dry_run:
         return change.name
     return None

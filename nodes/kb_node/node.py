@@ -8,7 +8,6 @@ from functools import partial
 
 from semmap.nodes.kb_node.answers import entity_queries
 from semmap.nodes.kb_node.answers.location_queries import LocationQueries
-from semmap.nodes.kb_node.checkpointing import Checkpointing
 from semmap.nodes.kb_node.commit_publisher import CommitPublisher
 from semmap.nodes.kb_node.config import KbConfig
 from semmap.nodes.kb_node.derived_facts import DerivedChanges
@@ -23,9 +22,10 @@ from semmap.nodes.kb_node.sparql.protocol import Placements
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.sparql.standing_queries.row_publisher import RowPublisher
 from semmap.nodes.kb_node.sparql.triples.large_map import LargeMap
+from semmap.nodes.kb_node.storage.checkpointing import Checkpointing
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
-from semmap.nodes.runtime import gc_pause, heap
+from semmap.nodes.runtime import memory
 from semmap.nodes.runtime.loop import Node, open_node
 from semmap.schemas import errors, keys, wording
 from semmap.schemas.commits import Commit
@@ -142,10 +142,10 @@ class KnowledgeBase:
             self._node.beat()
 
         try:
-            with gc_pause.uncollected(freeze=True):
+            with memory.uncollected(freeze=True):
                 yield report
         finally:
-            self._node.afterwards(heap.trim)
+            self._node.afterwards(memory.trim)
             self._node.describe(self._summary)
 
     def _notes(self) -> tuple[str, ...]:
@@ -175,9 +175,9 @@ def run(config: KbConfig) -> None:
     with open_node("kb_node", config.network) as node:
         journal = Journal(path)
         try:
-            with gc_pause.uncollected(freeze=True):
+            with memory.uncollected(freeze=True):
                 knowledge_base = KnowledgeBase(node, journal, config)
-            heap.trim()
+            memory.trim()
             node.run()
             if not knowledge_base.map.is_sound:
                 raise SystemExit(STARTS_AGAIN)

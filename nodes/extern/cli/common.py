@@ -11,8 +11,15 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import click
 
 from semmap.nodes.extern.cli.output.printable import escaped_json, print_escaped
+from semmap.nodes.extern.cli.shell_completion import entity_names
 from semmap.schemas import errors
-from semmap.schemas.endpoints import CONNECT_VARIABLE, DEFAULT_ENDPOINT, IDENTITY_VARIABLE, NAMESPACE_VARIABLE
+from semmap.schemas.endpoints import (
+    CONNECT_VARIABLE,
+    DEFAULT_ENDPOINT,
+    IDENTITY_VARIABLE,
+    NAMESPACE_VARIABLE,
+    parse_endpoint,
+)
 
 if TYPE_CHECKING:
     from semmap.nodes.extern.client import Client
@@ -235,6 +242,36 @@ def vector_option(*names: str, **options: Any) -> Callable[[Any], Any]:
 def frame_option(meaning: str) -> Callable[[Any], Any]:
     """Return the option that names the frame of positions."""
     return click.option("--frame", metavar="NAME", help=f"{meaning}; see: semmap frames.")
+
+
+class Endpoint(click.ParamType[str]):
+    """A Zenoh endpoint, also written `HOST:PORT` or `tcp://HOST:PORT`."""
+
+    name = "endpoint"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """Return the endpoint as Zenoh writes it."""
+        try:
+            return parse_endpoint(value)
+        except errors.BadRequest as error:
+            self.fail(error.text, param, ctx)
+
+
+ENDPOINT: Final = Endpoint()
+
+
+def placing_options(function: Callable[..., None]) -> Callable[..., None]:
+    """Add the options that place an object relative to another one."""
+    options = {
+        "on": "Place it on this object, where there is room.",
+        "in": "Place it in this object or place, where there is room.",
+        "next-to": "Place it next to this object, where there is room.",
+    }
+    for name, text in reversed(options.items()):
+        parameter = name.replace("-", "_") + ("_" if name == "in" else "")
+        option = click.option(f"--{name}", parameter, metavar="NAME", shell_complete=entity_names, help=text)
+        function = option(function)
+    return function
 
 
 def carry_options(function: Callable[..., None]) -> Callable[..., None]:

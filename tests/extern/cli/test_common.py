@@ -43,7 +43,7 @@ def test_the_values_of_an_option_are_named(capsys, words, said):
             ["set", "cup1", "isOpen"],
             "missing argument VALUE; usage: semmap set [OPTIONS] NAME PROPERTY VALUE...",
         ),
-        (["move", "cup1"], "missing option --at X Y Z; see: semmap move --help"),
+        (["attach", "cup1"], "missing option --to HOLDER; see: semmap attach --help"),
         (["completion"], "missing argument SHELL; choose from: bash, zsh, fish"),
         (["list", "x"], "got unexpected extra argument (x)"),
     ],

@@ -15,6 +15,7 @@ from semmap.nodes.extern.cli.common import (
     carry_options,
     drop_unset,
     frame_option,
+    placing_options,
     print_lines,
     vector_option,
     with_client,
@@ -28,7 +29,7 @@ from semmap.nodes.extern.cli.ontology_options import (
 from semmap.nodes.extern.cli.output import lines
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.shell_completion import class_names, entity_names
-from semmap.nodes.extern.plan_files import is_plan, read_plan
+from semmap.nodes.extern.floorplans import is_plan, read_plan
 from semmap.schemas import errors
 
 if TYPE_CHECKING:
@@ -58,6 +59,7 @@ _if_is = click.option(
 )
 _describing = _options(
     vector_option("--at", metavar="X Y Z", help="Position of the bottom centre [m]."),
+    placing_options,
     frame_option("Frame of --at and of the rotation. Default: map"),
     yaw_option,
     click.option("--orientation", nargs=4, type=float, metavar="W X Y Z", help="Unit quaternion."),
@@ -71,7 +73,7 @@ _describing = _options(
 )
 
 
-@command(example='semmap add Cup cup1 --at 2.5 1 0.75 --ref "coffee cup"')
+@command(example='semmap add Cup cup1 --on table1 --ref "coffee cup"')
 @click.argument("class_", metavar="CLASS", shell_complete=class_names)
 @click.argument("name", required=False)
 @_describing
@@ -85,7 +87,7 @@ _describing = _options(
 def add(client: Client, **fields: Any) -> None:
     """Add an entity to the map.
 
-    Without --at, it is placed at the next free position.
+    Without --at, --on, --in and --next-to, it is placed at the next free position.
     """
     print_lines(lines.format_change(client.add(**drop_unset(fields))))
 

@@ -47,7 +47,7 @@ def history(
         print_json(commits)
         return
     if commits:
-        output.show.console(_PIPED_WIDTH).print(output.show_past.history_table(commits))
+        output.show.console(_PIPED_WIDTH).print(output.show.history_table(commits))
     print(f"{len(commits)} {'commit' if len(commits) == 1 else 'commits'}")
 
 
@@ -65,7 +65,7 @@ def last_seen(client: Client, name: str, format: str) -> None:
     if format == "json":
         print_json(sighting)
     else:
-        output.show.console().print(output.show_past.sighting_card(sighting))
+        output.show.console().print(output.show.sighting_card(sighting))
 
 
 @command(example="semmap diff 12:30")

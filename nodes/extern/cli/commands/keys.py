@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from semmap.nodes.extern.cli.command import group
+from semmap.nodes.extern.cli.common import ENDPOINT
 from semmap.nodes.extern.cli.output import show
 from semmap.nodes.extern.cli.output.tables import table
 from semmap.nodes.identity.register import Member, Register
@@ -121,12 +122,19 @@ def list_(folder: Path) -> None:
 @_folder
 @click.option(
     "--listen",
+    type=ENDPOINT,
     default="tls/0.0.0.0:7447",
     show_default=True,
     metavar="EP",
     help="Zenoh endpoint that the router listens on.",
 )
-@click.option("--connect", multiple=True, metavar="EP", help="Another router to connect to; may be repeated.")
+@click.option(
+    "--connect",
+    type=ENDPOINT,
+    multiple=True,
+    metavar="EP",
+    help="Another router to connect to; may be repeated.",
+)
 @click.option(
     "--namespace", default="", metavar="ROBOT", help="Robot whose Zenoh keys are routed; * for all."
 )

@@ -350,12 +350,9 @@ def _watch_key(client: Client, keyexpr: str) -> None:
     from semmap.nodes import bus
 
     if client.identity is not None:
-        followed = roles.followed(client.identity.role)
-        if not bus.includes(followed, keyexpr):
-            raise errors.Refused(
-                f"your certificate ({client.identity.role}) may not subscribe to '{keyexpr}'; allowed keys:"
-                f" {', '.join(followed)}"
-            )
+        role = client.identity.role
+        if not bus.includes(roles.followed(role), keyexpr):
+            raise errors.Refused(roles.not_subscribing(role, keyexpr))
     if not bus.intersects(keys.published(), keyexpr):
         print(
             f"  note: semmap does not publish on '{keyexpr}', only other programs may; the keys of semmap are"

@@ -13,6 +13,7 @@ from semmap.nodes.extern.cli.common import (
     carry_options,
     drop_unset,
     frame_option,
+    placing_options,
     print_lines,
     vector_option,
     with_client,
@@ -36,7 +37,8 @@ _WAIT = click.option(
 
 @command(example="semmap move cup1 --at 2.5 1 0.75")
 @click.argument("name", shell_complete=entity_names)
-@vector_option("--at", metavar="X Y Z", required=True, help="New position of the bottom centre [m].")
+@vector_option("--at", metavar="X Y Z", help="New position of the bottom centre [m].")
+@placing_options
 @frame_option("Frame of --at and --yaw. Default: map")
 @yaw_option
 @carry_options

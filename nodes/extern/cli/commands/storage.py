@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import click
 
+from semmap.nodes.extern.backup import restore as restore_map
 from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import print_error, print_json, with_client
 from semmap.nodes.extern.cli.output.printable import print_escaped
-from semmap.nodes.extern.restore import restore as restore_map
 
 if TYPE_CHECKING:
     from semmap.nodes.extern.client import Client

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from datetime import date, datetime
 
 from semmap.schemas import wording
+from semmap.schemas.changes import earlier_names
 from semmap.schemas.explanations import Explanation
 from semmap.schemas.language import Found
 from semmap.schemas.map_history import Difference
@@ -57,7 +58,7 @@ def format_commit_changes(commit: LoggedCommit) -> str:
     for change in commit.changes:
         about.setdefault(change.name, []).append(change.text)
     shown = [f"{name}: {'; '.join(texts)}" for name, texts in list(about.items())[:_FEW_ENTITIES]]
-    touched = len({*commit.changed, *commit.removed})
+    touched = len({*commit.changed, *commit.removed} - earlier_names(commit.changes))
     if touched > len(shown):
         shown.append(f"{touched - len(shown)} more" if shown else wording.entities(touched))
     if commit.tbox:

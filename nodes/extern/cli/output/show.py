@@ -10,12 +10,14 @@ from rich.table import Table
 from rich.text import Text
 from rich.tree import Tree
 
+from semmap.nodes.extern.cli.output.lines import format_commit_changes
 from semmap.nodes.extern.cli.output.printable import escaped
 from semmap.nodes.extern.cli.output.tables import card, printable, table
 from semmap.nodes.extern.phrasing import (
     author,
     english,
     labelled,
+    moment,
     pose_cells,
     pose_text,
     provenance_text,
@@ -29,7 +31,7 @@ from semmap.schemas.entities import ClassInfo, Entity, PropertyInfo, Value
 from semmap.schemas.frames import Frame
 from semmap.schemas.joints import in_words
 from semmap.schemas.relations import Described, Relation
-from semmap.schemas.replies import SystemStatus
+from semmap.schemas.replies import LoggedCommit, Sighting, SystemStatus
 
 _WIDE = 100_000
 _LEVEL = 1e-3
@@ -287,3 +289,34 @@ def _grow(tree: Tree, parent: str, children: dict[str, list[str]], by_name: dict
 def _model(e: Entity) -> str:
     model = (e.body.model if e.body is not None else "") or e.model or "a box"
     return f"{model} (property model)" if "model" in e.properties else model
+
+
+def history_table(commits: Iterable[LoggedCommit]) -> Table:
+    """Return a table with one row per commit, and one per note."""
+    columns = ("commit", "time", "author", "reason", "confidence", "changes")
+    rows = table(*columns, fold=("author", "reason", "changes"))
+    rows.columns[0].justify = "right"
+    for c in commits:
+        rows.add(
+            str(c.seq),
+            moment(c.stamp_ns),
+            author(c),
+            c.reason,
+            "" if c.confidence is None else f"{c.confidence:.2f}",
+            format_commit_changes(c),
+        )
+        for note in c.notes:
+            rows.add("", "", "", "", "", f"note: {note}")
+    return rows
+
+
+def sighting_card(s: Sighting) -> Table:
+    """Return the last known pose of an entity, with its source."""
+    rows = {"name": s.name, "where": pose_text(s.pose), "last change": provenance_text(s.provenance)}
+    if s.removed is not None:
+        rows["removed"] = provenance_text(s.removed)
+    if s.seen_ns is not None:
+        rows["last observed"] = moment(s.seen_ns)
+    if s.removed is None or s.gone is not None:  # otherwise the row `removed` has the status
+        rows["status"] = s.text
+    return card(rows)
