@@ -101,6 +101,8 @@ class ClauseReader:
             elif length := self._g.match("negation", self._words, i):
                 negated = True
                 i += length
+            elif self._words[i : i + 2] == ("there", "you"):
+                i += 1  # there you will find Anna
             elif wish := self._wish(i):
                 i = self._wished(i, wish)
                 self.found.clauses[-1].times += times
@@ -288,8 +290,8 @@ class ClauseReader:
                 words[i + 1] in ("can", "may", "might", "will", "should", "could", "'ll")
                 and words[i + 2] in ("find", "meet", "see", "spot", "probably", "likely", "also", "surely")
             ) or (words[i + 1] in ("find",))
-        if words[i : i + 1] == ("there",) and i + 1 < len(words) and g.is_a(words[i + 1], "be"):
-            return True
+        if words[i : i + 1] == ("there",) and i + 2 < len(words):
+            return g.is_a(words[i + 1 + g.is_a(words[i + 1], "modal")], "be")
         if self._states_place(i):
             return True
         subject = i < len(words) and (
@@ -450,8 +452,19 @@ class ClauseReader:
             self.found.unknown.append(self._words[i])
         if self._g.match("polite", self._words, i) < end - i:
             self.found.unused.append(text)
-        self._mention(i)
+        self._mention_all(i, end)
         return end
+
+    def _mention_all(self, i: int, end: int) -> None:
+        """Note the things and persons from `i` to before `end`, to which a later pronoun may refer."""
+        while i < end:
+            phrase = self._np.read(i)
+            if phrase is None or phrase.end <= i:
+                i += 1
+                continue
+            if phrase.kind == "person" or (phrase.key and phrase.determiner):
+                self.found.context.append((len(self.found.clauses), phrase))
+            i = phrase.end
 
     def _mention(self, i: int) -> None:
         """Note the person at `i`, to whom a later pronoun may refer."""
@@ -525,6 +538,11 @@ class ClauseReader:
                 and not self._t.is_mark(i + 1)
             ):
                 i = self._coordinate(clause, i, phrase)
+            elif (length := g.match("here", words, i)) and (phrase := self._np.read(i)) is not None:
+                if "to" in roles or "place" in roles:
+                    role = roles.get("to") or roles["place"]
+                    clause.roles.append(Role(role, i, phrase.end, phrase.head, [phrase]))
+                i = phrase.end
             elif length := g.match("manner", words, i):
                 clause.roles.append(Role("Manner", i, i + length, i))
                 i += length
@@ -587,6 +605,16 @@ class ClauseReader:
             return
         if clause.verb.lower() == "show" and phrase.noun == "way":
             return  # show Anna the way to the kitchen
+        first = clause.role(role)
+        if (
+            len(objects) == 2
+            and first is not None
+            and first.phrases[0].kind == "speaker"
+            and "receiver" not in roles
+        ):
+            clause.roles.remove(first)  # find me a cup
+        if clause.frame == "Motion" and self._is_person(phrase) and clause.verb.lower() in ("walk", "drive"):
+            clause.frame, role = "Guiding", "Cotheme"  # walk Anna to the sofa
         if phrase.kind == "robot" and clause.frame not in ("Introducing",) and "object" in roles:
             return
         if (
@@ -859,7 +887,7 @@ class ClauseReader:
         if (
             phrase is not None
             and phrase.owner is not None
-            and phrase.owner.kind != "speaker"
+            and phrase.owner.kind not in ("speaker", "pronoun")
             and g.is_a(words[phrase.head], "property")
             and self._is_topic(phrase.owner)
         ):
@@ -973,7 +1001,10 @@ class ClauseReader:
             clause.roles.append(Role("Topic", j, topic.end, topic.head, [topic]))
             return self._addressed(clause, topic.end)
         if (
-            text == "which" and not self._t.is_mark(j) and not g.is_a(words[j], "be")
+            text in ("which", "what")
+            and not self._t.is_mark(j)
+            and not g.is_a(words[j], "be")
+            and not g.is_a(words[j], "property")
         ):  # which drinks are on the desk
             topic = self._np.read(j)
             if topic is not None and self._is_topic(topic):
@@ -982,12 +1013,11 @@ class ClauseReader:
                 clause.roles.append(Role("Topic", j, topic.end, topic.head, [topic]))
                 return self._addressed(clause, topic.end)
         if text == "who" and j < len(words) and g.is_a(words[j], "be"):
-            end = j + 1
-            if place := self._np.read_place(end):
-                phrase = NounPhrase(i, place.end, i, "person", "who", places=[place], determiner="the")
+            topic = self._predicate(NounPhrase(i, j, i, "person", "who", determiner="the", is_plural=True))
+            if topic.places or topic.attributes:
                 clause.roles.append(Role("Message", i, j, i))
-                clause.roles.append(Role("Topic", i, place.end, i, [phrase]))
-                return self._addressed(clause, place.end)
+                clause.roles.append(Role("Topic", i, topic.end, i, [topic]))
+                return self._addressed(clause, topic.end)
         if text in ("what", "which", "who", "where") and j < len(words) and g.is_a(words[j], "be"):
             topic = self._np.read(j + 1)
             if (
@@ -1091,15 +1121,7 @@ class ClauseReader:
                 g.is_a(words[j], "be") or g.is_a(words[j], "have") or words[j] in ("do", "does", "can")
             ):
                 j += 1
-                while words[j : j + 1] in (
-                    ("there",),
-                    ("you",),
-                    ("see",),
-                    ("currently",),
-                    ("i",),
-                    ("find",),
-                    ("we",),
-                ):
+                while j < len(words) and g.is_a(words[j], "after_auxiliary"):
                     j += 1
             if j == i:
                 return phrase
@@ -1237,7 +1259,8 @@ class ClauseReader:
                 j += 1
             clause.verb, j = words[j], j + 1
         elif words[i] == "there":
-            clause.verb, j = self._t.between(i, i + 2), i + 2
+            j = i + 2 + g.is_a(words[i + 1], "modal")
+            clause.verb = self._t.between(i, j)
         phrase = self._np.read(j)
         if phrase is None:
             return self._unread(i)

@@ -136,7 +136,10 @@ class Meanings:
             sense = self._nouns.describing.sense(tuple(place.preposition.split())).get("relations")
             if sense is None or sense in _FROM_VIEWER or sense == "outside":
                 return None
-            relations = (sense,) if sense != "at" else relations
+            if sense in ("isNear", "isNextTo"):  # around the rack may also be on it
+                relations = (sense, *relations) if sense == "isNear" else (sense,)
+            elif sense != "at":
+                relations = (sense,)
         return [
             name
             for name in names
@@ -258,7 +261,10 @@ class Meanings:
             and not phrase.superlative
             and not is_any
         ):
-            exact = [name for name in names if self._index.is_exact_match(name, phrase.key, "english")]
+            labelled = self._nouns.exact.get(phrase.key, {})
+            exact = [name for name in names if name in labelled] or [
+                name for name in names if self._index.is_exact_match(name, phrase.key, "english")
+            ]
             names = exact or names
         if phrase.superlative and names and not is_open:
             names = self._ordered(names, phrase)

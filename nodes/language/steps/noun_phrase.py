@@ -283,6 +283,8 @@ class NounPhraseReader:
                 break
             if seen and (g.is_a(word, "posture") or g.is_a(word, "particle") or word in _ALWAYS_VERBS):
                 break
+            if seen and g.is_a(word, "stative"):
+                break
             if i > start and self._is_bare_name(start) and not self._t.tokens[i].is_capital:
                 break  # let ANNA know
             if seen and word.endswith("s") and (word[:-1],) in g.verbs:
@@ -452,7 +454,9 @@ class NounPhraseReader:
             elif g.is_a(words[i], "relative") and i + 1 < len(words):
                 if not self._relative(phrase, i, with_places):
                     return
-            elif phrase.noun == "whoever" and g.is_a(words[i], "be"):
+            elif (phrase.noun == "whoever" or phrase.determiner in ("whatever", "whichever")) and g.is_a(
+                words[i], "be"
+            ):
                 if not self._relative(phrase, i - 1, with_places):
                     return
             elif phrase.superlative and words[i] == "from" and (length := self._counted_from(i)):
@@ -487,7 +491,7 @@ class NounPhraseReader:
     def _place(self, i: int, negated: bool = False) -> PlacePhrase | None:
         """Return the place phrase that begins at `i`, or None."""
         length = self._g.match("place", self._words, i)
-        if not length or self._starts_time(i):
+        if not length or self._starts_time(i) or self._g.match("here", self._words, i):
             return None
         preposition = " ".join(self._words[i : i + length])
         other = self.read(i + length)

@@ -73,7 +73,10 @@ class _StepReader:
                     meaning.names,
                     meaning.description,
                 )
-                self._mentions.append(_Mention(0, "", filler, True, phrase.is_plural, False))
+                mention = _Mention(
+                    0, "", filler, meaning.is_person, phrase.is_plural, meaning.is_place, phrase
+                )
+                self._mentions.append(mention)
             found.steps.append(self._step(clause, len(found.steps) + 1))
         found.unknown = list(dict.fromkeys(parsed.unknown))
         found.asks = any(clause.asks for clause in parsed.clauses)
@@ -89,6 +92,7 @@ class _StepReader:
         roles: dict[str, tuple[Filler, ...]] = {}
         mentions: list[_Mention] = []
         where = self._where(clause)
+        self._guide(clause)
         for role in clause.roles:
             fillers = tuple(self._fillers(clause, role, number, where, mentions))
             roles[role.role] = (*roles.get(role.role, ()), *fillers)
@@ -101,6 +105,21 @@ class _StepReader:
             "; ".join(dict.fromkeys(clause.conditions)),
             "; ".join(dict.fromkeys(clause.times)),
         )
+
+    def _guide(self, clause: Clause) -> None:
+        """Change the frame of *take them to the kitchen* if a pronoun refers to a person."""
+        theme = clause.role("Theme")
+        if clause.frame not in self._g.persons or theme is None or not theme.phrases:
+            return
+        phrase = theme.phrases[0]
+        if phrase.kind == "pronoun" and not self._g.is_a(phrase.noun, "person_pronoun"):
+            antecedent = self._antecedent(phrase, clause, theme, [])
+            if (
+                antecedent is not None
+                and antecedent.is_person
+                and (clause.role("Goal") or clause.role("Source"))
+            ):
+                clause.frame, theme.role = self._g.persons[clause.frame], "Cotheme"
 
     def _where(self, clause: Clause) -> list[PlacePhrase]:
         """Return where the object of a clause is, by its Source or Ground."""
@@ -123,6 +142,9 @@ class _StepReader:
             first = role.first if k == 0 else phrase.first
             end = role.end if k == len(role.phrases) - 1 else phrase.end
             text, head = self._t.between(first, end), words[phrase.head]
+            if phrase.noun == "there" and role.role in _PLACES:
+                yield self._there(text, head, number)
+                continue
             if phrase.kind in ("speaker", "robot", "here"):
                 yield Filler(text, head)
                 continue
@@ -168,6 +190,16 @@ class _StepReader:
             if (like := next(before, None)) is not None:
                 noun = like.noun.rpartition(" ")[2]  # of "red cup" only "cup"
                 phrase.noun, phrase.key = noun, self._meanings.key(noun)
+
+    def _there(self, text: str, head: str, number: int) -> Filler:
+        """Return the filler for *there*: the last place that was mentioned."""
+        before = (m for m in reversed(self._mentions) if m.is_place and m.step != number)
+        place = next(before, None)
+        if place is None:
+            self._found.doubts.append("'there' refers to no place that was mentioned")
+            return Filler(text, head)
+        refers = Antecedent(place.step, place.role) if place.step else None
+        return Filler(text, head, place.filler.entities, place.filler.description, refers)
 
     def _note(self, clause: Clause, meaning: Meaning) -> None:
         self._found.doubts += meaning.doubts
