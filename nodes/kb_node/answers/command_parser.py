@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import product
 
 from msgspec import structs
@@ -27,9 +27,15 @@ _MOST_WORDS = 200  # per command: a minute of speech
 class CommandParser:
     """Parses commands and resolves them against the map. Owned by the node's thread."""
 
-    def __init__(self, semantic_map: SemanticMap, search: EntitySearch) -> None:
-        """Create a parser; `search` resolves descriptions and formulates clarification questions."""
-        self._map, self._search = semantic_map, search
+    def __init__(
+        self, semantic_map: SemanticMap, search: EntitySearch, seen: Callable[[str], str] = lambda name: ""
+    ) -> None:
+        """Create a parser.
+
+        `search` resolves descriptions and formulates clarification questions. `seen` returns in words when an
+        entity was last seen.
+        """
+        self._map, self._search, self._seen = semantic_map, search, seen
         self._lexicon = lexicon.load()
         self._classes: ClassTable | None = None
         self._vocabulary: Vocabulary | None = None
@@ -60,7 +66,7 @@ class CommandParser:
 
     def _with_steps(self, text: str, found: Understood) -> Understood:
         """Add the steps; if there are any, doubts, unknown verbs and questions are about them."""
-        with self._search.world(self._there().vocabulary.above) as world:
+        with self._search.world(self._there().vocabulary.above, self._seen) as world:
             read = read_steps(text, world)
         if not read.steps:
             return structs.replace(
@@ -75,6 +81,7 @@ class CommandParser:
             question=" ".join(questions),
             doubts=tuple(read.doubts),
             unknown=tuple(read.unknown),
+            answer="; ".join(read.answers),
         )
 
     def _doubts(self, frame: SemanticFrame) -> Iterator[str]:

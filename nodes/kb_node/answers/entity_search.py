@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Callable, Iterator, Mapping, Set
 from contextlib import contextmanager
 from itertools import islice
 from typing import Final, NamedTuple
@@ -109,12 +109,16 @@ class EntitySearch:
             return clarification.clarifying_question(names, Resolver(self.known(), around, language))
 
     @contextmanager
-    def world(self, above: Mapping[str, frozenset[str]]) -> Iterator[World]:
-        """Yield the map as commands need it; `above` maps the classes of the TBox to their superclasses."""
+    def world(self, above: Mapping[str, frozenset[str]], seen: Callable[[str], str]) -> Iterator[World]:
+        """Yield the map as commands need it.
+
+        `above` maps the classes of the TBox to their superclasses. `seen` returns in words when an entity was
+        last seen.
+        """
         space = self._map.places.space()
         around = RelationCache(space, None, self._map.derived_facts.suppressed_measurements)
         with space.caching():
-            yield World(self.known(), around, above, self.where)
+            yield World(self.known(), around, above, self.where, seen)
 
     def known(self) -> MapIndex:
         """Return the search items after the last commit; unchanged entities are not read again."""

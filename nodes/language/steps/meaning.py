@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -39,6 +40,7 @@ class World:
     geometry: MapGeometry
     above: Mapping[str, frozenset[str]]  # class -> its superclasses, itself among them
     where: Callable[[str], str]  # what an entity is on or in, in words
+    seen: Callable[[str], str]  # when an entity was last seen or placed, in words
 
 
 @dataclass(slots=True)
@@ -449,7 +451,9 @@ class Meanings:
         size = self._world.geometry.size
         if superlative in _BY_MASS:
             masses = {name: self._index.items[name].values.get("mass", frozenset()) for name in names}
-            return _BY_MASS[superlative], {name: _number(mass) for name, mass in masses.items()}
+            return _BY_MASS[superlative], {
+                name: number for name, mass in masses.items() if (number := number_of(mass)) is not None
+            }
         sizes = {name: s for name in names if (s := size(name)) is not None}
         if superlative in _BY_THICKNESS:
             return _BY_THICKNESS[superlative], {name: min(s) for name, s in sizes.items()}
@@ -496,14 +500,12 @@ class Meanings:
         )
 
 
-def _number(values: frozenset[object]) -> float:
-    """Return the only number among the values, or infinity."""
+def number_of(values: frozenset[object]) -> float | None:
+    """Return the number among the values of a property, or None."""
     for value in values:
-        if isinstance(value, int | float):
+        if isinstance(value, int | float) and not isinstance(value, bool):
             return float(value)
         if isinstance(value, str):
-            try:
+            with suppress(ValueError):
                 return float(value)
-            except ValueError:
-                continue
-    return math.inf
+    return None

@@ -8,6 +8,7 @@ from typing import Final
 
 from semmap.nodes.language.lexicon import commands
 from semmap.nodes.language.steps import tokens
+from semmap.nodes.language.steps.answers import answer
 from semmap.nodes.language.steps.clauses import Clause, ClauseReader, Role
 from semmap.nodes.language.steps.meaning import Meaning, Meanings, Names, World
 from semmap.nodes.language.steps.noun_phrase import NounPhrase, PlacePhrase
@@ -24,13 +25,13 @@ _PLACES: Final = frozenset(("Goal", "Source", "Ground", "Location", "Path"))
 
 @dataclass(slots=True)
 class Steps:
-    """The steps of a command, the sets of entities of which one is meant, doubts and unknown verbs."""
+    """The steps of a command, the sets of entities of which one is meant, doubts and answers."""
 
     steps: list[CommandStep] = field(default_factory=list)
     ambiguous: list[Names] = field(default_factory=list)
     doubts: list[str] = field(default_factory=list)
     unknown: list[str] = field(default_factory=list)
-    asks: bool = False
+    answers: list[str] = field(default_factory=list)
 
 
 @dataclass(slots=True)
@@ -79,7 +80,6 @@ class _StepReader:
                 self._mentions.append(mention)
             found.steps.append(self._step(clause, len(found.steps) + 1))
         found.unknown = list(dict.fromkeys(parsed.unknown))
-        found.asks = any(clause.asks for clause in parsed.clauses)
         for condition in dict.fromkeys(text for clause in parsed.clauses for text in clause.conditions):
             found.doubts.append(f"'{condition}' is a condition; it is not checked")
         for time in dict.fromkeys(text for clause in parsed.clauses for text in clause.times):
@@ -165,7 +165,10 @@ class _StepReader:
                 owner=owner,
             )
             filler = Filler(text, head, meaning.names, meaning.description)
-            self._note(clause, meaning)
+            self._note(meaning)
+            if role.role == "Topic" and (message := clause.role("Message")) is not None:
+                asked = self._t.between(message.first, message.end).lower()
+                self._found.answers.append(answer(asked, words[message.head], text, meaning, self._world))
             mentions.append(
                 _Mention(
                     number,
@@ -201,7 +204,7 @@ class _StepReader:
         refers = Antecedent(place.step, place.role) if place.step else None
         return Filler(text, head, place.filler.entities, place.filler.description, refers)
 
-    def _note(self, clause: Clause, meaning: Meaning) -> None:
+    def _note(self, meaning: Meaning) -> None:
         self._found.doubts += meaning.doubts
         if meaning.ambiguous:
             self._found.ambiguous.append(meaning.names)

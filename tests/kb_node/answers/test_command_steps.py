@@ -226,6 +226,29 @@ def test_superlatives_stay_in_the_description(read, text, entities, superlative)
     assert entities is None or theme.entities == entities
 
 
+@pytest.mark.parametrize(
+    ("text", "answer"),
+    [
+        ("how many plates are on the table?", "2: plate1, plate2"),
+        ("tell me how many cups are in the oven", "0: 'cups are in the oven': none is known; look there"),
+        ("who is in the kitchen?", "nora1"),
+        ("where is the kettle?", "kettle1 is on counter1"),
+        ("what color is the fridge?", "fridge1: color white"),
+        ("is the kettle on the desk?", "no: kettle1 is on counter1"),
+        ("is the kettle in the kitchen?", "yes: kettle1"),
+        ("what is the name of the person in the kitchen?", "nora1: name Nora"),
+        ("tell me the pose of Nora", "'of Nora': the map does not have the pose; look there"),
+        (
+            "how many people in the kitchen are waving?",
+            "'people in the kitchen are waving': the map cannot tell; look there",
+        ),
+    ],
+)
+def test_a_question_is_answered_from_the_map_or_one_has_to_look(read, text, answer):
+    understood = read(text)
+    assert (understood.answer, understood.doubts) == (answer, ())
+
+
 @pytest.mark.parametrize("text", ["how are you", "what a day", "I took the kettle", "hi"])
 def test_another_text_than_a_command_has_no_steps(read, text):
     assert read(text).steps == ()
