@@ -58,11 +58,16 @@ if TYPE_CHECKING:
     from semmap.schemas.joints import Joint
     from semmap.schemas.language import (
         Account,
+        Antecedent,
         Argument,
         Candidate,
+        CommandStep,
+        Filler,
         Found,
         Grounded,
+        PlaceRelation,
         SemanticFrame,
+        ThingDescription,
         Understood,
     )
     from semmap.schemas.map_history import Difference, Related, Spell, Spells
@@ -87,6 +92,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Account",
+    "Antecedent",
     "Argument",
     "BackupPart",
     "BadFile",
@@ -99,6 +105,7 @@ __all__ = [
     "Checked",
     "ClassInfo",
     "Client",
+    "CommandStep",
     "Commit",
     "Compacted",
     "Departed",
@@ -109,6 +116,7 @@ __all__ = [
     "Entity",
     "Explanation",
     "Extent",
+    "Filler",
     "Found",
     "Frame",
     "Grounded",
@@ -127,6 +135,7 @@ __all__ = [
     "Outline",
     "Picture",
     "PlaceChanges",
+    "PlaceRelation",
     "Plan",
     "PlannedPlace",
     "PlannedThing",
@@ -151,6 +160,7 @@ __all__ = [
     "StandingQuery",
     "Step",
     "SystemStatus",
+    "ThingDescription",
     "Understood",
     "UnknownClass",
     "UnknownName",
@@ -229,6 +239,11 @@ _NAMES_OF: Final = {
     "schemas.joints": ("Joint",),
     "schemas.language": (
         "Account",
+        "Antecedent",
+        "CommandStep",
+        "Filler",
+        "PlaceRelation",
+        "ThingDescription",
         "Argument",
         "Candidate",
         "Found",

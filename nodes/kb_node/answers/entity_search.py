@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Set
+from collections.abc import Callable, Iterator, Mapping, Set
+from contextlib import contextmanager
 from itertools import islice
 from typing import Final, NamedTuple
 
@@ -26,6 +27,7 @@ from semmap.nodes.language.reference_resolution.map_index import Item, MapIndex,
 from semmap.nodes.language.reference_resolution.missing import Missing, missing
 from semmap.nodes.language.reference_resolution.resolution import find
 from semmap.nodes.language.reference_resolution.resolver import Resolver
+from semmap.nodes.language.steps.meaning import World
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commands import Find, WasWhen
@@ -105,6 +107,18 @@ class EntitySearch:
         around = RelationCache(space, None, self._map.derived_facts.suppressed_measurements)
         with space.caching():
             return clarification.clarifying_question(names, Resolver(self.known(), around, language))
+
+    @contextmanager
+    def world(self, above: Mapping[str, frozenset[str]], seen: Callable[[str], str]) -> Iterator[World]:
+        """Yield the map as commands need it.
+
+        `above` maps the classes of the TBox to their superclasses. `seen` returns in words when an entity was
+        last seen.
+        """
+        space = self._map.places.space()
+        around = RelationCache(space, None, self._map.derived_facts.suppressed_measurements)
+        with space.caching():
+            yield World(self.known(), around, above, self.where, seen)
 
     def known(self) -> MapIndex:
         """Return the search items after the last commit; unchanged entities are not read again."""

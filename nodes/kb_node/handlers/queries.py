@@ -103,7 +103,7 @@ class QueryHandlers:
         self.live = LiveEntities(semantic_map)
         """Receives live poses."""
         self._search = EntitySearch(semantic_map)
-        self._parser = CommandParser(semantic_map, self._search)
+        self._parser = CommandParser(semantic_map, self._search, self._seen)
         self._then = entity_queries.PastState(semantic_map, self._past)
         self.sightings = Sightings(self._past)
         """Receives the observations of perception."""
@@ -304,6 +304,11 @@ class QueryHandlers:
                 return found
             return structs.replace(found, text=f"{found.text}; {describe_closed(closed)}")
         return self._aside.submit(self.sightings.describe_removed, query.name, entity)
+
+    def _seen(self, name: str) -> str:
+        """Return when an entity of the map was last seen or placed, in words."""
+        entity = self._map.find(name)
+        return "" if entity is None else self.sightings.describe_present(entity).text.partition(";")[0]
 
     def on_find(self, query: Find) -> Found | Future[Found]:
         """Return the entities that a description means.
