@@ -8,7 +8,6 @@ from msgspec import structs
 
 from semmap.nodes.kb_node.answers.search_vocabulary import item, terms
 from semmap.nodes.kb_node.entities.class_table import ClassTable
-from semmap.nodes.kb_node.relations.measuring.relation_table import PHRASES
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.viewing import View
 from semmap.nodes.kb_node.relations.relation_cache import RelationCache
@@ -23,6 +22,7 @@ from semmap.schemas import errors
 from semmap.schemas.commands import Find
 from semmap.schemas.entities import Entity
 from semmap.schemas.language import Found, Language
+from semmap.schemas.relations import PHRASES
 
 
 class SearchResult(NamedTuple):

@@ -9,13 +9,13 @@ from typing import Final
 
 from semmap.nodes.kb_node.answers.differences import find_spells
 from semmap.nodes.kb_node.answers.search_vocabulary import item
-from semmap.nodes.kb_node.relations.measuring.relation_table import PHRASES
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.language.reference_resolution.missing import Missing
 from semmap.schemas import errors
 from semmap.schemas.commands import WasWhen
+from semmap.schemas.relations import PHRASES
 
 _MOST: Final = 3
 """Sentences of each kind."""
