@@ -73,7 +73,7 @@ def explain_leaning(space: Space, solid: Solid, other: Solid, made: Measure | No
             f" its centre, at {centre}, is {beside} beside its base, so it would not stand alone"
         )
     if _is_balanced(solid, base):
-        return "it stands by itself: its centre is above its base"
+        return "it needs no support at its side: its centre is above its base"
     contacts = list(_list_contacts(space, solid, other))
     sideways = [height for _, normal, height, _ in contacts if abs(normal[2]) <= _STEEPEST]
     if not contacts:

@@ -146,23 +146,23 @@ LEANING = {
 }
 
 NOT_LEANING = {
-    "a box flush with a wall": ((WALL, box("a1", 0.0, (0.4, 0.4, 1.0))), "wall1", "it stands by itself"),
+    "a box flush with a wall": ((WALL, box("a1", 0.0, (0.4, 0.4, 1.0))), "wall1", "it needs no support at its side"),
     "a box flush with a box": (
         (box("wall1", -0.4, (0.4, 0.4, 1.0)), box("a1", 0.0, (0.4, 0.4, 1.0))),
         "wall1",
-        "it stands by itself",
+        "it needs no support at its side",
     ),
-    "a thin plank that stands upright": ((WALL, box("a1", 0.0, PLANK)), "wall1", "it stands by itself"),
+    "a thin plank that stands upright": ((WALL, box("a1", 0.0, PLANK)), "wall1", "it needs no support at its side"),
     "a plank that is hardly tilted": ((WALL, tilted("a1", PLANK, 3.0)), "wall1", "by less than 5°"),
     "a chair at a table": (
         (TABLE, thing("a1", (0.55, 0.0, 0.0), "chair", yaw=math.pi)),
         "table1",
-        "it stands by itself",
+        "it needs no support at its side",
     ),
     "a table at a wall": (
         (WALL, thing("a1", (0.4, 0.0, 0.0), "table")),
         "wall1",
-        "it stands by itself",
+        "it needs no support at its side",
     ),
     "a picture on a wall": (
         (WALL, thing("a1", (0.015, 0.0, 1.4), "picture")),
@@ -178,7 +178,7 @@ NOT_LEANING = {
     "a bottle that lies along a wall": (
         (WALL, thing("a1", (0.0404, -0.14, 0.0404), "bottle", turn=times(about_z(90.0), about_y(90.0)))),
         "wall1",
-        "it stands by itself",
+        "it needs no support at its side",
     ),
     "away from the wall": ((WALL, tilted("a1", PLANK, 20.0, gap=0.2)), "wall1", "they are 20.0 cm apart"),
     "tilted away from the wall": (
@@ -320,7 +320,7 @@ def test_the_explanation_has_the_numbers():
         " its centre, at 74.0 cm, is 12.0 cm beside its base, so it would not stand alone"
     )
     back = explained((WALL, tilted("a1", PLANK, 10.0)), "a1", "wall1")
-    assert back.text == "wall1 is not leaning against a1: it stands by itself: its centre is above its base"
+    assert back.text == "wall1 is not leaning against a1: it needs no support at its side: its centre is above its base"
 
 
 def test_the_wall_reports_what_leans_against_it():
