@@ -69,7 +69,7 @@ def explain_leaning(space: Space, solid: Solid, other: Solid, made: Measure | No
         tilt, height = f"{math.degrees(lean.tilt_rad):.1f}°", format_length(lean.height_m)
         beside = format_length(distance([solid.centre[:2]], base))
         return (
-            f"it is tilted by {tilt} towards {name} and meets it at a height of {height};"
+            f"it leans over by {tilt} from its base to {name}, which it meets at a height of {height};"
             f" its centre, at {centre}, is {beside} beside its base, so it would not stand alone"
         )
     if _is_balanced(solid, base):

@@ -145,24 +145,25 @@ LEANING = {
     ),
 }
 
+STANDS = "it needs no support at its side"
 NOT_LEANING = {
-    "a box flush with a wall": ((WALL, box("a1", 0.0, (0.4, 0.4, 1.0))), "wall1", "it needs no support at its side"),
+    "a box flush with a wall": ((WALL, box("a1", 0.0, (0.4, 0.4, 1.0))), "wall1", STANDS),
     "a box flush with a box": (
         (box("wall1", -0.4, (0.4, 0.4, 1.0)), box("a1", 0.0, (0.4, 0.4, 1.0))),
         "wall1",
-        "it needs no support at its side",
+        STANDS,
     ),
-    "a thin plank that stands upright": ((WALL, box("a1", 0.0, PLANK)), "wall1", "it needs no support at its side"),
+    "a thin plank that stands upright": ((WALL, box("a1", 0.0, PLANK)), "wall1", STANDS),
     "a plank that is hardly tilted": ((WALL, tilted("a1", PLANK, 3.0)), "wall1", "by less than 5°"),
     "a chair at a table": (
         (TABLE, thing("a1", (0.55, 0.0, 0.0), "chair", yaw=math.pi)),
         "table1",
-        "it needs no support at its side",
+        STANDS,
     ),
     "a table at a wall": (
         (WALL, thing("a1", (0.4, 0.0, 0.0), "table")),
         "wall1",
-        "it needs no support at its side",
+        STANDS,
     ),
     "a picture on a wall": (
         (WALL, thing("a1", (0.015, 0.0, 1.4), "picture")),
@@ -178,7 +179,7 @@ NOT_LEANING = {
     "a bottle that lies along a wall": (
         (WALL, thing("a1", (0.0404, -0.14, 0.0404), "bottle", turn=times(about_z(90.0), about_y(90.0)))),
         "wall1",
-        "it needs no support at its side",
+        STANDS,
     ),
     "away from the wall": ((WALL, tilted("a1", PLANK, 20.0, gap=0.2)), "wall1", "they are 20.0 cm apart"),
     "tilted away from the wall": (
@@ -316,11 +317,12 @@ def test_both_walls_of_a_corner_and_both_cards():
 def test_the_explanation_has_the_numbers():
     found = explained((WALL, tilted("a1", PLANK, 10.0)), "wall1")
     assert found.text == (
-        "a1 is leaning against wall1: it is tilted by 10.0° towards wall1 and meets it at a height of 1.48 m;"
-        " its centre, at 74.0 cm, is 12.0 cm beside its base, so it would not stand alone"
+        "a1 is leaning against wall1: it leans over by 10.0° from its base to wall1, which it"
+        " meets at a height of 1.48 m; its centre, at 74.0 cm, is 12.0 cm beside its base,"
+        " so it would not stand alone"
     )
     back = explained((WALL, tilted("a1", PLANK, 10.0)), "a1", "wall1")
-    assert back.text == "wall1 is not leaning against a1: it needs no support at its side: its centre is above its base"
+    assert back.text == f"wall1 is not leaning against a1: {STANDS}: its centre is above its base"
 
 
 def test_the_wall_reports_what_leans_against_it():
