@@ -13,7 +13,6 @@ from msgspec import structs
 from semmap.nodes.kb_node.answers.past.differences import find_spells
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
-from semmap.nodes.kb_node.relations.measuring.relation_table import PHRASES
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.relations.measuring.viewing import View
@@ -33,6 +32,7 @@ from semmap.schemas import errors
 from semmap.schemas.commands import Find, WasWhen
 from semmap.schemas.entities import Entity
 from semmap.schemas.language import Found, Language
+from semmap.schemas.relations import PHRASES
 
 _HAS_AFFORDANCE = v.dm("hasAffordance")
 _MOST: Final = 3

@@ -1,5 +1,7 @@
 """Search by description in the shipped flat, and for entities that are missing."""
 
+import math
+
 import pytest
 from msgspec import structs
 
@@ -11,7 +13,7 @@ from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commands import Find
-from semmap.schemas.commits import Transaction
+from semmap.schemas.commits import NewEntity, Transaction
 from semmap.schemas.entities import Pose
 from tests.kb_node.reasoner.graphs import household
 from tests.kb_node.relations.entities import ROOM, TABLE
@@ -136,6 +138,41 @@ def test_an_object_without_other_support_is_on_the_floor(flat):
     assert names(EntitySearch(flat).find(Find(text="the ball on the floor")).found) == {"ball1"}
     assert names(EntitySearch(flat).find(Find(text="la palla sul pavimento")).found) == {"ball1"}
     assert EntitySearch(flat).find(Find(text="the bowl on the floor")).found.outcome == "none"
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("the broom leaning against the wall", {"broom1"}),
+        ("the broom that leans against the wall", {"broom1"}),
+        ("what is leaning on the wall?", {"broom1"}),
+        ("the broom that is not leaning against the wall", {"broom2"}),
+        ("the wall leaning against the broom", set()),
+        ("la scopa appoggiata al muro", {"broom1"}),
+        ("la scopa appoggiata contro la parete", {"broom1"}),
+        ("la scopa appoggiata sul muro", set()),
+    ],
+)
+def test_what_leans_is_found_in_both_languages(flat, text, meant):
+    lean = math.radians(12.0)
+    half, foot = lean / 2, 3.0 + 1.35 * math.sin(lean) + 0.035 * math.cos(lean)
+    turn = (math.cos(half), 0.0, -math.sin(half), 0.0)
+    leaning = Pose(position_m=(foot, 2.0, 0.035 * math.sin(lean)), orientation_wxyz=turn)
+    things = (
+        ("wall1", "Wall", Pose(position_m=(2.95, 2.0, 0.0)), (0.1, 1.0, 2.5)),
+        ("broom1", "Broom", leaning, (0.07, 0.32, 1.35)),
+        ("broom2", "Broom", Pose(position_m=(3.036, 2.4, 0.0)), (0.07, 0.32, 1.35)),
+    )
+    add = tuple(
+        NewEntity(name=name, class_iri=v.bare(v.dm(kind)), pose=pose, size=size)
+        for name, kind, pose, size in things
+    )
+    flat.commit(Transaction(id="1", source="operator", add=add))
+    found = EntitySearch(flat).find(Find(text=text)).found
+    assert names(found) == meant, found
+    if meant == {"broom1"}:
+        (candidate,) = found.candidates
+        assert "leaning against wall1" in candidate.reasons
 
 
 def test_entities_that_are_not_listed_are_counted(flat):

@@ -10,30 +10,16 @@ from msgspec import Struct
 from semmap.nodes.extern.phrasing import changed_in_short
 from semmap.nodes.extern.web.differences import Difference, Mark
 from semmap.schemas.entities import Entity, Pose, Size, Vector
-from semmap.schemas.relations import Relation, RelationName
+from semmap.schemas.relations import PHRASES, SIDES, Relation, RelationName
 
-_WORDS: Final[dict[RelationName, tuple[str, bool]]] = {
-    "isOn": ("on", False),
-    "isInside": ("inside", False),
-    "isLocatedIn": ("in", False),
-    "isAttachedTo": ("attached to", False),
-    "touches": ("touches", False),
-    "isUnder": ("under", True),
-    "isAbove": ("above", True),
-    "isNear": ("near", True),
-    "isNextTo": ("next to", True),
-    "isLeftOf": ("left of", True),
-    "isRightOf": ("right of", True),
-    "isInFrontOf": ("in front of", True),
-    "isBehind": ("behind", True),
-    "isBetween": ("between", False),
-    "isVisibleFrom": ("visible from", False),
-}
-"""The text of each relation, and whether its distance is shown."""
+_WORDS: Final = {name: phrase.removeprefix("is ") for name, phrase in PHRASES.items()}
+_WITH_DISTANCE: Final = frozenset((*SIDES, "isUnder", "isAbove", "isNear", "isNextTo"))
+"""The relations whose distance is shown."""
 _IMPLIED: Final[dict[RelationName, frozenset[RelationName]]] = {
     "isOn": frozenset(("isNear", "isNextTo", "touches", "isAbove", "isUnder")),
     "isInside": frozenset(("isNear", "isNextTo", "touches", "isUnder", "isAbove")),
     "isAttachedTo": frozenset(("isNear", "isNextTo", "touches")),
+    "isLeaningAgainst": frozenset(("isNear", "isNextTo", "touches")),
     "isNextTo": frozenset(("isNear",)),
 }
 """Relations that are implied by another one, and thus not shown with it."""
@@ -75,10 +61,9 @@ def _text(name: str, relations: list[Relation]) -> str:
 
 
 def _words(name: str, relation: Relation) -> str:
-    words, has_distance = _WORDS[relation.relation]
     subject = "" if relation.subject == name else f"{relation.subject} "
-    distance = f" {_distance(relation.gap_m)}" if has_distance else ""
-    return f"{subject}{words}{distance}"
+    distance = f" {_distance(relation.gap_m)}" if relation.relation in _WITH_DISTANCE else ""
+    return f"{subject}{_WORDS[relation.relation]}{distance}"
 
 
 def _distance(metres: float) -> str:

@@ -12,7 +12,6 @@ from semmap.nodes.kb_node.answers.past.fact_intervals import PoseChanges, find_i
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact, Facts
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring.relation_table import PHRASES
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.relations.selection import is_in, is_on, resolve_single
@@ -23,7 +22,7 @@ from semmap.schemas.changes import Change, between, removed
 from semmap.schemas.commands import Diff, WasWhen
 from semmap.schemas.entities import Entity
 from semmap.schemas.map_history import Difference, KeptRelation, Related, Spell, Spells
-from semmap.schemas.relations import RelationName
+from semmap.schemas.relations import PHRASES, RelationName
 
 _KEPT: Final[dict[RelationName, KeptRelation]] = {name: name for name in get_args(KeptRelation)}
 _LONGEST = 10
