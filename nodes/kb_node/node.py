@@ -56,7 +56,7 @@ class KnowledgeBase:
             self.map.all_derived,
             lambda: Placements(placed=self.map.placed(), limits=self.map.classes.limits),
         )
-        self.map.on_failure = node.stop
+        self.map.on_failure = node.stop_failed
         self.map.prepare = self._sparql.prepare
         self._location_queries = LocationQueries(self.map, RowPublisher(node.session).publish)
         self._queries = QueryHandlers(

@@ -7,6 +7,7 @@ import contextlib
 import hashlib
 import io
 import os
+import shutil
 import signal
 import socket
 import subprocess
@@ -22,6 +23,7 @@ from typing import Any
 from supervisor.xmlrpc import SupervisorTransport
 
 from semmap.nodes.runtime.notify import NOTIFY_VARIABLE
+from semmap.nodes.runtime.requests_in_work import IN_WORK_VARIABLE
 from semmap.nodes.supervisor import orphans, registry
 from semmap.nodes.supervisor.privacy import UMASK, make_private
 from semmap.nodes.supervisor.settings import SETTINGS, Settings
@@ -51,6 +53,7 @@ class Supervisor:
     def __init__(self, data: Path) -> None:
         self.data = data
         self.logs = data / "logs"
+        self._in_work = data / "in_work"
         self._settings_path = data / SETTINGS
         self._conf_path = data / "supervisord.conf"
 
@@ -77,6 +80,8 @@ class Supervisor:
     def start(self, settings: Settings, *, web_token: str = "") -> subprocess.Popen[bytes]:
         """Start supervisord and the nodes; `web_token` opens the page, and is not written to disk."""
         self.logs.mkdir(parents=True, exist_ok=True)
+        shutil.rmtree(self._in_work, ignore_errors=True)
+        self._in_work.mkdir(mode=0o700)
         self._settings_path.write_bytes(codec.encode_json(settings))
         self._conf_path.write_text(self._conf(settings))
         command = [
@@ -88,7 +93,11 @@ class Supervisor:
             "-c",
             str(self._conf_path),
         ]
-        environment = {**os.environ, NOTIFY_VARIABLE: str(self.notices)}
+        environment = {
+            **os.environ,
+            NOTIFY_VARIABLE: str(self.notices),
+            IN_WORK_VARIABLE: str(self._in_work.resolve()),
+        }
         if web_token:
             environment[WEB_TOKEN_VARIABLE] = web_token
         with (self.logs / "supervisord.out").open("wb") as out:
