@@ -19,7 +19,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Container, Iterator, Mapping
 from concurrent.futures import Future
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from itertools import count
 from typing import Any, TypeVar
@@ -409,24 +409,32 @@ class Node:
 
     def run(self) -> None:
         """Handle events until stopped, and one request between every two events."""
-        heartbeat = self._heartbeat
         while not self._stopping:
-            self.tick()
-            if self._take_request():
-                if not self._events.empty():
-                    self._guard(self._events.get())
-                continue
-            if self._events.empty():
-                for handle in self._idle:
-                    self._guard(handle)
-                if len(self._requests) and not self._is_immediate and self._has_room():
-                    continue
-            due_s = min(heartbeat.due_s, self._timers[0][0] if self._timers else math.inf)
-            wait_s = max(0.0, due_s - time.monotonic())
-            try:
-                self._guard(self._events.get(timeout=wait_s))
-            except queue.Empty:
-                continue
+            self._step()
+
+    def wait(self, pause_s: float) -> bool:
+        """Handle events for `pause_s`, and return whether the node is to go on; for waits before `ready`."""
+        until_s = time.monotonic() + pause_s
+        self.later(pause_s, _wake)
+        while not self._stopping and time.monotonic() < until_s:
+            self._step()
+        return not self._stopping
+
+    def _step(self) -> None:
+        self.tick()
+        if self._take_request():
+            if not self._events.empty():
+                self._guard(self._events.get())
+            return
+        if self._events.empty():
+            for handle in self._idle:
+                self._guard(handle)
+            if len(self._requests) and not self._is_immediate and self._has_room():
+                return
+        due_s = min(self._heartbeat.due_s, self._timers[0][0] if self._timers else math.inf)
+        wait_s = max(0.0, due_s - time.monotonic())
+        with suppress(queue.Empty):
+            self._guard(self._events.get(timeout=wait_s))
 
     def _handle_immediate(self, handle: _Work) -> None:
         self._is_immediate = False
@@ -523,7 +531,7 @@ class Node:
 
 
 def _wake() -> None:
-    """An event that only wakes the loop for a waiting request."""
+    """An event that only wakes the loop."""
 
 
 @contextmanager

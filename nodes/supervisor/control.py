@@ -78,12 +78,18 @@ class Supervisor:
         return codec.decode(self._settings_path.read_bytes(), Settings)
 
     def start(self, settings: Settings, *, web_token: str = "") -> subprocess.Popen[bytes]:
-        """Start supervisord and the nodes; `web_token` opens the page, and is not written to disk."""
-        self.logs.mkdir(parents=True, exist_ok=True)
-        shutil.rmtree(self._in_work, ignore_errors=True)
-        self._in_work.mkdir(mode=0o700)
-        self._settings_path.write_bytes(codec.encode_json(settings))
-        self._conf_path.write_text(self._conf(settings))
+        """Start supervisord and the nodes; `web_token` opens the page, and is not written to disk.
+
+        Raises BadFile if the data folder cannot be written.
+        """
+        try:
+            self.logs.mkdir(parents=True, exist_ok=True)
+            shutil.rmtree(self._in_work, ignore_errors=True)
+            self._in_work.mkdir(mode=0o700, exist_ok=True)
+            self._settings_path.write_bytes(codec.encode_json(settings))
+            self._conf_path.write_text(self._conf(settings))
+        except OSError as error:
+            raise self._cannot_store(error) from None
         command = [
             sys.executable,
             "-P",
@@ -121,7 +127,7 @@ class Supervisor:
             make_private(self.data)
             self._settings_path.write_bytes(codec.encode_json(settings))
         except OSError as error:
-            raise errors.BadFile(f"cannot store data in {self.data}: {error.strerror}") from None
+            raise self._cannot_store(error) from None
         command = [
             sys.executable,
             "-P",
@@ -146,6 +152,9 @@ class Supervisor:
             reason = stderr.strip().removeprefix("seed: ") or f"seeding failed with status {run.returncode}"
             raise (errors.BadFile if run.returncode == 2 else errors.Refused)(reason)
         return made.strip()
+
+    def _cannot_store(self, error: OSError) -> errors.BadFile:
+        return errors.BadFile(f"cannot store data in {self.data}: {error.strerror}")
 
     def is_running(self) -> bool:
         """Return whether it replies."""
