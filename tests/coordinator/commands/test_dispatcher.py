@@ -484,7 +484,7 @@ def in_their_turn(dispatcher: CommandDispatcher, changes: list) -> list:
         settle(future, lambda: dispatcher._ask(call))
         return future
 
-    turns = Scheduler(lambda group: run_async(dispatcher.run_together(group), ask_later))
+    turns = Scheduler(lambda group, _: run_async(dispatcher.run_together(group), ask_later))
     futures = [turns.change(change) for change in changes]
     turns.run_ready()
     return [future.exception() or future.result() for future in futures]
