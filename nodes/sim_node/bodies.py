@@ -50,11 +50,21 @@ class BodyRecord:
     """The body of a world file of which it is a part."""
     anchored: bool = False
     """Whether a joint or its parent body fixes it, so that it cannot be moved manually."""
+    body: str = ""
+    """Its name in MuJoCo, which can be invalid as the name of an entity; by default `name`."""
+    label: str = ""
+    """The words of its name, if they are not a label of its class."""
+    is_sure: bool = True
+    """Whether its name or the world file determines its class."""
     robot: bool = False
     held_by: str = ""
     grip: Pose | None = None
     """Its pose in the frame of the bottom centre of the body to which it is attached."""
     grip_commit: int = -1
+
+    def __post_init__(self) -> None:
+        """Set the name in MuJoCo."""
+        self.body = self.body or self.name
 
     @property
     def static(self) -> bool:
@@ -82,6 +92,8 @@ class BodyRecord:
             ),
             joint_commit=self.joint_commit,
             part_of=self.part_of,
+            body="" if self.body == self.name else self.body,
+            label=self.label,
             robot=self.robot,
             held_by=self.held_by,
             grip=self.grip,

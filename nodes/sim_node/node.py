@@ -78,7 +78,9 @@ class Simulator:
         classes = self._classes(config)
         if config.world is not None:
             node.describe(f"compiling the world {config.world.name}")
-        self._world = open_world(config.world, models, node.tick, classes, config.robot)
+        self._world = open_world(config.world, models, node.tick, classes, config.robot, config.class_map)
+        if config.is_truth:
+            node.note(self._world.notes)
         self._paused = config.still
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)
@@ -116,7 +118,7 @@ class Simulator:
         node.ready(self._summary())
 
     def _classes(self, config: SimConfig) -> ClassNames:
-        """Return the TBox's classes, if the world file names bodies by class."""
+        """Return the TBox's classes, if the world file needs them."""
         if not names_classes(config.world):
             return ClassNames()
         self._node.describe("waiting for the knowledge base")

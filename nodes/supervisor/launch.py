@@ -144,7 +144,21 @@ def _sim_node(settings: Settings) -> None:
     data = Path(settings.data)
     still = settings.replay is not None
     world, robot = Path(settings.world), _robot(settings)
-    run(SimConfig(world, models, settings.window, cameras, network, data, patience_s, still, robot))
+    run(
+        SimConfig(
+            world,
+            models,
+            settings.window,
+            cameras,
+            network,
+            data,
+            patience_s,
+            still,
+            robot,
+            settings.class_map,
+            settings.truth == "scene",
+        )
+    )
 
 
 def _perception_node(settings: Settings) -> None:

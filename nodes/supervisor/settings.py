@@ -92,6 +92,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     perception: bool = False
     when_gone: Literal["remove", "mark"] = "remove"
     """What to do with an entity that perception added and no longer sees."""
+    class_map: dict[str, str] = {}
+    """Maps names of bodies of the world file to classes."""
     label_map: dict[str, str] = {}
     """Maps labels of an external detector to classes."""
     web: bool = False

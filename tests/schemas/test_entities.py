@@ -5,7 +5,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from semmap.schemas.entities import NAME_PATTERN, Pose, angle_rad, distance_m, free_name, orientation_from_yaw
+from semmap.schemas.entities import (
+    NAME_PATTERN,
+    Pose,
+    angle_rad,
+    distance_m,
+    free_name,
+    is_name,
+    orientation_from_yaw,
+    valid_name,
+)
 
 YAWS = st.floats(-math.pi + 1e-6, math.pi)
 
@@ -49,3 +58,26 @@ def test_names_count_up_from_the_class():
 @given(st.text(min_size=1, max_size=30))
 def test_every_class_gives_a_valid_name(class_name):
     assert re.match(NAME_PATTERN, free_name(class_name, set()))
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("chair_3", "chair_3"),
+        ("mug 2", "mug_2"),
+        ("basket_1/base", "basket_1_base"),
+        ("Apple|+01.2", "Apple_01.2"),
+        ("Apple|-01.2", "Apple_-01.2"),
+        ("003_cracker_box", "_003_cracker_box"),
+        ("tazza caffè", "tazza_caffè"),
+        ("|+", "_"),
+        ("x" * 200, "x" * 120),
+    ],
+)
+def test_other_characters_of_a_name_become_underscores(text, name):
+    assert valid_name(text) == name
+    assert is_name(name)
+
+
+def test_a_taken_name_gets_a_number():
+    assert valid_name("mug 2", {"mug_2", "mug_2_2"}) == "mug_2_3"

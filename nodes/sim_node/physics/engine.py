@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, frame_of, pose_of
+from semmap.nodes.sim_node.body_classes import BodyClasses
 from semmap.nodes.sim_node.models.library import Model
 from semmap.nodes.sim_node.physics import attachments, base_scene, body_slots, build, sleep
 from semmap.nodes.sim_node.physics.body_slots import BodySlot
@@ -34,12 +35,11 @@ class Engine:
         self,
         ground: mujoco.MjSpec,
         while_waiting: Callable[[], None],
-        is_class: Callable[[str], bool] = lambda word: False,
+        classes: BodyClasses | None = None,
     ) -> None:
         """Compile the ground without bodies. `while_waiting` is called repeatedly, and may call `step`.
 
-        `is_class` returns whether a word names a class, which makes parts of the world's bodies separate
-        bodies.
+        `classes` finds the classes of the world's bodies, and which of their parts are separate bodies.
         """
         world = build.run_in_background(lambda: base_scene.prepare(ground), while_waiting)
         self._while_waiting = while_waiting
@@ -47,8 +47,8 @@ class Engine:
         self._shapes: dict[str, Model] = {}
         self._slots: dict[str, BodySlot] = {}
         self._free_slots: list[BodySlot] = []
-        self.records = base_scene.bodies_of(ground, world, is_class)
-        self.left_out = base_scene.left_out(world.model, self.records)
+        self.records = base_scene.bodies_of(ground, world, classes)
+        self.left_out = base_scene.left_out(world.model, {record.body for record in self.records.values()})
         """Bodies of the world file that are only parts of others, by name or by their parent."""
         self.revision = 0
         self.compiling = False
@@ -93,7 +93,7 @@ class Engine:
 
     def remove(self, names: Sequence[str]) -> None:
         """Remove bodies."""
-        own = [name for name in names if name not in self._shapes]
+        own = [self.records[name].body for name in names if name not in self._shapes]
         jointed = any(self._shapes[name].leaves for name in names if name in self._shapes)
         jointed = attachments.involves_attachment(names, self.records) or jointed
         for record in self.records.values():
@@ -104,8 +104,8 @@ class Engine:
             self._release_slot(name)
             self._shapes.pop(name, None)
             del self.records[name]
-        for name in own:
-            if (body := self._ground.body(name)) is not None:  # else it was removed with its parent
+        for in_mujoco in own:
+            if (body := self._ground.body(in_mujoco)) is not None:  # else it was removed with its parent
                 self._ground.delete(body)
         if own or jointed:
             self._recompile({})
@@ -271,8 +271,8 @@ class Engine:
 
     def _indexed(self) -> BodyIndex:
         numbers = {
-            name: self._slots[name].body if name in self._slots else self.model.body(name).id
-            for name in self.records
+            name: self._slots[name].body if name in self._slots else self.model.body(record.body).id
+            for name, record in self.records.items()
         }
         return BodyIndex.of(self.model, self.records, numbers)
 

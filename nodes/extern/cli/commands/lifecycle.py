@@ -202,6 +202,13 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         metavar="FILE.json",
         help='Labels of an external detector and their classes, as in {"coffee mug": "Cup"}.',
     )
+    @click.option(
+        "--class-map",
+        type=click.Path(path_type=Path),
+        default=None,
+        metavar="FILE.json",
+        help='Bodies of the world and their classes, as in {"mug_blue": "Cup"}.',
+    )
     @click.option("--no-sim", is_flag=True, help="Do not start the simulator.")
     @click.option("--no-record", is_flag=True, help="Do not start the recorder.")
     @click.option(
@@ -305,8 +312,8 @@ def _settings(
     robot_at: tuple[float, float, float] | None, robot_yaw: float, stale: float, journal_every: float,
     listen: str, connect: tuple[str, ...], window: bool, models: Path | None, camera_hz: float | None,
     camera_size: tuple[int, int], camera_noise: bool, perception: bool, when_gone: str,
-    label_map: Path | None, no_sim: bool, no_record: bool, record_keep: str | None, only: str | None,
-    single: bool, secure: Path | None,
+    label_map: Path | None, class_map: Path | None, no_sim: bool, no_record: bool, record_keep: str | None,
+    only: str | None, single: bool, secure: Path | None,
     zenoh_config: Path | None, insecure: bool, namespace: str,
     web: bool, web_port: int | None, web_as: str | None,
 ) -> Settings:  # fmt: skip
@@ -368,6 +375,7 @@ def _settings(
         "camera_noise": camera_noise,
         "perception": perception,
         "when_gone": when_gone,
+        "class_map": _class_map(class_map, before),
         "label_map": {} if label_map is None else read_label_map(label_map),
         "sim": not no_sim,
         "record": not no_record,
@@ -386,6 +394,13 @@ def _settings(
     except errors.BadRequest as error:
         field, _, fault = error.text.removeprefix("malformed message: ").partition(" ")
         raise errors.BadRequest(f"{_option_of(field)} {fault}") from None
+
+
+def _class_map(file: Path | None, before: Settings | None) -> dict[str, str]:
+    """Return the classes of bodies of the world by name, by default those of the previous start."""
+    if file is None:
+        return {} if before is None else before.class_map
+    return read_label_map(file, "bodies", "mug_blue")
 
 
 def _robot_file(word: str) -> str:
