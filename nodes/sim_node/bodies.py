@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import mujoco
 import numpy as np
-from msgspec import structs
+from msgspec import Struct, structs
 from numpy.typing import NDArray
 
 from semmap.nodes.sim_node.models.parts import Vec3, rotation_matrix
@@ -101,6 +101,19 @@ class BodyRecord:
         )
 
 
+class StoredBody(Struct, frozen=True, forbid_unknown_fields=True):
+    """The state of one body, which can be restored after a restart.
+
+    `joints` has the coordinates in MuJoCo of each joint, by its name there. `held_by` is the body that it is
+    attached to, and `grip` its pose in that body's frame.
+    """
+
+    pose: Pose
+    joints: dict[str, tuple[float, ...]] = {}
+    held_by: str = ""
+    grip: Pose | None = None
+
+
 @dataclass(frozen=True)
 class BodyIndex:
     """The positions of bodies in the arrays of a compiled model.
@@ -164,6 +177,14 @@ class BodyIndex:
         if self.joint_ball.any():
             positions[self.joint_ball] = 2.0 * np.arccos(np.minimum(1.0, np.abs(positions[self.joint_ball])))
         return np.asarray(positions)
+
+    def joint_coordinates(self, name: str) -> dict[str, slice]:
+        """Return where the coordinates of each joint of a body are in `qpos`, by its name in MuJoCo."""
+        rows = {joint: self.joint_row[joint] for joint in self.records[self.row[name]].joint_names}
+        return {
+            joint: slice(start := int(self.joint_qpos[row]), start + (4 if self.joint_ball[row] else 1))
+            for joint, row in rows.items()
+        }
 
     def poses(self, data: mujoco.MjData) -> Floats:
         """Return (N, 7) bottom centre [m] and quaternion wxyz of each body, map frame."""

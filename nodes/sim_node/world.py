@@ -6,14 +6,14 @@ import copy
 import math
 import time
 import uuid
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import mujoco
 import numpy as np
 from msgspec import structs
 
 from semmap.nodes.sim_node import order_validation
-from semmap.nodes.sim_node.bodies import Floats, Ints, pose_of
+from semmap.nodes.sim_node.bodies import Floats, Ints, StoredBody, pose_of
 from semmap.nodes.sim_node.body_classes import BodyClasses
 from semmap.nodes.sim_node.models.facets import surface_of
 from semmap.nodes.sim_node.models.library import build as library_model
@@ -246,6 +246,24 @@ class World:
             }
         )
         return len(self)
+
+    def stored_bodies(self, names: Iterable[str]) -> dict[str, StoredBody]:
+        """Return the states of those of these bodies that exist."""
+        index, poses, qpos = self._engine.index, self._engine.poses(), self.data.qpos
+        return {
+            name: StoredBody(
+                pose_of(poses[index.row[name]]),
+                {joint: tuple(qpos[at].tolist()) for joint, at in index.joint_coordinates(name).items()},
+                record.held_by,
+                record.grip,
+            )
+            for name in names
+            if (record := self._engine.records.get(name)) is not None
+        }
+
+    def restore(self, states: Mapping[str, StoredBody]) -> None:
+        """Put bodies and their joints into states of an earlier run of the same world, without speed."""
+        self._settling.restore(states)
 
     def aim_overview_camera(self) -> None:
         """Aim the bare floor's camera so that all bodies just fit."""

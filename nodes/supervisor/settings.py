@@ -80,6 +80,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     record_keep: str | None = None
     """Limit of the recordings by age or size; None keeps all."""
     fresh: bool = False
+    reset_world: bool = False
+    """Whether the bodies begin as in the world file, and not where they last stood."""
     window: bool = False
     models: str | None = None
     """Folder of the user's model files."""

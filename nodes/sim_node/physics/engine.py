@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from typing import Final
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from semmap.nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, frame_of, pose_of
+from semmap.nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, StoredBody, frame_of, pose_of
 from semmap.nodes.sim_node.body_classes import BodyClasses
 from semmap.nodes.sim_node.models.library import Model
 from semmap.nodes.sim_node.physics import attachments, base_scene, body_slots, build, sleep
@@ -18,9 +19,11 @@ from semmap.nodes.sim_node.physics.rest import JointRestDetector, RestDetector
 from semmap.nodes.sim_node.placement.obstacles import Obstacles
 from semmap.nodes.sim_node.robots.base_controller import BaseController
 from semmap.nodes.sim_node.vision.view import View
-from semmap.schemas.entities import Pose, compose
+from semmap.schemas.entities import Pose, angle_rad, compose, distance_m
 
 _STEPS_A_CHECK = 25
+_MOVED: Final = 1e-6
+"""A static body farther from its pose than this [m, rad] is compiled there."""
 
 
 class Engine:
@@ -133,6 +136,23 @@ class Engine:
         poses = self.poses()
         self._recompile({name: pose_of(poses[self.index.row[name]]) for name in names})
         self.carry(names)
+
+    def restore(self, states: Mapping[str, StoredBody]) -> None:
+        """Set bodies to these states, without speed."""
+        for name, state in states.items():
+            record = self.records[name]
+            is_held = state.held_by in self.records
+            record.held_by, record.grip = (state.held_by, state.grip) if is_held else ("", None)
+            for joint, at in self.index.joint_coordinates(name).items():
+                if len(coordinates := state.joints.get(joint, ())) == at.stop - at.start:
+                    self.data.qpos[at] = coordinates
+        own = {name: state.pose for name, state in states.items() if not self.records[name].anchored}
+        self.put({name: pose for name, pose in own.items() if not self.records[name].static})
+        here = dict(zip(self.index.names, map(pose_of, self.poses()), strict=True))
+        stand = {name: pose for name, pose in own.items() if not _is_at(pose, here[name])}
+        if stand or any(self.records[name].held_by for name in states):
+            self._recompile(stand)
+        mujoco.mj_kinematics(self.model, self.data)
 
     def carry(self, names: Collection[str]) -> None:
         """Move attached bodies, and those attached to them, to their attach poses."""
@@ -364,3 +384,7 @@ class Engine:
         self.data.qpos[bad] = before[bad]
         self.data.qvel[~np.isfinite(self.data.qvel)] = 0.0
         self.data.qacc_warmstart[:] = 0.0
+
+
+def _is_at(pose: Pose, here: Pose) -> bool:
+    return max(distance_m(pose, here), angle_rad(pose, here)) <= _MOVED

@@ -163,6 +163,11 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         help="Position of a new robot [m]; a robot in the map starts at its last pose.  [default: 0 0 0]",
     )
     @click.option("--robot-yaw", type=float, default=0.0, metavar="RAD", help="Yaw of a new robot.")
+    @click.option(
+        "--reset-world",
+        is_flag=True,
+        help="With --truth scene: begin as in the world file. Default: where bodies last stood.",
+    )
     @click.option("--window", is_flag=True, help="Show the scene in a window (needs a display).")
     @click.option(
         "--models",
@@ -294,7 +299,7 @@ def node(name: str, settings: Settings) -> None:
     if settings.namespace == ALL_ROBOTS and name != ROUTER:
         raise errors.BadRequest("--namespace '*' requires a shared router: semmap node router")
     extras.require(f"semmap node {name}", extras.OF_NODE[name])
-    from semmap.nodes.supervisor.launch import run_node, seed
+    from semmap.nodes.supervisor.launch import reset_world, run_node, seed
     from semmap.nodes.supervisor.privacy import UMASK, make_private
 
     os.umask(UMASK)
@@ -302,6 +307,8 @@ def node(name: str, settings: Settings) -> None:
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
     if name == "kb_node":
         seed(settings)
+    elif name == "sim_node" and settings.reset_world:
+        reset_world(settings)
     run_node(name, settings)
 
 
@@ -310,7 +317,8 @@ def _settings(
     abox: str | None, world: str | None, data: Path | None, fresh: bool, truth: str | None,
     threshold: float, angle_threshold: float, robot: str | None, robot_name: str,
     robot_at: tuple[float, float, float] | None, robot_yaw: float, stale: float, journal_every: float,
-    listen: str, connect: tuple[str, ...], window: bool, models: Path | None, camera_hz: float | None,
+    listen: str, connect: tuple[str, ...], reset_world: bool, window: bool, models: Path | None,
+    camera_hz: float | None,
     camera_size: tuple[int, int], camera_noise: bool, perception: bool, when_gone: str,
     label_map: Path | None, class_map: Path | None, no_sim: bool, no_record: bool, record_keep: str | None,
     only: str | None, single: bool, secure: Path | None,
@@ -368,6 +376,7 @@ def _settings(
         "connect": connect if secure is None else tuple(map(bus.to_tls, connect)),
         "only": nodes,
         "single": single,
+        "reset_world": reset_world,
         "window": window,
         "models": None if models is None else _folder(models),
         "camera_hz": (_PERCEPTION_HZ if perception else 0.0) if camera_hz is None else camera_hz,
