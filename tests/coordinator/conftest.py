@@ -19,6 +19,7 @@ from semmap.nodes.runtime.futures import settle
 from semmap.schemas import errors
 from semmap.schemas.bridge import Outcome
 from semmap.schemas.commits import Effects
+from tests.kb_node.handlers.test_loading import loading
 
 TBOX = b"""
 @prefix : <http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#> .
@@ -60,6 +61,7 @@ def dispatcher(semantic_map):
         "commit": lambda transaction: _changed(
             semantic_map, lambda: semantic_map.commit(transaction), transaction.dry_run
         ),
+        "load": loading(semantic_map, []).on_load,
         "snapshot": Pages(semantic_map).snapshot,
         "commits": lambda several: tuple(
             Outcome(error=errors.to_message(result))

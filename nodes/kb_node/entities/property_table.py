@@ -82,7 +82,7 @@ class PropertyTable:
                 iri=p,
                 name=names.names[p],
                 is_data=is_data,
-                functional=p == v.MODEL or any(self._is(q, v.OWL_FUNCTIONAL_PROPERTY) for q in above),
+                functional=self.is_functional(p),
                 ranges=_TEXT
                 if p == v.MODEL
                 else frozenset(o for q in above for _, _, o in reasoner.asserted(q, v.RDFS_RANGE, None)),
@@ -135,6 +135,10 @@ class PropertyTable:
         if not hint and 0 < len(allowed) <= _FEW:
             hint = f"; {prop.name} takes {', '.join(allowed)}"
         raise errors.UnknownName(f"no individual is named '{text}'{hint}")
+
+    def is_functional(self, p: Term) -> bool:
+        """Return whether a property, known or not, or one of its superproperties is functional."""
+        return p == v.MODEL or any(self._is(q, v.OWL_FUNCTIONAL_PROPERTY) for q in self._above(p))
 
     def rows(self) -> Iterator[PropertyInfo]:
         """Yield one row per property, by name."""
