@@ -94,7 +94,7 @@ def undeclared_classes(triples: Iterable[Triple], classes: ClassTable) -> set[Te
 def find_undescribed(
     triples: Sequence[Triple], reasoner: Reasoner, stays: Callable[[Triple], bool] = lambda _: True
 ) -> dict[Term, Triple]:
-    """Return individuals that are referenced but not described, each with the first triple that does so.
+    """Return named individuals that are referenced but not described, each with the first triple that does so.
 
     What the reasoner holds counts as a description, if `stays` is True for it.
     """
@@ -102,7 +102,8 @@ def find_undescribed(
     by_property = group_by_property(triples)
     related = {o for p in relations & by_property.keys() for _, _, o in by_property[p]}
     related.difference_update(map(itemgetter(0), by_property.get(v.RDF_TYPE, ())))
-    strange = {o for o in related if not any(map(stays, reasoner.asserted(o, v.RDF_TYPE, None)))}
+    named = (o for o in related if o.startswith("<"))
+    strange = {o for o in named if not any(map(stays, reasoner.asserted(o, v.RDF_TYPE, None)))}
     found: dict[Term, Triple] = {}
     for triple in triples if strange else ():
         if triple[2] in strange and triple[1] in relations:
