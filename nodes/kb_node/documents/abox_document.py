@@ -94,7 +94,7 @@ def undeclared_classes(triples: Iterable[Triple], classes: ClassTable) -> set[Te
 def find_undescribed(
     triples: Sequence[Triple], reasoner: Reasoner, stays: Callable[[Triple], bool] = lambda _: True
 ) -> dict[Term, Triple]:
-    """Return named individuals that are referenced but not described, each with the first triple that does so.
+    """Return named individuals that are referenced but not described, each with the first such triple.
 
     What the reasoner holds counts as a description, if `stays` is True for it.
     """
