@@ -143,6 +143,9 @@ def _set(
 ) -> Command[replies.Changed]:
     """Set a data or object property of an entity: `client.set("door1", "isOpen", True)`.
 
+    The range of the property gives the datatype. A text ends with its language where the range allows one:
+    `client.set("shelf1", "title", "Regal@de")`.
+
     The value of a functional property replaces the previous one. Other properties keep their previous values.
     Raises PreconditionFailed in these cases:
 

@@ -129,6 +129,8 @@ def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fi
     """Set a property of an entity.
 
     The value of a functional property replaces the previous one. Other properties keep their previous values.
+    The range of the property gives the datatype. A text ends with its language where the range allows one:
+    Regal@de.
     """
     print_lines(lines.format_change(client.set(name, property, *values, **_drop_none(fields))))
 
