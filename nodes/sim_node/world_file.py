@@ -74,6 +74,12 @@ def open_world(
         how = {"name": path.name, "models": models, "while_waiting": while_waiting, "classes": found}
         return _world(ground, robot, **how)
     scene = scene_files.read(_read(path), path.name)
+    for number, item in enumerate(scene.entities, start=1):
+        if item.on or item.in_ or item.next_to:
+            raise BadFile(
+                f"{path.name}: entity {item.name or number}: on, in and next_to place objects of a map; in a"
+                " world give at"
+            )
     views = (
         None if scene.cameras is None else [(camera.name or "", _view(camera)) for camera in scene.cameras]
     )
