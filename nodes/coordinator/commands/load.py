@@ -23,7 +23,7 @@ from semmap.nodes.coordinator.files import huric
 from semmap.nodes.coordinator.files.content import kind_of
 from semmap.nodes.coordinator.free_names import FreeNames
 from semmap.nodes.coordinator.kb_coroutines import KbCoroutine, ask
-from semmap.nodes.runtime import gc_pause
+from semmap.nodes.runtime import memory
 from semmap.nodes.runtime.class_names import AmbiguousClass, ClassNames
 from semmap.schemas import changes, errors, scene_files, wording
 from semmap.schemas.bridge import LoadDocument, LoadTBox
@@ -71,7 +71,7 @@ def load(view: MapView, command: Load) -> KbCoroutine[Changed]:
 
 
 def _load_described(view: MapView, command: Load, described: Iterable[Described]) -> KbCoroutine[Changed]:
-    with gc_pause.uncollected():
+    with memory.uncollected():
         known, skipped, notes = _sort_out(view.classes, described, skip_unknown=command.skip_unknown)
         there: Mapping[str, Entity] = {} if command.replace else view.entities
         taken_names, free = set(there), FreeNames()

@@ -10,7 +10,6 @@ from typing import NamedTuple
 from semmap.nodes.kb_node.documents.inert_statements import SHACL, SWRL, count_inert, inert_note
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.entities.property_values import retype
-from semmap.nodes.kb_node.grouping import group_by_property
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
@@ -50,10 +49,10 @@ def filter_document(
     others lose the unknown classes. Raises BadFile for a TBox.
     """
     triples = list(triples)
-    by_property = group_by_property(triples)
+    by_property = entity_triples.group_by_property(triples)
     if _has_other_numbers(by_property, classes.number_datatypes):
         triples = _with_numbers(triples, classes.number_datatypes)
-        by_property = group_by_property(triples)
+        by_property = entity_triples.group_by_property(triples)
     triples, by_property, retyped = _with_datatypes(triples, by_property, classes)
     types_said = by_property.get(v.RDF_TYPE, [])
     used = set(map(itemgetter(2), types_said))
@@ -78,7 +77,7 @@ def filter_document(
         removed = {s for s, _ in unknown} - {s for s, _, o in types_said if o in described}
         doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
         kept = _without(removed, [t for t in triples if t not in doubtful])
-        by_property = group_by_property(kept)
+        by_property = entity_triples.group_by_property(kept)
     inert = inert_note(count_inert(kept)) if any(c.startswith(_INERT) for c in used) else ""
     notes = (
         *retyped,
@@ -108,7 +107,7 @@ def find_undescribed(
     What the reasoner holds counts as a description, if `stays` is True for it.
     """
     relations = {s for s, _, _ in reasoner.asserted(None, v.RDF_TYPE, v.OWL_OBJECT_PROPERTY)}
-    by_property = group_by_property(triples)
+    by_property = entity_triples.group_by_property(triples)
     related = {o for p in relations & by_property.keys() for _, _, o in by_property[p]}
     related.difference_update(map(itemgetter(0), by_property.get(v.RDF_TYPE, ())))
     named = (o for o in related if o.startswith("<"))
@@ -180,7 +179,7 @@ def _with_datatypes(
     few = ", ".join(list(counts)[:_FEW]) + (" and others" if len(counts) > _FEW else "")
     note = f"{wording.counted(sum(counts.values()), 'value')} stored with the datatype of the property: {few}"
     triples = [changed.get(triple, triple) for triple in triples]
-    return triples, group_by_property(triples), [note]
+    return triples, entity_triples.group_by_property(triples), [note]
 
 
 def _unknown_properties(by_property: Mapping[Term, list[Triple]], classes: ClassTable) -> list[str]:
