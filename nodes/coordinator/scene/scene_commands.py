@@ -7,8 +7,10 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from typing import TypeVar
 
+from msgspec import structs
+
 from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
-from semmap.nodes.coordinator.commands.plausibility import require_carry
+from semmap.nodes.coordinator.commands.plausibility import find_isolation, require_carry
 from semmap.nodes.coordinator.config import Truth
 from semmap.nodes.coordinator.reconciler.reconciler import AskSim, Reconciler
 from semmap.nodes.coordinator.reconciler.scene_report import describe_ghost
@@ -65,7 +67,14 @@ class SceneCommands:
         if body is None:
             state = self._reconciler.body_state(self._dispatcher.map.entity(command.name))
             raise errors.Refused(f"{command.name} has no body to move: {state.detail or state.status}")
-        return self._reconciler.when_placed(command.name, lambda: self._move_body(command))
+        others = (other.pose for name, other in self._reconciler.scene.bodies.items() if name != command.name)
+        doubts = find_isolation(command.name, Pose(position_m=command.at), others)
+        made = self._reconciler.when_placed(command.name, lambda: self._move_body(command))
+        return (
+            then(made, lambda moved: structs.replace(moved, notes=(*moved.notes, *doubts)))
+            if doubts
+            else made
+        )
 
     def _move_body(self, command: c.Move) -> Future[Moved]:
         body = self._reconciler.scene.bodies.get(command.name)

@@ -60,6 +60,7 @@ def move(client: Client, wait: bool, **fields: Any) -> None:
 )
 @yaw_option
 @carry_options
+@click.option("--force", is_flag=True, help="Attach an entity that is more than 0.3 m away.")
 @click.option("--dry-run", is_flag=True, help="Report what would change, without changing anything.")
 @with_client
 def attach(client: Client, **fields: Any) -> None:
