@@ -98,7 +98,7 @@ class CopyQuery(Call[MapCopy], frozen=True, kw_only=True, forbid_unknown_fields=
     content: bool = True
 
 
-class PlacedObject(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, array_like=True):
+class PlacedObject(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """An object or place that is about to be added to the map."""
 
     name: str
