@@ -14,6 +14,7 @@ _SLIGHT_RAD = 0.0175
 Kind = Literal[
     "added",
     "removed",
+    "name",
     "pose",
     "size",
     "class",
@@ -28,8 +29,8 @@ Kind = Literal[
 class Change(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """One change of the entity `name`; a value is None if it did not exist before or afterwards.
 
-    For `added` and `removed`, the value is the entity's class. For `property`, the field `property` is its
-    name. Positions and sizes are in metres.
+    For `added` and `removed`, the value is the entity's class. For `name`, a renamed entity, `was` is its
+    earlier name. For `property`, the field `property` is its name. Positions and sizes are in metres.
     """
 
     name: str
@@ -50,6 +51,7 @@ def between(was: Entity | None, now: Entity) -> list[Change]:
     if was is None:
         return [Change(name=name, kind="added", now=now.class_)]
     compared: tuple[tuple[Kind, Pose | Stated | None, Pose | Stated | None], ...] = (
+        ("name", was.name, now.name),
         ("class", was.class_, now.class_),
         ("pose", was.pose, now.pose),
         ("size", was.size_m, now.size_m),
@@ -72,6 +74,11 @@ def of_properties(name: str, stated: Iterable[tuple[str, Stated | None, Stated |
         for p, was, now in stated
         if was != now
     )
+
+
+def earlier_names(changes: Iterable[Change]) -> set[str]:
+    """Return the names that renamed entities had before."""
+    return {str(change.was) for change in changes if change.kind == "name"}
 
 
 def removed(name: str, class_name: str) -> Change:
@@ -118,8 +125,8 @@ def _extent(size: Pose | Stated | None) -> str:
 
 def _reference(change: Change) -> str:
     if change.was is None:
-        return f"called '{change.now}'"
-    return f"renamed '{change.was}' → '{change.now}'" if change.now else f"no longer called '{change.was}'"
+        return f"label added: '{change.now}'"
+    return f"label: '{change.was}' → '{change.now}'" if change.now else f"label removed: '{change.was}'"
 
 
 def _alternatives(change: Change) -> str:
@@ -129,12 +136,12 @@ def _alternatives(change: Change) -> str:
             filter(
                 None,
                 (
-                    f"reference added: {_quoted(came)}" if came else "",
-                    f"reference removed: {_quoted(gone)}" if gone else "",
+                    f"alias added: {_quoted(came)}" if came else "",
+                    f"alias removed: {_quoted(gone)}" if gone else "",
                 ),
             )
         )
-        or "references in another order"
+        or "aliases in another order"
     )
 
 
@@ -190,6 +197,7 @@ def _quoted(values: Iterable[Value]) -> str:
 _WORDS = {
     "added": lambda c: f"added as {c.now}",
     "removed": lambda c: "removed",
+    "name": lambda c: f"renamed from {c.was}",
     "pose": _pose,
     "size": _size,
     "class": lambda c: f"class {c.was} → {c.now}",

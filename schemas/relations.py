@@ -15,6 +15,9 @@ RelationName = Literal[
     "isNextTo", "isNear", "isLeftOf", "isRightOf", "isInFrontOf", "isBehind", "isBetween", "isVisibleFrom"
 ]  # fmt: skip
 
+Placing = Literal["on", "in", "next_to"]
+"""How an object is placed relative to another one, without a position."""
+
 
 class RelationRow(NamedTuple):
     """The name of a relation, where its facts come from, and its words."""
@@ -124,6 +127,11 @@ ViewPoint = tuple[Metres, Metres, Metres, Annotated[float, Meta(ge=-1e6, le=1e6)
 
 _NUMBER: Final = r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*"
 _POSITION: Final = re.compile(",".join([_NUMBER] * 3))
+
+
+def placing_words(placing: Placing) -> str:
+    """Return how a sentence says it: `next to`."""
+    return placing.replace("_", " ")
 
 
 def position_in(word: str) -> Vector | None:

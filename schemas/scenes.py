@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Final, Literal
 from msgspec import Meta, Struct, field
 
 from semmap.schemas.calls import MANY, Call
-from semmap.schemas.entities import Angle, Metres, Name, Pose, Probability, Size, Vector
+from semmap.schemas.entities import Metres, Name, Pose, Probability, Radians, Size, Vector
 from semmap.schemas.joints import Joint
 
 PixelCount = Annotated[int, Meta(ge=1, le=1 << 14)]
@@ -226,7 +226,7 @@ class DriveBase(Call[Driven], frozen=True, kw_only=True, forbid_unknown_fields=T
     VERB: ClassVar[str] = "drive"
     name: str
     to: tuple[Point, ...] = ()
-    yaw: Angle | None = None
+    yaw: Radians | None = None
     speed: float = 0.4
     wait: bool = False
 

@@ -23,9 +23,8 @@ from typing import (
     overload,
 )
 
-from semmap.nodes.extern.files import read_file
-from semmap.nodes.extern.ontology_upload import ontology
-from semmap.nodes.extern.plan_files import is_plan, read_plan
+from semmap.nodes.extern.files import read_file, read_ontology
+from semmap.nodes.extern.floorplans import is_plan, read_plan
 from semmap.schemas import commands, errors, replies
 from semmap.schemas.calls import reply_type
 from semmap.schemas.commands import Command
@@ -224,7 +223,7 @@ def _load(
     if imports and not tbox:
         raise errors.BadRequest("--import applies to TBoxes only; add --tbox")
     if tbox:
-        content, filename = ontology(Path(path), imports)
+        content, filename = read_ontology(Path(path), imports)
     elif is_plan(Path(path)):
         content, filename = read_plan(Path(path)).content, Path(path).name
     else:
@@ -247,9 +246,12 @@ def _load(
 
 def _move(
     name: str,
-    at: Sequence[float],
+    at: Sequence[float] | None = None,
     yaw: float | None = None,
     *,
+    on: str | None = None,
+    in_: str | None = None,
+    next_to: str | None = None,
     frame: str | None = None,
     carry: bool = False,
     leave: Sequence[str] = (),
@@ -263,15 +265,19 @@ def _move(
     rest at its pose in the map, is still moving after 30 s, or time is paused. With `wait=False`, the method
     returns when the body is released.
 
-    `at` is the bottom centre [m] and `yaw` [rad] the rotation, in the map frame or in `frame`. With `carry`,
+    `at` is the bottom centre [m] and `yaw` [rad] the rotation, in the map frame or in `frame`. With `on`,
+    `in_` or `next_to`, it is placed where there is room on, in or next to another entity. With `carry`,
     the objects on it and inside it are moved with it as one rigid body, except those in `leave`. Raises
     Refused if the map rejects the new pose, an undo stops the move, or the entity is removed before it is at
     rest. Raises NoAnswer if the simulator ends.
     """
     return commands.Move(
         name=name,
-        at=tuple(at),  # type: ignore[arg-type]
+        at=None if at is None else tuple(at),  # type: ignore[arg-type]
         yaw=yaw,
+        on=on,
+        in_=in_,
+        next_to=next_to,
         frame=frame,
         carry=carry,
         leave=tuple(leave),

@@ -12,8 +12,8 @@ from msgspec import Meta, Struct, structs
 
 from semmap.nodes.bus import DEFAULT_ENDPOINT, FOREVER_S, Network, is_local
 from semmap.nodes.identity import Identity
-from semmap.schemas.endpoints import ALL_ROBOTS, robot_name
-from semmap.schemas.entities import Angle, Metres, Name
+from semmap.schemas.endpoints import ALL_ROBOTS, parse_endpoint, robot_name
+from semmap.schemas.entities import Metres, Name, Radians
 from semmap.schemas.errors import BadRequest
 from semmap.schemas.keys import ROUTER, WEB
 
@@ -64,7 +64,7 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     robot_name: Name = "robot1"
     robot_at: tuple[Metres, Metres, Metres] | None = None
     """Its initial position, if given; otherwise the origin."""
-    robot_yaw: Angle = 0.0
+    robot_yaw: Radians = 0.0
     stale_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] = 2.0
     """Seconds after which a live pose is stale."""
     journal_every_s: Annotated[float, Meta(ge=0.0, le=86_400.0)] = 0.0
@@ -127,8 +127,10 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         if self.robot is not None and not self.sim and not self.only:
             raise ValueError("--robot requires the simulator; remove --no-sim")
         for endpoint in (self.listen, *self.connect):
-            if not is_endpoint(endpoint):
-                raise ValueError(f"'{endpoint}' is not a valid Zenoh endpoint; example: {DEFAULT_ENDPOINT}")
+            try:
+                parse_endpoint(endpoint)
+            except BadRequest as error:
+                raise ValueError(error.text) from None
         decides = not self.only or "coordinator" in self.only  # otherwise another host defines the truth
         if decides and self.perception and self.sim and self.camera_hz and self.truth != "perceived":
             raise ValueError(
@@ -197,10 +199,3 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def reachable(self) -> str:
         """The endpoint at which programs on this machine reach the system."""
         return self.listen.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:")
-
-
-def is_endpoint(text: str) -> bool:
-    """Return whether a text is a protocol and an address, with a valid port if it has one."""
-    protocol, _, address = text.partition("/")
-    port = address.rpartition(":")[2]
-    return bool(protocol and address) and (not port.isdecimal() or int(port) < 1 << 16)

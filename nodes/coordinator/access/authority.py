@@ -44,7 +44,10 @@ def describe_override(command: Add | Update | Batch | Remove | Clear, truth: Tru
 
 def is_placing(change: Command) -> bool:
     """Return whether a change sets the pose of an existing entity."""
-    return isinstance(change, Update) and (change.at, change.yaw, change.orientation) != (None, None, None)
+    if not isinstance(change, Update):
+        return False
+    fields = (change.at, change.yaw, change.orientation, change.on, change.in_, change.next_to)
+    return any(field is not None for field in fields)
 
 
 def require_operator(command: Command, what: str) -> None:

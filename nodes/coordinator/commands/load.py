@@ -22,7 +22,7 @@ from semmap.nodes.coordinator.files import huric
 from semmap.nodes.coordinator.files.content import kind_of
 from semmap.nodes.coordinator.free_names import FreeNames
 from semmap.nodes.coordinator.kb_coroutines import KbCoroutine, ask
-from semmap.nodes.runtime import gc_pause
+from semmap.nodes.runtime import memory
 from semmap.nodes.runtime.class_names import AmbiguousClass, ClassNames
 from semmap.schemas import errors, scene_files, wording
 from semmap.schemas.bridge import LoadDocument, LoadTBox
@@ -68,7 +68,7 @@ def load(view: MapView, command: Load) -> KbCoroutine[Changed]:
 
 
 def _load_described(view: MapView, command: Load, described: Iterable[Described]) -> KbCoroutine[Changed]:
-    with gc_pause.uncollected():
+    with memory.uncollected():
         known, skipped, notes = _sort_out(view.classes, described, skip_unknown=command.skip_unknown)
         taken_names = set() if command.replace else set(view.entities)
         free = FreeNames()

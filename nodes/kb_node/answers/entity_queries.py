@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 from msgspec import structs
 
 from semmap.nodes.kb_node.answers import answers, questions
-from semmap.nodes.kb_node.answers.fact_intervals import FactStarts
+from semmap.nodes.kb_node.answers.past.fact_intervals import FactStarts
 from semmap.nodes.kb_node.relations.facts.contradictions import (
     PROPERTIES,
     fact_of,

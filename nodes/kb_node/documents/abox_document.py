@@ -8,7 +8,6 @@ from operator import itemgetter
 from typing import NamedTuple
 
 from semmap.nodes.kb_node.entities.class_table import ClassTable
-from semmap.nodes.kb_node.grouping import group_by_property
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
@@ -45,10 +44,10 @@ def filter_document(
     others lose the unknown classes. Raises BadFile for a TBox.
     """
     triples = list(triples)
-    by_property = group_by_property(triples)
+    by_property = entity_triples.group_by_property(triples)
     if _has_other_numbers(by_property, classes.number_datatypes):
         triples = _with_numbers(triples, classes.number_datatypes)
-        by_property = group_by_property(triples)
+        by_property = entity_triples.group_by_property(triples)
     types_said = by_property.get(v.RDF_TYPE, [])
     used = set(map(itemgetter(2), types_said))
     declared = {s for s, _, o in types_said if o in _CLASSES} if used & _CLASSES else set[Term]()
@@ -72,7 +71,7 @@ def filter_document(
         removed = {s for s, _ in unknown} - {s for s, _, o in types_said if o in described}
         doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
         kept = _without(removed, [t for t in triples if t not in doubtful])
-        by_property = group_by_property(kept)
+        by_property = entity_triples.group_by_property(kept)
     notes = (
         *_unknown_properties(by_property, classes),
         *_own_classes(declared, classes),
@@ -99,7 +98,7 @@ def find_undescribed(
     What the reasoner holds counts as a description, if `stays` is True for it.
     """
     relations = {s for s, _, _ in reasoner.asserted(None, v.RDF_TYPE, v.OWL_OBJECT_PROPERTY)}
-    by_property = group_by_property(triples)
+    by_property = entity_triples.group_by_property(triples)
     related = {o for p in relations & by_property.keys() for _, _, o in by_property[p]}
     related.difference_update(map(itemgetter(0), by_property.get(v.RDF_TYPE, ())))
     strange = {o for o in related if not any(map(stays, reasoner.asserted(o, v.RDF_TYPE, None)))}

@@ -184,7 +184,12 @@ def test_a_renamed_entity_keeps_everything_and_its_references(dispatcher, semant
     assert (now.pose, now.size_m, now.preferred_reference) == (was.pose, was.size_m, "seat")
     assert dispatcher.map.entity("chair2").properties["isDirectPartOf"] == ("throne",)
     assert set(dispatcher.map.entities) == {"chair2", "throne"}
-    assert dispatcher.change(c.Undo()).names == ("chair1", "chair2", "throne")
+    tried = dispatcher.change(c.Undo(dry_run=True))
+    text = "undid commit 3: renamed chair1 to throne; chair2: isDirectPartOf: + throne, - chair1"
+    assert tried.text == f"dry run, nothing changed; it would be: {text}"
+    undone = dispatcher.change(c.Undo())
+    assert undone.names == ("chair1", "chair2", "throne")
+    assert undone.text == text
     assert everything(semantic_map) == before
     assert dispatcher.map.entity("chair2").properties["isDirectPartOf"] == ("chair1",)
 
@@ -479,7 +484,7 @@ def in_their_turn(dispatcher: CommandDispatcher, changes: list) -> list:
         settle(future, lambda: dispatcher._ask(call))
         return future
 
-    turns = Scheduler(lambda group: run_async(dispatcher.run_together(group), ask_later))
+    turns = Scheduler(lambda group, _: run_async(dispatcher.run_together(group), ask_later))
     futures = [turns.change(change) for change in changes]
     turns.run_ready()
     return [future.exception() or future.result() for future in futures]

@@ -2,7 +2,8 @@
 
 import pytest
 
-from semmap.nodes.kb_node.answers import entity_queries, fact_intervals, questions
+from semmap.nodes.kb_node.answers import entity_queries, questions
+from semmap.nodes.kb_node.answers.past import fact_intervals
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.history import HistoryReader

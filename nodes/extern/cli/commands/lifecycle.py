@@ -15,7 +15,7 @@ from msgspec import structs
 
 from semmap.nodes import bus
 from semmap.nodes.extern.cli.command import command
-from semmap.nodes.extern.cli.common import print_error
+from semmap.nodes.extern.cli.common import ENDPOINT, json_option, print_error, print_result
 from semmap.nodes.extern.cli.ontology_options import (
     TBoxFile,
     import_option,
@@ -28,7 +28,7 @@ from semmap.nodes.identity import SUPERVISOR
 from semmap.nodes.identity.register import Register
 from semmap.nodes.runtime import extras
 from semmap.nodes.supervisor.parts import nodes_of
-from semmap.nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data, is_endpoint
+from semmap.nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from semmap.ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from semmap.schemas import codec, errors
 from semmap.schemas.endpoints import ALL_ROBOTS, CONNECT_VARIABLE, NAMESPACE_VARIABLE
@@ -110,12 +110,19 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
     )
     @click.option(
         "--listen",
+        type=ENDPOINT,
         default=bus.DEFAULT_ENDPOINT,
         show_default=True,
         metavar="EP",
         help="Zenoh endpoint that the system listens on.",
     )
-    @click.option("--connect", multiple=True, metavar="EP", help="Zenoh endpoint to join; may be repeated.")
+    @click.option(
+        "--connect",
+        type=ENDPOINT,
+        multiple=True,
+        metavar="EP",
+        help="Zenoh endpoint to join; may be repeated.",
+    )
     @click.option(
         "--only",
         metavar="NODES",
@@ -244,7 +251,14 @@ def up(settings: Settings) -> None:
 
 @command(example="semmap down --data maps/flat")
 @click.option("--data", type=_path, default=None, help="Data folder of the system.")
-@click.option("--connect", envvar=CONNECT_VARIABLE, metavar="EP", help="Endpoint that the system listens on.")
+@click.option(
+    "--connect",
+    type=ENDPOINT,
+    envvar=CONNECT_VARIABLE,
+    metavar="EP",
+    help="Endpoint that the system listens on.",
+)
+@json_option
 def down(data: Path | None, connect: str | None) -> None:
     """Stop a system that runs on this machine."""
     extras.require("semmap down", "kb")
@@ -258,12 +272,13 @@ def down(data: Path | None, connect: str | None) -> None:
             raise errors.NoAnswer(f"no system of this user listens on {connect}")
         (data,) = found
     Supervisor((data or default_data()).resolve()).shut_down()
-    click.echo("stopped")
+    print_result({"text": "stopped"}, lambda reply: [reply["text"]])
 
 
 @command(example="semmap repair --data maps/flat")
 @click.option("--data", type=_path, default=None, help="Data folder of the map; its system must be stopped.")
 @click.option("--tbox", type=TBoxFile(), default=None, help="TBox file to use if the stored TBox is damaged.")
+@json_option
 def repair(data: Path | None, tbox: Path | None) -> None:
     """Recover a damaged map up to its last intact commit.
 
@@ -272,7 +287,8 @@ def repair(data: Path | None, tbox: Path | None) -> None:
     extras.require("semmap repair", "kb")
     from semmap.nodes.kb_node.storage.repair.repair import repair as repair_journal
 
-    click.echo(repair_journal((data or default_data()).resolve(), print_error, tbox=tbox))
+    text = repair_journal((data or default_data()).resolve(), print_error, tbox=tbox)
+    print_result({"text": text}, lambda reply: [reply["text"]])
 
 
 @command(example="semmap node sim_node --connect tcp/192.168.1.10:7447")
@@ -434,8 +450,6 @@ def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
     Raises BadRequest, BadFile, NoAnswer.
     """
     listen, secure, config = values["listen"], values["secure"], values["zenoh_config"]
-    if not is_endpoint(listen):
-        return  # the settings reject it
     if config is not None:
         bus.zenoh_config.require_sound(config, secure=secure is not None)
     if secure is not None:
