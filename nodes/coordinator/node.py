@@ -13,6 +13,7 @@ from msgspec import structs
 from semmap.nodes.coordinator.access import admission, authority
 from semmap.nodes.coordinator.access.approvals import Approvals
 from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
+from semmap.nodes.coordinator.commands.joint_state import require_not_of_scene
 from semmap.nodes.coordinator.commands.registration import HANDLERS
 from semmap.nodes.coordinator.config import CoordinatorConfig
 from semmap.nodes.coordinator.early_commands import EarlyCommands
@@ -98,6 +99,8 @@ class Coordinator:
             c.Add.answered_by(frames.in_map_frame(self._change_and_wait_for_body)),
             c.Update.answered_by(frames.in_map_frame(self._change_and_wait_for_body)),
             c.Batch.answered_by(self._change_with_note),
+            c.Set.answered_by(self._change_with_note),
+            c.Unset.answered_by(self._change_with_note),
             c.Track.answered_by(self._track),
             c.Remove.answered_by(self._change_with_note),
             c.Clear.answered_by(self._change_with_note),
@@ -279,8 +282,13 @@ class Coordinator:
             future.set_result(structs.replace(changed, text=f"{changed.text}; body: {status}"))
         self._waiting = still
 
-    def _change_with_note(self, command: c.Add | c.Update | c.Batch | c.Remove | c.Clear) -> Future[Changed]:
+    def _change_with_note(
+        self, command: c.Add | c.Update | c.Batch | c.Set | c.Unset | c.Remove | c.Clear
+    ) -> Future[Changed]:
         """Change the map, and add a note if the scene or perception will override the change."""
+        if self._config.truth == "scene":
+            changes = command.changes if isinstance(command, c.Batch) else (command,)
+            require_not_of_scene(changes, self._reconciler.scene.bodies)
         made, note = self._scheduler.change(command), authority.describe_override(command, self._config.truth)
         if note is None:
             return made
