@@ -254,12 +254,13 @@ def _fills(part: Part, model: str) -> bool:
 
 def _cut_open(entity: Entity) -> list[Part]:
     """Return the walls and boards of a closed thing without its front."""
-    colliding = [part for part in build(entity.model, entity.size_m).parts if part.role is not Role.VISUAL]
+    parts = build(entity.model, entity.size_m).parts
+    colliding = [part for part in parts if part.role is not Role.VISUAL]
     x = max(float(part.centre[0] + part.reach()[0]) for part in colliding)
     behind = [
         part for part in colliding if part.centre[0] + part.reach()[0] < x - 0.03 or part.reach()[0] > 0.05
     ]
-    seen = [part.colour for part in build(entity.model, entity.size_m).parts if part.role is Role.VISUAL]
+    seen = [part.colour for part in parts if part.role is not Role.COLLISION]
     return [Part(p.shape, p.half, p.centre, seen[0], p.turn) for p in behind]
 
 
