@@ -32,7 +32,7 @@ def read_label_map(path: Path) -> dict[str, str]:
     """Return the classes by label of a detector, from a JSON file. Raises BadFile."""
     try:
         return msgspec.json.decode(read_file(path), type=dict[str, str])
-    except msgspec.DecodeError:
+    except (msgspec.DecodeError, RecursionError):
         raise errors.BadFile(
             f'{path} is not a JSON object of labels and classes, such as {{"coffee mug": "Cup"}}'
         ) from None

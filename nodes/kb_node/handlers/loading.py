@@ -5,20 +5,30 @@ from __future__ import annotations
 import hashlib
 import uuid
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
+from typing import Final
 
 from semmap.nodes.kb_node.answers import dry_runs
 from semmap.nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf
+from semmap.nodes.kb_node.documents.isolated_parser import IsolatedParser
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
 from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, ReportProgress, effects
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.runtime.futures import settle
 from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from semmap.schemas.bridge import LoadDocument, Loaded, LoadTBox
 from semmap.schemas.calls import Handler, by_verb
 from semmap.schemas.commits import Commit, Effects, Transaction
 from semmap.schemas.packing import unpacked
+
+_MOST_READ: Final = 8
+"""Isolated documents that are read or wait for it."""
+_AGAIN_S: Final = 5.0
+_Progress = Callable[[int], None]
 
 
 class LoadHandlers:
@@ -33,41 +43,78 @@ class LoadHandlers:
         *,
         report_progress: ReportProgress,
         notes: Callable[[], tuple[str, ...]],
+        run_soon: Callable[[Callable[[], None]], None],
     ) -> None:
-        """Create the handlers; `notes` returns the notes on the current TBox."""
+        """Create the handlers; `notes` returns the notes on the current TBox.
+
+        `run_soon(function)` calls a function on the thread of the map.
+        """
         self._map = semantic_map
         self._journal = journal
         self._changing = changing
         self._sparql = sparql
         self._report_progress = report_progress
         self._notes = notes
+        self._run_soon = run_soon
+        self._parser = IsolatedParser()
+        self._reading = ThreadPoolExecutor(1, "reading")
+        self._being_read = 0
 
     def handlers(self) -> dict[str, Handler]:
         """Return the handlers by command."""
         return by_verb(LoadDocument.answered_by(self.on_load), LoadTBox.answered_by(self.on_load_tbox))
 
-    def on_load(self, load: LoadDocument) -> Loaded:
+    def close(self) -> None:
+        """Stop reading documents. Those that are being read are rejected."""
+        self._reading.shutdown(wait=False, cancel_futures=True)
+        self._parser.close()
+
+    def on_load(self, load: LoadDocument) -> Loaded | Future[Loaded]:
         """Load an RDF document in one commit or in parts."""
+        content = unpacked(load.content, load.filename)
+        label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # stable across retries
+        if self._parser.isolates(content):
+            return self._read_aside(
+                content, load.filename, label, lambda document: self._load(load, lambda _: document)
+            )
+        if not (load.replace or load.parts or load.dry_run):
+            self._sparql.prefetch(load.id, content, v.ABOX, packed=load.content)
+        return self._load(load, partial(self._parser.read, content, load.filename, label))
+
+    def _read_aside(
+        self, content: bytes, filename: str, label_prefix: str, use: Callable[[rdf.Document], Loaded]
+    ) -> Future[Loaded]:
+        """Return the future `use(document)`, and serve other requests while a thread reads the document.
+
+        Raises Busy if very many documents are being read.
+        """
+        if self._being_read == _MOST_READ:
+            raise errors.Busy(
+                f"{self._being_read} files are being read; try again in {_AGAIN_S:g} s", again_s=_AGAIN_S
+            )
+        self._being_read += 1
+        loaded = Future[Loaded]()
+
+        def finish(document: Future[rdf.Document]) -> None:
+            self._being_read -= 1
+            settle(loaded, lambda: use(document.result()))
+
+        reading = self._reading.submit(self._parser.read, content, filename, label_prefix)
+        reading.add_done_callback(lambda document: self._run_soon(lambda: finish(document)))
+        return loaded
+
+    def _load(self, load: LoadDocument, read: Callable[[_Progress], rdf.Document]) -> Loaded:
+        """Commit the document that `read(progress)` returns."""
         before = self._map.seq
         try:
-            return self._load(load)
+            return self._commit_document(load, read)
         finally:
             if self._map.seq == before:
                 self._sparql.discard_prepared()
 
-    def _load(self, load: LoadDocument) -> Loaded:
-        content = unpacked(load.content, load.filename)
-        if rdf.syntax_of(content) == "turtle" and not (load.replace or load.parts or load.dry_run):
-            self._sparql.prefetch(load.id, content, v.ABOX, packed=load.content)
-        label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # stable across retries
+    def _commit_document(self, load: LoadDocument, read: Callable[[_Progress], rdf.Document]) -> Loaded:
         with self._report_progress(f"loading {load.filename or 'a file'}") as report:
-            triples = rdf.parse(
-                content,
-                load.filename,
-                label_prefix=label,
-                progress=lambda count: report(f"{count:,} triples read"),
-            )
-            del content
+            triples = read(lambda count: report(f"{count:,} triples read")).triples
             report(f"{len(triples):,} triples to check and write")
             transaction, filtered = document_change.make_document_transaction(self._map, load, triples)
             if not document_change.is_exact_copy(triples, transaction):
@@ -98,12 +145,18 @@ class LoadHandlers:
         tried = dry_runs.dry_run(self._map, lambda: self._map.commit(transaction))
         return (tried.trial.changed if tried is not None and tried.trial is not None else (), tried)
 
-    def on_load_tbox(self, load: LoadTBox) -> Loaded:
+    def on_load_tbox(self, load: LoadTBox) -> Loaded | Future[Loaded]:
         """Load another TBox, or extend the current one, in one commit, and return notes on it.
 
         There is no commit if nothing changes.
         """
-        read = document_change.read_tbox(self._map, load, label_prefix=f"t{uuid.uuid4().hex[:8]}")
+        content, label = unpacked(load.content, load.filename), f"t{uuid.uuid4().hex[:8]}"
+        if self._parser.isolates(content):
+            return self._read_aside(content, load.filename, label, partial(self._load_tbox, load))
+        return self._load_tbox(load, self._parser.read(content, load.filename, label))
+
+    def _load_tbox(self, load: LoadTBox, document: rdf.Document) -> Loaded:
+        read = document_change.complete_tbox(self._map, load, document)
         tbox = blank_nodes.relabel_like(read, self._map.tbox)
         if load.extend:
             tbox |= self._map.tbox

@@ -6,6 +6,7 @@ import logging
 import math
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
 from itertools import count
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -28,6 +29,7 @@ from semmap.nodes.sim_node.vision.view import OPTICAL, View, look_at
 from semmap.schemas.entities import NAME_PATTERN
 from semmap.schemas.errors import BadFile
 from semmap.schemas.joints import Joint
+from semmap.schemas.nesting import NotWellFormed, require_shallow_xml
 
 # by default MuJoCo writes a log file into the working directory
 mujoco.set_mju_user_warning(logging.getLogger("mujoco").warning)
@@ -84,6 +86,8 @@ def aim(camera: mujoco.MjsCamera, view: View) -> None:
 def read_mjcf(path: Path, *, compiles: bool = True) -> mujoco.MjSpec:
     """Read a scene from a file. Raises BadFile if it is missing or, if requested, does not compile."""
     try:
+        with suppress(NotWellFormed, OSError):  # which MuJoCo reports
+            require_shallow_xml(path.read_bytes())
         spec = mujoco.MjSpec.from_file(str(path))
         if compiles:  # not a copy, which drops references to missing names
             mujoco.MjSpec.from_file(str(path)).compile()
