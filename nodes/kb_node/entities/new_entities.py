@@ -10,13 +10,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 from semmap.nodes.kb_node.entities.class_table import ClassTable
-from semmap.nodes.kb_node.grouping import group_by_property
 from semmap.nodes.kb_node.relations.facts.precompute_messages import (
     ClassModel,
     ExpectedEntities,
     ExpectedEntity,
 )
 from semmap.ontology import vocabulary as v
+from semmap.ontology.entity_triples import group_by_property
 from semmap.schemas.commits import NewEntity, Transaction
 from semmap.schemas.explanations import Term, Triple
 
@@ -92,4 +92,4 @@ def _objects(by_property: _Said, property_: Term, subjects: Sequence[Term]) -> l
 def _looks(classes_of: Iterable[Term], classes: ClassTable) -> tuple[list[ClassModel], dict[Term, int]]:
     """Return the appearance of the classes, and the index of the appearance by class."""
     rows = {c: row for row, c in enumerate(dict.fromkeys(classes_of))}
-    return [ClassModel(classes.models[c], c in classes.places) for c in rows], rows
+    return [ClassModel(classes.models[c], c in classes.places, c in classes.fixed) for c in rows], rows
