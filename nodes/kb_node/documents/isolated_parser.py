@@ -11,10 +11,10 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from multiprocessing.connection import Connection, Pipe
-from typing import Final, Self
+from typing import Final, Self, TypeVar
 
 from msgspec import msgpack
 
@@ -24,10 +24,14 @@ from semmap.nodes.kb_node.documents.parser_process import (
     CPU_S,
     MEMORY_BYTES,
     OUT_OF_MEMORY,
+    ClosureReply,
+    ClosureRequest,
     Reply,
     Request,
 )
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts, unpack
 from semmap.schemas import errors
+from semmap.schemas.explanations import Triple
 
 _COMMAND: Final = (sys.executable, "-P", "-m", "semmap.nodes.kb_node.documents.parser_process")
 _WALL_S: Final = 2 * CPU_S
@@ -37,9 +41,11 @@ _END_S: Final = 10.0
 _LARGE: Final = 1 << 20
 """Size of a document from which its process is not kept for the next one, because its memory grew [bytes]."""
 
+R = TypeVar("R")
+
 
 class IsolatedParser:
-    """Parses one document at a time. The process starts with the first document that needs it."""
+    """Serves one request at a time. The process starts with the first document that needs it."""
 
     def __init__(self, command: Sequence[str] = _COMMAND, *, wall_s: float = _WALL_S) -> None:
         """Create it; `command` is the program of the process, which gets the number of its connection."""
@@ -74,7 +80,7 @@ class IsolatedParser:
         """
         if self.isolates(content):
             with self._turn:
-                reply = self._exchange(Request(content, filename, label_prefix))
+                reply = self._exchange(Request(content, filename, label_prefix), Reply, filename)
                 if len(content) > _LARGE:
                     self._discard()
             document = reply.document()
@@ -88,12 +94,23 @@ class IsolatedParser:
             ) from None
         return document
 
-    def _exchange(self, request: Request) -> Reply:
+    def close_tbox(self, triples: Iterable[Triple], filename: str) -> Facts | None:
+        """Return the closure of a TBox for `Reasoner`, or None if it is inconsistent or has none.
+
+        Raises BadFile if that exceeds a limit. Any thread may call this.
+        """
+        with self._turn:
+            packed = self._exchange(ClosureRequest(list(triples)), ClosureReply, filename).packed
+            if len(packed) > _LARGE:
+                self._discard()
+        return unpack(packed) if packed else None
+
+    def _exchange(self, request: Request | ClosureRequest, kind: type[R], filename: str) -> R:
         process, connection = self._started()
         try:
             connection.send_bytes(msgpack.encode(request))
             if connection.poll(self._wall_s):
-                return msgpack.decode(connection.recv_bytes(), type=Reply)
+                return msgpack.decode(connection.recv_bytes(), type=kind)
             status: int = -signal.SIGXCPU
         except (EOFError, OSError):
             with suppress(subprocess.TimeoutExpired):
@@ -101,7 +118,7 @@ class IsolatedParser:
             process.kill()
             status = process.wait()
         self._discard()
-        raise errors.BadFile(f"{request.filename or 'the document'} {_describe(status)}")
+        raise errors.BadFile(f"{filename or 'the document'} {_describe(status)}")
 
     def _started(self) -> tuple[subprocess.Popen[bytes], Connection]:
         if self._process is None or self._connection is None or self._process.poll() is not None:
@@ -137,7 +154,7 @@ class IsolatedParser:
 def _describe(status: int) -> str:
     """Return what a document did to its process, and the next step."""
     if status == -signal.SIGXCPU:
-        return f"takes longer than {CPU_S:g} s to parse; split it, or save it as Turtle"
+        return f"takes longer than {CPU_S:g} s to read; split it, or save it as Turtle"
     if status in (OUT_OF_MEMORY, -signal.SIGABRT, -signal.SIGKILL):
-        return f"needs more than {MEMORY_BYTES >> 20} MB of memory to parse; split it, or save it as Turtle"
-    return f"cannot be parsed: it ended the parser (status {status}); save it with another program, as Turtle"
+        return f"needs more than {MEMORY_BYTES >> 20} MB of memory to read; split it, or save it as Turtle"
+    return f"cannot be read: it ended the parser (status {status}); save it with another program, as Turtle"

@@ -7,13 +7,14 @@ import uuid
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
-from typing import Final
+from typing import Final, TypeVar
 
 from semmap.nodes.kb_node.answers import dry_runs
 from semmap.nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf
 from semmap.nodes.kb_node.documents.isolated_parser import IsolatedParser
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
 from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, ReportProgress, effects
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.storage.journal import Journal
@@ -27,9 +28,10 @@ from semmap.schemas.entities import Entity
 from semmap.schemas.packing import unpacked
 
 _MOST_READ: Final = 8
-"""Isolated documents that are read or wait for it."""
+"""Documents that are read in the other process, or wait for it."""
 _AGAIN_S: Final = 5.0
 _Progress = Callable[[int], None]
+T = TypeVar("T")
 
 
 class LoadHandlers:
@@ -58,8 +60,8 @@ class LoadHandlers:
         self._notes = notes
         self._run_soon = run_soon
         self._parser = IsolatedParser()
-        self._reading = ThreadPoolExecutor(1, "reading")
-        self._being_read = 0
+        self._aside = ThreadPoolExecutor(1, "reading")
+        self._waiting = 0
 
     def handlers(self) -> dict[str, Handler]:
         """Return the handlers by command."""
@@ -67,7 +69,7 @@ class LoadHandlers:
 
     def close(self) -> None:
         """Stop reading documents. Those that are being read are rejected."""
-        self._reading.shutdown(wait=False, cancel_futures=True)
+        self._aside.shutdown(wait=False, cancel_futures=True)
         self._parser.close()
 
     def on_load(self, load: LoadDocument) -> Loaded | Future[Loaded]:
@@ -75,33 +77,33 @@ class LoadHandlers:
         content = unpacked(load.content, load.filename)
         label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # stable across retries
         if self._parser.isolates(content):
-            return self._read_aside(
-                content, load.filename, label, lambda document: self._load(load, lambda _: document)
+            return self._run_aside(
+                partial(self._parser.read, content, load.filename, label),
+                lambda document: self._load(load, lambda _: document),
             )
         if not (load.replace or load.parts or load.dry_run):
             self._sparql.prefetch(load.id, content, v.ABOX, packed=load.content)
         return self._load(load, partial(self._parser.read, content, load.filename, label))
 
-    def _read_aside(
-        self, content: bytes, filename: str, label_prefix: str, use: Callable[[rdf.Document], Loaded]
+    def _run_aside(
+        self, work: Callable[[], T], use: Callable[[T], Loaded | Future[Loaded]]
     ) -> Future[Loaded]:
-        """Return the future `use(document)`, and serve other requests while a thread reads the document.
+        """Return the future `use(work())`. The node serves other requests while a thread executes `work`.
 
         Raises Busy if very many documents are being read.
         """
-        if self._being_read == _MOST_READ:
+        if self._waiting == _MOST_READ:
             raise errors.Busy(
-                f"{self._being_read} files are being read; try again in {_AGAIN_S:g} s", again_s=_AGAIN_S
+                f"{self._waiting} files are being read; try again in {_AGAIN_S:g} s", again_s=_AGAIN_S
             )
-        self._being_read += 1
+        self._waiting += 1
         loaded = Future[Loaded]()
 
-        def finish(document: Future[rdf.Document]) -> None:
-            self._being_read -= 1
-            settle(loaded, lambda: use(document.result()))
+        def finish(done: Future[T]) -> None:
+            self._waiting -= 1
+            settle(loaded, lambda: use(done.result()))
 
-        reading = self._reading.submit(self._parser.read, content, filename, label_prefix)
-        reading.add_done_callback(lambda document: self._run_soon(lambda: finish(document)))
+        self._aside.submit(work).add_done_callback(lambda done: self._run_soon(lambda: finish(done)))
         return loaded
 
     def _load(self, load: LoadDocument, read: Callable[[_Progress], rdf.Document]) -> Loaded:
@@ -163,10 +165,13 @@ class LoadHandlers:
         """
         content, label = unpacked(load.content, load.filename), f"t{uuid.uuid4().hex[:8]}"
         if self._parser.isolates(content):
-            return self._read_aside(content, load.filename, label, partial(self._load_tbox, load))
+            return self._run_aside(
+                partial(self._parser.read, content, load.filename, label), partial(self._load_tbox, load)
+            )
         return self._load_tbox(load, self._parser.read(content, load.filename, label))
 
-    def _load_tbox(self, load: LoadTBox, document: rdf.Document) -> Loaded:
+    def _load_tbox(self, load: LoadTBox, document: rdf.Document) -> Loaded | Future[Loaded]:
+        before = self._map.tbox
         read = document_change.complete_tbox(self._map, load, document)
         tbox = blank_nodes.relabel_like(read, self._map.tbox)
         if load.extend:
@@ -176,10 +181,16 @@ class LoadHandlers:
         if transaction is None:
             commit = self._journal.commit_of(load.id)
             return Loaded(commit=effects(commit), skipped=(), notes=self._notes())
-        noted: list[str] = []
 
-        def replace() -> Commit:
-            return self._map.replace_tbox(transaction, tbox)
+        def replace(closed: Facts | None) -> Loaded | Future[Loaded]:
+            if self._map.tbox is not before:  # replaced meanwhile
+                return self._load_tbox(load, document)
+            return self._replace_tbox(load, lambda: self._map.replace_tbox(transaction, tbox, closed=closed))
+
+        return self._run_aside(partial(self._parser.close_tbox, tbox, load.filename), replace)
+
+    def _replace_tbox(self, load: LoadTBox, replace: Callable[[], Commit]) -> Loaded:
+        noted: list[str] = []
 
         try:
             if load.dry_run:

@@ -8,6 +8,8 @@ import pytest
 
 from semmap.nodes.kb_node.documents import parser_process, rdf
 from semmap.nodes.kb_node.documents.isolated_parser import IsolatedParser
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.ontology import HOUSEHOLD_TTL
 from semmap.schemas import errors
 from semmap.schemas.nesting import LIMIT
 
@@ -65,6 +67,16 @@ def test_after_a_crash_another_process_parses_the_next_document(parser):
     assert parser.read(FUNCTIONAL, "x") == rdf.read(FUNCTIONAL, "x")
 
 
+@pytest.mark.process
+def test_the_closure_of_a_tbox_is_that_of_a_reasoner(parser):
+    tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes(), "x")
+    closed = parser.close_tbox(tbox, "x")
+    assert closed.facts == Reasoner(tbox).closed.facts
+    assert Reasoner(tbox, closed=closed).closed.facts == closed.facts
+    nothing = [("<a:C>", "<http://www.w3.org/2002/07/owl#differentFrom>", "<a:C>")]
+    assert parser.close_tbox([*tbox, *nothing], "x") is None
+
+
 RECEIVE = """
 import os, signal, sys
 from multiprocessing.connection import Connection
@@ -77,14 +89,14 @@ connection.recv_bytes()
 @pytest.mark.parametrize(
     ("end", "text"),
     [
-        ("os.kill(os.getpid(), signal.SIGSEGV)", "x cannot be parsed: it ended the parser .status -11."),
+        ("os.kill(os.getpid(), signal.SIGSEGV)", "x cannot be read: it ended the parser .status -11."),
         ("os.kill(os.getpid(), signal.SIGABRT)", r"x needs more than \d+ MB of memory"),
-        ("os.kill(os.getpid(), signal.SIGXCPU)", r"x takes longer than \d+ s to parse"),
-        ("signal.pause()", r"x takes longer than \d+ s to parse"),
+        ("os.kill(os.getpid(), signal.SIGXCPU)", r"x takes longer than \d+ s to read"),
+        ("signal.pause()", r"x takes longer than \d+ s to read"),
     ],
 )
 def test_a_document_that_ends_its_process_is_rejected(end, text):
-    parser = IsolatedParser([sys.executable, "-c", RECEIVE + end], wall_s=2.0)
+    parser = IsolatedParser([sys.executable, "-c", RECEIVE + end], wall_s=1.0)
     with parser, pytest.raises(errors.BadFile, match=text):
         parser.read(FUNCTIONAL, "x")
 
