@@ -131,5 +131,5 @@ def as_json(payload: bytes) -> str:
         if looks_like_json(payload):
             return msgspec.json.format(payload, indent=-1).decode()
         return msgspec.json.encode(msgspec.msgpack.decode(payload)).decode()
-    except (msgspec.MsgspecError, UnicodeDecodeError):
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
         return f"{len(payload)} bytes"

@@ -34,7 +34,7 @@ def read_label_map(path: Path, of: str = "labels", example: str = "coffee mug") 
     """Return the classes by label of a detector, or by name of a body, from a JSON file. Raises BadFile."""
     try:
         return msgspec.json.decode(read_file(path), type=dict[str, str])
-    except msgspec.DecodeError:
+    except (msgspec.DecodeError, RecursionError):
         raise errors.BadFile(
             f'{path} is not a JSON object of {of} and classes, such as {{"{example}": "Cup"}}'
         ) from None

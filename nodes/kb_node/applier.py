@@ -17,6 +17,7 @@ from semmap.nodes.kb_node.map_state import MapState
 from semmap.nodes.kb_node.places import truncate_notes
 from semmap.nodes.kb_node.progress import split_batches, with_progress
 from semmap.nodes.kb_node.reasoner import Change, Inconsistent
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.ontology import vocabulary as v
 from semmap.schemas.commits import Commit
 from semmap.schemas.entities import Entity
@@ -80,14 +81,21 @@ class Applier:
         return commit
 
     def switch(
-        self, commit: Commit, tbox: frozenset[Triple], make_durable: Callable[[Commit], Commit]
+        self,
+        commit: Commit,
+        tbox: frozenset[Triple],
+        make_durable: Callable[[Commit], Commit],
+        closed: Facts | None = None,
     ) -> Commit:
-        """Apply a commit that replaces the TBox: everything is computed again in a new reasoner."""
+        """Apply a commit that replaces the TBox: everything is computed again in a new reasoner.
+
+        `closed` is the closure of the TBox, if it is known.
+        """
         state = self._state
         before = state.tbox, state.reasoner, state.classes, state.derived_facts
         abox = {*state.abox(), *commit.inserted}.difference(commit.retracted, tbox)
         try:
-            state.exchange_tbox(tbox, tbox_validation.compile_tbox(tbox))
+            state.exchange_tbox(tbox, tbox_validation.compile_tbox(tbox, closed=closed))
             self.change(insert=abox, lenient=True)
             concerned = {v.iri(entity.iri) for entity in state.by_name.values()}
             concerned.update(i for c in state.classes.spatial for i in state.reasoner.instances(c))

@@ -73,13 +73,19 @@ class KnowledgeBase:
             on_write_error=self._on_write_error,
             report_progress=report_progress,
         )
-        loading = LoadHandlers(
-            self.map, journal, changes, self._sparql, report_progress=report_progress, notes=self._notes
+        self._loading = LoadHandlers(
+            self.map,
+            journal,
+            changes,
+            self._sparql,
+            report_progress=report_progress,
+            notes=self._notes,
+            run_soon=node.soon,
         )
         self._maintenance = MaintenanceHandlers(journal)
         handlers = {
             **changes.handlers(),
-            **loading.handlers(),
+            **self._loading.handlers(),
             **self._queries.handlers(),
             **self._maintenance.handlers(),
         }
@@ -161,6 +167,7 @@ class KnowledgeBase:
 
     def close(self) -> None:
         """Write a checkpoint for a quick start, if the disk accepts it."""
+        self._loading.close()
         self._sparql.close()
         self._queries.close()
         self._maintenance.close()

@@ -17,6 +17,7 @@ from semmap.nodes.kb_node.documents.tbox import tbox_validation
 from semmap.nodes.kb_node.entities import entity_reading
 from semmap.nodes.kb_node.map_state import MapState
 from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.storage import closure_cache, conclusions_format
 from semmap.nodes.kb_node.storage.checkpointing import CheckpointSchedule
 from semmap.nodes.kb_node.storage.encoding import commit_encoding
@@ -204,8 +205,12 @@ class SemanticMap(MapState):
             raise _DryRunDone(self._inspect(commit))
         return structs.replace(commit, digest=self._journal.append(commit, tbox, begun=begun).hex())
 
-    def replace_tbox(self, transaction: Transaction, tbox: Iterable[Triple]) -> Commit:
+    def replace_tbox(
+        self, transaction: Transaction, tbox: Iterable[Triple], *, closed: Facts | None = None
+    ) -> Commit:
         """Replace the TBox and apply the ABox changes of the transaction, in one commit.
+
+        `closed` is the closure of the TBox, if it is known.
 
         Raises Inconsistent, BadFile if `tbox` is not a TBox, and Refused if the map does not fit it or the
         disk is full. Then everything is as before.
@@ -226,7 +231,7 @@ class SemanticMap(MapState):
             tbox_validation.require_fit(self.abox(), before, self.classes)
             return self._write(commit, rdf.serialise(new, "ntriples"))
 
-        return self._run_change(lambda: self._accept(self._applier.switch(commit, new, make_durable)))
+        return self._run_change(lambda: self._accept(self._applier.switch(commit, new, make_durable, closed)))
 
     def restate(self, commit: Commit, tbox: bytes | None = None) -> Commit:
         """Commit a commit of another journal with its number and author.

@@ -11,6 +11,7 @@ from msgspec import json as _json
 
 from semmap.schemas import codec
 from semmap.schemas.errors import BadFile
+from semmap.schemas.nesting import require_shallow
 from semmap.schemas.packing import beginning, unpacked
 
 Kind = Literal["abox", "scene", "huric"]
@@ -46,8 +47,9 @@ def _kind_of_json(content: bytes, filename: str) -> Kind:
         if _json.decode(content.removeprefix(_BOM), type=codec.prepared(_Top)).entities is not UNSET:
             return "scene"
     try:
+        require_shallow(content, "json")
         document = json.loads(content)
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         if content.lstrip(_BLANK)[:1] == b"[" and not filename.lower().endswith(_OF_JSON):
             return "abox"  # Turtle may begin with a bracket, too
         raise BadFile(f"{filename or 'the file'} is not valid JSON: {error}") from None

@@ -9,6 +9,7 @@ import xml.etree.ElementTree as ET
 
 from semmap.schemas import codec
 from semmap.schemas.errors import BadFile, BadRequest
+from semmap.schemas.nesting import require_shallow_xml
 from semmap.schemas.scene_files import Described
 
 _ABILITIES = {"contain_ability": "containing", "support_ability": "supporting"}
@@ -20,8 +21,9 @@ def read(content: bytes, filename: str) -> tuple[Described, ...]:
     if b"<!ENTITY" in content or b"<!DOCTYPE" in content:
         raise BadFile(f"{name} declares XML entities, which are not allowed in HuRIC maps")
     try:
+        require_shallow_xml(content)
         root = ET.fromstring(content)
-    except ET.ParseError as error:
+    except ValueError as error:
         raise BadFile(f"{name} is not valid XML: {error}") from None
     elements = root.findall("./semanticMap/entities/entity")
     if not elements:

@@ -147,7 +147,7 @@ def _result(body: bytes, url: str) -> SparqlResult:
             tuple(_term(binding.get(name)) for name in variables)
             for binding in document["results"]["bindings"]
         )
-    except (ValueError, KeyError, TypeError, AttributeError):
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise errors.NoAnswer(
             f"{url} does not return SPARQL results in JSON; check that it is the query endpoint"
         ) from None

@@ -1,11 +1,59 @@
-"""Matching of blank nodes between two graphs."""
+"""Blank nodes: their depth in class expressions, and matching of those of two graphs."""
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
 
+from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Term, Triple
+from semmap.schemas.nesting import LIMIT
+
+_INNER = frozenset(
+    {
+        *(
+            v.iri(v.OWL + name)
+            for name in ("complementOf", "datatypeComplementOf", "unionOf", "intersectionOf")
+        ),
+        *(v.iri(v.OWL + name) for name in ("someValuesFrom", "allValuesFrom", "onClass", "onDataRange")),
+        *(v.iri(v.OWL + name) for name in ("onProperty", "inverseOf", "withRestrictions", "disjointUnionOf")),
+        v.RDF_FIRST,
+    }
+)
+"""The properties whose value is an inner part of an expression."""
+_ROUNDS = 20
+"""Rounds after which blank nodes count as indistinguishable, which only makes the matching less exact.
+
+A chain of many equal blank nodes would take as many rounds as it has nodes.
+"""
+
+
+def require_shallow_expressions(triples: Iterable[Triple]) -> None:
+    """Raise ValueError if class expressions are nested deeper than `LIMIT` levels, or contain themselves.
+
+    The length of a list does not count.
+    """
+    edges = [(s, o) for s, p, o in triples if o[0] == "_" and s[0] == "_" and p in _INNER]
+    if len(edges) <= LIMIT:
+        return
+    below: dict[Term, list[Term]] = defaultdict(list)
+    above = dict.fromkeys((node for edge in edges for node in edge), 0)
+    for s, o in edges:
+        below[s].append(o)
+        above[o] += 1
+    level, depth, seen = [node for node, count in above.items() if not count], 0, 0
+    while level:
+        if depth > LIMIT:
+            raise ValueError(f"class expressions are nested deeper than {LIMIT} levels")
+        depth, seen, deeper = depth + 1, seen + len(level), list[Term]()
+        for node in level:
+            for inner in below.get(node, ()):
+                above[inner] -= 1
+                if not above[inner]:
+                    deeper.append(inner)
+        level = deeper
+    if len(above) - seen > LIMIT:
+        raise ValueError("class expressions contain themselves")
 
 
 def relabel_like(new: Collection[Triple], known: Collection[Triple]) -> frozenset[Triple]:
@@ -45,7 +93,9 @@ def _colors(triples: Iterable[Triple]) -> Mapping[Term, int]:
             about[node].append(triple)
     colors = dict.fromkeys(about, 0)
     count = 0
-    while count < (count := len(set(colors.values()))):  # the last round distinguished more of them
+    for _ in range(_ROUNDS):
+        if count == (count := len(set(colors.values()))):  # the last round distinguished no more of them
+            break
         numbers: dict[object, int] = {}
         colors = {
             node: numbers.setdefault((colors[node], *_seen_from(node, triples_about, colors)), len(numbers))

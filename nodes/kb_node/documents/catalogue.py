@@ -8,6 +8,7 @@ from urllib.parse import unquote, urlsplit
 from xml.etree import ElementTree
 
 from semmap.schemas import errors
+from semmap.schemas.nesting import require_shallow_xml
 
 FILENAME = "catalog-v001.xml"
 _SPACE = "{urn:oasis:names:tc:entity:xmlns:xml:catalog}"
@@ -27,11 +28,13 @@ def _find(catalogue: Path, iri: str, seen: set[Path]) -> Path | None:
         return None
     seen.add(catalogue)
     try:
-        root = ElementTree.fromstring(catalogue.read_bytes())
-    except ElementTree.ParseError as error:
-        raise errors.BadFile(f"{catalogue} is not a valid XML catalogue: {error}") from None
+        content = catalogue.read_bytes()
+        require_shallow_xml(content)
+        root = ElementTree.fromstring(content)
     except OSError as error:
         raise errors.BadFile(f"{catalogue} cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise errors.BadFile(f"{catalogue} is not a valid XML catalogue: {error}") from None
     entries = list(_entries(root, catalogue.parent))
     for entry, folder in entries:
         if (path := _path_of(entry, folder, iri)) is not None and path.is_file():

@@ -16,7 +16,6 @@ from semmap.schemas import errors, wording
 from semmap.schemas.bridge import LoadDocument, LoadTBox
 from semmap.schemas.commits import Transaction
 from semmap.schemas.explanations import Triple
-from semmap.schemas.packing import unpacked
 
 
 def make_document_transaction(
@@ -65,25 +64,24 @@ def _outside(triples: list[Triple], tbox: frozenset[Triple]) -> Iterable[Triple]
     return (t for t in triples if t not in stated) if stated else triples
 
 
-def read_tbox(semantic_map: SemanticMap, load: LoadTBox, *, label_prefix: str) -> list[Triple]:
+def complete_tbox(semantic_map: SemanticMap, load: LoadTBox, document: rdf.Document) -> list[Triple]:
     """Return the triples of a TBox, or those that an extension adds, with prefixes and spatial roots.
 
     The spatial roots that the present TBox declares stay until others are declared. Raises BadFile,
     UnknownClass.
     """
-    content = unpacked(load.content, load.filename)
-    parsed = rdf.parse(content, load.filename, label_prefix=label_prefix)
+    triples = document.triples
     if load.extend:
-        _require_schema(semantic_map, load, parsed)
+        _require_schema(semantic_map, load, triples)
         return tbox_declarations.find_extension(
-            parsed,
+            triples,
             semantic_map.tbox,
             semantic_map.classes,
-            of_file=rdf.prefixes(content),
+            of_file=document.prefixes,
             spatial_root=load.spatial_root,
         )
     triples = tbox_declarations.with_declarations(
-        parsed, of_file=rdf.prefixes(content), spatial_root=load.spatial_root
+        triples, of_file=document.prefixes, spatial_root=load.spatial_root
     )
     return (
         triples

@@ -7,13 +7,14 @@ that were found for them, so the graph shows which are missing.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
 from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
-from semmap.nodes.kb_node.documents import catalogue, rdf
+from semmap.nodes.kb_node.documents import catalogue
+from semmap.nodes.kb_node.documents.isolated_parser import IsolatedParser
+from semmap.nodes.kb_node.documents.rdf import Document
 from semmap.ontology import vocabulary as v
 from semmap.ontology.prefixes import Prefixes
 from semmap.schemas import errors
@@ -69,28 +70,30 @@ def gather(named: Sequence[Path], given: Mapping[str, Path]) -> Gathered:
 
     `given` maps imports to files. Raises BadFile for an unreadable file.
     """
-    gathering = _Gathering([path for one in named for path in _files_of(one)], given)
-    while gathering.to_read:
-        gathering.read(gathering.to_read.pop(0))
-    return gathering.gathered()
+    with IsolatedParser() as parser:
+        gathering = _Gathering([path for one in named for path in _files_of(one)], given, parser)
+        while gathering.to_read:
+            gathering.read(gathering.to_read.pop(0))
+        return gathering.gathered()
 
 
 class _Gathering:
-    def __init__(self, named: Iterable[Path], given: Mapping[str, Path]) -> None:
+    def __init__(self, named: Iterable[Path], given: Mapping[str, Path], parser: IsolatedParser) -> None:
         self._called = {path.resolve(): path for path in named}
         self._named = tuple(self._called)
         self.to_read = list(self._named)
         self._given = {_plain(v.iri(iri)): path for iri, path in given.items()}
-        self._parsed: dict[Path, list[Triple]] = {}
-        self._read: dict[Path, list[Triple]] = {}
+        self._parser = parser
+        self._parsed: dict[Path, Document] = {}
+        self._read: dict[Path, Document] = {}
         self._stands_for: dict[Term, Path] = {}
 
     def read(self, path: Path) -> None:
         """Read a file, and queue its imports."""
         if path in self._read:
             return
-        triples = self._read[path] = self._triples(path)
-        for term in header(triples).imports:
+        document = self._read[path] = self._document(path)
+        for term in header(document.triples).imports:
             if term not in self._stands_for and (found := self._find(term, path.parent)) is not None:
                 self._stands_for[term] = found
                 self.to_read.append(found)
@@ -99,9 +102,10 @@ class _Gathering:
         """Return all files in one graph."""
         names = {term: self._name_of(path, term) for term, path in self._stands_for.items()}
         triples: dict[Triple, None] = {}
-        for content in self._read.values():
+        for document in self._read.values():
             triples.update(
-                ((s, p, names.get(o, o)) if p == v.OWL_IMPORTS else (s, p, o), None) for s, p, o in content
+                ((s, p, names.get(o, o)) if p == v.OWL_IMPORTS else (s, p, o), None)
+                for s, p, o in document.triples
             )
         for name in names.values():
             triples.setdefault((name, v.RDF_TYPE, v.OWL_ONTOLOGY))
@@ -115,14 +119,13 @@ class _Gathering:
 
     def _prefixes(self) -> dict[str, str]:
         declared: dict[str, str] = {}
-        for path in self._read:
-            with suppress(OSError):
-                declared = {**rdf.prefixes(unpacked(path.read_bytes(), str(path))), **declared}
+        for document in self._read.values():
+            declared = {**document.prefixes, **declared}
         return declared
 
     def _name_of(self, path: Path, wanted: Term) -> Term:
         """Return the ontology in a file that was found for an import, or `wanted` if there are several."""
-        named = [o for o in header(self._read[path]).ontologies if o.startswith("<")]
+        named = [o for o in header(self._read[path].triples).ontologies if o.startswith("<")]
         return wanted if wanted in named or not named else named[0]
 
     def _find(self, term: Term, folder_of_import: Path) -> Path | None:
@@ -159,27 +162,33 @@ class _Gathering:
     def _is(self, path: Path, term: Term) -> bool:
         """Return whether a file contains the ontology. An unreadable file does not."""
         try:
-            ontologies, versions, _ = header(self._triples(path.resolve()))
+            ontologies, versions, _ = header(self._document(path.resolve()).triples)
         except errors.BadFile:
             return False
         return _plain(term) in {_plain(o) for o in (*ontologies, *versions)}
 
-    def _triples(self, path: Path) -> list[Triple]:
-        """Return the triples of a file, which is parsed once."""
+    def _document(self, path: Path) -> Document:
+        """Return the content of a file, which is parsed once."""
         if path not in self._parsed:
-            self._parsed[path] = read(self._called.get(path, path), f"t{len(self._parsed)}x")
+            name = self._called.get(path, path)
+            self._parsed[path] = _read(name, f"t{len(self._parsed)}x", self._parser)
         return self._parsed[path]
 
 
 def read(path: Path, label_prefix: str = "") -> list[Triple]:
     """Return the triples of a file, with `label_prefix` for its blank nodes. Raises BadFile."""
+    with IsolatedParser() as parser:
+        return _read(path, label_prefix, parser).triples
+
+
+def _read(path: Path, label_prefix: str, parser: IsolatedParser) -> Document:
     try:
         content = path.read_bytes()
     except FileNotFoundError:
         raise errors.BadFile(f"there is no file {path}") from None
     except OSError as error:
         raise errors.BadFile(f"{path} cannot be read: {error.strerror}") from None
-    return rdf.parse(unpacked(content, str(path)), str(path), label_prefix=label_prefix)
+    return parser.read(unpacked(content, str(path)), str(path), label_prefix)
 
 
 def _file_below(folders: Iterable[Path], iri: str) -> Path | None:

@@ -12,13 +12,12 @@ import re
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from types import MappingProxyType
-from xml.parsers import expat
+from typing import NamedTuple
 
 import pyoxigraph
 
 from semmap.nodes.kb_node.documents import plain_turtle
 from semmap.nodes.kb_node.documents.error_lines import find_error_line
-from semmap.nodes.kb_node.documents.nesting import require_shallow
 from semmap.nodes.kb_node.documents.owl import syntaxes as owl_syntaxes
 from semmap.nodes.kb_node.documents.owl.syntaxes import OwlSyntax
 from semmap.ontology import vocabulary as v
@@ -26,6 +25,7 @@ from semmap.ontology.prefixes import Prefixes
 from semmap.schemas import errors
 from semmap.schemas.commands import RdfFormat
 from semmap.schemas.explanations import Triple
+from semmap.schemas.nesting import require_shallow, require_shallow_xml
 
 _SYNTAX = {
     "rdfxml": pyoxigraph.RdfFormat.RDF_XML,
@@ -62,6 +62,14 @@ _BUFFER_ERROR = "buffer maximal size"
 """The text of pyoxigraph's MemoryError for a term that does not fit into its buffer."""
 
 
+class Document(NamedTuple):
+    """The content of a document."""
+
+    triples: list[Triple]
+    prefixes: dict[str, str]
+    """Those that are declared before the first triple, with their namespaces."""
+
+
 def syntax_of(content: bytes) -> RdfFormat | OwlSyntax:
     """Return the syntax that `content` begins like; Turtle, which includes N-Triples, by default."""
     if _XML.match(content):
@@ -69,10 +77,15 @@ def syntax_of(content: bytes) -> RdfFormat | OwlSyntax:
     return "jsonld" if _JSON.match(content) else owl_syntaxes.owl_syntax_of(content) or "turtle"
 
 
-def parse(
+def parse(content: bytes, filename: str, *, label_prefix: str = "") -> list[Triple]:
+    """Return the triples of a document, like `read`."""
+    return read(content, filename, label_prefix=label_prefix).triples
+
+
+def read(
     content: bytes, filename: str, *, label_prefix: str = "", progress: Callable[[int], None] = lambda _: None
-) -> list[Triple]:
-    """Return the triples of a document. Blank nodes get `label_prefix`, so that those of two files differ.
+) -> Document:
+    """Read a document. Blank nodes get `label_prefix`, so that those of two files differ.
 
     `progress` receives the number of triples now and then. Raises BadFile with the position of the error.
     """
@@ -87,19 +100,18 @@ def parse(
         raise errors.BadFile(f"{name} is not UTF-8 text (line {where}); save it as UTF-8") from None
     syntax = syntax_of(content)
     try:
-        if syntax in ("rdfxml", "owlxml"):
-            _require_well_formed(content)
-        require_shallow(content, syntax)
+        _require_shallow(content, syntax)
         if syntax == "functional" or syntax == "manchester" or syntax == "owlxml":
-            return [
-                _labelled(triple, label_prefix) for triple in owl_syntaxes.parse(content.decode(), syntax)
-            ]
+            text = content.decode()
+            triples = [_labelled(triple, label_prefix) for triple in owl_syntaxes.parse(text, syntax)]
+            return Document(triples, owl_syntaxes.prefixes(text, syntax))
+        declared = _declared_prefixes(content, syntax)
         if syntax == "turtle" and len(content) >= _LARGE:
-            plain = plain_turtle.read(content, prefixes(content), label_prefix, progress)
+            plain = plain_turtle.read(content, declared, label_prefix, progress)
             if plain is not None:
-                return plain
+                return Document(plain, declared)
         quads = pyoxigraph.parse(content, _SYNTAX[syntax], base_iri=v.ABOX, without_named_graphs=True)
-        return _triples(quads, label_prefix, progress)
+        return Document(_triples(quads, label_prefix, progress), declared)
     except (SyntaxError, ValueError) as error:
         reason = _reason(error)
         if syntax in ("rdfxml", "jsonld") and isinstance(error, SyntaxError) and not _LINE.search(reason):
@@ -161,35 +173,18 @@ def _reason(error: Exception) -> str:
     return str(error).replace("\n", " ")
 
 
-def _require_well_formed(content: bytes) -> None:
-    """Check with Expat that XML is complete and that its entities are limited.
+def _require_shallow(content: bytes, syntax: RdfFormat | OwlSyntax) -> None:
+    """Raise ValueError for a document that is nested too deeply, and for XML that is not well-formed.
 
-    Oxigraph accepts a document that ends within an element, and expands entities without limit. Raises
-    ValueError.
+    Oxigraph accepts XML that ends within an element, and expands entities without limit.
     """
-    parser = expat.ParserCreate()
-    parser.EntityDeclHandler = _reject_external_entity
-    try:
-        parser.Parse(content, True)
-    except expat.ExpatError as error:
-        raise ValueError(str(error)) from None
+    if syntax in ("rdfxml", "owlxml"):
+        require_shallow_xml(content)
+    else:
+        require_shallow(content, {"ntriples": "turtle", "jsonld": "json"}.get(syntax, syntax))
 
 
-def _reject_external_entity(name: str, _: bool, text: str | None, *where: str | None) -> None:
-    if text is None:
-        raise ValueError(f"the external entity '{name}' ({where[1]}) is not allowed")
-
-
-def prefixes(content: bytes) -> dict[str, str]:
-    """Return the prefixes that a document declares before its first triple, with their namespaces."""
-    content = content.removeprefix(_BOM)
-    syntax = syntax_of(content)
-    try:
-        require_shallow(content, syntax)
-    except ValueError:  # which `parse` reports
-        return {}
-    if syntax == "functional" or syntax == "manchester" or syntax == "owlxml":
-        return owl_syntaxes.prefixes(content.decode(), syntax)
+def _declared_prefixes(content: bytes, syntax: RdfFormat) -> dict[str, str]:
     quads = pyoxigraph.parse(content, _SYNTAX[syntax], base_iri=v.ABOX, without_named_graphs=True)
     with suppress(SyntaxError, ValueError):
         next(quads, None)

@@ -5,22 +5,33 @@ from __future__ import annotations
 import hashlib
 import uuid
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
+from typing import Final, TypeVar
 
 from semmap.nodes.kb_node.answers import dry_runs
 from semmap.nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf
+from semmap.nodes.kb_node.documents.isolated_parser import IsolatedParser
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
 from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, ReportProgress, effects
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.runtime.futures import settle
 from semmap.ontology import vocabulary as v
-from semmap.schemas import changes
+from semmap.schemas import changes, errors
 from semmap.schemas.bridge import LoadDocument, Loaded, LoadTBox
 from semmap.schemas.calls import Handler, by_verb
 from semmap.schemas.commits import Commit, Effects, Transaction
 from semmap.schemas.entities import Entity
 from semmap.schemas.packing import unpacked
+
+_MOST_READ: Final = 8
+"""Documents that are read in the other process, or wait for it."""
+_AGAIN_S: Final = 5.0
+_Progress = Callable[[int], None]
+T = TypeVar("T")
 
 
 class LoadHandlers:
@@ -35,41 +46,78 @@ class LoadHandlers:
         *,
         report_progress: ReportProgress,
         notes: Callable[[], tuple[str, ...]],
+        run_soon: Callable[[Callable[[], None]], None],
     ) -> None:
-        """Create the handlers; `notes` returns the notes on the current TBox."""
+        """Create the handlers; `notes` returns the notes on the current TBox.
+
+        `run_soon(function)` calls a function on the thread of the map.
+        """
         self._map = semantic_map
         self._journal = journal
         self._changing = changing
         self._sparql = sparql
         self._report_progress = report_progress
         self._notes = notes
+        self._run_soon = run_soon
+        self._parser = IsolatedParser()
+        self._aside = ThreadPoolExecutor(1, "reading")
+        self._waiting = 0
 
     def handlers(self) -> dict[str, Handler]:
         """Return the handlers by command."""
         return by_verb(LoadDocument.answered_by(self.on_load), LoadTBox.answered_by(self.on_load_tbox))
 
-    def on_load(self, load: LoadDocument) -> Loaded:
+    def close(self) -> None:
+        """Stop reading documents. Those that are being read are rejected."""
+        self._aside.shutdown(wait=False, cancel_futures=True)
+        self._parser.close()
+
+    def on_load(self, load: LoadDocument) -> Loaded | Future[Loaded]:
         """Load an RDF document in one commit or in parts."""
+        content = unpacked(load.content, load.filename)
+        label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # stable across retries
+        if self._parser.isolates(content):
+            return self._run_aside(
+                partial(self._parser.read, content, load.filename, label),
+                lambda document: self._load(load, lambda _: document),
+            )
+        if not (load.replace or load.parts or load.dry_run):
+            self._sparql.prefetch(load.id, content, v.ABOX, packed=load.content)
+        return self._load(load, partial(self._parser.read, content, load.filename, label))
+
+    def _run_aside(
+        self, work: Callable[[], T], use: Callable[[T], Loaded | Future[Loaded]]
+    ) -> Future[Loaded]:
+        """Return the future `use(work())`. The node serves other requests while a thread executes `work`.
+
+        Raises Busy if very many documents are being read.
+        """
+        if self._waiting == _MOST_READ:
+            raise errors.Busy(
+                f"{self._waiting} files are being read; try again in {_AGAIN_S:g} s", again_s=_AGAIN_S
+            )
+        self._waiting += 1
+        loaded = Future[Loaded]()
+
+        def finish(done: Future[T]) -> None:
+            self._waiting -= 1
+            settle(loaded, lambda: use(done.result()))
+
+        self._aside.submit(work).add_done_callback(lambda done: self._run_soon(lambda: finish(done)))
+        return loaded
+
+    def _load(self, load: LoadDocument, read: Callable[[_Progress], rdf.Document]) -> Loaded:
+        """Commit the document that `read(progress)` returns."""
         before = self._map.seq
         try:
-            return self._load(load)
+            return self._commit_document(load, read)
         finally:
             if self._map.seq == before:
                 self._sparql.discard_prepared()
 
-    def _load(self, load: LoadDocument) -> Loaded:
-        content = unpacked(load.content, load.filename)
-        if rdf.syntax_of(content) == "turtle" and not (load.replace or load.parts or load.dry_run):
-            self._sparql.prefetch(load.id, content, v.ABOX, packed=load.content)
-        label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # stable across retries
+    def _commit_document(self, load: LoadDocument, read: Callable[[_Progress], rdf.Document]) -> Loaded:
         with self._report_progress(f"loading {load.filename or 'a file'}") as report:
-            triples = rdf.parse(
-                content,
-                load.filename,
-                label_prefix=label,
-                progress=lambda count: report(f"{count:,} triples read"),
-            )
-            del content
+            triples = read(lambda count: report(f"{count:,} triples read")).triples
             report(f"{len(triples):,} triples to check and write")
             transaction, filtered, replaced = document_change.make_document_transaction(
                 self._map, load, triples
@@ -110,12 +158,21 @@ class LoadHandlers:
         tried = dry_runs.dry_run(self._map, lambda: self._map.commit(transaction))
         return (tried.trial.changed if tried is not None and tried.trial is not None else (), tried)
 
-    def on_load_tbox(self, load: LoadTBox) -> Loaded:
+    def on_load_tbox(self, load: LoadTBox) -> Loaded | Future[Loaded]:
         """Load another TBox, or extend the current one, in one commit, and return notes on it.
 
         There is no commit if nothing changes.
         """
-        read = document_change.read_tbox(self._map, load, label_prefix=f"t{uuid.uuid4().hex[:8]}")
+        content, label = unpacked(load.content, load.filename), f"t{uuid.uuid4().hex[:8]}"
+        if self._parser.isolates(content):
+            return self._run_aside(
+                partial(self._parser.read, content, load.filename, label), partial(self._load_tbox, load)
+            )
+        return self._load_tbox(load, self._parser.read(content, load.filename, label))
+
+    def _load_tbox(self, load: LoadTBox, document: rdf.Document) -> Loaded | Future[Loaded]:
+        before = self._map.tbox
+        read = document_change.complete_tbox(self._map, load, document)
         tbox = blank_nodes.relabel_like(read, self._map.tbox)
         if load.extend:
             tbox |= self._map.tbox
@@ -124,10 +181,16 @@ class LoadHandlers:
         if transaction is None:
             commit = self._journal.commit_of(load.id)
             return Loaded(commit=effects(commit), skipped=(), notes=self._notes())
-        noted: list[str] = []
 
-        def replace() -> Commit:
-            return self._map.replace_tbox(transaction, tbox)
+        def replace(closed: Facts | None) -> Loaded | Future[Loaded]:
+            if self._map.tbox is not before:  # replaced meanwhile
+                return self._load_tbox(load, document)
+            return self._replace_tbox(load, lambda: self._map.replace_tbox(transaction, tbox, closed=closed))
+
+        return self._run_aside(partial(self._parser.close_tbox, tbox, load.filename), replace)
+
+    def _replace_tbox(self, load: LoadTBox, replace: Callable[[], Commit]) -> Loaded:
+        noted: list[str] = []
 
         try:
             if load.dry_run:

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from semmap.nodes.sim_node.models.library import ModelError
+from semmap.schemas.nesting import NotWellFormed, require_shallow_xml
 
 _FOLDERS = ("meshdir", "texturedir", "assetdir")
 _DEEPEST = 20
@@ -38,10 +39,14 @@ def require_references(path: Path, roots: Sequence[Path]) -> None:
     for depth, file in enumerate(files):  # the list grows in the loop
         if depth > _DEEPEST:
             raise ModelError(f"model file {path} includes more than {_DEEPEST} files")
+        content = file.read_bytes()
         try:
-            root = ElementTree.fromstring(file.read_bytes())
-        except ElementTree.ParseError:
+            require_shallow_xml(content)
+        except NotWellFormed:
             continue
+        except ValueError as error:
+            raise ModelError(f"cannot use model file {file}: {error}") from None
+        root = ElementTree.fromstring(content)
         folders.update(file.parent / value for value in _values(root, _FOLDERS))
         for folder in folders:
             require_readable(folder, roots)

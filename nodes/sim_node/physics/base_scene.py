@@ -6,6 +6,7 @@ import json
 import logging
 import math
 from collections.abc import Callable, Collection, Iterable, Sequence
+from contextlib import suppress
 from itertools import count
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -29,6 +30,7 @@ from semmap.nodes.sim_node.vision.view import OPTICAL, View, look_at
 from semmap.schemas.entities import is_name, valid_name
 from semmap.schemas.errors import BadFile
 from semmap.schemas.joints import Joint
+from semmap.schemas.nesting import NotWellFormed, require_shallow_xml
 from semmap.schemas.wording import bodies, few
 
 # by default MuJoCo writes a log file into the working directory
@@ -86,6 +88,8 @@ def aim(camera: mujoco.MjsCamera, view: View) -> None:
 def read_mjcf(path: Path, *, compiles: bool = True) -> mujoco.MjSpec:
     """Read a scene from a file. Raises BadFile if it is missing or, if requested, does not compile."""
     try:
+        with suppress(NotWellFormed, OSError):  # which MuJoCo reports
+            require_shallow_xml(path.read_bytes())
         spec = mujoco.MjSpec.from_file(str(path))
         if compiles:  # not a copy, which drops references to missing names
             mujoco.MjSpec.from_file(str(path)).compile()

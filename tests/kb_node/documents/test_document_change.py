@@ -127,7 +127,8 @@ def test_an_extension_survives_a_restart_and_a_replay(semantic_map, tmp_path):
     stool = "dm:Stool a owl:Class ; rdfs:subClassOf dm:Chair , [ owl:unionOf ( dm:Seat dm:Object ) ] ."
     content = (home.PREFIXES + stool).encode()
     load = LoadTBox(**{**SIGNED, "content": content}, extend=True)
-    added = document_change.read_tbox(semantic_map, load, label_prefix="x")
+    document = rdf.read(content, load.filename, label_prefix="x")
+    added = document_change.complete_tbox(semantic_map, load, document)
     tbox = semantic_map.tbox | frozenset(added)
     assert set(semantic_map.tbox) < tbox
     commit = semantic_map.replace_tbox(transaction(2), tbox)

@@ -114,6 +114,7 @@ def test_a_given_file_takes_precedence(write):
     assert gathered.missing == ()
 
 
+@pytest.mark.process  # not Turtle
 def test_a_catalogue_maps_imports_to_files(write):
     all_ = write("elsewhere/my things.ttl", ontology("http://things.org/all", "http://things.org/cups"))
     cups = write(
@@ -154,6 +155,7 @@ def test_broken_files_are_skipped_unless_they_are_imported(write):
         gather([path], {})
 
 
+@pytest.mark.process  # not Turtle
 def test_a_folder_stands_for_its_ontologies(write, tmp_path):
     b = write("o/b.ttl", ontology("http://o.org/b", "http://o.org/a"))
     a = write(
@@ -208,6 +210,7 @@ def test_an_unreadable_file_is_reported(tmp_path, name):
         (["bfo"], {}, 2, ()),
     ],
 )
+@pytest.mark.process  # not Turtle
 def test_real_ontologies_are_read_with_their_imports(files, given, count, missing):
     folder = data_folder() / "ontologies"
     if not folder.is_dir():
@@ -217,6 +220,7 @@ def test_real_ontologies_are_read_with_their_imports(files, given, count, missin
     assert ontology_files.missing_imports(gathered.triples) == missing
 
 
+@pytest.mark.process  # not Turtle
 def test_blank_nodes_of_two_functional_documents_are_different(tmp_path):
     """Their labels are numbered alike, and anonymous individuals may have equal labels."""
     for name in ("one", "two"):

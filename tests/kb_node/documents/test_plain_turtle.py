@@ -77,7 +77,7 @@ def slowly(content):
 
 
 def quickly(content):
-    return plain_turtle.read(content, rdf.prefixes(content), "f", lambda _: None)
+    return plain_turtle.read(content, rdf._declared_prefixes(content, "turtle"), "f", lambda _: None)
 
 
 @st.composite
@@ -246,7 +246,10 @@ def test_pieces_end_at_any_line_end(monkeypatch):
     told = []
     for size in range(1, 60, 7):
         monkeypatch.setattr(plain_turtle, "_PIECE", size)
-        assert plain_turtle.read(content, rdf.prefixes(content), "f", told.append) == expected
+        assert (
+            plain_turtle.read(content, rdf._declared_prefixes(content, "turtle"), "f", told.append)
+            == expected
+        )
     assert max(told) == len(expected)
 
 

@@ -37,6 +37,7 @@ def loading(semantic_map, said):
         NoSparql(),
         report_progress=report_progress,
         notes=lambda: (),
+        run_soon=lambda function: function(),
     )
 
 

@@ -107,6 +107,7 @@ def test_missing_imports_are_kept_after_a_restart(tmp_path):
         ("bfo/bfo-2.0.owl", "http://purl.obolibrary.org/obo/BFO_0000030"),
     ],
 )
+@pytest.mark.process  # not Turtle
 def test_a_map_with_a_real_tbox_can_be_created_and_continued(tmp_path, file, class_):
     path = data_folder() / "ontologies" / file
     if not path.exists():

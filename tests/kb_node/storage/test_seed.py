@@ -138,6 +138,7 @@ def test_a_write_error_does_not_blame_the_files(data, files, monkeypatch):
         seed(data, *files)
 
 
+@pytest.mark.process  # not Turtle
 def test_a_tbox_may_be_a_folder_with_imports(data, files, tmp_path):
     (tmp_path / "own").mkdir()
     (tmp_path / "own" / "stools.ofn").write_text(

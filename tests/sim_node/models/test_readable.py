@@ -83,3 +83,12 @@ def test_a_pipe_is_not_waited_for(folders, models, inside):
     (folders / "models" / "whole.xml").write_text(BOX.format(inside))
     with pytest.raises(ModelError, match="not a regular file"):
         models("whole.xml" if inside else "pipe.xml", None)
+
+
+@pytest.mark.parametrize("inside", ["<body>" * 250 + "</body>" * 250, '<text name="&e;" data="1"/>'])
+def test_a_model_that_is_nested_too_deeply_is_rejected(folders, models, inside):
+    declared = "".join(f'<!ENTITY e{n} "&e{n + 1};">' for n in range(200_000))
+    head = f'<!DOCTYPE mujoco [<!ENTITY e "&e0;">{declared}<!ENTITY e200000 "x">]>' if "&e" in inside else ""
+    (folders / "models" / "deep.xml").write_text(head + BOX.format(inside))
+    with pytest.raises(ModelError, match="nested deeper than 200 levels"):
+        models("deep.xml", None)

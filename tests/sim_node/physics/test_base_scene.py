@@ -285,3 +285,10 @@ def test_a_scene_is_read_from_a_file_and_what_does_not_compile_is_told_only_if_t
     assert len(base_scene.read_mjcf(path, compiles=False).actuators) == 1
     with pytest.raises(BadFile, match="cannot compile world file"):
         base_scene.read_mjcf(tmp_path / "nothing.xml")
+
+
+def test_a_scene_that_is_nested_too_deeply_is_rejected(tmp_path):
+    path = tmp_path / "world.xml"
+    path.write_text(f"<mujoco><worldbody>{'<body>' * 250}{'</body>' * 250}</worldbody></mujoco>")
+    with pytest.raises(BadFile, match=r"cannot compile world file .*nested deeper than 200 levels"):
+        base_scene.read_mjcf(path)

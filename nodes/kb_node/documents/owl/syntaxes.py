@@ -12,6 +12,7 @@ import pyhornedowl
 from semmap.nodes.kb_node.documents.owl.axiom_triples import triples_of
 from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Triple
+from semmap.schemas.nesting import limit_entities
 
 OwlSyntax = Literal["functional", "manchester", "owlxml"]
 
@@ -72,7 +73,8 @@ def is_owl_xml(content: bytes) -> bool:
 
     parser = expat.ParserCreate(namespace_separator=" ")
     parser.StartElementHandler = note
-    with suppress(expat.ExpatError):
+    limit_entities(parser)
+    with suppress(expat.ExpatError, ValueError):  # which reading reports
         for start in range(0, len(content), _CHUNK):
             parser.Parse(content[start : start + _CHUNK], False)
             if root:

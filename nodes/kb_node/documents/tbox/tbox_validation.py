@@ -8,6 +8,7 @@ from semmap.nodes.kb_node import proofs
 from semmap.nodes.kb_node.documents import abox_document, ontology_files
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.explanations import Triple
@@ -17,11 +18,14 @@ class DoesNotFit(errors.Refused):
     """The map contains something that the TBox does not support."""
 
 
-def compile_tbox(tbox: Iterable[Triple], name: str = "") -> Reasoner:
-    """Return a reasoner with only the TBox. Raises Inconsistent; BadFile if it is not a TBox."""
+def compile_tbox(tbox: Iterable[Triple], name: str = "", *, closed: Facts | None = None) -> Reasoner:
+    """Return a reasoner with only the TBox, whose closure is `closed`, if that is known.
+
+    Raises Inconsistent; BadFile if it is not a TBox.
+    """
     what = f"the TBox {name}".strip()
     try:
-        reasoner = Reasoner(tbox)
+        reasoner = Reasoner(tbox, closed=closed)
     except Inconsistent as error:
         raise proofs.to_error(error, of=what) from None
     if not ClassTable(reasoner).names:

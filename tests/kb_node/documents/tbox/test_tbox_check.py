@@ -136,6 +136,7 @@ def test_the_household_ontology_has_no_errors():
         ("bfo", None, ()),
     ],
 )
+@pytest.mark.process  # not Turtle
 def test_real_ontologies_are_read_quickly(file, ambiguous, empty):
     path = data_folder() / "ontologies" / file
     if not path.exists():

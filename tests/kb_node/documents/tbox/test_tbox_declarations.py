@@ -50,7 +50,7 @@ def test_an_unknown_root_is_rejected():
 
 
 def test_the_prefix_of_a_file_is_kept():
-    tbox = with_declarations(triples(), of_file=rdf.prefixes(ZOO.encode()))
+    tbox = with_declarations(triples(), of_file=rdf.read(ZOO.encode(), "x").prefixes)
     assert "z" in table(tbox).prefixes
     assert with_declarations(tbox) == tbox
 
@@ -70,7 +70,7 @@ def test_the_prefix_of_a_file_is_kept():
     ],
 )  # fmt: skip
 def test_prefixes_are_read_from_every_syntax(text, prefixes):
-    assert rdf.prefixes(text.encode()) == prefixes
+    assert rdf.read(text.encode(), "x").prefixes == prefixes
 
 
 def test_roots_stay_until_others_are_declared():

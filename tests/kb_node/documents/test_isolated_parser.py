@@ -1,0 +1,116 @@
+"""A document costs its parser process at most, and is then rejected in one line."""
+
+import os
+import signal
+import sys
+
+import pytest
+
+from semmap.nodes.kb_node.documents import parser_process, rdf
+from semmap.nodes.kb_node.documents.isolated_parser import IsolatedParser
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.ontology import HOUSEHOLD_TTL
+from semmap.schemas import errors
+from semmap.schemas.nesting import LIMIT
+
+TURTLE = b"@prefix a: <http://a#> . a:x a a:C , a:D ."
+FUNCTIONAL = b"Prefix(a:=<http://a#>) Ontology(<http://a> SubClassOf(a:C ObjectSomeValuesFrom(a:p a:D)))"
+
+
+def test_a_reply_contains_the_document():
+    for content in (TURTLE, FUNCTIONAL, b"# nothing"):
+        document = rdf.read(content, "x", label_prefix="f")
+        assert parser_process.Reply.of(document).document() == document
+    with pytest.raises(errors.BadFile, match="the text"):
+        parser_process.Reply(error="the text").document()
+
+
+def test_turtle_needs_no_process():
+    with IsolatedParser(["no such program"]) as parser:
+        assert parser.read(TURTLE, "x", "f") == rdf.read(TURTLE, "x", label_prefix="f")
+
+
+def test_deep_class_expressions_are_rejected_although_their_text_is_flat():
+    inner = "".join(
+        f"_:b{n} <http://www.w3.org/2002/07/owl#complementOf> _:b{n + 1} .\n" for n in range(LIMIT)
+    )
+    with IsolatedParser() as parser:
+        assert len(parser.read(inner.encode(), "x").triples) == LIMIT
+        inner += f"_:b{LIMIT} <http://www.w3.org/2002/07/owl#complementOf> _:b .\n"
+        with pytest.raises(
+            errors.BadFile, match=f"x: class expressions are nested deeper than {LIMIT} levels"
+        ):
+            parser.read(inner.encode(), "x")
+
+
+@pytest.fixture
+def parser():
+    with IsolatedParser() as parser:
+        yield parser
+
+
+@pytest.mark.process
+def test_documents_are_parsed_by_one_process(parser):
+    assert parser.read(FUNCTIONAL, "x", "f") == rdf.read(FUNCTIONAL, "x", label_prefix="f")
+    first = parser._process
+    with pytest.raises(errors.BadFile, match=r"x\.ofn is not valid OWL functional syntax: line 1"):
+        parser.read(FUNCTIONAL[:-1], "x.ofn")
+    assert parser.read(FUNCTIONAL, "y") == rdf.read(FUNCTIONAL, "y")
+    assert parser._process is first
+
+
+@pytest.mark.process
+def test_after_a_crash_another_process_parses_the_next_document(parser):
+    parser.read(FUNCTIONAL, "x")
+    os.kill(parser._process.pid, signal.SIGSEGV)
+    parser._process.wait()
+    assert parser.read(FUNCTIONAL, "x") == rdf.read(FUNCTIONAL, "x")
+
+
+@pytest.mark.process
+def test_the_closure_of_a_tbox_is_that_of_a_reasoner(parser):
+    tbox = rdf.parse(HOUSEHOLD_TTL.read_bytes(), "x")
+    closed = parser.close_tbox(tbox, "x")
+    assert closed.facts == Reasoner(tbox).closed.facts
+    assert Reasoner(tbox, closed=closed).closed.facts == closed.facts
+    nothing = [("<a:C>", "<http://www.w3.org/2002/07/owl#differentFrom>", "<a:C>")]
+    assert parser.close_tbox([*tbox, *nothing], "x") is None
+
+
+RECEIVE = """
+import os, signal, sys
+from multiprocessing.connection import Connection
+connection = Connection(int(sys.argv[1]))
+connection.recv_bytes()
+"""
+
+
+@pytest.mark.process
+@pytest.mark.parametrize(
+    ("end", "text"),
+    [
+        ("os.kill(os.getpid(), signal.SIGSEGV)", "x cannot be read: it ended the parser .status -11."),
+        ("os.kill(os.getpid(), signal.SIGABRT)", r"x needs more than \d+ MB of memory"),
+        ("os.kill(os.getpid(), signal.SIGXCPU)", r"x takes longer than \d+ s to read"),
+        ("signal.pause()", r"x takes longer than \d+ s to read"),
+    ],
+)
+def test_a_document_that_ends_its_process_is_rejected(end, text):
+    parser = IsolatedParser([sys.executable, "-c", RECEIVE + end], wall_s=1.0)
+    with parser, pytest.raises(errors.BadFile, match=text):
+        parser.read(FUNCTIONAL, "x")
+
+
+@pytest.mark.process
+def test_a_process_that_needs_more_memory_or_time_than_its_limit_ends():
+    program = (
+        "from semmap.nodes.kb_node.documents import parser_process as p, rdf\n"
+        "import sys\nfrom multiprocessing.connection import Connection\n"
+        "p.MEMORY_BYTES, p.CPU_S = 1 << 30, 1\n"
+        "def read(content, *_, **__):\n    {}\n"
+        "rdf.read = read\np.serve(Connection(int(sys.argv[1])))\n"
+    )
+    for work, text in (("x = bytearray(2 << 30)", "memory"), ("while True: pass", "takes longer")):
+        parser = IsolatedParser([sys.executable, "-P", "-c", program.format(work)])
+        with parser, pytest.raises(errors.BadFile, match=text):
+            parser.read(FUNCTIONAL, "x")
