@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import struct
 
 import pytest
 
@@ -83,3 +84,12 @@ def test_a_pipe_is_not_waited_for(folders, models, inside):
     (folders / "models" / "whole.xml").write_text(BOX.format(inside))
     with pytest.raises(ModelError, match="not a regular file"):
         models("whole.xml" if inside else "pipe.xml", None)
+
+
+def test_a_texture_is_not_decoded_if_it_is_too_large(folders, models):
+    texture = '<asset><texture name="t" type="2d" file="t.png"/></asset>'
+    (folders / "models" / "painted.xml").write_text(BOX.format(texture))
+    head = b"\x89PNG\r\n\x1a\n" + struct.pack(">I4sII", 13, b"IHDR", 30_000, 30_000)
+    (folders / "models" / "t.png").write_bytes(head)
+    with pytest.raises(ModelError, match=r"cannot use texture .*t\.png: the image has 30000 x 30000 pixels"):
+        models("painted.xml", None)
