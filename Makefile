@@ -75,7 +75,7 @@ shapes: setup  ## Write the models' sizes, support surfaces and hollows anew, fo
 models: setup  ## Draw the contact sheet of all models
 	$(BIN)/python -m semmap.nodes.sim_node.models.contact_sheet docs/models.png
 
-pictures: setup  ## Draw the manual's pictures of the page, the plan and the movie; needs Debian's chromium
+pictures: setup  ## Render the screenshots, the plan and the movie of the manual; needs Debian's chromium
 	$(BIN)/python docs/_ext/pictures.py
 
 drive-picture: setup  ## Draw what cameras saw in the drive that `make demo` has recorded

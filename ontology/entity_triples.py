@@ -8,9 +8,13 @@ New individuals are named after the entity, not after their text, which can be a
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Iterable
 from functools import lru_cache
 
 from semmap.ontology import vocabulary as v
+from semmap.schemas.commands import Rename, Undo
+from semmap.schemas.commits import Commit
 from semmap.schemas.entities import IDENTITY, Pose, Size
 from semmap.schemas.explanations import Term, Triple
 
@@ -99,3 +103,46 @@ def _numbers(node: Term, properties: tuple[Term, ...], values: tuple[float, ...]
         (node, predicate, f'"{float(value)!r}{_FLOAT}')  # a number needs no escaping
         for predicate, value in zip(properties, values, strict=True)
     ]
+
+
+def group_by_property(triples: Iterable[Triple]) -> dict[Term, list[Triple]]:
+    """Return the triples of each property, in their order."""
+    found = defaultdict[Term, list[Triple]](list)
+    for triple in triples:
+        found[triple[1]].append(triple)
+    return dict(found)
+
+
+def find_renamed(commit: Commit) -> dict[Term, Term]:
+    """Return the earlier IRIs of the entities that a commit renamed, by their present IRIs.
+
+    A renamed entity keeps all individuals that describe it. An entity without any is only recognised in the
+    commit of a `rename`, and in its undo, if the same triples are about it before and afterwards.
+    """
+    gone = {departed.name for departed in commit.removed}
+    if not gone:
+        return {}
+    before = _by_subject(t for t in commit.retracted if v.entity_name(t[0]) in gone)
+    after = _by_subject(commit.inserted)
+    is_rename = commit.verb in (Rename.VERB, Undo.VERB)
+    owners = {o: s for s, about in after.items() for p, o in about if p in DESCRIPTION_PROPERTIES}
+    same = {frozenset(about): s for s, about in after.items()} if is_rename and len(before) == 1 else {}
+    found: dict[Term, Term] = {}
+    for earlier, about in before.items():
+        described = {(p, o) for p, o in about if p in DESCRIPTION_PROPERTIES}
+        owner = next((owners[o] for _, o in described if o in owners), None) or same.get(frozenset(about))
+        if owner is not None and described <= after[owner]:
+            found[owner] = earlier
+    return found
+
+
+def _by_subject(triples: Iterable[Triple]) -> dict[Term, set[tuple[Term, Term]]]:
+    found = defaultdict[Term, set[tuple[Term, Term]]](set)
+    for s, p, o in triples:
+        found[s].add((p, o))
+    return found
+
+
+def find_earlier_names(commit: Commit) -> dict[str, str]:
+    """Return the earlier names of the entities that a commit renamed, by their present names."""
+    return {v.entity_name(now): v.entity_name(was) for now, was in find_renamed(commit).items()}

@@ -31,12 +31,12 @@ from semmap.schemas.commands import (
     Watch,
 )
 from semmap.schemas.commits import Commit, Effects, Snapshot, Star, Transaction
-from semmap.schemas.entities import CommandId, Entity, Source, Word
+from semmap.schemas.entities import CommandId, Entity, Pose, Quaternion, Size, Source, Word
 from semmap.schemas.errors import ErrorMessage
 from semmap.schemas.explanations import Triple
 from semmap.schemas.moments import When
 from semmap.schemas.plans import Clearance, HeightRange, Outline, Plan, Way
-from semmap.schemas.relations import Where
+from semmap.schemas.relations import Placing, Where
 
 
 class Outcome(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -47,11 +47,15 @@ class Outcome(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Loaded(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The result of loading: the last commit of `parts` parts, the changed entities, and skipped ones."""
+    """The result of loading: the last commit of `parts` parts, the changed entities, and skipped ones.
+
+    `counts` has the number of entities that the document describes by what changed: `new`, `moved`, ...
+    """
 
     commit: Effects | None
     parts: int = 1
     names: tuple[str, ...] = ()
+    counts: dict[str, int] = {}
     skipped: tuple[str, ...]
     notes: tuple[str, ...] = ()
 
@@ -92,6 +96,31 @@ class CopyQuery(Call[MapCopy], frozen=True, kw_only=True, forbid_unknown_fields=
 
     VERB: ClassVar[str] = "copy"
     content: bool = True
+
+
+class Room(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A free pose for an object. `note` is about the object that it is placed on or in, or ""."""
+
+    pose: Pose
+    note: str = ""
+
+
+class FindRoom(Call[Room], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Request a free pose for an object `name` on, in or next to `target`.
+
+    Without an `orientation` it is aligned with the target. `model` and `size_m` replace those of an entity of
+    this name. With `carry`, its contents take up no room. Raises Refused without room, with the reason.
+    """
+
+    VERB: ClassVar[str] = "find-room"
+
+    name: str
+    model: str | None = None
+    size_m: Size | None = None
+    orientation: Quaternion | None = None
+    placing: Placing
+    target: str
+    carry: bool = False
 
 
 class StarQuery(Call[tuple[Star, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -180,6 +209,7 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
     filename: str
     replace: bool
     skip_unknown: bool
+    add_only: bool = False
     strict: bool = False
     parts: bool = False
     dry_run: bool = False

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import Literal
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Final, Literal
 
 from msgspec import Struct, field
 
 from semmap.schemas.entities import Entity, Pose, Stated, Value, angle_rad, distance_m
 
+UNCHANGED: Final = "as they were"
 _STILL_M = 5e-4
 _SLIGHT_RAD = 0.0175
 Kind = Literal[
     "added",
     "removed",
+    "name",
     "pose",
     "size",
     "class",
@@ -28,8 +30,8 @@ Kind = Literal[
 class Change(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """One change of the entity `name`; a value is None if it did not exist before or afterwards.
 
-    For `added` and `removed`, the value is the entity's class. For `property`, the field `property` is its
-    name. Positions and sizes are in metres.
+    For `added` and `removed`, the value is the entity's class. For `name`, a renamed entity, `was` is its
+    earlier name. For `property`, the field `property` is its name. Positions and sizes are in metres.
     """
 
     name: str
@@ -50,6 +52,7 @@ def between(was: Entity | None, now: Entity) -> list[Change]:
     if was is None:
         return [Change(name=name, kind="added", now=now.class_)]
     compared: tuple[tuple[Kind, Pose | Stated | None, Pose | Stated | None], ...] = (
+        ("name", was.name, now.name),
         ("class", was.class_, now.class_),
         ("pose", was.pose, now.pose),
         ("size", was.size_m, now.size_m),
@@ -74,9 +77,38 @@ def of_properties(name: str, stated: Iterable[tuple[str, Stated | None, Stated |
     )
 
 
+def earlier_names(changes: Iterable[Change]) -> set[str]:
+    """Return the names that renamed entities had before."""
+    return {str(change.was) for change in changes if change.kind == "name"}
+
+
 def removed(name: str, class_name: str) -> Change:
     """Return the change for the removal of an entity."""
     return Change(name=name, kind="removed", was=class_name)
+
+
+def count_kinds(described: Iterable[tuple[Entity | None, Entity | None]]) -> dict[str, int]:
+    """Return the number of entities by what has changed between two states: `new`, `moved and resized`, ...
+
+    The second state is None for an entity that has not changed.
+    """
+    counts: dict[str, int] = {}
+    for was, now in described:
+        word = UNCHANGED
+        if now is not None:
+            kinds = {change.kind for change in between(was, now)}
+            words = dict.fromkeys(word for kind, word in _PARTICIPLES.items() if kind in kinds)
+            word = " and ".join(words) or "changed"
+        counts[word] = counts.get(word, 0) + 1
+    return counts
+
+
+def counts_in_words(counts: Mapping[str, int]) -> str:
+    """Return the counts of `count_kinds` as text: `2 new, 1 moved, 3 as they were`."""
+    ordered = sorted(counts.items(), key=lambda item: (item[0] == UNCHANGED, item[0] != "new", -item[1]))
+    return ", ".join(
+        f"{count} {'as it was' if word == UNCHANGED and count == 1 else word}" for word, count in ordered
+    )
 
 
 def in_words(changes: Iterable[Change]) -> str:
@@ -118,8 +150,8 @@ def _extent(size: Pose | Stated | None) -> str:
 
 def _reference(change: Change) -> str:
     if change.was is None:
-        return f"called '{change.now}'"
-    return f"renamed '{change.was}' → '{change.now}'" if change.now else f"no longer called '{change.was}'"
+        return f"label added: '{change.now}'"
+    return f"label: '{change.was}' → '{change.now}'" if change.now else f"label removed: '{change.was}'"
 
 
 def _alternatives(change: Change) -> str:
@@ -129,12 +161,12 @@ def _alternatives(change: Change) -> str:
             filter(
                 None,
                 (
-                    f"reference added: {_quoted(came)}" if came else "",
-                    f"reference removed: {_quoted(gone)}" if gone else "",
+                    f"alias added: {_quoted(came)}" if came else "",
+                    f"alias removed: {_quoted(gone)}" if gone else "",
                 ),
             )
         )
-        or "references in another order"
+        or "aliases in another order"
     )
 
 
@@ -190,6 +222,7 @@ def _quoted(values: Iterable[Value]) -> str:
 _WORDS = {
     "added": lambda c: f"added as {c.now}",
     "removed": lambda c: "removed",
+    "name": lambda c: f"renamed from {c.was}",
     "pose": _pose,
     "size": _size,
     "class": lambda c: f"class {c.was} → {c.now}",
@@ -199,3 +232,12 @@ _WORDS = {
     "tracking": _tracking,
     "property": _property,
 }
+_PARTICIPLES: Final[Mapping[Kind, str]] = {
+    "added": "new",
+    "pose": "moved",
+    "size": "resized",
+    "class": "reclassified",
+    "reference": "relabelled",
+    "alternatives": "relabelled",
+}
+"""Words for the kinds of changes that are counted; an entity with other changes is `changed`."""

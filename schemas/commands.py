@@ -2,7 +2,7 @@
 
 The fields are the same on the command line (`semmap add Chair --at 1 2 0`), in a selector
 (`semmap/cmd/add?class=Chair;at=1,2,0`) and in a message (`{"verb": "add", "class": "Chair", ...}`).
-Positions and sizes are in metres in the map frame, angles in radians.
+Positions and sizes are in metres in the map frame, angles in radians, or texts such as `90deg`.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 
 from msgspec import Meta, field, structs
 
+from semmap.schemas import errors
 from semmap.schemas.approvals import Consequences, Request
 from semmap.schemas.backups import BackupPart
 from semmap.schemas.calls import DOCUMENT, MANY, Call, R
@@ -31,6 +32,7 @@ from semmap.schemas.entities import (
     Vector,
     Word,
     composed,
+    parse_angle,
 )
 from semmap.schemas.exemplars import LessonTold, ShownView
 from semmap.schemas.explanations import Explanation
@@ -152,9 +154,14 @@ class Command(
         return self.VERB not in _SLOW
 
     def __post_init__(self) -> None:
-        """Convert the name to Unicode's composed form, in which names are compared."""
+        """Convert the name to Unicode's composed form, in which names are compared, and `yaw` to radians."""
         if isinstance(name := getattr(self, "name", None), str) and not name.isascii():
             structs.force_setattr(self, "name", composed(name))
+        if (yaw := getattr(self, "yaw", None)) is not None:
+            try:
+                structs.force_setattr(self, "yaw", parse_angle(yaw))
+            except ValueError as error:
+                raise errors.BadRequest(str(error)) from None
 
 
 # Changes
@@ -163,10 +170,11 @@ class Command(
 class Add(Command[Changed], frozen=True, tag="add"):
     """Add an entity to the map.
 
-    Without `name`, one is generated from the class. Without `at`, the entity is placed at the next free
-    position near the default pose. With `default`, the class's label becomes its label. `set` are properties,
-    each written `PROPERTY=VALUE`. With `track` it is tracked from the start (see `Track`). `wait` delays the
-    reply until its body is in the scene.
+    Without `name`, one is generated from the class. With `on`, `in` or `next_to` it is placed where there is
+    room on, in or next to another entity, aligned with it. Without these and `at`, the entity is placed at
+    the next free position near the default pose. With `default`, the class's label becomes its label. `set`
+    are properties, each written `PROPERTY=VALUE`. With `track` it is tracked from the start (see `Track`).
+    `wait` delays the reply until its body is in the scene.
 
     `extent` is for places. Then only the z of `at` (the height of the floor) and the z of `size` (the height
     of the place) are used. With a `frame` (see `frames`), `at` and the angle are in that frame; without an
@@ -196,6 +204,9 @@ class Add(Command[Changed], frozen=True, tag="add"):
     unchanged: tuple[Word, ...] = ()
     since: Since = 0
     dry_run: bool = False
+    on: Word | None = None
+    in_: Word | None = field(name="in", default=None)
+    next_to: Word | None = None
 
 
 class Update(Command[Changed], frozen=True, tag="update"):
@@ -208,7 +219,8 @@ class Update(Command[Changed], frozen=True, tag="update"):
 
     With `carry`, objects on the entity or inside it move with it as one rigid body, in the same commit. The
     objects in `leave`, and what is on them, do not move. `extent` and `frame` are as for `add`; a place with
-    an extent is moved by setting a new one.
+    an extent is moved by setting a new one. `on`, `in` and `next_to` are as for `add`, but without an angle
+    it keeps its orientation.
     """
 
     ROLES: ClassVar[Roles] = OBSERVERS
@@ -234,6 +246,9 @@ class Update(Command[Changed], frozen=True, tag="update"):
     unchanged: tuple[Word, ...] = ()
     since: Since = 0
     dry_run: bool = False
+    on: Word | None = None
+    in_: Word | None = field(name="in", default=None)
+    next_to: Word | None = None
 
 
 class Set(Command[Changed], frozen=True, tag="set"):
@@ -394,7 +409,9 @@ class Clear(Command[Changed], frozen=True, tag="clear"):
 class Load(Command[Changed], frozen=True, tag="load"):
     """Load a file: an ABox, a scene in JSON or a HuRIC map; the format is detected from the content.
 
-    `replace` removes the present entities in the same commit. `skip_unknown` skips entities of classes that
+    What the file states about an entity that is in the map replaces its pose, size, labels and values of
+    functional properties; with `add_only`, such a file is rejected. `replace` removes the present entities in
+    the same commit. `skip_unknown` skips entities of classes that
     the TBox lacks; otherwise one such entity causes the file to be rejected. `strict` rejects a file that
     refers to undefined individuals; otherwise they are reported in a note. With `tbox`, the file is a TBox
     that replaces the present one, unless the map is invalid under it; with `extend`, its statements are added
@@ -411,6 +428,7 @@ class Load(Command[Changed], frozen=True, tag="load"):
     content: bytes
     filename: Annotated[str, Meta(max_length=5000)] = ""
     replace: bool = False
+    add_only: bool = False
     skip_unknown: bool = False
     strict: bool = False
     tbox: bool = False
@@ -832,17 +850,21 @@ class Move(Command[Moved], frozen=True, tag="move"):
     With `carry`, the bodies of objects on it or inside it (according to the map) move with it as one rigid
     body and are committed together, except those in `leave`. `frame` is as for `add`. `wait` delays the reply
     until the commit exists, or until it is certain that there is none; it has no effect while time is paused.
+    Exactly one of `at`, `on`, `in` and `next_to` is required; see `update`.
     """
 
     ROLES: ClassVar[Roles] = OPERATORS
 
     name: Word
-    at: Vector
+    at: Vector | None = None
     yaw: Angle | None = None
     frame: FrameName | None = None
     carry: bool = False
     leave: tuple[Word, ...] = ()
     wait: bool = False
+    on: Word | None = None
+    in_: Word | None = field(name="in", default=None)
+    next_to: Word | None = None
 
 
 class Open(Command[Moved], frozen=True, tag="open"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from operator import attrgetter
 from typing import ClassVar, Final
 
@@ -10,7 +11,6 @@ from msgspec import Struct, structs
 from semmap.schemas import errors
 from semmap.schemas.calls import DOCUMENT, Call
 from semmap.schemas.entities import (
-    Angle,
     CommandId,
     Entity,
     Name,
@@ -18,6 +18,7 @@ from semmap.schemas.entities import (
     Probability,
     Provenance,
     Quaternion,
+    Radians,
     Remark,
     Size,
     Source,
@@ -68,7 +69,7 @@ class Edit(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=Tr
     rename: Name | None = None
     class_iri: str | None = None
     at: Vector | None = None
-    yaw: Angle | None = None
+    yaw: Radians | None = None
     orientation: Quaternion | None = None
     size: Size | None = None
     ref: Text | None = None
@@ -220,9 +221,11 @@ class Effects(Struct, frozen=True, kw_only=True):
     trial: Trial | None = None
     """The result of a dry run; nothing was changed."""
     digest: str = ""
+    renamed: Mapping[str, str] = {}
+    """The earlier names of renamed entities, by their present names; only in replies."""
 
     @classmethod
-    def of(cls, commit: Commit) -> Effects:
+    def of(cls, commit: Commit, renamed: Mapping[str, str] | None = None) -> Effects:
         """Return the effects of a commit, abridged if there are very many."""
         commit = abridged(commit)
         return cls(
@@ -236,6 +239,7 @@ class Effects(Struct, frozen=True, kw_only=True):
             removed=commit.removed,
             digest=commit.digest,
             notes=commit.notes,
+            renamed=renamed or {},
         )
 
     @property

@@ -1,4 +1,4 @@
-"""The default endpoint and the environment variables of a connection."""
+"""Endpoints, and the environment variables of a connection."""
 
 from __future__ import annotations
 
@@ -20,6 +20,29 @@ NAMESPACE_VARIABLE: Final = "SEMMAP_NAMESPACE"
 """The environment variable with the robot's name, if several robots share a network."""
 
 _ROBOT: Final = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,127}")
+
+
+_WITH_PORT: Final = ("tcp", "tls", "udp", "quic", "ws")
+_OTHERS: Final = ("unixsock-stream", "unixpipe", "serial", "vsock")
+_ADDRESS: Final = re.compile(r"(\[[0-9a-fA-F:.%\w]+\]|[^\s/\[\]:?#,]+):(\d{1,5})([?#].*)?")
+
+
+def parse_endpoint(text: str) -> str:
+    """Return a Zenoh endpoint such as `tcp/127.0.0.1:7447`.
+
+    `HOST:PORT` and `tcp://HOST:PORT` are accepted, too. Raises BadRequest for other texts.
+    """
+    protocol, separator, address = text.strip().partition("/")
+    if not separator:
+        protocol, address = "tcp", text.strip()
+    elif protocol.endswith(":"):
+        protocol, address = protocol[:-1], address.removeprefix("/").removesuffix("/")
+    if protocol in _OTHERS and address:
+        return f"{protocol}/{address}"
+    match = _ADDRESS.fullmatch(address)
+    if protocol not in _WITH_PORT or match is None or int(match[2]) >= 1 << 16:
+        raise BadRequest(f"'{text}' is not a valid endpoint; use tcp/HOST:PORT, as in {DEFAULT_ENDPOINT}")
+    return f"{protocol}/{address}"
 
 
 ALL_ROBOTS: Final = "*"

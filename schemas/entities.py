@@ -10,7 +10,7 @@ import math
 import re
 import unicodedata
 from collections.abc import Container
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeAlias
 
 from msgspec import Meta, Struct, field
 
@@ -36,7 +36,12 @@ Name = Annotated[str, Meta(pattern=NAME_PATTERN)]
 Metres = Annotated[float, Meta(ge=-REACH_M, le=REACH_M)]
 Length = Annotated[float, Meta(gt=0.0, le=REACH_M)]
 Unit = Annotated[float, Meta(ge=-1.001, le=1.001)]
-Angle = Annotated[float, Meta(ge=-1e6, le=1e6)]
+Radians = Annotated[float, Meta(ge=-1e6, le=1e6)]
+if TYPE_CHECKING:
+    Angle: TypeAlias = float
+else:
+    Angle = float | Annotated[str, Meta(max_length=40)]
+"""An angle as entered by a user: radians, or a text such as `90deg`; messages convert it to radians."""
 Text = Annotated[str, Meta(min_length=1, max_length=1000)]
 Word = Annotated[str, Meta(max_length=1000)]
 """A name, class or label to look up, as entered by a user."""
@@ -108,9 +113,58 @@ def free_name(class_name: str, taken: Container[str]) -> str:
     return f"{stem}{number}"
 
 
+def valid_name(text: str, taken: Container[str] = ()) -> str:
+    """Return a name for an object that is called `text` elsewhere, such as `Apple_01.2` for `Apple|+01.2`.
+
+    A valid text is its own name. Otherwise, each sequence of other characters becomes `_`, and a name that is
+    in `taken` gets the first unused number.
+    """
+    name = re.sub(rf"[^\w.\-{_MARKS}]+", "_", composed(text)).strip("_")[:120] if not is_name(text) else text
+    stem = name if is_name(name) else f"_{name}"
+    name, number = stem, 1
+    while name in taken:
+        number += 1
+        name = f"{stem}_{number}"
+    return name
+
+
+def is_name(text: str) -> bool:
+    """Return whether a text can be the name of an entity."""
+    return re.match(NAME_PATTERN, text) is not None
+
+
 def composed(name: str) -> str:
     """Return a name in Unicode's composed form (NFC), in which names are stored and compared."""
     return name if name.isascii() else unicodedata.normalize("NFC", name)
+
+
+_ANGLE: Final = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(deg|°|rad)?\s*")
+
+
+def parse_angle(value: float | str) -> float:
+    """Return an angle [rad]: a number in radians, or a text such as `1.57`, `1.57rad`, `90deg` or `90°`.
+
+    An angle with a unit is reduced to one turn. Raises ValueError for other texts, and for a number beyond
+    one turn, because that is most likely in degrees.
+    """
+    unit = None
+    if isinstance(value, str):
+        if (match := _ANGLE.fullmatch(value)) is None:
+            raise ValueError(f"'{value}' is not an angle; use radians (1.57) or degrees (90deg)")
+        number, unit = float(match[1]), match[2]
+    else:
+        number = value
+    angle = math.radians(number) if unit in ("deg", "°") else number
+    if abs(angle) <= _TURN_RAD:
+        return angle
+    if not math.isfinite(angle):
+        raise ValueError(f"'{value}' is not an angle; use radians (1.57) or degrees (90deg)")
+    if unit is None:
+        raise ValueError(f"the angle {number:g} exceeds one turn in radians; for degrees write {number:g}deg")
+    return math.remainder(angle, math.tau)
+
+
+_TURN_RAD: Final = math.tau + 1e-6
 
 
 def orientation_from_yaw(yaw_rad: float) -> Quaternion:
@@ -232,6 +286,8 @@ class BodyState(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     detail: str = ""
     model: str = ""
     """The model of the body; for a pending one, the model that it will have."""
+    body: str = ""
+    """The name of the body in the world file, if it is another one than the entity's."""
     own_size: bool = False
     """Whether the entity's size is that of its model, because the map has none."""
     joints: tuple[Joint, ...] = ()

@@ -6,7 +6,7 @@ from typing import Annotated, Final, Literal
 
 from msgspec import Meta, Struct
 
-from semmap.schemas.entities import Angle, Pose, Quaternion, Vector
+from semmap.schemas.entities import Pose, Quaternion, Radians, Vector
 from semmap.schemas.live import StampNs
 from semmap.schemas.scene_files import pose_of
 
@@ -31,7 +31,7 @@ class FramePose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, o
 
     parent: FrameName
     at: Vector = (0.0, 0.0, 0.0)
-    yaw: Angle | None = None
+    yaw: Radians | None = None
     orientation: Quaternion | None = None
     stamp_ns: StampNs = 0
     fixed: bool = False

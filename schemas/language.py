@@ -70,8 +70,90 @@ class Account(Struct, frozen=True):
     commit: int
 
 
+class PlaceRelation(Struct, frozen=True, rename={"is_": "is"}, omit_defaults=True):
+    """Where a described thing is: a preposition, the words `of` the other thing, and its entities."""
+
+    is_: str
+    of: str
+    entities: tuple[str, ...] = ()
+    negated: bool = False
+
+
+class ThingDescription(Struct, frozen=True, rename={"class_": "class"}, omit_defaults=True):
+    """What a command says of a thing or person.
+
+    `class_` is a class of the TBox, `called` the noun if it is not a label of that class, and `name` the name
+    of a person. `quantity` is a number or `all`. `purpose` is what something is for (*to drink*).
+    """
+
+    class_: str = ""
+    called: str = ""
+    name: str = ""
+    attributes: tuple[str, ...] = ()
+    relation: tuple[PlaceRelation, ...] = ()
+    superlative: str = ""
+    quantity: int | Literal["all"] | None = None
+    purpose: str = ""
+    owner: str = ""
+    excluded: tuple[str, ...] = ()
+
+
+class Antecedent(Struct, frozen=True):
+    """The filler that a pronoun refers to: the number of its step, from 1, and its role."""
+
+    step: int
+    role: str
+
+
+class Filler(Struct, frozen=True, omit_defaults=True):
+    """The filler of a role in a step.
+
+    `text` includes the preposition, and `head` is one of its words. `entities` are the entities that the
+    whole description fits: one, all of those of which any will do, or all that are or may be meant. If they
+    are empty, the `description` states what to look for. A message in words has neither.
+    """
+
+    text: str
+    head: str
+    entities: tuple[str, ...] = ()
+    description: ThingDescription | None = None
+    refers: Antecedent | None = None
+
+    @property
+    def shown(self) -> str:
+        """The entities' names, or the words."""
+        return "|".join(self.entities) or f'"{self.text}"'
+
+
+class CommandStep(Struct, frozen=True, omit_defaults=True):
+    """One action of a command, in the order of the words: a frame, its verb and its roles.
+
+    A `negated` step must not be done. A step with a `condition` or a `time` must not be done unconditionally
+    or now.
+    """
+
+    frame: str
+    verb: str
+    roles: dict[str, tuple[Filler, ...]] = {}
+    negated: bool = False
+    condition: str = ""
+    time: str = ""
+
+    @property
+    def text(self) -> str:
+        """`Taking(Theme=bottle1, Source=table1)`, with `not` before it, and condition and time after it."""
+        filled = ", ".join(
+            f"{role}={filler.shown}" for role, fillers in self.roles.items() for filler in fillers
+        )
+        after = "".join(f" [{text}]" for text in (self.condition, self.time) if text)
+        return f"{'not ' if self.negated else ''}{self.frame}({filled}){after}"
+
+
 class Understood(Struct, frozen=True):
     """A parsed command.
+
+    `steps` are its actions in order, each with what it states of things and people. `answer` answers a
+    question from the map, or states that one has to look.
 
     `unknown` are unknown verbs, and `language` is the detected or given language. A `mood` other than
     "command" explains why there are no frames: the text is a question or about the past. `question` is a
@@ -87,6 +169,8 @@ class Understood(Struct, frozen=True):
     mood: Mood = "command"
     question: str = ""
     doubts: tuple[str, ...] = ()
+    steps: tuple[CommandStep, ...] = ()
+    answer: str = ""
 
 
 class Candidate(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

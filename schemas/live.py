@@ -6,7 +6,7 @@ from typing import Annotated
 
 from msgspec import Meta, Struct
 
-from semmap.schemas.entities import Angle, Live, Pose, Quaternion, Vector
+from semmap.schemas.entities import Live, Pose, Quaternion, Radians, Vector
 from semmap.schemas.scene_files import pose_of
 
 StampNs = Annotated[int, Meta(ge=0, le=(1 << 63) - 1)]
@@ -21,7 +21,7 @@ class LivePose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, om
     """
 
     at: Vector
-    yaw: Angle | None = None
+    yaw: Radians | None = None
     orientation: Quaternion | None = None
     stamp_ns: StampNs = 0
 

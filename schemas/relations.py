@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import Annotated, Final, Literal
+from typing import Annotated, Final, Literal, NamedTuple
 
 from msgspec import Meta, Struct
 
@@ -11,9 +11,115 @@ from semmap.schemas.entities import REACH_M, Entity, Metres, Text, Vector
 from semmap.schemas.errors import BadRequest
 
 RelationName = Literal[
-    "isOn", "isInside", "isLocatedIn", "isAttachedTo", "touches", "isUnder", "isAbove", "isNear", "isNextTo",
-    "isLeftOf", "isRightOf", "isInFrontOf", "isBehind", "isBetween", "isVisibleFrom"
+    "isOn", "isInside", "isLocatedIn", "isAttachedTo", "touches", "isLeaningAgainst", "isUnder", "isAbove",
+    "isNextTo", "isNear", "isLeftOf", "isRightOf", "isInFrontOf", "isBehind", "isBetween", "isVisibleFrom"
 ]  # fmt: skip
+
+Placing = Literal["on", "in", "next_to"]
+"""How an object is placed relative to another one, without a position."""
+
+
+class RelationRow(NamedTuple):
+    """The name of a relation, where its facts come from, and its words."""
+
+    name: RelationName
+    phrase: str
+    """As in "cup1 is on table1"."""
+    kind: Literal["stored", "on demand", "side", "on request"]
+    """Stored facts have a rule in the knowledge base, facts on demand a measure. Sides need a viewer."""
+    inverse: RelationName | None = None
+    """The relation with exchanged arguments, if it is in this table. A symmetric one is its own inverse."""
+    english: tuple[str, ...] = ()
+    """The words in descriptions: "the cup on the table". The first are used in replies."""
+    italian: tuple[str, ...] = ()
+    """The same in Italian. Contractions with articles ("accanto al") follow from the last word."""
+
+
+RELATIONS: Final[tuple[RelationRow, ...]] = (
+    RelationRow(
+        "isOn", "is on", "stored",
+        english=("on", "on top of", "atop", "upon", "on the top of", "onto", "resting on", "lying on",
+                 "standing on", "sitting on", "attached to", "mounted on", "hanging on", "hanging from"),
+        italian=("su", "sopra a", "in cima a", "appeso a", "appesa a", "attaccato a"),
+    ),
+    RelationRow(
+        "isInside", "is inside", "stored",
+        english=("in", "inside", "into", "within", "inside of", "contained in", "in the inside of"),
+        italian=("in", "dentro", "dentro a", "all'interno di", "a"),
+    ),
+    RelationRow("isLocatedIn", "is in", "stored"),
+    RelationRow("isAttachedTo", "is attached to", "stored"),
+    RelationRow(
+        "touches", "touches", "on demand", "touches",
+        english=("touching", "against", "in contact with"),
+        italian=("contro", "a contatto con"),
+    ),
+    RelationRow(
+        "isLeaningAgainst", "is leaning against", "on demand",
+        english=("leaning against", "leaning on", "leant against", "leaned against", "leans against",
+                 "lean against", "propped against", "propped up against", "resting against"),
+        italian=("appoggiato a", "appoggiata a", "appoggiati a", "appoggiate a", "appoggiato contro",
+                 "appoggiata contro", "appoggiati contro", "appoggiate contro"),
+    ),
+    RelationRow(
+        "isUnder", "is under", "on demand", "isAbove",
+        english=("under", "below", "beneath", "underneath"),
+        italian=("sotto", "sotto a", "al di sotto di"),
+    ),
+    RelationRow(
+        "isAbove", "is above", "on demand", "isUnder",
+        english=("above", "over"),
+        italian=("sopra", "sopra al", "sopra alla", "al di sopra di"),
+    ),
+    RelationRow(
+        "isNextTo", "is next to", "on demand", "isNextTo",
+        english=("next to", "beside", "by", "alongside", "adjacent to", "by the side of", "at the side of"),
+        italian=("accanto", "accanto a", "di fianco a", "a fianco di", "affianco a", "a lato di"),
+    ),
+    RelationRow(
+        "isNear", "is near", "on demand", "isNear",
+        english=("near", "close to", "near to", "around", "not far from", "in the vicinity of", "nearby"),
+        italian=("vicino", "vicina", "vicini", "vicine", "vicino a", "vicina a", "vicini a", "vicine a",
+                 "presso", "intorno a", "nei pressi di"),
+    ),
+    RelationRow(
+        "isLeftOf", "is left of", "side",
+        english=("left of", "to the left of", "on the left of", "on the left side of",
+                 "on the left hand side of", "to the left side of"),
+        italian=("a sinistra di", "alla sinistra di", "sulla sinistra di"),
+    ),
+    RelationRow(
+        "isRightOf", "is right of", "side",
+        english=("right of", "to the right of", "on the right of", "on the right side of",
+                 "on the right hand side of", "to the right side of"),
+        italian=("a destra di", "alla destra di", "sulla destra di"),
+    ),
+    RelationRow(
+        "isInFrontOf", "is in front of", "side",
+        english=("in front of", "before", "ahead of"),
+        italian=("davanti", "davanti a", "di fronte a"),
+    ),
+    RelationRow(
+        "isBehind", "is behind", "side",
+        english=("behind", "in back of", "at the back of"),
+        italian=("dietro", "dietro a", "dietro il", "dietro la", "dietro di"),
+    ),
+    RelationRow(
+        "isBetween", "is between", "on request",
+        english=("between", "in between", "connecting", "connects", "connect"),
+        italian=("tra", "fra", "in mezzo a"),
+    ),
+    RelationRow("isVisibleFrom", "is visible from", "on request"),
+)  # fmt: skip
+"""The table of relations, in the order in which those of a pair are reported."""
+
+PHRASES: Final[dict[RelationName, str]] = {row.name: row.phrase for row in RELATIONS}
+SIDES: Final[tuple[RelationName, ...]] = tuple(row.name for row in RELATIONS if row.kind == "side")
+"""The relations that name a side of another object."""
+FACTS: Final[frozenset[RelationName]] = frozenset(
+    row.name for row in RELATIONS if row.kind in ("stored", "on demand")
+)
+"""The relations that are facts of the map: they depend neither on a viewer nor on a third entity."""
 
 ViewPoint = tuple[Metres, Metres, Metres, Annotated[float, Meta(ge=-1e6, le=1e6)]]
 """Position and direction of a viewer: x, y, z [m] and yaw [rad], map frame."""
@@ -21,6 +127,11 @@ ViewPoint = tuple[Metres, Metres, Metres, Annotated[float, Meta(ge=-1e6, le=1e6)
 
 _NUMBER: Final = r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*"
 _POSITION: Final = re.compile(",".join([_NUMBER] * 3))
+
+
+def placing_words(placing: Placing) -> str:
+    """Return how a sentence says it: `next to`."""
+    return placing.replace("_", " ")
 
 
 def position_in(word: str) -> Vector | None:

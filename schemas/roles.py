@@ -14,6 +14,7 @@ from semmap.schemas.commands import Command, Load
 from semmap.schemas.entities import Source
 from semmap.schemas.errors import enumerated
 from semmap.schemas.role_names import ADMINS, ANYBODY, NODES, ROLES, Role, Roles
+from semmap.schemas.wording import few
 
 COMMANDS: Final[dict[str, Roles]] = {name: kind.ROLES for name, kind in commands.COMMANDS.items()}
 """Command to the roles that may send it; `load --tbox` requires an admin."""
@@ -92,6 +93,13 @@ def not_publishing(role: str, topic: keys.Topic) -> str:
     ]
     others = enumerated([r for r in allowed if r != "'node'"] or ["'node'"])
     return f"role '{role}' of your certificate may not publish on {topic.key}; required role: {others}"
+
+
+def not_subscribing(role: str, keyexpr: str) -> str:
+    """Return the error text for subscribing to a key expression without permission."""
+    allowed = followed(role)
+    instead = f"use one of: {few(allowed, most=5)}" if allowed else "use a certificate with another role"
+    return f"role '{role}' of your certificate may not subscribe to '{keyexpr}'; {instead}"
 
 
 def default_source(role: str) -> Source:

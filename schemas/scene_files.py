@@ -25,6 +25,7 @@ from semmap.schemas.entities import (
     Vector,
     composed,
     orientation_from_yaw,
+    parse_angle,
     require_unit,
 )
 from semmap.schemas.errors import BadFile, BadRequest
@@ -33,10 +34,10 @@ from semmap.schemas.errors import BadFile, BadRequest
 class Described(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
     """One entity of a scene file.
 
-    `at` is the bottom centre [m] in the map frame, and `yaw` [rad] or `orientation` (unit quaternion wxyz)
-    its orientation. `size` is the extent along its own axes [m]. `ref` is its label, `alt` are aliases.
-    `extent` is the area of a place in WKT: `POLYGON ((x y, ...))`. `set` are other properties, each written
-    `PROPERTY=VALUE`; an individual in a value must precede it in the file or be in the map.
+    `at` is the bottom centre [m] in the map frame, and `yaw` (radians, or "90deg") or `orientation` (unit
+    quaternion wxyz) its orientation. `size` is the extent along its own axes [m]. `ref` is its label, `alt`
+    are aliases. `extent` is the area of a place in WKT: `POLYGON ((x y, ...))`. `set` are other properties,
+    each written `PROPERTY=VALUE`; an individual in a value must precede it in the file or be in the map.
     """
 
     class_: Text = field(name="class")
@@ -55,6 +56,8 @@ class Described(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fiel
     def __post_init__(self) -> None:
         if self.name is not None and not self.name.isascii():
             msgspec.structs.force_setattr(self, "name", composed(self.name))
+        if self.yaw is not None:
+            msgspec.structs.force_setattr(self, "yaw", parse_angle(self.yaw))
         if self.orientation is not None:
             if self.yaw is not None:
                 raise ValueError("give yaw or orientation, not both")

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Final, Literal
 from msgspec import Meta, Struct, field
 
 from semmap.schemas.calls import MANY, Call
-from semmap.schemas.entities import Angle, Metres, Name, Pose, Probability, Size, Vector
+from semmap.schemas.entities import Metres, Name, Pose, Probability, Radians, Size, Vector
 from semmap.schemas.joints import Joint
 
 PixelCount = Annotated[int, Meta(ge=1, le=1 << 14)]
@@ -71,6 +71,10 @@ class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     grip_commit: int = -1
     in_the_way: str = ""
     """For a non-colliding body, the body that occupies its place."""
+    body: str = ""
+    """Its name in the world file, if that is not a valid name of an entity."""
+    label: str = ""
+    """The words of its name, if they are not a label of its class: `red mug`."""
     robot: bool = False
     """Whether `semmap up --robot` created it: it becomes a tracked entity for any source of truth."""
 
@@ -226,7 +230,7 @@ class DriveBase(Call[Driven], frozen=True, kw_only=True, forbid_unknown_fields=T
     VERB: ClassVar[str] = "drive"
     name: str
     to: tuple[Point, ...] = ()
-    yaw: Angle | None = None
+    yaw: Radians | None = None
     speed: float = 0.4
     wait: bool = False
 

@@ -28,8 +28,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     from semmap import aio, commands, fleet, reasoner, recordings, testing, wire
+    from semmap.nodes.extern.backup import restore
     from semmap.nodes.extern.client import Client, connect
-    from semmap.nodes.extern.restore import restore
     from semmap.nodes.extern.sparql_client import StandingQuery
     from semmap.ontology.vocabulary import local_name
     from semmap.schemas.approvals import Request
@@ -58,11 +58,16 @@ if TYPE_CHECKING:
     from semmap.schemas.joints import Joint
     from semmap.schemas.language import (
         Account,
+        Antecedent,
         Argument,
         Candidate,
+        CommandStep,
+        Filler,
         Found,
         Grounded,
+        PlaceRelation,
         SemanticFrame,
+        ThingDescription,
         Understood,
     )
     from semmap.schemas.map_history import Difference, Related, Spell, Spells
@@ -87,6 +92,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Account",
+    "Antecedent",
     "Argument",
     "BackupPart",
     "BadFile",
@@ -99,6 +105,7 @@ __all__ = [
     "Checked",
     "ClassInfo",
     "Client",
+    "CommandStep",
     "Commit",
     "Compacted",
     "Departed",
@@ -109,6 +116,7 @@ __all__ = [
     "Entity",
     "Explanation",
     "Extent",
+    "Filler",
     "Found",
     "Frame",
     "Grounded",
@@ -127,6 +135,7 @@ __all__ = [
     "Outline",
     "Picture",
     "PlaceChanges",
+    "PlaceRelation",
     "Plan",
     "PlannedPlace",
     "PlannedThing",
@@ -151,6 +160,7 @@ __all__ = [
     "StandingQuery",
     "Step",
     "SystemStatus",
+    "ThingDescription",
     "Understood",
     "UnknownClass",
     "UnknownName",
@@ -171,11 +181,11 @@ __all__ = [
 
 _MODULES: Final = frozenset({"aio", "commands", "fleet", "reasoner", "recordings", "testing", "wire"})
 _NAMES_OF: Final = {
+    "nodes.extern.backup": ("restore",),
     "nodes.extern.client": (
         "Client",
         "connect",
     ),
-    "nodes.extern.restore": ("restore",),
     "nodes.extern.sparql_client": ("StandingQuery",),
     "ontology.vocabulary": ("local_name",),
     "schemas.approvals": ("Request",),
@@ -229,6 +239,11 @@ _NAMES_OF: Final = {
     "schemas.joints": ("Joint",),
     "schemas.language": (
         "Account",
+        "Antecedent",
+        "CommandStep",
+        "Filler",
+        "PlaceRelation",
+        "ThingDescription",
         "Argument",
         "Candidate",
         "Found",

@@ -24,7 +24,10 @@ STARTERS = frozenset(
         *("semmap.nodes.extern.client.connect", "semmap.nodes.extern.async_client.connect"),
         *("semmap.nodes.extern.testing.own_system", "semmap.nodes.supervisor.control.Supervisor"),
         *("semmap.nodes.kb_node.sparql.service.SparqlService", "semmap.nodes.kb_node.sparql.worker.Worker"),
-        *("semmap.nodes.kb_node.answers.past_map.query_past", "semmap.nodes.kb_node.answers.answers.check"),
+        *(
+            "semmap.nodes.kb_node.answers.past.past_map.query_past",
+            "semmap.nodes.kb_node.answers.answers.check",
+        ),
         *(
             "semmap.nodes.kb_node.owlrl.consistency_check.find_owlrl_faults",
             "semmap.nodes.kb_node.relations.facts.precomputation.Precomputation",

@@ -1,4 +1,7 @@
-"""`python -m benchmarks.language [--ablations | --errors | --find | --evaluate DIR --predictions FILE]`."""
+"""`python -m benchmarks.language [--ablations | --errors | --find]`.
+
+With `--predictions FILE`: `--evaluate DIR`, or `--gpsr SET --map MAP`.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from benchmarks.language import ablations, baseline, errors, finding, trials
+from benchmarks.language import ablations, baseline, errors, finding, steps, trials
 from benchmarks.language.scoring import Scores, scores
 from benchmarks.table import Row, as_json, lines
 from semmap.nodes.language.understanding.interpretation import shipped
@@ -96,12 +99,21 @@ def main() -> None:
     parser.add_argument(
         "--evaluate", type=Path, metavar="DIR", help="evaluate the shipped taggers on these .hrc files"
     )
+    parser.add_argument("--gpsr", type=Path, metavar="SET", help="write the steps of these commands")
+    parser.add_argument("--map", type=Path, help="with --gpsr: the JSON scene of the map")
     parser.add_argument("--predictions", type=Path, metavar="FILE", help="file for the predictions")
     parser.add_argument("--find", action="store_true", help="only evaluate find")
     parser.add_argument("--json", type=Path, metavar="FILE")
     given: Any = parser.parse_args()
-    if (given.evaluate is None) != (given.predictions is None):
-        parser.error("--evaluate DIR and --predictions FILE belong together")
+    if (given.evaluate is None and given.gpsr is None) != (given.predictions is None):
+        parser.error("--predictions FILE belongs to --evaluate DIR or --gpsr SET")
+    if (given.gpsr is None) != (given.map is None):
+        parser.error("--gpsr SET and --map MAP belong together")
+    if given.gpsr is not None:
+        predicted = steps.predict(given.gpsr, given.map)
+        given.predictions.write_text(json.dumps(predicted, indent=1, ensure_ascii=False), "utf-8")
+        print(f"{given.predictions}: {len(predicted)} commands")
+        return
     if given.errors:
         wrong = errors.groups(trials.trial(trials.groups(corpus.read(given.data))))
         print(*errors.lines(wrong), sep="\n")

@@ -20,7 +20,7 @@ from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.relations.facts.rules import COMPUTED
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
-from semmap.nodes.runtime import gc_pause
+from semmap.nodes.runtime import memory
 from semmap.ontology import HOUSEHOLD_TTL, entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas.commits import Transaction
@@ -79,7 +79,7 @@ def _load(folder: Path, size: int, tbox: list[Triple]) -> Cost:
         )
     ]
     journal = Journal.create(folder / FILENAME, rdf.serialise(frozenset(tbox), "ntriples"))
-    with _open(journal) as semantic_map, gc_pause.uncollected(freeze=True):
+    with _open(journal) as semantic_map, memory.uncollected(freeze=True):
         transaction = Transaction(id="rooms", source="file", insert=tuple(triples))
         taken = cost(lambda: semantic_map.commit(transaction))
         semantic_map.checkpoint()

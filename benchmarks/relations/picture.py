@@ -18,6 +18,7 @@ from semmap.nodes.sim_node.vision.raycast import raycast
 from semmap.nodes.sim_node.vision.view import FROM_THE_FRONT, View, overview
 from semmap.ontology.model_shapes import shapes
 from semmap.schemas.entities import Entity
+from semmap.schemas.relations import RELATIONS
 
 _WIDTH, _HEIGHT, _LINE, _COLUMNS, _FINE = 320, 232, 18, 6, 2
 _PAPER, _INK, _QUIET, _RULE = (250, 250, 248), (24, 24, 28), (70, 70, 78), (205, 205, 200)
@@ -71,11 +72,7 @@ _LOOKED_AT_CLOSELY = {
     "a large one on a small one",
 }
 _NOWHERE: Colour = (0.85, 0.20, 0.55)
-_WORDS = {
-    "isOn": "on", "isInside": "inside", "isLocatedIn": "in", "isAttachedTo": "attached to",
-    "isUnder": "under", "isAbove": "above", "isNextTo": "next to", "isBetween": "between",
-    "touches": "touches",
-}  # fmt: skip
+_WORDS: dict[str, str] = {row.name: row.phrase.removeprefix("is ") for row in RELATIONS}
 
 
 def tile(number: int, situation: Situation, lines: int) -> Image.Image:

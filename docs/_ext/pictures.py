@@ -1,7 +1,7 @@
-"""Draws the pictures of the page and the movie of the manual (`make pictures`).
+"""Renders the screenshots of the page, the plan and the movie of the manual (`make pictures`).
 
-A system is started in a folder of its own, a small story happens in the flat, and Chromium looks at it; then
-the story is filmed. Needs Debian's chromium and the extras; names on the command line choose some of
+The script starts a system in a temporary folder, changes the map step by step, and takes screenshots with
+Chromium; then it renders the movie. Needs Debian's chromium and the extras; arguments select some of
 `page.png page-time.png page-why.png plan.svg tour.mp4`.
 """
 
@@ -39,9 +39,9 @@ ARGUMENTS = (
 SIZE = {"width": 1440, "height": 900}
 START_S = 90.0
 _BLANK = 12.0
-"""The contrast of a scene in which there is nothing yet is less."""
+"""An empty scene has less contrast."""
 BETWEEN_S = 0.5
-"""Between two steps of the story: what has fallen has come to rest."""
+"""The time between two steps of the story, in which bodies come to rest [s]."""
 
 
 def _put(name: str, x: float, y: float, z: float, reason: str, yaw: float | None = None) -> Command[Any]:
@@ -73,12 +73,12 @@ STORY: tuple[tuple[str, Command[Any]], ...] = (
     ("robot", _put("chair2", 9.05, 2.5, 0.0, "the chair back to the table", 3.1416)),
     ("anna", _put("person1", 7.6, 6.0, 0.0, "Anna goes to work", 0.8)),
 )
-"""Who, and what they do, in the flat that comes with semmap."""
+"""The agents and their commands, in the shipped flat."""
 
 
 @contextlib.contextmanager
 def system() -> Iterator[tuple[str, Path]]:
-    """A running system: where it is, and its data folder."""
+    """Start a system, and yield its endpoint and its data folder."""
     folder, endpoint = Path(tempfile.mkdtemp(prefix="semmap-pictures-")), free_endpoint()
     command = [SEMMAP, "up", "--data", str(folder), "--listen", endpoint, "--no-record"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
@@ -95,7 +95,7 @@ def system() -> Iterator[tuple[str, Path]]:
 
 @contextlib.contextmanager
 def browser(endpoint: str) -> Iterator[Page]:
-    """The page of a system in Chromium, drawn to the end."""
+    """Yield the page of a system in Chromium when it is completely drawn."""
     command = [SEMMAP, "web", "--port", "0", "--connect", endpoint]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process, sync_playwright() as driver:
         assert process.stdout is not None
@@ -107,15 +107,15 @@ def browser(endpoint: str) -> Iterator[Page]:
             tab.set_default_timeout(START_S * 1000)
             tab.goto(url)
             tab.wait_for_selector("body.semmap-ready")
-            drawn(tab, 8.0)
+            wait_until_drawn(tab, 8.0)
             yield tab
             chromium.close()
         finally:
             process.send_signal(2)
 
 
-def drawn(tab: Page, seconds: float) -> None:
-    """Let it draw: without graphics the scene takes its time, and a busy machine loses the connection."""
+def wait_until_drawn(tab: Page, seconds: float) -> None:
+    """Wait until the scene is drawn, which is slow without a graphics card, and the page is connected."""
     tab.mouse.move(SIZE["width"] / 2, SIZE["height"] - 2)
     tab.wait_for_timeout(seconds * 1000)
     deadline_s = time.monotonic() + START_S
@@ -127,56 +127,55 @@ def drawn(tab: Page, seconds: float) -> None:
     tab.get_by_text("Connection lost").wait_for(state="hidden")
 
 
-def tell(client: Client) -> None:
-    """Let the story happen."""
+def run_story(client: Client) -> None:
+    """Send the commands of the story."""
     for agent, command in STORY:
-        teller = Client(client.session, agent=agent)
-        teller.send(command)
+        Client(client.session, agent=agent).send(command)
         time.sleep(BETWEEN_S)
 
 
 def select(tab: Page, name: str) -> None:
-    """Find a thing in the table, and select it."""
+    """Select an entity in the table."""
     tab.get_by_label("Filter entities by text").fill(name)
     tab.locator(f'.entity-table [row-id="{name}"] [col-id="name"]').first.click()
     tab.locator(".q-drawer--right").get_by_text(f"{name} ·").first.wait_for()
-    drawn(tab, 4.0)
+    wait_until_drawn(tab, 4.0)
 
 
 def page_png(tab: Page, client: Client) -> None:
-    """The page as it is, with a thing selected."""
+    """Take a screenshot of the page with a selected entity."""
     select(tab, "mug1")
     tab.screenshot(path=DOCS / "page.png")
 
 
 def page_why_png(tab: Page, client: Client) -> None:
-    """Why something holds, step by step."""
+    """Take a screenshot of an explanation with its steps."""
     select(tab, "counter1")
     tab.get_by_label("Filter entities by text").fill("")
     why = tab.get_by_role("button", name="Why: is a laden thing")
     why.click()
     why.evaluate("button => button.scrollIntoView()")
-    drawn(tab, 3.0)
+    wait_until_drawn(tab, 3.0)
     tab.screenshot(path=DOCS / "page-why.png")
 
 
 def page_time_png(tab: Page, client: Client) -> None:
-    """The past beside now: what has moved since, in colours."""
+    """Take a screenshot of the past, with the differences from the current map."""
     tab.get_by_label("Filter entities by text").fill("")
     tab.get_by_label("Compare with").click()
     tab.get_by_role("option", name="now", exact=True).click()
     (seq,) = [commit.seq for commit in client.history() if commit.reason == "a mug, too"]
-    field = tab.get_by_label("Go to a commit or a time")
+    field = tab.get_by_label("Go to commit or time")
     field.fill(str(seq))
     field.press("Enter")
     tab.get_by_text(f"Past: commit {seq} of ").wait_for()
-    drawn(tab, 8.0)
+    wait_until_drawn(tab, 8.0)
     tab.screenshot(path=DOCS / "page-time.png")
     tab.keyboard.press("Home")
 
 
 def plan_svg(tab: Page, client: Client) -> None:
-    """The plan of the flat."""
+    """Render the plan of the flat."""
     status, entities = client.status(), client.list()
     now = client.history(limit=1)[0]
     floor = floor_of(entities)
@@ -195,14 +194,14 @@ MOVIE = "tour.mp4"
 
 
 def main(wanted: list[str]) -> None:
-    """Draw what is wanted: everything, if nothing is named."""
+    """Render the selected files; all without arguments."""
     if unknown := {*wanted} - {*DRAWN, MOVIE}:
         raise SystemExit(
             f"no such picture: {', '.join(sorted(unknown))}; there are {', '.join(DRAWN)}, {MOVIE}"
         )
     chosen = wanted or [*DRAWN, MOVIE]
     with system() as (endpoint, folder), connect(endpoint, agent="maker") as client:
-        tell(client)
+        run_story(client)
         if {*chosen} & {*DRAWN}:
             with browser(endpoint) as tab:
                 for name in chosen:

@@ -26,9 +26,9 @@ import msgspec
 from semmap.nodes import bus
 from semmap.nodes.extern import backup
 from semmap.nodes.extern.client_commands import CommandMethods
-from semmap.nodes.extern.connection import endpoint, open_session
 from semmap.nodes.extern.connection import identity as identify
 from semmap.nodes.extern.connection import namespace as robot
+from semmap.nodes.extern.connection import open_session, resolve_endpoint
 from semmap.nodes.extern.sparql_client import StandingQuery
 from semmap.nodes.identity import Identity
 from semmap.nodes.runtime import version
@@ -74,7 +74,7 @@ def connect(
     default it is a peer on the machine of the system, unless the system is secure.
     """
     certificate = identify(identity)
-    where = where or endpoint(robot(namespace))
+    where = resolve_endpoint(where, robot(namespace))
     with open_session(where, robot(namespace, where), certificate, mode=mode) as session:
         yield Client(session, source=source, agent=agent, identity=certificate)
 

@@ -23,9 +23,8 @@ from typing import (
     overload,
 )
 
-from semmap.nodes.extern.files import read_file
-from semmap.nodes.extern.ontology_upload import ontology
-from semmap.nodes.extern.plan_files import is_plan, read_plan
+from semmap.nodes.extern.files import read_file, read_ontology
+from semmap.nodes.extern.floorplans import is_plan, read_plan
 from semmap.schemas import commands, errors, replies
 from semmap.schemas.calls import reply_type
 from semmap.schemas.commands import Command
@@ -143,6 +142,9 @@ def _set(
 ) -> Command[replies.Changed]:
     """Set a data or object property of an entity: `client.set("door1", "isOpen", True)`.
 
+    The range of the property gives the datatype. A text ends with its language where the range allows one:
+    `client.set("shelf1", "title", "Regal@de")`.
+
     The value of a functional property replaces the previous one. Other properties keep their previous values.
     Raises PreconditionFailed in these cases:
 
@@ -195,6 +197,7 @@ def _load(
     path: str | Path,
     *,
     replace: bool = False,
+    add_only: bool = False,
     skip_unknown: bool = False,
     strict: bool = False,
     tbox: bool = False,
@@ -210,9 +213,11 @@ def _load(
 
     A plan is the YAML file of a map of the ROS map server: its free space is divided into rooms at the doors.
 
-    `replace` removes the current entities in the same commit. `skip_unknown` skips entities whose class is
-    not in the TBox. `strict` rejects a file that refers to undescribed entities. `parts` loads the file in
-    several commits, for files of any size.
+    What the file states about an entity that is in the map replaces its pose, size, labels and values of
+    functional properties, in one commit; with `add_only`, such a file is rejected. `replace` removes all
+    current entities in the same commit. `skip_unknown` skips entities whose class is not in the TBox.
+    `strict` rejects a file that refers to undescribed entities. `parts` loads the file in several commits,
+    for files of any size.
 
     With `tbox`, the file (or folder) is a TBox that replaces the current one, including its imports. These
     are found by `imports` (a file for each IRI), by a catalogue, or in the same folder. `spatial_root` are
@@ -224,7 +229,7 @@ def _load(
     if imports and not tbox:
         raise errors.BadRequest("--import applies to TBoxes only; add --tbox")
     if tbox:
-        content, filename = ontology(Path(path), imports)
+        content, filename = read_ontology(Path(path), imports)
     elif is_plan(Path(path)):
         content, filename = read_plan(Path(path)).content, Path(path).name
     else:
@@ -233,6 +238,7 @@ def _load(
         content=packed(content),
         filename=filename,
         replace=replace,
+        add_only=add_only,
         skip_unknown=skip_unknown,
         strict=strict,
         tbox=tbox,
@@ -247,9 +253,12 @@ def _load(
 
 def _move(
     name: str,
-    at: Sequence[float],
+    at: Sequence[float] | None = None,
     yaw: float | None = None,
     *,
+    on: str | None = None,
+    in_: str | None = None,
+    next_to: str | None = None,
     frame: str | None = None,
     carry: bool = False,
     leave: Sequence[str] = (),
@@ -263,15 +272,19 @@ def _move(
     rest at its pose in the map, is still moving after 30 s, or time is paused. With `wait=False`, the method
     returns when the body is released.
 
-    `at` is the bottom centre [m] and `yaw` [rad] the rotation, in the map frame or in `frame`. With `carry`,
+    `at` is the bottom centre [m] and `yaw` [rad] the rotation, in the map frame or in `frame`. With `on`,
+    `in_` or `next_to`, it is placed where there is room on, in or next to another entity. With `carry`,
     the objects on it and inside it are moved with it as one rigid body, except those in `leave`. Raises
     Refused if the map rejects the new pose, an undo stops the move, or the entity is removed before it is at
     rest. Raises NoAnswer if the simulator ends.
     """
     return commands.Move(
         name=name,
-        at=tuple(at),  # type: ignore[arg-type]
+        at=None if at is None else tuple(at),  # type: ignore[arg-type]
         yaw=yaw,
+        on=on,
+        in_=in_,
+        next_to=next_to,
         frame=frame,
         carry=carry,
         leave=tuple(leave),

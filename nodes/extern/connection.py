@@ -17,6 +17,7 @@ from semmap.schemas.endpoints import (
     CONNECT_VARIABLE,
     IDENTITY_VARIABLE,
     NAMESPACE_VARIABLE,
+    parse_endpoint,
     robot_name,
 )
 
@@ -38,7 +39,7 @@ def endpoint(namespace: str | None = None) -> str:
     - the only system that this user runs on this machine
     """
     if configured := os.environ.get(CONNECT_VARIABLE):
-        return configured
+        return parse_endpoint(configured)
     running = registry.systems()
     of_robot = [system for system in running if system.namespace == namespace]
     if namespace and of_robot:
@@ -51,6 +52,11 @@ def endpoint(namespace: str | None = None) -> str:
             f"{len(running)} systems are running; choose one with --connect or {CONNECT_VARIABLE}: {found}"
         )
     return running[0].reachable
+
+
+def resolve_endpoint(where: str | None, namespace: str | None) -> str:
+    """Return the endpoint `where`, or the default one; see `endpoint`. Raises BadRequest if it is invalid."""
+    return parse_endpoint(where) if where else endpoint(namespace)
 
 
 def namespace(name: str | None, where: str | None = None) -> str:

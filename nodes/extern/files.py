@@ -1,13 +1,15 @@
-"""Local files of the client: reading with a size limit, and atomic writing."""
+"""Local files of the client: reading with a size limit, ontologies with their imports, and atomic writing."""
 
 from __future__ import annotations
 
 import contextlib
 import os
+from collections.abc import Mapping
 from pathlib import Path
 
 import msgspec
 
+from semmap.nodes.runtime import extras
 from semmap.schemas import errors
 from semmap.schemas.packing import LARGEST
 
@@ -28,13 +30,13 @@ def read_file(path: Path) -> bytes:
     return content
 
 
-def read_label_map(path: Path) -> dict[str, str]:
-    """Return the classes by label of a detector, from a JSON file. Raises BadFile."""
+def read_label_map(path: Path, of: str = "labels", example: str = "coffee mug") -> dict[str, str]:
+    """Return the classes by label of a detector, or by name of a body, from a JSON file. Raises BadFile."""
     try:
         return msgspec.json.decode(read_file(path), type=dict[str, str])
     except msgspec.DecodeError:
         raise errors.BadFile(
-            f'{path} is not a JSON object of labels and classes, such as {{"coffee mug": "Cup"}}'
+            f'{path} is not a JSON object of {of} and classes, such as {{"{example}": "Cup"}}'
         ) from None
 
 
@@ -60,3 +62,26 @@ def write_atomically(file: Path, content: bytes) -> None:
         with contextlib.suppress(OSError, UnboundLocalError):
             Path(temporary.name).unlink()
         raise errors.BadFile(f"{file} cannot be written: {error.strerror}") from None
+
+
+def read_ontology(path: Path, imports: Mapping[str, str | Path]) -> tuple[bytes, str]:
+    """Return a document with an ontology and the imports that are found, and a name for it.
+
+    `imports` has the files of imported IRIs. Without imports, the document is the file itself; otherwise it
+    is in N-Triples. If only the client is installed, the file is returned without its imports, because it
+    cannot be parsed. Raises BadFile, and BadRequest for options that need the extra `kb`.
+    """
+    if extras.missing(["kb"]) and not imports and not path.is_dir():
+        return read_file(path), path.name
+    extras.require("finding imports", "kb")
+    from semmap.nodes.kb_node.documents import ontology_files, rdf
+    from semmap.ontology.prefixes import declarations
+
+    gathered = ontology_files.gather([path], {iri: Path(file) for iri, file in imports.items()})
+    further = len(gathered.files) - 1
+    if not further:
+        return read_file(gathered.files[0]), path.name
+    more = "1 more file" if further == 1 else f"{further} more files"
+    name = path.resolve().name
+    triples = [*gathered.triples, *declarations(gathered.prefixes, gathered.triples)]
+    return rdf.serialise(triples, "ntriples"), f"{name} and {more}"

@@ -1,12 +1,13 @@
-"""Floor plans as files, for robot navigation or for people."""
+"""Floor plans as files: written for robots and people, and read from files of the ROS map server."""
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from semmap.nodes.extern.files import write_atomically
+from semmap.nodes.extern.files import read_file, write_atomically
 from semmap.nodes.runtime import extras
 from semmap.schemas import errors
 from semmap.schemas.moments import When
@@ -14,6 +15,8 @@ from semmap.schemas.plans import HEIGHTS_M, HeightRange
 
 if TYPE_CHECKING:
     from semmap.nodes.extern.client import Client
+    from semmap.nodes.navigation.loaded_plan import LoadedPlan
+    from semmap.nodes.navigation.map_server import Pixels
 
 RESOLUTION_M: Final = 0.05
 _FINEST_M, _COARSEST_M = 0.005, 1.0
@@ -84,3 +87,43 @@ def _svg(client: Client, file: Path, as_of: When | None) -> Path:
     text = drawing(floor_of(entities), title="Floor plan", commit=last.seq, stamp_ns=last.stamp_ns)
     write_atomically(file, text.encode())
     return file
+
+
+def is_plan(path: Path) -> bool:
+    """Return whether a file is a plan, by its suffix."""
+    return path.suffix.lower() in (".yaml", ".yml")
+
+
+def read_plan(path: Path) -> LoadedPlan:
+    """Return the rooms and doors of a plan, from its YAML file. Raises BadFile."""
+    extras.require("a plan", "sim")
+    from semmap.nodes.navigation.loaded_plan import loaded_plan
+    from semmap.nodes.navigation.map_server import read_image, read_yaml
+
+    try:
+        text = read_file(path).decode()
+    except UnicodeDecodeError:
+        raise errors.BadFile(f"{path.name} is not a UTF-8 text file") from None
+    described = read_yaml(text, path.name)
+    image = path.parent / described.image  # an absolute path stays absolute
+    if not image.is_file():
+        raise errors.BadFile(f"the image of {path.name} is missing: there is no file {image}")
+    return loaded_plan(described, read_image(read_file(image), image.name, _png), path.name)
+
+
+def _png(content: bytes) -> Pixels:
+    import numpy as np
+    from PIL import Image
+
+    from semmap.nodes.navigation.grid import MOST_CELLS
+
+    try:
+        with Image.open(io.BytesIO(content)) as picture:
+            width, height = picture.size
+            if width * height > MOST_CELLS:
+                raise errors.BadFile(
+                    f"the image has {width} x {height} pixels; the maximum is {MOST_CELLS:,} pixels"
+                )
+            return np.asarray(picture.convert("L"), dtype=np.uint8)
+    except (OSError, SyntaxError, ValueError) as error:
+        raise errors.BadFile(f"the image is not a readable PNG file: {error}") from None

@@ -62,9 +62,9 @@ def journal_copy(
 
 def _data_folder(where: str | None, namespace: str | None) -> Path | None:
     """Return the data folder with the map of a local system of this user, if there is one."""
-    from semmap.nodes.extern.connection import endpoint
+    from semmap.nodes.extern.connection import resolve_endpoint
 
-    reachable = where or endpoint(namespace)
+    reachable = resolve_endpoint(where, namespace)
     found = [s for s in registry.systems() if reachable in (s.reachable, s.listen)]
     folders = [Path(s.data) for s in found if namespace in (None, s.namespace)]
     from semmap.nodes.kb_node.storage.journal import FILENAME
@@ -73,8 +73,8 @@ def _data_folder(where: str | None, namespace: str | None) -> Path | None:
 
 
 def _fetch_backup(folder: Path, where: str | None, identity: str | None, namespace: str | None) -> None:
+    from semmap.nodes.extern.backup import restore
     from semmap.nodes.extern.client import connect
-    from semmap.nodes.extern.restore import restore
 
     file = folder / "map.backup"
     with connect(where, identity=identity, namespace=namespace) as client:

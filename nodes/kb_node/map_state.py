@@ -19,7 +19,7 @@ from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.kb_node.relations.facts.precomputation import Precomputation
 from semmap.nodes.kb_node.relations.facts.precompute_messages import PrecomputeRequest
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
-from semmap.nodes.runtime import gc_pause
+from semmap.nodes.runtime import memory
 from semmap.ontology import vocabulary as v
 from semmap.ontology.model_shapes import added_shapes
 from semmap.schemas import errors
@@ -176,7 +176,7 @@ class MapState:
         if self._derived_all:
             return False
         following, self._derivation = self._derivation or self._derivation_steps(), None
-        with gc_pause.uncollected(freeze=True):
+        with memory.uncollected(freeze=True):
             for _ in following:
                 self._derivation = following
                 return True

@@ -18,12 +18,12 @@ from semmap.nodes.kb_node.entities import entity_reading
 from semmap.nodes.kb_node.map_state import MapState
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.storage import closure_cache, conclusions_format
-from semmap.nodes.kb_node.storage.checkpoint_schedule import CheckpointSchedule
+from semmap.nodes.kb_node.storage.checkpointing import CheckpointSchedule
 from semmap.nodes.kb_node.storage.encoding import commit_encoding
 from semmap.nodes.kb_node.storage.journal import Checkpoint, Journal
 from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
 from semmap.nodes.kb_node.storage.journal.verification import verify
-from semmap.nodes.runtime import gc_pause
+from semmap.nodes.runtime import memory
 from semmap.schemas import errors
 from semmap.schemas.commits import Commit, Transaction
 from semmap.schemas.entities import Entity
@@ -146,11 +146,13 @@ class SemanticMap(MapState):
         self.derive_for(transaction)
         if transaction.is_quick:
             return self._make_commit(transaction)
-        with gc_pause.uncollected(), self.predicted_places(transaction):
+        with memory.uncollected(), self.predicted_places(transaction):
             return self._make_commit(transaction)
 
     def _make_commit(self, transaction: Transaction) -> Commit | None:
-        plan, apply = planning.make_plan(self, transaction), self._applier.apply
+        plan = planning.make_plan(self, transaction)
+        # edits keep one pose for each entity, but triples from outside may state several
+        apply = partial(self._applier.apply, strict=bool(transaction.insert))
         if plan is None:
             return None
         commit = planning.make_commit(transaction, plan, self.seq + 1)

@@ -10,7 +10,7 @@ from semmap.nodes.kb_node import preconditions
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import Journal
-from semmap.nodes.runtime import gc_pause
+from semmap.nodes.runtime import memory
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.bridge import TakeBack
@@ -38,7 +38,7 @@ def undo(
     _require_authority(command, target)
     reverse = _reverse_tbox if target.tbox else _reverse
     try:
-        with gc_pause.uncollected(), working(target):
+        with memory.uncollected(), working(target):
             commit = reverse(semantic_map, journal, command, target)
     except errors.Inconsistent as error:
         raise errors.Inconsistent(

@@ -48,7 +48,12 @@ def split(text: str) -> list[str]:
 
 def plain(text: str) -> str:
     """Return a text in lower case, without markup and control sequences, with uniform apostrophes."""
-    return _NOT_SAID.sub(" ", text).lower().replace("’", "'")
+    return without_markup(text).lower().replace("’", "'")
+
+
+def without_markup(text: str) -> str:
+    """Return a text with spaces instead of markup and control sequences."""
+    return _NOT_SAID.sub(" ", text)
 
 
 def lemma(word: str, lexicon: Lexicon) -> str:

@@ -14,7 +14,7 @@ from semmap.nodes.perception_node.input.files.frame_folders import frames_in, re
 from semmap.nodes.perception_node.pipeline import parts_in
 from semmap.nodes.perception_node.recognition.features import features_of
 from semmap.nodes.perception_node.recognition.free_standing import is_compact
-from semmap.nodes.perception_node.recognition.part_joining import join_parts
+from semmap.nodes.perception_node.recognition.joining import join_parts
 from semmap.nodes.perception_node.recognition.recognition_model import RecognitionModel
 from semmap.nodes.perception_node.recognition.sides import completed, side_features
 from semmap.nodes.perception_node.recognition.similarity import views_of

@@ -13,7 +13,7 @@ from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.masks import Masks
 from semmap.nodes.perception_node.recognition.detector_labels import LabelMap
 from semmap.nodes.perception_node.recognition.features import features_of
-from semmap.nodes.perception_node.recognition.part_joining import join_parts
+from semmap.nodes.perception_node.recognition.joining import join_parts
 from semmap.nodes.perception_node.recognition.recognise import recognise
 from semmap.nodes.perception_node.recognition.recognition_model import RecognitionModel, shipped
 from semmap.nodes.perception_node.recognition.vote import leaf_probabilities

@@ -5,6 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime
 
 from semmap.ontology import vocabulary as v
+from semmap.ontology.entity_triples import find_earlier_names
 from semmap.schemas import wording
 from semmap.schemas.commits import Commit
 from semmap.schemas.entities import Entity
@@ -27,12 +28,17 @@ def page(commit: Commit) -> str:
     when = datetime.fromtimestamp(commit.stamp_ns / 1e9, UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
     who = f"**{commit.source}** {commit.agent}".strip()
     sure = "" if commit.confidence is None else f" · confidence {commit.confidence:.2f}"
+    earlier = find_earlier_names(commit)
     sections = [
         f"# Commit {commit.seq}",
         f"{who} · {when}{sure}",
         commit.reason,
-        *(_bullet(entity) for entity in commit.changed[:_LINES]),
-        *(f"- **{gone.name}** left the map" for gone in commit.removed[:_LINES]),
+        *(_bullet(entity, earlier.get(entity.name)) for entity in commit.changed[:_LINES]),
+        *(
+            f"- **{gone.name}** left the map"
+            for gone in commit.removed[:_LINES]
+            if gone.name not in earlier.values()
+        ),
         *(f"> {note}" for note in commit.notes),
         _triples("Added", "+", commit.inserted),
         _triples("Removed", "-", commit.retracted),
@@ -51,11 +57,11 @@ def _entities(commit: Commit) -> str:
     return ", ".join(names[:3]) + more or "no entity"
 
 
-def _bullet(entity: Entity) -> str:
-    where = ""
+def _bullet(entity: Entity, earlier: str | None) -> str:
+    where = "" if earlier is None else f", renamed from **{earlier}**,"
     if entity.pose is not None:
         x, y, z = entity.pose.position_m
-        where = f" at ({x:.2f}, {y:.2f}, {z:.2f})"
+        where += f" at ({x:.2f}, {y:.2f}, {z:.2f})"
     return f"- **{entity.name}**, a {entity.class_}{where}"
 
 

@@ -1,4 +1,4 @@
-"""A bounded queue of requests that is fair between clients.
+"""A bounded queue of requests, and a thread pool for long ones, both fair between clients.
 
 The clients take turns, so one with a thousand requests does not delay the first request of another.
 """
@@ -8,7 +8,12 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from typing import Final, Generic, TypeVar
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from functools import partial
+from typing import Any, Final, Generic, TypeVar
+
+from semmap.schemas import errors
 
 T = TypeVar("T")
 
@@ -25,6 +30,10 @@ LATEST_S: Final = 10.0
 
 _Waiting = tuple[T, int, float]
 """An item, its size, and the time since when it waits."""
+R = TypeVar("R")
+_EACH: Final = 64
+_ALL: Final = 256
+"""Largest number of waiting work items of one client, and of all."""
 
 
 class FairQueue(Generic[T]):
@@ -96,3 +105,42 @@ class FairQueue(Generic[T]):
     @staticmethod
     def _again_s(queue: deque[_Waiting[T]], now_s: float) -> float:
         return min(max(now_s - queue[0][2], SOONEST_S), LATEST_S)
+
+
+class FairPool:
+    """Like a ThreadPoolExecutor. `submit` is called by one thread."""
+
+    def __init__(self, workers: int, asker: Callable[[], str] = str) -> None:
+        """`asker()` returns the client of the submitted work."""
+        self._asker = asker
+        self._queue: FairQueue[tuple[Future[Any], Callable[[], Any]]] = FairQueue(each=_EACH, everyone=_ALL)
+        self._pool = ThreadPoolExecutor(workers, thread_name_prefix="beside")
+
+    def submit(self, function: Callable[..., R], *arguments: Any) -> Future[R]:
+        """Schedule `function(*arguments)` and return its future result. Raises Busy if too much waits."""
+        future: Future[R] = Future()
+        again_s = self._queue.put(self._asker(), (future, partial(function, *arguments)))
+        if again_s is not None:
+            raise errors.Busy(
+                f"{len(self._queue)} long requests are waiting; try again in {again_s:.1f} s",
+                again_s=again_s,
+            )
+        self._pool.submit(self._work)
+        return future
+
+    def close(self) -> None:
+        """Begin no more work."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
+
+    def _work(self) -> None:
+        if (taken := self._queue.take()) is None:
+            return
+        future, work = taken
+        if not future.set_running_or_notify_cancel():
+            return
+        try:
+            result = work()
+        except BaseException as error:
+            future.set_exception(error)
+        else:
+            future.set_result(result)

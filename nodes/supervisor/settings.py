@@ -12,8 +12,8 @@ from msgspec import Meta, Struct, structs
 
 from semmap.nodes.bus import DEFAULT_ENDPOINT, FOREVER_S, Network, is_local
 from semmap.nodes.identity import Identity
-from semmap.schemas.endpoints import ALL_ROBOTS, robot_name
-from semmap.schemas.entities import Angle, Metres, Name
+from semmap.schemas.endpoints import ALL_ROBOTS, parse_endpoint, robot_name
+from semmap.schemas.entities import Metres, Name, Radians
 from semmap.schemas.errors import BadRequest
 from semmap.schemas.keys import ROUTER, WEB
 
@@ -64,7 +64,7 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     robot_name: Name = "robot1"
     robot_at: tuple[Metres, Metres, Metres] | None = None
     """Its initial position, if given; otherwise the origin."""
-    robot_yaw: Angle = 0.0
+    robot_yaw: Radians = 0.0
     stale_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] = 2.0
     """Seconds after which a live pose is stale."""
     journal_every_s: Annotated[float, Meta(ge=0.0, le=86_400.0)] = 0.0
@@ -80,6 +80,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     record_keep: str | None = None
     """Limit of the recordings by age or size; None keeps all."""
     fresh: bool = False
+    reset_world: bool = False
+    """Whether the bodies begin as in the world file, and not where they last stood."""
     window: bool = False
     models: str | None = None
     """Folder of the user's model files."""
@@ -92,6 +94,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     perception: bool = False
     when_gone: Literal["remove", "mark"] = "remove"
     """What to do with an entity that perception added and no longer sees."""
+    class_map: dict[str, str] = {}
+    """Maps names of bodies of the world file to classes."""
     label_map: dict[str, str] = {}
     """Maps labels of an external detector to classes."""
     web: bool = False
@@ -127,8 +131,10 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         if self.robot is not None and not self.sim and not self.only:
             raise ValueError("--robot requires the simulator; remove --no-sim")
         for endpoint in (self.listen, *self.connect):
-            if not is_endpoint(endpoint):
-                raise ValueError(f"'{endpoint}' is not a valid Zenoh endpoint; example: {DEFAULT_ENDPOINT}")
+            try:
+                parse_endpoint(endpoint)
+            except BadRequest as error:
+                raise ValueError(error.text) from None
         decides = not self.only or "coordinator" in self.only  # otherwise another host defines the truth
         if decides and self.perception and self.sim and self.camera_hz and self.truth != "perceived":
             raise ValueError(
@@ -197,10 +203,3 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def reachable(self) -> str:
         """The endpoint at which programs on this machine reach the system."""
         return self.listen.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:")
-
-
-def is_endpoint(text: str) -> bool:
-    """Return whether a text is a protocol and an address, with a valid port if it has one."""
-    protocol, _, address = text.partition("/")
-    port = address.rpartition(":")[2]
-    return bool(protocol and address) and (not port.isdecimal() or int(port) < 1 << 16)

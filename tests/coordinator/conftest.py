@@ -11,6 +11,8 @@ from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
 from semmap.nodes.kb_node.answers import answers as kb_answers
 from semmap.nodes.kb_node.answers import dry_runs
 from semmap.nodes.kb_node.answers.pages import Pages
+from semmap.nodes.kb_node.handlers.changes import effects
+from semmap.nodes.kb_node.relations.free_room import find_room
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.kb_node.undo import undo
@@ -18,7 +20,7 @@ from semmap.nodes.runtime.class_names import ClassNames
 from semmap.nodes.runtime.futures import settle
 from semmap.schemas import errors
 from semmap.schemas.bridge import Outcome
-from semmap.schemas.commits import Effects
+from tests.kb_node.handlers.test_loading import loading
 
 TBOX = b"""
 @prefix : <http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#> .
@@ -60,16 +62,20 @@ def dispatcher(semantic_map):
         "commit": lambda transaction: _changed(
             semantic_map, lambda: semantic_map.commit(transaction), transaction.dry_run
         ),
+        "load": loading(semantic_map, []).on_load,
         "snapshot": Pages(semantic_map).snapshot,
         "commits": lambda several: tuple(
             Outcome(error=errors.to_message(result))
             if isinstance(result, errors.SemmapError)
-            else Outcome(commit=_effects(result))
+            else Outcome(commit=effects(result))
             for result in semantic_map.commit_together(several.transactions)
+        ),
+        "find-room": lambda query: find_room(
+            semantic_map.places.space(), query, semantic_map.find(query.name)
         ),
         "infer": lambda query: kb_answers.infer(semantic_map, query.name),
         "properties": lambda _: tuple(semantic_map.classes.property_table.rows()),
-        "made-by": lambda query: tuple(_effects(semantic_map._journal.commit_of(i)) for i in query.ids),
+        "made-by": lambda query: tuple(effects(semantic_map._journal.commit_of(i)) for i in query.ids),
         "undo": lambda command: _changed(
             semantic_map, lambda: undo(semantic_map, semantic_map._journal, command), command.dry_run
         ),
@@ -91,9 +97,5 @@ def immediate(dispatcher):
     return change
 
 
-def _effects(commit):
-    return None if commit is None else Effects.of(commit)
-
-
 def _changed(semantic_map, change, dry_run):
-    return dry_runs.dry_run(semantic_map, change) if dry_run else _effects(change())
+    return dry_runs.dry_run(semantic_map, change) if dry_run else effects(change())

@@ -14,6 +14,14 @@ PAGES = sorted(
     - set((DOCS / "_build").rglob("*.md"))
 )
 LINK = re.compile(r"\[[^\]]*\]\(([^)#\s]+)(?:#[^)]*)?\)")
+SOURCE = re.compile(r"`((?:\w+/)*\w+\.py|nodes/[\w/]+?)/?`")
+SOURCES = [
+    f"/{path.relative_to(ROOT)}"
+    for folder in ("nodes", "schemas", "ontology", "tests", "benchmarks", "demo", "docs/_ext", "examples")
+    for path in (ROOT / folder, *(ROOT / folder).rglob("*"))
+]
+EXAMPLES = frozenset(("nodes/a/b.py", "tests/a/test_b.py", "schemas.py"))
+"""File names that stand for any file, or for a file of a user."""
 
 
 @pytest.fixture
@@ -37,6 +45,12 @@ def test_links_between_files_lead_somewhere(page):
     for target in LINK.findall(page.read_text()):
         if "://" not in target:
             assert (page.parent / target).exists(), target
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_source_files_and_folders_that_a_page_names_exist(page):
+    named = {*SOURCE.findall(page.read_text())} - EXAMPLES
+    assert [name for name in named if not any(path.endswith(f"/{name}") for path in SOURCES)] == []
 
 
 def test_the_command_line_s_page_is_what_its_help_says():

@@ -5,6 +5,10 @@ from pathlib import Path
 import pytest
 
 from semmap.nodes.extern import files
+from semmap.nodes.extern.client_commands import CommandMethods
+from semmap.nodes.extern.files import read_ontology
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.runtime import extras
 from semmap.schemas import errors
 
 
@@ -34,3 +38,59 @@ def test_a_map_of_labels(tmp_path):
     file.write_text("[]")
     with pytest.raises(errors.BadFile, match="not a JSON object of labels"):
         files.read_label_map(file)
+
+
+OWL = "@prefix owl: <http://www.w3.org/2002/07/owl#> .\n"
+A = f"{OWL}<http://o.org/a> a owl:Ontology ; owl:imports <http://o.org/b> ."
+B = f"{OWL}<http://o.org/b> a owl:Ontology ."
+
+
+@pytest.fixture
+def file(tmp_path):
+    (tmp_path / "a.ttl").write_text(A)
+    return tmp_path / "a.ttl"
+
+
+def test_one_file_is_sent_as_it_is(file):
+    assert read_ontology(file, {}) == (A.encode(), "a.ttl")
+
+
+@pytest.mark.parametrize("said", [False, True])
+def test_with_its_imports_it_is_one_document(file, tmp_path, said):
+    other = tmp_path / ("elsewhere" if said else "") / "b.ttl"
+    other.parent.mkdir(exist_ok=True)
+    other.write_text(B)
+    content, name = read_ontology(file, {"http://o.org/b": str(other)} if said else {})
+    assert name == "a.ttl and 1 more file"
+    assert set(rdf.parse(content, name)) == {*rdf.parse(A.encode(), "a"), *rdf.parse(B.encode(), "b")}
+
+
+def test_a_folder_is_one_document(file, tmp_path):
+    (tmp_path / "b.ttl").write_text(B)
+    content, name = read_ontology(tmp_path, {})
+    assert name == f"{tmp_path.name} and 1 more file"
+    assert len(rdf.parse(content, name)) == 3
+
+
+def test_a_client_alone_sends_the_file(file, tmp_path, monkeypatch):
+    (tmp_path / "b.ttl").write_text(B)
+    monkeypatch.setattr(extras, "find_spec", lambda _: None)
+    assert read_ontology(file, {}) == (A.encode(), "a.ttl")
+    for path, imports in ((file, {"http://o.org/b": tmp_path / "b.ttl"}), (tmp_path, {})):
+        with pytest.raises(
+            errors.BadRequest, match=r"finding imports: missing optional packages; install: .*kb"
+        ):
+            read_ontology(path, imports)
+
+
+def test_imports_are_for_tboxes(file):
+    class Client(CommandMethods):
+        def request(self, make, read=None):
+            return make()
+
+    with pytest.raises(errors.BadRequest, match="applies to TBoxes only"):
+        Client().load(file, imports={"http://o.org/b": file})
+    with pytest.raises(errors.BadRequest, match="--extend applies to TBoxes only; add --tbox"):
+        Client().load(file, extend=True)
+    assert Client().load(file, tbox=True).tbox
+    assert Client().load(file, tbox=True, extend=True).extend

@@ -223,7 +223,7 @@ def test_a_label_is_edited_and_the_change_undone(tab, client, added):
     tab.get_by_role("button", name="Save").click()
     until(lambda: client.get(name).preferred_reference == "grandmother's cup", "it is called so")
     tab.get_by_role("heading", name="grandmother's cup").wait_for()
-    tab.get_by_label("History").get_by_text("renamed 'cup' → 'grandmother's cup'").wait_for()
+    tab.get_by_label("History").get_by_text("label: 'cup' → 'grandmother's cup'").wait_for()
     tab.get_by_role("button", name="Undo the last change").click()
     until(lambda: client.get(name).preferred_reference == "cup", "it is undone")
     tab.get_by_role("heading", name="cup", exact=True).wait_for()

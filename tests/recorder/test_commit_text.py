@@ -49,6 +49,21 @@ def test_a_page_holds_everything():
         assert words in text
 
 
+def test_a_page_shows_a_renamed_entity_once():
+    node = v.entity_iri("mug1_coordinates")
+    text = commit_text.page(
+        commit(
+            7,
+            entity("mug2", "Cup", at=pose(1.0, 2.0, 0.75)),
+            removed=("mug1",),
+            retracted=((v.entity_iri("mug1"), v.HAS_POSITION, node),),
+            inserted=((v.entity_iri("mug2"), v.HAS_POSITION, node),),
+        )
+    )
+    assert "- **mug2**, a Cup, renamed from **mug1**, at (1.00, 2.00, 0.75)" in text
+    assert "left the map" not in text
+
+
 def test_a_page_of_a_large_commit_stays_readable():
     triples = tuple(relation(f"cup{i}", "isOn", "table1") for i in range(1000))
     text = commit_text.page(commit(7, inserted=triples))

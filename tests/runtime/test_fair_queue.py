@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import threading
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from semmap.nodes.runtime.fair_queue import LATEST_S, SOONEST_S, FairQueue
+from semmap.nodes.runtime.fair_queue import LATEST_S, SOONEST_S, FairPool, FairQueue
+from semmap.schemas import errors
+from tests.conftest import until
 
 
 def taken(queue):
@@ -72,3 +76,32 @@ def test_every_item_is_returned_once(steps):
     assert sorted(went) == sorted(came)
     for asker in "abc":
         assert [item for item in went if item[0] == asker] == [item for item in came if item[0] == asker]
+
+
+def test_clients_take_turns_and_errors_are_returned():
+    asker, done, held = [""], [], threading.Event()
+    pool = FairPool(1, lambda: asker[0])
+    pool.submit(held.wait, 10)
+    for name in ("a1", "a2", "a3", "b1"):
+        asker[0] = name[0]
+        last = pool.submit(done.append, name)
+    held.set()
+    with pytest.raises(ZeroDivisionError):
+        pool.submit(lambda: 1 // 0).result(10)
+    last.result(10)
+    pool.submit(int).result(10)
+    assert done.index("b1") <= 2
+    pool.close()
+
+
+def test_too_much_work_is_rejected():
+    held = threading.Event()
+    pool = FairPool(1)
+    pool.submit(held.wait, 10)
+    until(lambda: len(pool._queue) == 0, "that is in hand")
+    for _ in range(64):
+        pool.submit(held.wait, 10)
+    with pytest.raises(errors.Busy, match="64 long requests are waiting"):
+        pool.submit(held.wait, 10)
+    held.set()
+    pool.close()

@@ -1,6 +1,7 @@
 """Every message type of the system, and random messages of a type."""
 
 import inspect as python
+import math
 from typing import Any
 
 import msgspec
@@ -44,6 +45,17 @@ def of(kind: type[msgspec.Struct]) -> st.SearchStrategy[Any]:
     return _of(inspect.type_info(kind))
 
 
+ANGLES = st.floats(-math.tau, math.tau)
+
+
+def _of_field(field: inspect.Field) -> st.SearchStrategy[Any]:
+    """Values of a field. An angle as entered by a user is converted, so it differs from what was sent."""
+    is_angle = (
+        field.name == "yaw" and isinstance(field.type, inspect.UnionType) and len(field.type.types) == 3
+    )
+    return st.none() | ANGLES if is_angle else _of(field.type)
+
+
 def _of(info: inspect.Type) -> st.SearchStrategy[Any]:
     match info:
         case inspect.Metadata(type=inner):
@@ -54,7 +66,7 @@ def _of(info: inspect.Type) -> st.SearchStrategy[Any]:
             vector = _of(inspect.type_info(entities.Vector))
             return st.builds(entities.Pose, position_m=vector, orientation_wxyz=UNIT_QUATERNIONS)
         case inspect.StructType(cls=cls, fields=fields):
-            return st.builds(cls, **{field.name: _of(field.type) for field in fields})
+            return st.builds(cls, **{field.name: _of_field(field) for field in fields})
         case inspect.TupleType(item_types=types):
             return st.tuples(*map(_of, types))
         case inspect.VarTupleType(item_type=item):

@@ -47,18 +47,18 @@ LEANING = Pose(position_m=HERE.position_m, orientation_wxyz=(0.98, 0.199, 0.0, 0
         ({"pose": HERE}, {}, "no longer has a position"),
         ({}, {"size_m": (0.1, 0.1, 0.12)}, "size: unknown → 0.1 x 0.1 x 0.12"),
         ({}, {"class_": "Mug"}, "class Cup → Mug"),
-        ({}, {"preferred_reference": "cup"}, "called 'cup'"),
-        ({"preferred_reference": "cup"}, {"preferred_reference": "mug"}, "renamed 'cup' → 'mug'"),
-        ({"preferred_reference": "cup"}, {}, "no longer called 'cup'"),
+        ({}, {"preferred_reference": "cup"}, "label added: 'cup'"),
+        ({"preferred_reference": "cup"}, {"preferred_reference": "mug"}, "label: 'cup' → 'mug'"),
+        ({"preferred_reference": "cup"}, {}, "label removed: 'cup'"),
         (
             {"alternative_references": ("a", "b")},
             {"alternative_references": ("b", "c")},
-            "reference added: 'c'; reference removed: 'a'",
+            "alias added: 'c'; alias removed: 'a'",
         ),
         (
             {"alternative_references": ("a", "b")},
             {"alternative_references": ("b", "a")},
-            "references in another order",
+            "aliases in another order",
         ),
         ({}, {"conflict": "a bowl"}, "conflict: a bowl"),
         ({"conflict": "a bowl"}, {}, "conflict resolved"),
@@ -71,6 +71,7 @@ LEANING = Pose(position_m=HERE.position_m, orientation_wxyz=(0.98, 0.199, 0.0, 0
         ),
         ({"properties": {"hasColor": ("color_red",)}}, {}, "hasColor: - color_red"),
         ({"pose": HERE}, {"pose": HERE}, ""),
+        ({}, {"name": "mug1"}, "renamed from cup1"),
     ],
 )
 def test_what_is_otherwise_is_said(was, now, said):

@@ -79,7 +79,7 @@ NAME = "must be a valid name: up to 128 letters, digits, '_', '.' and '-', begin
         ({"at": [0, 0, "up"]}, f"at: the 3rd {NUMBER}"),
         ({"at": [0, 0]}, "at must be 3 numbers"),
         ({"at": "here"}, "at must be 3 numbers"),
-        ({"yaw": math.nan}, "yaw must be a number from -1000000 to 1000000"),
+        ({"yaw": []}, "yaw must be a number or a text of up to 40 characters"),
         ({"size": [1, 1, 0]}, f"size: the 3rd {SIZE}"),
         ({"size": [-1, 1, 1]}, f"size: the 1st {SIZE}"),
         ({"size": [math.nan, 1, 1]}, f"size: the 1st {SIZE}"),

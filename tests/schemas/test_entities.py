@@ -5,7 +5,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from semmap.schemas.entities import NAME_PATTERN, Pose, angle_rad, distance_m, free_name, orientation_from_yaw
+from semmap.schemas import codec
+from semmap.schemas.commands import Move
+from semmap.schemas.entities import (
+    NAME_PATTERN,
+    Pose,
+    angle_rad,
+    distance_m,
+    free_name,
+    is_name,
+    orientation_from_yaw,
+    parse_angle,
+    valid_name,
+)
+from semmap.schemas.errors import BadRequest
 
 YAWS = st.floats(-math.pi + 1e-6, math.pi)
 
@@ -49,3 +62,47 @@ def test_names_count_up_from_the_class():
 @given(st.text(min_size=1, max_size=30))
 def test_every_class_gives_a_valid_name(class_name):
     assert re.match(NAME_PATTERN, free_name(class_name, set()))
+
+
+@pytest.mark.parametrize(
+    ("value", "radians"), [(-3, -3.0), (math.tau, math.tau), ("450deg", math.pi / 2), ("7rad", 7 - math.tau)]
+)
+def test_an_angle_with_a_unit_is_reduced_to_one_turn(value, radians):
+    assert parse_angle(value) == pytest.approx(radians)
+
+
+@pytest.mark.parametrize(("value", "reason"), [(90, "for degrees write 90deg"), (math.inf, "not an angle")])
+def test_a_number_beyond_one_turn_is_no_angle(value, reason):
+    with pytest.raises(ValueError, match=reason):
+        parse_angle(value)
+
+
+def test_commands_take_angles_with_a_unit():
+    assert codec.convert({"verb": "move", "name": "c", "yaw": "90deg"}, Move).yaw == pytest.approx(
+        math.pi / 2
+    )
+    with pytest.raises(BadRequest, match="the angle 90 exceeds one turn"):
+        Move(name="c", yaw=90)
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("chair_3", "chair_3"),
+        ("mug 2", "mug_2"),
+        ("basket_1/base", "basket_1_base"),
+        ("Apple|+01.2", "Apple_01.2"),
+        ("Apple|-01.2", "Apple_-01.2"),
+        ("003_cracker_box", "_003_cracker_box"),
+        ("tazza caffè", "tazza_caffè"),
+        ("|+", "_"),
+        ("x" * 200, "x" * 120),
+    ],
+)
+def test_other_characters_of_a_name_become_underscores(text, name):
+    assert valid_name(text) == name
+    assert is_name(name)
+
+
+def test_a_taken_name_gets_a_number():
+    assert valid_name("mug 2", {"mug_2", "mug_2_2"}) == "mug_2_3"

@@ -61,3 +61,12 @@ def test_what_is_not_in_the_table_is_for_nodes(monkeypatch):
 def test_a_role_that_there_is_not_may_nothing():
     assert all(roles.refusal("janitor", kind) for kind in (Get(name="x"), Clear()))
     assert roles.followed("janitor") == ()
+
+
+def test_a_rejected_subscription_names_the_next_step():
+    assert roles.not_subscribing("viewer", "semmap/**") == (
+        "role 'viewer' of your certificate may not subscribe to 'semmap/**'; use one of: semmap/jena/commit,"
+        f" semmap/jena/entity/*/*, semmap/jena/query/*, semmap/sim/poses and"
+        f" {len(roles.followed('viewer')) - 4} more"
+    )
+    assert roles.not_subscribing("agent", "semmap/**").endswith("; use a certificate with another role")

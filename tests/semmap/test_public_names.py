@@ -23,13 +23,14 @@ from tests.conftest import until
 
 PUBLIC = {
     "semmap": """
-        Account Argument BackupPart BadFile BadRequest BodyState Busy Candidate Change Changed Checked
-        ClassInfo Client Commit Compacted Departed Described Difference Document Done Entity
-        Explanation Extent Found Frame Grounded Inconsistent Inferred InternalError Joint LessonTold
-        Live LoggedCommit Moved NameTaken NoAnswer NodeStatus Opening Outline Picture PlaceChanges Plan
-        PlannedPlace PlannedThing Pose Possible PreconditionFailed PropertyInfo Provenance Refused
-        Related Relation Request Restored RowsChanged SemanticFrame SemmapError ShownView Sighting
-        SparqlResult Spell Spells StandingQuery Step SystemStatus Understood UnknownClass UnknownName
+        Account Antecedent Argument BackupPart BadFile BadRequest BodyState Busy Candidate Change
+        Changed Checked ClassInfo Client CommandStep Commit Compacted Departed Described Difference
+        Document Done Entity Explanation Extent Filler Found Frame Grounded Inconsistent Inferred
+        InternalError Joint LessonTold Live LoggedCommit Moved NameTaken NoAnswer NodeStatus Opening
+        Outline Picture PlaceChanges PlaceRelation Plan PlannedPlace PlannedThing Pose Possible
+        PreconditionFailed PropertyInfo Provenance Refused Related Relation Request Restored
+        RowsChanged SemanticFrame SemmapError ShownView Sighting SparqlResult Spell Spells
+        StandingQuery Step SystemStatus ThingDescription Understood UnknownClass UnknownName
         UnknownVerb Watching Way aio commands connect fleet local_name reasoner recordings restore
         testing wire
     """,

@@ -129,8 +129,8 @@ def test_a_port_in_use_is_reported(tmp_path):
         (("--threshold", "-1"), "--threshold must be"),
         (("--camera-size", "0", "0"), "--camera-size: the 1st must be"),
         (("--truth", "god"), "god"),
-        (("--listen", "7450"), "'7450' is not a valid Zenoh endpoint; example: tcp/127.0.0.1:7447"),
-        (("--connect", "tcp/127.0.0.1:99999"), "'tcp/127.0.0.1:99999' is not a valid Zenoh endpoint"),
+        (("--listen", "7450"), "'7450' is not a valid endpoint; use tcp/HOST:PORT"),
+        (("--connect", "tcp/127.0.0.1:99999"), "'tcp/127.0.0.1:99999' is not a valid endpoint"),
         (("--data", "/etc/hosts"), "/etc/hosts"),
     ],
 )

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 
 from semmap.nodes.coordinator.config import Truth
 from semmap.schemas import errors
-from semmap.schemas.commands import Add, Batch, Clear, Command, Remove, Update
+from semmap.schemas.commands import Batch, Clear, Command, Remove, Update
 from semmap.schemas.entities import LESSER, Entity
 
 _COMES_BACK = {
@@ -34,7 +34,7 @@ def require_authority(command: Command, concerned: Iterable[Entity]) -> None:
             )
 
 
-def describe_override(command: Add | Update | Batch | Remove | Clear, truth: Truth) -> str | None:
+def describe_override(command: Command, truth: Truth) -> str | None:
     """Return a note if the scene or perception will override the change; None otherwise."""
     if isinstance(command, (Remove, Clear)):
         return _COMES_BACK.get(truth)
@@ -44,7 +44,10 @@ def describe_override(command: Add | Update | Batch | Remove | Clear, truth: Tru
 
 def is_placing(change: Command) -> bool:
     """Return whether a change sets the pose of an existing entity."""
-    return isinstance(change, Update) and (change.at, change.yaw, change.orientation) != (None, None, None)
+    if not isinstance(change, Update):
+        return False
+    fields = (change.at, change.yaw, change.orientation, change.on, change.in_, change.next_to)
+    return any(field is not None for field in fields)
 
 
 def require_operator(command: Command, what: str) -> None:

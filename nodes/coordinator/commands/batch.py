@@ -24,7 +24,7 @@ _OF_ALL: Final = (
     *("confidence", "unchanged", "since", "dry_run"),
 )
 """Fields that are given once for the batch, not for a change in it."""
-_NOT_HERE: Final = ("wait", "frame")
+_NOT_HERE: Final = ("wait", "frame", "on", "in_", "next_to")
 _DEFAULTS: Final = {name: getattr(Update(name="_"), name) for name in (*_OF_ALL, *_NOT_HERE)}
 
 
@@ -113,5 +113,7 @@ def _require_bare(change: Command) -> None:
         raise errors.BadRequest(f"give {wording.few(misplaced)} once for the batch, not for a change in it")
     if "frame" in given:
         raise errors.BadRequest("positions in a batch are in the map frame; remove the frame")
+    if given and given != ["wait"]:
+        raise errors.BadRequest("a change in a batch is placed by its position; give at")
     if given:
         raise errors.BadRequest("a batch does not wait for bodies; remove wait")

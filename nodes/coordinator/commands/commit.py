@@ -12,7 +12,7 @@ from msgspec import structs
 
 from semmap.nodes.coordinator.commands.map_view import MapView
 from semmap.nodes.coordinator.kb_coroutines import KbCoroutine, ask
-from semmap.nodes.runtime import heap
+from semmap.nodes.runtime import memory
 from semmap.nodes.runtime.class_names import ClassNames
 from semmap.schemas import errors
 from semmap.schemas.bridge import MadeBy
@@ -90,7 +90,7 @@ def reload_map(view: MapView) -> KbCoroutine[None]:
         view.cancel_pages()
         raise
     view.begin(pages.snapshot)
-    heap.trim()
+    memory.trim()
     gc.freeze()  # most of the map stays as it is, so the collector does not have to visit it again
 
 

@@ -7,6 +7,7 @@ from semmap.nodes.coordinator.commands import attachment_rules, transactions
 from semmap.nodes.coordinator.commands.commit import commit, make_reply, new_id, reload_map
 from semmap.nodes.coordinator.commands.joint_state import require_openable
 from semmap.nodes.coordinator.commands.map_view import MapView
+from semmap.nodes.coordinator.commands.placement import place
 from semmap.nodes.coordinator.commands.plausibility import find_doubts, require_carry, require_same_nature
 from semmap.nodes.coordinator.commands.registration import handles
 from semmap.nodes.coordinator.kb_coroutines import KbCoroutine, ask
@@ -57,6 +58,7 @@ def _add(view: MapView, command: Add, found: ClassInfo) -> KbCoroutine[Changed]:
     name = command.name or view.free_name(found.name)
     if name in view.entities:
         raise errors.NameTaken(f"the name '{name}' is taken; see: semmap get {name}")
+    command, where, notes = yield from place(view, command, name, found)
     at = command.at or ((0.0, 0.0, 0.0) if command.extent else view.free_place(command.size))
     pose = pose_of(at, command.yaw, command.orientation)
     ref = command.ref or (_label(found) if command.default else None)
@@ -65,9 +67,10 @@ def _add(view: MapView, command: Add, found: ClassInfo) -> KbCoroutine[Changed]:
     made = yield from commit(view, wanted)
     return make_reply(
         made,
-        f"added {found.name} {name} at {_format_position(new.pose or pose)}",
+        f"added {found.name} {name}{where} at {_format_position(new.pose or pose)}",
         names=(name,),
         notes=(
+            *notes,
             *view.classes.note(command.class_, found),
             *find_doubts(name, found, pose if command.at else None, command.size, view.places),
         ),
@@ -78,12 +81,13 @@ def _add(view: MapView, command: Add, found: ClassInfo) -> KbCoroutine[Changed]:
 def update(view: MapView, command: Update) -> KbCoroutine[Changed]:
     """Change an entity; omitted fields keep their values."""
     entity, found = resolve_update(view, command)
+    command, where, notes = yield from place(view, command, entity.name, found)
     made = yield from commit(view, transactions.update(command, entity, found))
     return make_reply(
         made,
-        f"updated {_describe(entity, made)}" if made else _describe(entity, made),
+        f"updated {_describe(entity, made)}{where and f',{where}'}" if made else _describe(entity, made),
         names=(entity.name, *(_other_names(made, entity.name) if command.carry else ())),
-        notes=notes_for(view, command, entity, found, made),
+        notes=(*notes, *notes_for(view, command, entity, found, made)),
     )
 
 

@@ -59,11 +59,12 @@ def undo(view: MapView, command: Undo) -> KbCoroutine[Changed]:
 def _changes_of(before: Mapping[str, Entity], undoing: Effects) -> tuple[Change, ...]:
     """Return what the undone commits had changed, of the first entities: from after the undo to before it."""
     found: list[Change] = []
+    earlier = {was: now for now, was in undoing.renamed.items()}
     for gone in undoing.removed[:_FEW]:
-        if (was := before.get(gone.name)) is not None:
+        if gone.name not in earlier and (was := before.get(gone.name)) is not None:
             found += changes.between(None, was)
     for entity in undoing.changed[:_FEW]:
-        if (was := before.get(entity.name)) is None:
+        if (was := before.get(undoing.renamed.get(entity.name, entity.name))) is None:
             found.append(changes.removed(entity.name, entity.class_))
         else:
             found += changes.between(entity, was)
@@ -75,12 +76,14 @@ def _describe(undone: tuple[Change, ...], undoing: Effects) -> str:
     if not undone:
         return undoing.reason.partition(": ")[2]
     words = [_sentence(change) for change in undone[:_NAMED]]
-    count = len(dict.fromkeys(undoing.names)) - len(dict.fromkeys(c.name for c in undone[:_NAMED]))
+    count = len({*undoing.names} - undoing.renamed.keys() - {change.name for change in undone[:_NAMED]})
     return "; ".join(words) + (f"; … and {wording.entities(count)} more" if count > 0 else "")
 
 
 def _sentence(change: Change) -> str:
     """`moved chair1 from (1, 2, 0) to (2, 2, 0)`; `fridge1: isOpen: false → true`."""
+    if change.kind == "name":
+        return f"renamed {change.was} to {change.now}"
     verb, _, rest = change.text.partition(" ")
     if change.kind in ("pose", "added", "removed") and verb in _VERBS:
         return f"{verb} {change.name} {rest}".rstrip()

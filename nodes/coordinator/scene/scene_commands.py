@@ -7,7 +7,10 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from typing import TypeVar
 
+from msgspec import structs
+
 from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
+from semmap.nodes.coordinator.commands.placement import at_room, make_request, placing_of
 from semmap.nodes.coordinator.commands.plausibility import require_carry
 from semmap.nodes.coordinator.config import Truth
 from semmap.nodes.coordinator.reconciler.reconciler import AskSim, Reconciler
@@ -16,7 +19,7 @@ from semmap.nodes.coordinator.scene.completion import Completion
 from semmap.nodes.runtime.futures import SingleThreadFuture, and_then, settle, then
 from semmap.schemas import commands as c
 from semmap.schemas import errors, wording
-from semmap.schemas.bridge import LoadOf
+from semmap.schemas.bridge import LoadOf, Room
 from semmap.schemas.calls import Call
 from semmap.schemas.entities import Pose, Vector, carried, orientation_from_yaw
 from semmap.schemas.replies import Changed, Done, Moved
@@ -65,7 +68,20 @@ class SceneCommands:
         if body is None:
             state = self._reconciler.body_state(self._dispatcher.map.entity(command.name))
             raise errors.Refused(f"{command.name} has no body to move: {state.detail or state.status}")
-        return self._reconciler.when_placed(command.name, lambda: self._move_body(command))
+        wanted = placing_of(command)
+        if wanted is None:
+            if command.at is None:
+                raise errors.BadRequest("missing position; give one of --at X Y Z, --on, --in and --next-to")
+            return self._reconciler.when_placed(command.name, lambda: self._move_body(command))
+        request = make_request(self._dispatcher.map, command, wanted, command.name, None)
+        return and_then(self._ask_map(request), lambda room: self._move_to(command, room))
+
+    def _move_to(self, command: c.Move, room: Room) -> Future[Moved]:
+        """Move a body to the free pose that was found."""
+        placed = self._reconciler.when_placed(command.name, lambda: self._move_body(at_room(command, room)))
+        if not room.note:
+            return placed
+        return then(placed, lambda moved: structs.replace(moved, notes=(room.note, *moved.notes)))
 
     def _move_body(self, command: c.Move) -> Future[Moved]:
         body = self._reconciler.scene.bodies.get(command.name)
@@ -82,6 +98,8 @@ class SceneCommands:
 
     def _place(self, command: c.Move, body: Body, load: Sequence[str]) -> Future[Moved]:
         orientation = body.pose.orientation_wxyz if command.yaw is None else orientation_from_yaw(command.yaw)
+        if command.at is None:
+            raise errors.InternalError("a body was to be moved without a position")
         pose = Pose(position_m=command.at, orientation_wxyz=orientation)
         bodies = self._reconciler.scene.bodies
         along = {name: carried(bodies[name].pose, body.pose, pose) for name in load if name in bodies}
@@ -96,7 +114,8 @@ class SceneCommands:
             carried_along = [name for name in along if name not in reply.failed]
             self._dispatcher.manual_moves.register(command, carried_along)
             load = f"; {wording.carried(command.name, tuple(along), command.leave)}" if command.carry else ""
-            immediate = Moved(name=command.name, text=_describe_release(command, reply.bodies[0]) + load)
+            text = _describe_release(command.name, pose.position_m, reply.bodies[0])
+            immediate = Moved(name=command.name, text=text + load)
             return self._completion.begin(
                 command, immediate, lambda rests: _describe_rest(rests) + load, reply, carried_along
             )
@@ -234,9 +253,9 @@ def _describe_rest(body: Body) -> str:
     return f"moved {body.name} to {where}" + (f", where it {describe_ghost(body)}" if body.ghost else "")
 
 
-def _describe_release(command: c.Move, body: Body) -> str:
+def _describe_release(name: str, at: Vector, body: Body) -> str:
     """Return where a body was released: at the given position, or above it where there is room."""
-    (x, y, z), room_z_m = command.at, body.pose.position_m[2]
+    (x, y, z), room_z_m = at, body.pose.position_m[2]
     if body.ghost:
         return f"put {body.name} at ({x:g}, {y:g}, {z:g}), where it {describe_ghost(body)}"
     if room_z_m - z > _LIFTED_M:

@@ -6,13 +6,22 @@ import functools
 import os
 import sys
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 
 import click
 
 from semmap.nodes.extern.cli.output.printable import escaped_json, print_escaped
+from semmap.nodes.extern.cli.shell_completion import entity_names
 from semmap.schemas import errors
-from semmap.schemas.endpoints import CONNECT_VARIABLE, DEFAULT_ENDPOINT, IDENTITY_VARIABLE, NAMESPACE_VARIABLE
+from semmap.schemas.endpoints import (
+    CONNECT_VARIABLE,
+    DEFAULT_ENDPOINT,
+    IDENTITY_VARIABLE,
+    NAMESPACE_VARIABLE,
+    parse_endpoint,
+)
 
 if TYPE_CHECKING:
     from semmap.nodes.extern.client import Client
@@ -45,6 +54,7 @@ _CONNECTION: Final[dict[str, dict[str, str]]] = {
 
 
 _F = TypeVar("_F", bound=Callable[..., Any])
+_T = TypeVar("_T")
 
 
 class _ConnectionOption(click.Option):
@@ -165,26 +175,28 @@ def _agent() -> str:
 def run_arguments(app: click.Command, words: list[str], client: Client | None = None, where: str = "") -> int:
     """Run a command line, with `client` if there is one, and return its exit status.
 
-    An error is printed to stderr in one line that begins with `where`.
+    An error is printed to stderr in one line that begins with `where`. With `--format json` it is printed to
+    stdout as `{"error": {"code": ..., "text": ...}}`.
     """
+    report = _print_json_error if _wants_json(words) else _print_error
     try:
         app.main(words, prog_name="semmap", standalone_mode=False, obj=client)
     except errors.SemmapError as error:
-        print_error(f"{where}{_strip_prefix(error.text)}")
+        report(error.code, f"{where}{_strip_prefix(error.text)}")
         return error.exit_status
     except click.exceptions.NoArgsIsHelpError as error:
         print(error.format_message())
     except click.NoSuchOption as error:
-        print_error(f"{where}{_unknown_option(error)}")
+        report(_MISUSE, f"{where}{_unknown_option(error)}")
         return 2
     except click.BadOptionUsage as error:
-        print_error(f"{where}{_missing_values(error, app, words[0])}")
+        report(_MISUSE, f"{where}{_missing_values(error, app, words[0])}")
         return 2
     except click.MissingParameter as error:
-        print_error(f"{where}{_missing_parameter(error)}")
+        report(_MISUSE, f"{where}{_missing_parameter(error)}")
         return 2
     except click.ClickException as error:
-        print_error(f"{where}{_one_line(error)}")
+        report(_MISUSE, f"{where}{_one_line(error)}")
         return 2
     except (click.Abort, KeyboardInterrupt):
         return 130
@@ -194,6 +206,22 @@ def run_arguments(app: click.Command, words: list[str], client: Client | None = 
     except SystemExit as end:
         return int(end.code or 0)
     return 0
+
+
+_MISUSE: Final = errors.BadRequest.code
+
+
+def _wants_json(words: list[str]) -> bool:
+    """Return whether a command line asks for JSON, even if it is not valid otherwise."""
+    return "--format=json" in words or ("--format", "json") in pairwise(words)
+
+
+def _print_json_error(code: str, text: str) -> None:
+    print_json({"error": {"code": code, "text": text}})
+
+
+def _print_error(_: str, text: str) -> None:
+    print_error(text)
 
 
 def print_json(message: Any) -> None:
@@ -206,10 +234,72 @@ def print_json(message: Any) -> None:
     print(escaped_json(text))
 
 
+def json_option(function: _F) -> _F:
+    """Add `--format` to a command that prints its result with `print_result`."""
+    return click.option(
+        "--format",
+        type=click.Choice(["text", "json"]),
+        default="text",
+        show_default=True,
+        expose_value=False,
+        callback=_set_format,
+    )(function)
+
+
+def _set_format(ctx: click.Context, _: click.Parameter, value: str) -> None:
+    ctx.meta[_FORMAT] = value
+
+
+_FORMAT: Final = "semmap.format"
+
+
+def print_result(result: _T, lines: Callable[[_T], Iterable[str]]) -> None:
+    """Print the result of a command with `json_option`: as JSON, or the lines of `lines(result)`."""
+    if is_json():
+        print_json(result)
+    else:
+        print_lines(lines(result))
+
+
+def is_json() -> bool:
+    """Return whether a command with `json_option` prints JSON."""
+    return click.get_current_context().meta.get(_FORMAT) == "json"
+
+
+def print_event(event: Any, lines: Iterable[str]) -> None:
+    """Print one of many results as they occur: as one line of JSON, or `lines`."""
+    if is_json():
+        from semmap.schemas import codec
+
+        print(escaped_json(codec.as_json(codec.encode(event))), flush=True)
+    else:
+        print_lines(lines)
+
+
+def print_file(file: Path, text: str, **facts: Any) -> None:
+    """Print the result of a command with `json_option` that wrote a file: its path and `facts`, or `text`."""
+    print_result({"file": str(file), **facts}, lambda _: [text])
+
+
+def print_text(reply: _WithText) -> None:
+    """Print a reply that has a text, or the whole reply as JSON."""
+    print_result(reply, lambda reply: [reply.text])
+
+
+class _WithText(Protocol):
+    @property
+    def text(self) -> str: ...
+
+
 def print_lines(lines: Iterable[str]) -> None:
-    """Print the lines of a reply."""
+    """Print the lines of a reply, and its notes to stderr."""
     for line in lines:
-        print_escaped(line)
+        print_escaped(line, file=sys.stderr if line.startswith("note: ") else None)
+
+
+def print_count(text: str) -> None:
+    """Print the last line of a table: to stderr if the table goes to a file or a pipe."""
+    print_escaped(text, file=None if sys.stdout.isatty() else sys.stderr)
 
 
 class _Metres(click.ParamType[float]):
@@ -235,6 +325,36 @@ def vector_option(*names: str, **options: Any) -> Callable[[Any], Any]:
 def frame_option(meaning: str) -> Callable[[Any], Any]:
     """Return the option that names the frame of positions."""
     return click.option("--frame", metavar="NAME", help=f"{meaning}; see: semmap frames.")
+
+
+class Endpoint(click.ParamType[str]):
+    """A Zenoh endpoint, also written `HOST:PORT` or `tcp://HOST:PORT`."""
+
+    name = "endpoint"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """Return the endpoint as Zenoh writes it."""
+        try:
+            return parse_endpoint(value)
+        except errors.BadRequest as error:
+            self.fail(error.text, param, ctx)
+
+
+ENDPOINT: Final = Endpoint()
+
+
+def placing_options(function: Callable[..., None]) -> Callable[..., None]:
+    """Add the options that place an object relative to another one."""
+    options = {
+        "on": "Place it on this object, where there is room.",
+        "in": "Place it in this object or place, where there is room.",
+        "next-to": "Place it next to this object, where there is room.",
+    }
+    for name, text in reversed(options.items()):
+        parameter = name.replace("-", "_") + ("_" if name == "in" else "")
+        option = click.option(f"--{name}", parameter, metavar="NAME", shell_complete=entity_names, help=text)
+        function = option(function)
+    return function
 
 
 def carry_options(function: Callable[..., None]) -> Callable[..., None]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from semmap.nodes import bus
-from semmap.nodes.extern.connection import endpoint, identity, namespace
+from semmap.nodes.extern.connection import identity, namespace, resolve_endpoint
 from semmap.nodes.supervisor import presence
 from semmap.schemas import commands
 from semmap.schemas.entities import ClassInfo, Entity
@@ -33,7 +33,7 @@ KINDS: Mapping[str, Callable[[str | None], Named]] = {"entities": _entities, "cl
 
 
 def _ask(where: str | None, verb: str, command: Any, reply_type: Any) -> Any:
-    where = where or endpoint(namespace(None))
+    where = resolve_endpoint(where, namespace(None))
     here, who = presence.is_loopback(where), identity(None)
     network = bus.Network(
         connect=(where if who is None else bus.to_tls(where),),

@@ -24,6 +24,7 @@ from semmap.nodes.identity import Identity
 from semmap.nodes.supervisor import registry
 from semmap.schemas import errors
 from semmap.schemas.commands import Status
+from semmap.schemas.endpoints import parse_endpoint
 from semmap.schemas.entities import Entity
 from semmap.schemas.moments import When
 from semmap.schemas.relations import Described
@@ -182,9 +183,9 @@ def _discover_robots(place: str, who: Identity | None) -> dict[str, frozenset[st
 def endpoints(where: str | Sequence[str] | None) -> tuple[str, ...]:
     """Return the endpoints in `where`, or the default endpoint, or those of all local systems."""
     if where:
-        return split_names(where)
+        return tuple(map(parse_endpoint, split_names(where)))
     try:
-        return split_names(endpoint())
+        return (endpoint(),)
     except errors.BadRequest:  # there are several systems: use all of them
         return tuple(dict.fromkeys(system.reachable for system in registry.systems()))
 

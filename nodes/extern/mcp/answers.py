@@ -9,19 +9,23 @@ from __future__ import annotations
 import json
 import re
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
 from msgspec import Struct
 
 from semmap.schemas import errors
-from semmap.schemas.entities import Pose, Provenance, Size
+from semmap.schemas.entities import Entity, Pose, Provenance, Size
 
 BUDGET: Final = 4000
 """The maximum length of a reply."""
 UNITS: Final = "m, rad; map frame, z up, positions are bottom centres"
 _LONGEST_TEXT: Final = 1000
 _WHO: Final = re.compile(r"[^\w./@-]+")
+SYSTEM: Final = "semmap"
+_MOST_AUTHORS: Final = 5
+_WORD: Final = re.compile(r"\w+|[^\w\s]")
+_Words = tuple[str, ...]
 
 
 class Answer(Struct, frozen=True, kw_only=True):
@@ -137,3 +141,37 @@ def _clipped(value: Any, most: int) -> Any:
         cut = [_clipped(each, most) for each in value[:few]]
         return cut if len(value) <= few else [*cut, f"{len(value) - few} more"]
     return value
+
+
+class Authors:
+    """The authors of the labels of these entities."""
+
+    def __init__(self, entities: Iterable[Entity]) -> None:
+        self._by_words: dict[_Words, set[str]] = {}
+        self._beginning: dict[str, set[_Words]] = {}  # labels (as words), by their first word
+        for entity in entities:
+            by = format_author(entity.reference_provenance.source, entity.reference_provenance.agent)
+            for reference in (entity.preferred_reference, *entity.alternative_references):
+                if words := _words(reference or ""):
+                    self._by_words.setdefault(words, set()).add(by)
+                    self._beginning.setdefault(words[0], set()).add(words)
+
+    def by(self, *texts: str) -> str:
+        """Return the author of texts of the system: `semmap`, or `semmap, quoting agent helper and file`."""
+        found: set[str] = set()
+        for text in texts:
+            words = _words(text)
+            for start, word in enumerate(words):
+                for reference in self._beginning.get(word, ()):
+                    if words[start : start + len(reference)] == reference:
+                        found |= self._by_words[reference]
+        if not found:
+            return SYSTEM
+        named = sorted(found)[:_MOST_AUTHORS]
+        others = ["others"] if len(found) > _MOST_AUTHORS else []
+        return f"{SYSTEM}, quoting {' and '.join([*named, *others])}"
+
+
+def _words(text: str) -> _Words:
+    """Return the words and punctuation marks, in lower case."""
+    return tuple(_WORD.findall(text.casefold()))

@@ -160,11 +160,16 @@ class Propose(Arguments, frozen=True, kw_only=True):
         name="class", default=None
     )
     at: Annotated[Vector, Meta(description="Bottom centre x, y, z [m], map frame, z up.")] | None = None
+    on: Annotated[Word, Meta(description="Instead of at: on this object, where there is room.")] | None = None
+    in_: Annotated[Word, Meta(description="Instead of at: in this object or place.")] | None = field(
+        name="in", default=None
+    )
+    next_to: Annotated[Word, Meta(description="Instead of at: next to this object.")] | None = None
     yaw: Annotated[Angle, Meta(description="Rotation about z [rad].")] | None = None
     size: Annotated[Size, Meta(description="Size along its own x, y, z [m].")] | None = None
     ref: Annotated[Text, Meta(description="Label.")] | None = None
     alt: Annotated[tuple[Text, ...], Meta(description="Aliases.")] | None = None
-    carry: Annotated[bool, Meta(description="Update with at: also move the objects on it.")] | None = None
+    carry: Annotated[bool, Meta(description="Update of the pose: also move the objects on it.")] | None = None
     property_: Annotated[Text, Meta(description="Set and unset: property, e.g. isOpen.")] | None = field(
         name="property", default=None
     )

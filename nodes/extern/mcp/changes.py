@@ -24,9 +24,8 @@ from semmap.nodes.extern.mcp import limits, queries, requests
 from semmap.nodes.extern.mcp.answers import Answer, attribute_text, format_author
 from semmap.nodes.extern.mcp.consistent_read import known, newest, read_at_one_commit
 from semmap.nodes.extern.mcp.hints import translate_hints
-from semmap.nodes.extern.mcp.limits import Limits, Touched
+from semmap.nodes.extern.mcp.limits import Limits, Rate, Touched
 from semmap.nodes.extern.mcp.proposals import Proposal, Proposals
-from semmap.nodes.extern.mcp.rate_limit import Rate
 from semmap.nodes.extern.mcp.requests import Summary
 from semmap.schemas import codec, commands, errors
 from semmap.schemas.approvals import Request
@@ -185,8 +184,8 @@ class Changes:
             raise errors.BadRequest(
                 f"propose: {verb} has no field {unknown[0]}; valid fields: {', '.join(valid)}"
             )
-        if verb == "add" and "at" not in fields:
-            raise errors.BadRequest("propose: missing field at: the position as [x, y, z] in metres")
+        if verb == "add" and not fields.keys() & {"at", "on", "in", "next_to"}:
+            raise errors.BadRequest("propose: missing field at, on, in or next_to; at is [x, y, z] in metres")
         try:
             return codec.convert({**fields, "source": "agent", "agent": self._agent}, COMMANDS[verb])
         except errors.BadRequest as error:

@@ -9,10 +9,8 @@ from typing import Any, Final, TypeVar
 from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.mcp import arguments as a
 from semmap.nodes.extern.mcp import rows
-from semmap.nodes.extern.mcp.answers import Answer, attribute_text, format_time, read_cursor
-from semmap.nodes.extern.mcp.authors import Authors
+from semmap.nodes.extern.mcp.answers import Answer, Authors, attribute_text, format_time, read_cursor
 from semmap.nodes.extern.mcp.consistent_read import known, newest, read_at_one_commit
-from semmap.nodes.extern.mcp.overview import overview as _overview
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.entities import Entity
@@ -36,7 +34,7 @@ def overview(client: Client, _: a.Overview) -> Answer:
 
     def read() -> dict[str, Any]:
         where = rows.places_of(client.sparql(_WHERE_ALL, inferred=True, limit=100_000).rows)
-        return _overview(client.status(), client.list(), where)
+        return rows.overview(client.status(), client.list(), where)
 
     return _answer(client, read)
 

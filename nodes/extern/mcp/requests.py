@@ -89,6 +89,9 @@ def _details(command: commands.Add | commands.Update) -> Iterator[str]:
     """Yield the set fields that `add` and `update` have in common."""
     if command.at is not None:
         yield f"at {_numbers(command.at)}"
+    for placing, target in (("on", command.on), ("in", command.in_), ("next to", command.next_to)):
+        if target is not None:
+            yield f"{placing} {_word(target)}"
     if command.yaw is not None:
         yield f"yaw {command.yaw:.3g} rad"
     if command.size is not None:

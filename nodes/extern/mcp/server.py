@@ -23,7 +23,7 @@ from mcp.server.subscriptions import InMemorySubscriptionBus, ListenHandler, Res
 from mcp.shared.exceptions import MCPError
 
 from semmap.nodes.extern.mcp import resources
-from semmap.nodes.extern.mcp.subscriptions import Subscriptions
+from semmap.nodes.extern.mcp.resources import Subscriptions
 from semmap.nodes.extern.mcp.tools import Page, Tool, Tools, error_text
 from semmap.nodes.runtime.version import version
 from semmap.schemas import errors

@@ -15,8 +15,8 @@ from semmap.nodes.extern.mcp import arguments as a
 from semmap.nodes.extern.mcp.answers import Answer
 from semmap.nodes.extern.mcp.changes import Changes
 from semmap.nodes.extern.mcp.hints import translate_hints
-from semmap.nodes.extern.mcp.rate_limit import Rate
-from semmap.nodes.extern.mcp.subscriptions import Subscriptions
+from semmap.nodes.extern.mcp.limits import Rate
+from semmap.nodes.extern.mcp.resources import Subscriptions
 from semmap.schemas import codec, errors
 
 CALLS_PER_S: Final = 20.0

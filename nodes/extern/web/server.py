@@ -51,7 +51,7 @@ def resolve_network(where: str | None, identity: str | None, namespace: str | No
     respond now, and the other errors of `connect`.
     """
     found = connection.identity(identity)
-    where = where or connection.endpoint(connection.namespace(namespace))
+    where = connection.resolve_endpoint(where, connection.namespace(namespace))
     name = connection.namespace(namespace, where)
     with connection.open_session(where, name, found, mode="client"):
         pass

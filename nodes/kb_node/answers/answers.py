@@ -18,7 +18,7 @@ from semmap.nodes.kb_node.relations.facts import contradictions
 from semmap.nodes.kb_node.relations.facts.pair_facts import PairFacts
 from semmap.nodes.kb_node.relations.facts.pair_properties import PairProperties
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
-from semmap.nodes.kb_node.relations.measuring.relation_table import MIRRORED
+from semmap.nodes.kb_node.relations.measuring.relation_table import PAIR_RELATIONS
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.ontology import prefixes
@@ -108,7 +108,7 @@ def pair_measurer(
         if not derived.sources:
             return
         pairs = PairFacts(space)
-        found = pairs.set_scope(MIRRORED, ()) if name is None else pairs.set_scope((), [name])
+        found = pairs.set_scope(PAIR_RELATIONS, ()) if name is None else pairs.set_scope((), [name])
         for fact in found.come:
             yield from derived.triples(fact, iris)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import product
 
 from msgspec import structs
@@ -11,6 +11,7 @@ from semmap.nodes.kb_node.answers.entity_search import EntitySearch
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.language import lexicon
+from semmap.nodes.language.steps.reading import read_steps
 from semmap.nodes.language.understanding.grounding import Scene, Thing, scene
 from semmap.nodes.language.understanding.interpretation import shipped
 from semmap.nodes.language.vocabulary import Vocabulary, vocabulary
@@ -26,9 +27,15 @@ _MOST_WORDS = 200  # per command: a minute of speech
 class CommandParser:
     """Parses commands and resolves them against the map. Owned by the node's thread."""
 
-    def __init__(self, semantic_map: SemanticMap, search: EntitySearch) -> None:
-        """Create a parser; `search` resolves descriptions and formulates clarification questions."""
-        self._map, self._search = semantic_map, search
+    def __init__(
+        self, semantic_map: SemanticMap, search: EntitySearch, seen: Callable[[str], str] = lambda name: ""
+    ) -> None:
+        """Create a parser.
+
+        `search` resolves descriptions and formulates clarification questions. `seen` returns in words when an
+        entity was last seen.
+        """
+        self._map, self._search, self._seen = semantic_map, search, seen
         self._lexicon = lexicon.load()
         self._classes: ClassTable | None = None
         self._vocabulary: Vocabulary | None = None
@@ -53,7 +60,29 @@ class CommandParser:
         )
         questions = (self._search.question(names, found.language) for names in open_still)
         doubts = dict.fromkeys(doubt for frame in found.frames for doubt in self._doubts(frame))
-        return structs.replace(found, question=" ".join(questions), doubts=tuple(doubts))
+        found = structs.replace(found, question=" ".join(questions), doubts=tuple(doubts))
+        is_read = found.language == "english" and found.mood != "past"
+        return self._with_steps(query.text, found) if is_read else found
+
+    def _with_steps(self, text: str, found: Understood) -> Understood:
+        """Add the steps; if there are any, doubts, unknown verbs and questions are about them."""
+        with self._search.world(self._there().vocabulary.above, self._seen) as world:
+            read = read_steps(text, world)
+        if not read.steps:
+            return structs.replace(
+                found,
+                doubts=tuple(dict.fromkeys((*found.doubts, *read.doubts))),
+                unknown=tuple(dict.fromkeys((*found.unknown, *read.unknown))),
+            )
+        questions = (self._search.question(names, found.language) for names in dict.fromkeys(read.ambiguous))
+        return structs.replace(
+            found,
+            steps=tuple(read.steps),
+            question=" ".join(questions),
+            doubts=tuple(read.doubts),
+            unknown=tuple(read.unknown),
+            answer="; ".join(read.answers),
+        )
 
     def _doubts(self, frame: SemanticFrame) -> Iterator[str]:
         """Yield the parts of a frame that do not match the map."""

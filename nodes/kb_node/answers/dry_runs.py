@@ -10,6 +10,7 @@ from msgspec import structs
 from semmap.nodes.kb_node.answers.answers import without_trivial
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.ontology import vocabulary as v
+from semmap.ontology.entity_triples import find_earlier_names
 from semmap.schemas.commits import Commit, Effects, Trial
 from semmap.schemas.explanations import Term, Triple
 
@@ -38,7 +39,7 @@ def dry_run(
     followed = _inferred(semantic_map, after.concerned)
     commit, names = after.commit, semantic_map.classes.qualified_names
     return structs.replace(
-        Effects.of(commit),
+        Effects.of(commit, find_earlier_names(commit)),
         trial=Trial(
             inserted=len(commit.inserted),
             retracted=len(commit.retracted),

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 from msgspec import structs
 
 from semmap.nodes.kb_node.answers import answers, questions
-from semmap.nodes.kb_node.answers.fact_intervals import FactStarts
+from semmap.nodes.kb_node.answers.past.fact_intervals import FactStarts
 from semmap.nodes.kb_node.relations.facts.contradictions import (
     PROPERTIES,
     fact_of,
@@ -18,7 +18,6 @@ from semmap.nodes.kb_node.relations.facts.contradictions import (
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.facts.rules import COMPUTED
 from semmap.nodes.kb_node.relations.geometry.placed_entity import name_shape_source
-from semmap.nodes.kb_node.relations.measuring.relation_table import PHRASES
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.relation_reports import explain_relation, list_locations, list_relations
 from semmap.nodes.kb_node.relations.selection import resolve_single, select_entities
@@ -31,7 +30,7 @@ from semmap.schemas.bridge import Entities
 from semmap.schemas.commands import Explain, Get, Relations
 from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Explanation, Term, Triple
-from semmap.schemas.relations import Described, Relation, RelationName
+from semmap.schemas.relations import PHRASES, Described, Relation, RelationName
 
 _MEASURED: Final[dict[Term, tuple[RelationName, bool]]] = {
     **{v.dm(name): (name, False) for name in PHRASES},

@@ -1,28 +1,44 @@
-"""Entities that match a description: the command `find`."""
+"""Entities that match a description, and when missing ones were last there: the command `find`."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import time
+from collections.abc import Callable, Iterator, Mapping, Set
+from contextlib import contextmanager
+from itertools import islice
+from typing import Final, NamedTuple
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.answers.search_vocabulary import item, terms
+from semmap.nodes.kb_node.answers.past.differences import find_spells
 from semmap.nodes.kb_node.entities.class_table import ClassTable
-from semmap.nodes.kb_node.relations.measuring.relation_table import PHRASES
+from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.relations.measuring.viewing import View
 from semmap.nodes.kb_node.relations.relation_cache import RelationCache
 from semmap.nodes.kb_node.relations.selection import is_in, is_on, resolve_single
 from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.history import HistoryReader
+from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.language.reference_resolution import clarification, explanation
-from semmap.nodes.language.reference_resolution.map_index import MapIndex
+from semmap.nodes.language.reference_resolution.map_index import Item, MapIndex, Terms
 from semmap.nodes.language.reference_resolution.missing import Missing, missing
 from semmap.nodes.language.reference_resolution.resolution import find
 from semmap.nodes.language.reference_resolution.resolver import Resolver
+from semmap.nodes.language.steps.meaning import World
+from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
-from semmap.schemas.commands import Find
+from semmap.schemas.commands import Find, WasWhen
 from semmap.schemas.entities import Entity
 from semmap.schemas.language import Found, Language
+from semmap.schemas.relations import PHRASES
+
+_HAS_AFFORDANCE = v.dm("hasAffordance")
+_MOST: Final = 3
+"""Sentences of each kind."""
+_LOOKED_AT: Final = 200
+"""Recently removed entities that are checked."""
 
 
 class SearchResult(NamedTuple):
@@ -92,6 +108,18 @@ class EntitySearch:
         with space.caching():
             return clarification.clarifying_question(names, Resolver(self.known(), around, language))
 
+    @contextmanager
+    def world(self, above: Mapping[str, frozenset[str]], seen: Callable[[str], str]) -> Iterator[World]:
+        """Yield the map as commands need it.
+
+        `above` maps the classes of the TBox to their superclasses. `seen` returns in words when an entity was
+        last seen.
+        """
+        space = self._map.places.space()
+        around = RelationCache(space, None, self._map.derived_facts.suppressed_measurements)
+        with space.caching():
+            yield World(self.known(), around, above, self.where, seen)
+
     def known(self) -> MapIndex:
         """Return the search items after the last commit; unchanged entities are not read again."""
         if self._known is None or self._classes is not self._map.classes:
@@ -116,3 +144,87 @@ class EntitySearch:
 
     def _named(self, word: str) -> str:
         return word if self._map.find(word) is not None else resolve_single(tuple(self._map.entities()), word)
+
+
+def item(entity: Entity) -> Item:
+    """Return an entity as a search item."""
+    references = filter(None, (entity.preferred_reference, *entity.alternative_references))
+    values: dict[str, frozenset[object]] = {
+        name: frozenset(value if isinstance(value, tuple) else (value,))
+        for name, value in entity.properties.items()
+    }
+    return Item(entity.name, entity.class_, frozenset(entity.types), tuple(references), values, entity.place)
+
+
+def terms(reasoner: Reasoner, classes: ClassTable) -> Terms:
+    """Return the classes, values and affordances of a TBox with their labels."""
+    rows = [row for row in classes.rows if row.spatial]
+    named = [(language, row.name, text) for row in rows for language, text in row.labels.items()]
+    named += [("", row.name, text) for row in rows for text in row.also]
+    named += [("en" if row.labels else "", row.name, row.name) for row in rows]
+    values = {value for row in classes.property_table.rows() if row.kind == "object" for value in row.values}
+    affordances = {v.local_name(i) for i in reasoner.instances(v.dm("Affordance"))}
+    return Terms(
+        tuple(named),
+        tuple(_labels(reasoner, values - affordances)),
+        tuple(_labels(reasoner, affordances)),
+        _affords(reasoner, classes),
+    )
+
+
+def _labels(reasoner: Reasoner, names: set[str]) -> Iterator[tuple[str, str, str]]:
+    for name in sorted(names):
+        for _, _, label in reasoner.asserted(v.dm(name), v.RDFS_LABEL, None):
+            yield v.language_of(label) or "", name, v.lexical(label)
+
+
+def _affords(reasoner: Reasoner, classes: ClassTable) -> dict[str, frozenset[str]]:
+    """Return by class which affordances the TBox states for its instances."""
+    found: dict[str, set[str]] = {}
+    for restriction, _, value in reasoner.asserted(None, v.iri(f"{v.OWL}hasValue"), None):
+        if any(reasoner.asserted(restriction, v.iri(f"{v.OWL}onProperty"), _HAS_AFFORDANCE)):
+            for cls, _, _ in reasoner.asserted(None, v.RDFS_SUB_CLASS_OF, restriction):
+                if (name := classes.names.get(cls)) is not None:
+                    found.setdefault(name, set()).add(v.local_name(value))
+    return {name: frozenset(values) for name, values in found.items()}
+
+
+def describe_missing(
+    journal: Journal, past: HistoryReader, missing: Missing, present: Set[str], limits: Thresholds
+) -> tuple[str, ...]:
+    """Return sentences on when it was last there, newest first.
+
+    For any thread. `present` are the present names.
+    """
+    removed = islice(_removed(journal, past, missing, present), _MOST)
+    moved = islice(_moved(journal, past, missing, limits), _MOST)
+    return (*removed, *moved)
+
+
+def _removed(journal: Journal, past: HistoryReader, missing: Missing, present: Set[str]) -> Iterator[str]:
+    """Yield sentences on removed entities of that kind."""
+    touched = [(seq, name) for name, seq in journal.last_touches(past.last) if name not in present]
+    for seq, name in sorted(touched, reverse=True)[:_LOOKED_AT]:
+        try:
+            entity = past.entity(name, seq - 1)
+        except (
+            errors.UnknownName,
+            errors.Refused,
+        ):  # it existed only briefly, or before the history begins
+            continue
+        if missing.is_such(item(entity)):
+            yield f"{name} was there until commit {seq}, {_at(journal, seq)}"
+
+
+def _moved(journal: Journal, past: HistoryReader, missing: Missing, limits: Thresholds) -> Iterator[str]:
+    """Yield sentences on present entities that were at the described location before."""
+    for name, relation, other in missing.pairs:
+        asked = WasWhen(name=name, relation=relation, other=other)
+        held = find_spells(journal, past, asked, limits).spells
+        if held and (until := held[-1].until) is not None:
+            where = PHRASES[relation].removeprefix("is ")
+            yield f"{name} was {where} {other} until commit {until}, {_at(journal, until)}"
+
+
+def _at(journal: Journal, seq: int) -> str:
+    return time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(journal.stamps.of(seq) / 1e9))

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Future
 from typing import Protocol, TypeVar
 
-from semmap.nodes.kb_node.answers.plans import plan_of
+from semmap.nodes.kb_node.relations.geometry.solids import solid_of
 from semmap.nodes.kb_node.relations.selection import resolve_single
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.navigation.path_planning import find_path, parse_position
 from semmap.schemas.bridge import PlanOf, WayOf
-from semmap.schemas.entities import Entity
+from semmap.schemas.entities import Entity, Stated
 from semmap.schemas.moments import When
-from semmap.schemas.plans import Plan, Way
+from semmap.schemas.plans import Corners, Outline, Plan, PlannedPlace, PlannedThing, Way
+from semmap.schemas.polygons import Polygon, extent_of
 
 R = TypeVar("R")
+_NO_WALLS = "no simulator provides the walls, so they are assumed where there is neither a place nor a door"
 
 
 class ThreadRunner(Protocol):
@@ -66,3 +68,65 @@ class RoutePlanning:
 def _named(present: Sequence[Entity], word: str) -> str:
     """Return the name that a word means. Raises UnknownName; BadRequest for an ambiguous word."""
     return word if any(entity.name == word for entity in present) else resolve_single(present, word)
+
+
+def plan_of(entities: Iterable[Entity], walls: tuple[Outline, ...] | None) -> Plan:
+    """Return the plan of these entities, sorted by name. `walls` is None if they are unknown."""
+    places: list[PlannedPlace] = []
+    things: list[PlannedThing] = []
+    for entity in sorted(entities, key=lambda e: e.name):
+        solid = solid_of(entity)
+        if solid is None or not solid.is_measured:
+            continue
+        if not entity.place:
+            parts = tuple(
+                Outline(corners=tuple(part.projection), low=part.low[2], high=part.high[2])
+                for part in solid.parts
+                if len(part.projection) > 2
+            )
+            is_door = "Door" in entity.types
+            things.append(
+                PlannedThing(
+                    name=entity.name,
+                    label=_label(entity),
+                    class_=entity.class_,
+                    parts=parts,
+                    footprint=tuple(solid.outline),
+                    door=is_door,
+                    open=_flag(entity.properties.get("isOpen")) if is_door else None,
+                    connects=_names(entity.properties.get("connects")) if is_door else (),
+                )
+            )
+            continue
+        extent = extent_of(entity) or Polygon(tuple(solid.outline))
+        places.append(
+            PlannedPlace(
+                name=entity.name,
+                label=_label(entity),
+                class_=entity.class_,
+                rings=_rings(extent),
+                floor=solid.bottom,
+                height=solid.top - solid.bottom,
+                part="Building_Subparts" in entity.types,
+                forbidden=_flag(entity.properties.get("isForbidden")) is True,
+            )
+        )
+    has_walls = bool(walls) or any(thing.class_ == "Wall" for thing in things)
+    notes = () if has_walls or not places else (_NO_WALLS,)
+    return Plan(places=tuple(places), things=tuple(things), walls=walls or (), notes=notes)
+
+
+def _rings(polygon: Polygon) -> tuple[Corners, ...]:
+    return tuple(tuple(ring) for ring in polygon.rings)
+
+
+def _label(entity: Entity) -> str:
+    return entity.preferred_reference or entity.name
+
+
+def _flag(value: Stated | None) -> bool | None:
+    return value if isinstance(value, bool) else None
+
+
+def _names(value: Stated | None) -> tuple[str, ...]:
+    return tuple(map(str, value)) if isinstance(value, tuple) else () if value is None else (str(value),)

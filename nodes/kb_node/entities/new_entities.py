@@ -10,13 +10,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 from semmap.nodes.kb_node.entities.class_table import ClassTable
-from semmap.nodes.kb_node.grouping import group_by_property
 from semmap.nodes.kb_node.relations.facts.precompute_messages import (
     ClassModel,
     ExpectedEntities,
     ExpectedEntity,
 )
 from semmap.ontology import vocabulary as v
+from semmap.ontology.entity_triples import group_by_property
 from semmap.schemas.commits import NewEntity, Transaction
 from semmap.schemas.explanations import Term, Triple
 

@@ -12,6 +12,7 @@ from semmap.nodes.kb_node.documents import term_syntax
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
+from semmap.ontology.entity_triples import find_earlier_names
 from semmap.schemas import errors
 from semmap.schemas.bridge import MadeBy, Outcome, TakeBack, Transactions
 from semmap.schemas.calls import Handler, by_verb
@@ -154,7 +155,7 @@ class ChangeHandlers:
 
 def effects(commit: Commit | None) -> Effects | None:
     """Return the effects of a commit on the entities, or None."""
-    return None if commit is None else Effects.of(commit)
+    return None if commit is None else Effects.of(commit, find_earlier_names(commit))
 
 
 def _outcome(result: Commit | errors.SemmapError | None) -> Outcome:

@@ -10,40 +10,35 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.answers import (
-    answers,
-    closed_containers,
-    differences,
-    entity_queries,
-    fact_intervals,
-    past_map,
-    questions,
-)
+from semmap.nodes.kb_node.answers import answers, entity_queries, questions
 from semmap.nodes.kb_node.answers.command_parser import CommandParser
 from semmap.nodes.kb_node.answers.descriptions import Descriptions
-from semmap.nodes.kb_node.answers.entity_search import EntitySearch
+from semmap.nodes.kb_node.answers.entity_search import EntitySearch, describe_missing
 from semmap.nodes.kb_node.answers.live_poses import LiveEntities
 from semmap.nodes.kb_node.answers.location_queries import LocationQueries
-from semmap.nodes.kb_node.answers.missing_entities import describe_missing
 from semmap.nodes.kb_node.answers.pages import Pages
+from semmap.nodes.kb_node.answers.past import differences, fact_intervals, past_map
 from semmap.nodes.kb_node.answers.route_planning import RoutePlanning
-from semmap.nodes.kb_node.answers.sightings import Sightings
+from semmap.nodes.kb_node.answers.sightings import Sightings, describe_closed, find_closed_container
 from semmap.nodes.kb_node.reasoner import GivenFacts
 from semmap.nodes.kb_node.reasoner.entailment.explaining import nearby
 from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from semmap.nodes.kb_node.relations.free_room import find_room
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.storage import history
 from semmap.nodes.kb_node.storage.journal import Journal
-from semmap.nodes.runtime.fair_pool import FairPool
+from semmap.nodes.runtime.fair_queue import FairPool
 from semmap.schemas import errors
 from semmap.schemas.bridge import (
     CopyQuery,
     Entities,
+    FindRoom,
     LoadOf,
     MapCopy,
     PlanOf,
     Recall,
+    Room,
     SnapshotQuery,
     StarQuery,
     WayOf,
@@ -108,7 +103,7 @@ class QueryHandlers:
         self.live = LiveEntities(semantic_map)
         """Receives live poses."""
         self._search = EntitySearch(semantic_map)
-        self._parser = CommandParser(semantic_map, self._search)
+        self._parser = CommandParser(semantic_map, self._search, self._seen)
         self._then = entity_queries.PastState(semantic_map, self._past)
         self.sightings = Sightings(self._past)
         """Receives the observations of perception."""
@@ -127,6 +122,7 @@ class QueryHandlers:
             Recall.answered_by(self.on_recall),
             StarQuery.answered_by(self.on_star),
             LoadOf.answered_by(self.on_load_of),
+            FindRoom.answered_by(self.on_find_room),
             Classes.answered_by(self.on_classes),
             Properties.answered_by(self.on_properties),
             Entities.answered_by(self.on_list),
@@ -189,6 +185,12 @@ class QueryHandlers:
     def on_load_of(self, query: LoadOf) -> tuple[str, ...]:
         """Return what an object supports."""
         return tuple(self._map.places.supported_by(query.name, query.leave))
+
+    def on_find_room(self, query: FindRoom) -> Room:
+        """Return a free pose for an object on, in or next to another one."""
+        contents = self._map.places.supported_by(query.name) if query.carry else ()
+        with self.live.applied():
+            return find_room(self._map.places.space(), query, self._map.find(query.name), contents)
 
     def on_classes(self, _: Classes) -> tuple[ClassInfo, ...]:
         """Return the class table."""
@@ -297,11 +299,16 @@ class QueryHandlers:
         entity = self._map.find(query.name)
         if entity is not None and not self.sightings.is_missing(entity):
             found = self.sightings.describe_present(entity)
-            closed = closed_containers.find_closed_container(self._map, entity)
+            closed = find_closed_container(self._map, entity)
             if closed is None:
                 return found
-            return structs.replace(found, text=f"{found.text}; {closed_containers.describe(closed)}")
+            return structs.replace(found, text=f"{found.text}; {describe_closed(closed)}")
         return self._aside.submit(self.sightings.describe_removed, query.name, entity)
+
+    def _seen(self, name: str) -> str:
+        """Return when an entity of the map was last seen or placed, in words."""
+        entity = self._map.find(name)
+        return "" if entity is None else self.sightings.describe_present(entity).text.partition(";")[0]
 
     def on_find(self, query: Find) -> Found | Future[Found]:
         """Return the entities that a description means.

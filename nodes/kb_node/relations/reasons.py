@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-from semmap.nodes.geometry.polygons import distance
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import measures
-from semmap.nodes.kb_node.relations.measuring.arrangement import (
-    find_between,
-    measure_attachment,
-    measure_next_to,
-)
+from semmap.nodes.kb_node.relations.measuring.arrangement import measure_attachment
 from semmap.nodes.kb_node.relations.measuring.phrases import (
-    explain_measure,
+    UNSUPPORTED,
+    describe_support,
+    explain_location,
     format_height,
     format_length,
     phrase_relation,
 )
-from semmap.nodes.kb_node.relations.measuring.relation_table import NEEDS_SIZES, SIDES
+from semmap.nodes.kb_node.relations.measuring.relation_table import PAIR_RELATIONS
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.viewing import list_intrinsic_sides
-from semmap.schemas.relations import RelationName
-
-_UNSUPPORTED = "has no known support"
+from semmap.schemas.relations import FACTS, SIDES, RelationName
 
 
 def explain_absence(space: Space, relation: RelationName, solid: Solid, other: Solid) -> str:
@@ -46,7 +41,7 @@ def explain_absence(space: Space, relation: RelationName, solid: Solid, other: S
         if one.is_place:
             return f"{one.name} is a place, and this relation holds between objects only"
     for one in (solid, other):
-        if relation in NEEDS_SIZES and not one.is_measured:
+        if relation in FACTS and not one.is_measured:
             return f"the size of {one.name} is unknown"
     match relation:
         case "isOn":
@@ -55,19 +50,10 @@ def explain_absence(space: Space, relation: RelationName, solid: Solid, other: S
             return _explain_not_inside(space, solid, other)
         case "isAttachedTo":
             return _explain_not_attached(space, solid, other)
-        case "touches":
-            return _explain_not_touching(space, solid, other)
-    if relation != "isNextTo" and (rests := _describe_direct_support(space, solid, other)):
+    if relation != "touches" and (rests := _describe_direct_support(space, solid, other)):
         return rests
-    match relation:
-        case "isUnder":
-            return _explain_not_beneath(space, solid, other)
-        case "isAbove":
-            return _explain_not_beneath(space, other, solid)
-        case "isNextTo":
-            return _explain_not_next_to(space, solid, other)
-    made = measures.near(solid, other, space.limits)
-    return "they are apart" if made is None else explain_measure("isNear", solid, other, made)
+    pair = PAIR_RELATIONS[relation]
+    return pair.explain(space, solid, other, pair.measure(space, solid, other))
 
 
 def _describe_direct_support(space: Space, solid: Solid, other: Solid) -> str | None:
@@ -82,26 +68,6 @@ def _describe_direct_support(space: Space, solid: Solid, other: Solid) -> str | 
         if any(support is lower for support, _ in supports):
             return f"{subject} is on {object_}"
     return None
-
-
-def describe_support(space: Space, solid: Solid) -> str:
-    """Return what an object is inside or on, as a predicate: "is inside bowl1"."""
-    container, supports, place = space.spatial_relations(solid)
-    if container is not None:
-        return f"is inside {container[0].name}"
-    if supports:
-        return f"is on {' and '.join(support.name for support, _ in supports)}"
-    if place is not None and stands_on_floor(space, solid):
-        return f"is on the floor of {place[0].name}"
-    return _UNSUPPORTED
-
-
-def stands_on_floor(space: Space, solid: Solid) -> bool:
-    """Return whether an object is in and on nothing but the floor of its place."""
-    container, supports, place = space.spatial_relations(solid)
-    if container is not None or supports or place is None:
-        return False
-    return abs(solid.bottom - place[0].bottom) <= space.limits.gap_m
 
 
 def _explain_not_on(space: Space, solid: Solid, other: Solid) -> str:
@@ -178,7 +144,7 @@ def _explain_not_inside(space: Space, solid: Solid, other: Solid) -> str:
         return f"none of its volume is within a hollow of {other.name}; they are {format_length(apart)} apart"
     if not made.holds:
         least = f"isInside requires at least {space.limits.inside_share:.0%}"
-        return f"{explain_measure('isInside', solid, other, made)} ({least})"
+        return f"{explain_location('isInside', solid, other, made)} ({least})"
     return (
         _explain_crowd(space, solid, other)
         or f"it {describe_support(space, solid)}, which is the smaller hollow"
@@ -200,13 +166,13 @@ def _explain_not_in(space: Space, solid: Solid, other: Solid) -> str:
         return f"none of its footprint is within {other.name}"
     if not made.holds:
         least = f"isLocatedIn requires at least {made.limit:.0%}"
-        return f"{explain_measure('isLocatedIn', solid, other, made)} ({least})"
-    return explain_measure("isLocatedIn", solid, other, made)
+        return f"{explain_location('isLocatedIn', solid, other, made)} ({least})"
+    return explain_location("isLocatedIn", solid, other, made)
 
 
 def _explain_not_attached(space: Space, solid: Solid, other: Solid) -> str:
     support = describe_support(space, solid)
-    if support != _UNSUPPORTED:
+    if support != UNSUPPORTED:
         return f"it {support}, so it is not attached to a side"
     made = measure_attachment(space, solid, other)
     if made is None:
@@ -216,41 +182,3 @@ def _explain_not_attached(space: Space, solid: Solid, other: Solid) -> str:
     if made.gap_m > made.limit:
         return f"it is {format_length(made.gap_m)} from the side of {other.name} ({limit})"
     return f"only {made.share:.0%} of its height is against {other.name}"
-
-
-def _explain_not_touching(space: Space, solid: Solid, other: Solid) -> str:
-    apart, limit = measures.gap(solid, other), format_length(space.limits.contact_m)
-    if apart > space.limits.contact_m:
-        return f"they are {format_length(apart)} apart (touches allows up to {limit})"
-    return f"no part of one is within {limit} of a part of the other, although their boxes are"
-
-
-def _explain_not_beneath(space: Space, lower: Solid, upper: Solid) -> str:
-    limits = space.limits
-    made = measures.beneath(lower, upper, limits)
-    if made is not None:
-        return (
-            f"{upper.name} is over only {made.share:.0%} of the smaller footprint of the two"
-            f" (isUnder requires at least {limits.beneath_share:.0%})"
-        )
-    apart = distance(lower.outline, upper.outline)
-    if apart > 0.0:
-        return f"seen from above, they are {format_length(apart)} apart"
-    return f"no part of {upper.name} is above the top of {lower.name}, at {format_length(lower.top)}"
-
-
-def _explain_not_next_to(space: Space, solid: Solid, other: Solid) -> str:
-    near = measures.near(solid, other, space.limits)
-    if rests := _describe_direct_support(space, solid, other):
-        return rests
-    if near is None or not near.holds:
-        return "they are apart" if near is None else explain_measure("isNear", solid, other, near)
-    made = measure_next_to(space, solid, other)
-    apart = f"they are {format_length(near.gap_m)} apart"
-    if made is not None and made.share == 0.0:
-        ours, theirs = describe_support(space, solid), describe_support(space, other)
-        if ours == theirs:
-            return f"{apart}, but neither has a known support"
-        return f"{apart}, but {solid.name} {ours} and {other.name} {theirs}"
-    names = [third.name for third in find_between(space, solid, other)]
-    return f"{apart}, but between them {'is' if len(names) == 1 else 'are'} {' and '.join(names)}"

@@ -10,11 +10,14 @@ from semmap.nodes.kb_node.relations.facts.pair_facts import are_near, measure_pa
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import measures
-from semmap.nodes.kb_node.relations.measuring.arrangement import find_between, measure_attachment
-from semmap.nodes.kb_node.relations.measuring.relation_table import PAIR_MEASURES
+from semmap.nodes.kb_node.relations.measuring.arrangement import (
+    find_between,
+    measure_attachment,
+    stands_on_floor,
+)
+from semmap.nodes.kb_node.relations.measuring.relation_table import PAIR_RELATIONS
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.viewing import View, is_on_side
-from semmap.nodes.kb_node.relations.reasons import stands_on_floor
 from semmap.nodes.kb_node.relations.selection import is_in, is_on
 from semmap.nodes.kb_node.relations.support import find_contents, find_supporters
 from semmap.schemas import errors
@@ -196,7 +199,7 @@ def _is_beside(relation: RelationName) -> _Measured:
 
 _NEXT_TO: Final = _is_beside("isNextTo")
 _RELATIONS: Final[Mapping[str, _Measured]] = {
-    **{name: _is_beside(name) for name in PAIR_MEASURES},
+    **{name: _is_beside(name) for name in PAIR_RELATIONS},
     "isOn": _is_on,
     "isInside": _is_in,
     "isLocatedIn": _is_in,

@@ -18,11 +18,11 @@ from semmap.nodes.kb_node.relations.measuring.arrangement import (
 )
 from semmap.nodes.kb_node.relations.measuring.measures import Measure
 from semmap.nodes.kb_node.relations.measuring.phrases import (
-    explain_measure,
+    explain_location,
     format_length,
     phrase_relation,
 )
-from semmap.nodes.kb_node.relations.measuring.relation_table import SIDES
+from semmap.nodes.kb_node.relations.measuring.relation_table import ONE_WAY, PAIR_RELATIONS
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.viewing import (
     View,
@@ -34,7 +34,7 @@ from semmap.nodes.kb_node.relations.reasons import explain_absence
 from semmap.nodes.kb_node.relations.support import describe_unsupported, find_contents, find_supporters
 from semmap.schemas import errors
 from semmap.schemas.commands import Relations
-from semmap.schemas.relations import Relation, RelationName
+from semmap.schemas.relations import SIDES, Relation, RelationName
 
 _NEIGHBOURS_BETWEEN = 8
 """The number of neighbours considered for `isBetween`."""
@@ -286,16 +286,20 @@ def _list_pair_relations(space: Space, solid: Solid, other: Solid) -> Iterator[R
         yield _make_relation(space, "isAttachedTo", solid, other, made)
     for relation, measure in measure_pair(space, solid, other):
         yield _make_relation(space, relation, solid, other, measure)
+    for relation, measure in measure_pair(space, other, solid, ONE_WAY):
+        if measure.holds:
+            yield _make_relation(space, relation, other, solid, measure)
 
 
 def _make_relation(
     space: Space, relation: RelationName, solid: Solid, other: Solid, measure: Measure
 ) -> Relation:
-    reason = (
-        explain_measure(relation, solid, other, measure)
-        if measure.holds
-        else explain_absence(space, relation, solid, other)
-    )
+    if not measure.holds:
+        reason = explain_absence(space, relation, solid, other)
+    elif relation in PAIR_RELATIONS:
+        reason = PAIR_RELATIONS[relation].explain(space, solid, other, measure)
+    else:
+        reason = explain_location(relation, solid, other, measure)
     return Relation(
         relation=relation,
         subject=solid.name,

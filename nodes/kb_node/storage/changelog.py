@@ -11,6 +11,7 @@ from semmap.nodes.kb_node.entities.property_table import STRUCTURAL
 from semmap.nodes.kb_node.entities.property_values import to_json_value
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.ontology import vocabulary as v
+from semmap.ontology.entity_triples import find_renamed
 from semmap.schemas.changes import Change, between, of_properties, removed
 from semmap.schemas.commits import Commit
 from semmap.schemas.entities import Entity, Stated
@@ -34,10 +35,12 @@ class Changelog:
     def of(self, commit: Commit, only: str | None = None) -> tuple[Change, ...]:
         """Return the changes of the first entities that `commit` touched, or of `only` one."""
         changes: list[Change] = []
-        stated = _collect_changes(commit)
-        changed = [entity for entity in commit.changed if only in (None, entity.name)][:FEW]
-        for entity in changed:
-            was = self._before(entity.name, commit.seq)
+        renamed = find_renamed(commit)
+        earlier = {v.entity_name(now): v.entity_name(was) for now, was in renamed.items()}
+        stated = _collect_changes(commit, {was: now for now, was in renamed.items()})
+        changed = [e for e in commit.changed if only in (None, e.name, earlier.get(e.name))]
+        for entity in sorted(changed, key=lambda e: e.name not in earlier)[:FEW]:
+            was = self._before(earlier.get(entity.name, entity.name), commit.seq)
             if was is None:
                 changes += between(None, entity)
             else:
@@ -49,6 +52,8 @@ class Changelog:
             self._known[entity.name] = entity
         for gone in commit.removed:
             self._known[gone.name] = None
+            if gone.name in earlier.values():
+                continue
             if only in (None, gone.name) and len(changes) < FEW:
                 changes.append(removed(gone.name, gone.types[0] if gone.types else ""))
         return tuple(changes)
@@ -78,15 +83,20 @@ def _without_properties(entity: Entity) -> Entity:
     return structs.replace(entity, properties={})
 
 
-def _collect_changes(commit: Commit) -> dict[Term, list[tuple[str, Stated | None, Stated | None]]]:
-    """Return the properties of each individual, with old and new values."""
+def _collect_changes(
+    commit: Commit, renamed: Mapping[Term, Term]
+) -> dict[Term, list[tuple[str, Stated | None, Stated | None]]]:
+    """Return the properties of each individual, with old and new values.
+
+    `renamed` has the present IRIs of renamed entities by their earlier ones.
+    """
     if len(commit.retracted) + len(commit.inserted) > FEW * 50:
         return {}
     found: dict[tuple[Term, Term], tuple[list[Term], list[Term]]] = {}
     for i, triples in enumerate((commit.retracted, commit.inserted)):
         for s, p, o in triples:
             if p not in STRUCTURAL:
-                found.setdefault((s, p), ([], []))[i].append(o)
+                found.setdefault((renamed.get(s, s), p), ([], []))[i].append(o)
     found_changes: dict[Term, list[tuple[str, Stated | None, Stated | None]]] = {}
     for (s, p), (gone, come) in sorted(found.items()):
         found_changes.setdefault(s, []).append((v.local_name(p), _values(gone), _values(come)))

@@ -19,10 +19,10 @@ from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.storage.changelog import Changelog
 from semmap.nodes.kb_node.storage.journal import Journal
-from semmap.ontology import vocabulary as v
+from semmap.ontology.entity_triples import find_earlier_names
 from semmap.schemas import errors, wording
 from semmap.schemas.changes import Change
-from semmap.schemas.commands import History, Rename
+from semmap.schemas.commands import History
 from semmap.schemas.commits import Commit
 from semmap.schemas.entities import Entity, Provenance
 from semmap.schemas.moments import When, read_moment
@@ -74,11 +74,25 @@ class HistoryReader:
         """Return the name that an entity had before a commit that renamed it, or None."""
         if seq <= self._journal.beginning.seq:
             return None
-        commit = self._journal.commit(seq)
-        if commit.verb != Rename.VERB or len(commit.removed) != 1:
-            return None
-        is_new = any(p == v.RDF_TYPE and v.entity_name(s) == name for s, p, _ in commit.inserted)
-        return commit.removed[0].name if is_new else None
+        return find_earlier_names(self._journal.commit(seq)).get(name)
+
+    def find_later_names(self, names: Iterable[str], until: int) -> dict[str, str]:
+        """Return the names after commit `until` of entities that were renamed, by their earlier names.
+
+        `names` are names that no entity has after that commit.
+        """
+        last = dict(self._journal.last_touches(until))
+        renamed: dict[int, dict[str, str]] = {}
+        found: dict[str, str] = {}
+        for name in names:
+            later: str | None = name
+            while later is not None and (seq := last.get(later)) is not None:
+                if seq not in renamed:
+                    earlier = find_earlier_names(self._journal.commit(seq))
+                    renamed[seq] = {was: now for now, was in earlier.items()}
+                if (later := renamed[seq].get(later)) is not None:
+                    found[name] = later
+        return found
 
     def _list_span(self, query: History) -> Sequence[int]:
         """Return the numbers of the requested commits, in order."""
@@ -146,7 +160,10 @@ class HistoryReader:
         return entity
 
     def last_seen(self, name: str) -> Sighting:
-        """Return the last pose of an entity and its provenance. Raises UnknownName."""
+        """Return the last pose of an entity and its provenance.
+
+        Raises UnknownName, also for the earlier name of a renamed entity.
+        """
         self._require_known(name)
         removed: Provenance | None = None
         for seq in reversed(self._journal.touching(name)):
@@ -154,6 +171,11 @@ class HistoryReader:
             entity = _entities_after(commit).get(name)
             if entity is not None:
                 return make_sighting(entity, removed)
+            later = {was: now for now, was in find_earlier_names(commit).items()}.get(name)
+            if removed is None and later is not None:
+                raise errors.UnknownName(
+                    f"{name} was renamed to {later} in commit {seq}; see: semmap last-seen {later}"
+                )
             removed = commit.provenance
         return make_sighting(self.initial_entities()[name], removed)
 

@@ -20,15 +20,15 @@ from semmap.nodes.language.reference_resolution.description import (
 from semmap.nodes.language.reference_resolution.resolution import Answer
 from semmap.nodes.language.reference_resolution.resolver import Resolved, Resolver, Scope
 from semmap.schemas.language import Candidate, Found
+from semmap.schemas.relations import RELATIONS, RelationName
 
 _MOST: Final = 50
 """The maximum number of candidates in a reply."""
 _NEAREST: Final = 5
-_SPOKEN: Final = {
-    "isOn": "on", "isInside": "in", "isLocatedIn": "in", "isUnder": "under", "isAbove": "above",
-    "isNear": "near", "isNextTo": "next to", "isLeftOf": "left of", "isRightOf": "right of",
-    "isInFrontOf": "in front of",     "isBehind": "behind", "touches": "touching",
-}  # fmt: skip
+_SPOKEN: Final[dict[RelationName, str]] = {
+    row.name: row.english[0] for row in RELATIONS if row.english and row.name != "isBetween"
+}
+_SPOKEN["isLocatedIn"] = _SPOKEN["isInside"]
 
 
 def explain(answer: Answer) -> Found:

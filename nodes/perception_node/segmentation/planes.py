@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from semmap.nodes.perception_node.input.cloud import Transform
-from semmap.nodes.perception_node.segmentation.plane_pieces import pieces_of
 from semmap.nodes.perception_node.segmentation.working_image import Floats, Labels, Mask
 
 Kind = Literal["floor", "wall", "support", "plane"]
@@ -39,6 +38,9 @@ _FLOOR_BELOW_M = 0.06
 _OVER = 0.3  # minimum share above the visible part of the other plane
 _SMALLER = 0.7  # else it is a shelf above a shelf
 _TALLEST_M = 0.5
+_AROUND = np.ones((3, 3))
+_STEEP = 0.5
+"""Minimum slope (sine) of a slice through upright things, from row to row."""
 
 
 @dataclass(frozen=True)
@@ -220,3 +222,28 @@ def _sides(points: Floats, normal: Floats) -> tuple[float, float]:
     stray = round(_STRAY * along.shape[1])
     sides = along[:, -1 - stray] - along[:, stray]
     return float(sides.max()), float(sides.min())
+
+
+def pieces_of(on: Mask, points: Floats, height: Floats, thickness: Floats, least: float) -> list[Mask]:
+    """Return the pieces (h, w) of a plane with at least `least` cells, the largest first.
+
+    `on`: (h, w) which of `points` (3, h, w) lie on it. `height`: their distance on the camera's side,
+    `thickness`: the tolerance [m]. Pieces are separated where the camera looks past the plane; behind an
+    occluder it may continue. Slices through things are excluded.
+    """
+    hidden = height > thickness  # NaN is not
+    numbers = np.where(on, ndimage.label(on | hidden, _AROUND)[0], 0)
+    counts = np.bincount(numbers.ravel())
+    counts[0] = 0
+    large = [n for n in np.argsort(-counts, kind="stable") if counts[n] >= least]
+    pieces = (np.asarray(numbers == n) for n in large)
+    return [piece for piece in pieces if not _is_slice(piece, points, height)]
+
+
+def _is_slice(piece: Mask, points: Floats, height: Floats) -> bool:
+    """Return whether the plane cuts through a thing: from row to row its points rise more than recede."""
+    both = piece[1:] & piece[:-1]
+    if not both.any():
+        return True
+    step = np.linalg.norm(np.diff(points, axis=1)[:, both], axis=0)
+    return bool(np.median(np.abs(np.diff(height, axis=0)[both]) / np.maximum(step, 1e-6)) > _STEEP)

@@ -18,7 +18,6 @@ from semmap.nodes.sim_node.models.parts import ALONG_X, Colour, Vec3, box, rod
 from semmap.nodes.sim_node.vision.camera import Eye
 from semmap.nodes.sim_node.vision.noise import kinect_noise
 from semmap.nodes.sim_node.vision.view import View, look_at
-from semmap.nodes.training.segmentation.shadow import shadowed
 from semmap.nodes.training.segmentation.tabletop import Tabletop
 
 _BIGGEST_M, _SMALLEST_M = 0.52, 0.03
@@ -39,6 +38,10 @@ _BANDED = 0.4  # of the plain things have two
 _COLOUR_NOISE = 8.0
 _SIZE = (640, 480)
 _FOVY_RAD = 2 * math.atan(240 / 525)
+Tints = Callable[[], Colour | None]
+"""Returns the colour of the next thing; None for the library's."""
+_FOCAL_BASELINE_PX_M, _NEAREST_M = 525.0 * 0.075, 0.3
+_MARGIN_PX = 1.0
 
 
 class Pile(NamedTuple):
@@ -73,10 +76,6 @@ def pile(rng: np.random.Generator, eye: Eye) -> Pile:
     pose = view.map_from_camera if rng.random() < _PLACED else None
     cloud = cloud_of(depth_m, _photographed(rgb, rng), view.intrinsics, pose)
     return Pile(cloud, np.where(depth_m > 0, body, 0).astype(np.int32))
-
-
-Tints = Callable[[], Colour | None]
-"""Returns the colour of the next thing; None for the library's."""
 
 
 def _tints(rng: np.random.Generator) -> Tints:
@@ -155,3 +154,15 @@ def _view(rng: np.random.Generator) -> View:
 def _halved(height_m: float, lower: Colour, upper: Colour) -> tuple[tuple[float, Colour], ...]:
     """The middles of both halves, and their colours."""
     return ((height_m / 4, lower), (3 * height_m / 4, upper))
+
+
+def shadowed(depth_m: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """Return which pixels (H, W) a Kinect's projector does not light, because an object occludes them.
+
+    The disparity of a pixel determines its column of the projector. Along a row, columns increase from left
+    to right, except for an occluded pixel: it shares its column with a pixel farther right.
+    """
+    disparity = _FOCAL_BASELINE_PX_M / np.maximum(depth_m, _NEAREST_M)
+    column = np.where(depth_m > 0, np.arange(depth_m.shape[1]) - disparity, np.inf)
+    lowest_right = np.minimum.accumulate(column[:, ::-1], axis=1)[:, ::-1]
+    return (depth_m > 0) & (column > lowest_right + _MARGIN_PX)

@@ -1,9 +1,13 @@
 """Error messages about options of commands."""
 
+import json
+
+import click
 import pytest
 
+from semmap.nodes.extern.cli.all_commands import app
 from semmap.nodes.extern.cli.app import execute
-from semmap.nodes.extern.cli.common import drop_unset
+from semmap.nodes.extern.cli.common import drop_unset, print_lines
 
 
 def test_what_is_left_out_is_not_given():
@@ -43,7 +47,7 @@ def test_the_values_of_an_option_are_named(capsys, words, said):
             ["set", "cup1", "isOpen"],
             "missing argument VALUE; usage: semmap set [OPTIONS] NAME PROPERTY VALUE...",
         ),
-        (["move", "cup1"], "missing option --at X Y Z; see: semmap move --help"),
+        (["attach", "cup1"], "missing option --to HOLDER; see: semmap attach --help"),
         (["completion"], "missing argument SHELL; choose from: bash, zsh, fish"),
         (["list", "x"], "got unexpected extra argument (x)"),
     ],
@@ -51,3 +55,65 @@ def test_the_values_of_an_option_are_named(capsys, words, said):
 def test_an_error_of_usage_names_the_next_step(capsys, words, said):
     assert execute(words) == 2
     assert capsys.readouterr().err == f"semmap: {said}\n"
+
+
+TEXT_ONLY = {
+    "completion",
+    "export",
+    "fleet mirror",
+    "keys zenohd",
+    "mcp",
+    "node",
+    "replay",
+    "ros",
+    "run",
+    "up",
+    "web",
+}
+"""Commands that serve, or whose output is a document of another format."""
+
+
+def commands(command, name=()):
+    if not isinstance(command, click.Group):
+        yield " ".join(name), command
+        return
+    context = click.Context(command)
+    for word in command.list_commands(context):
+        yield from commands(command.get_command(context, word), (*name, word))
+
+
+def test_every_other_command_prints_json():
+    formats = {
+        name: {c for p in found.params for c in getattr(p.type, "choices", ())}
+        for name, found in commands(app)
+    }
+    assert {name for name, choices in formats.items() if "json" not in choices} == TEXT_ONLY
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "error"),
+    [
+        (["add", "Cup", "--yaw", "90"], 2, {"code": "bad-request", "text": "for degrees write 90deg"}),
+        (["add"], 2, {"code": "bad-request", "text": "missing argument CLASS"}),
+        (["list", "--connect", "http://x"], 2, {"code": "bad-request", "text": "is not a valid endpoint"}),
+        (["list", "--connect", "tcp/127.0.0.1:1"], 3, {"code": "no-answer", "text": "no response"}),
+    ],
+)
+def test_with_json_an_error_is_json_alone_on_stdout(capsys, words, status, error):
+    assert execute([*words, "--format", "json"]) == status
+    out, err = capsys.readouterr()
+    (found,) = json.loads(out).values()
+    assert found["code"] == error["code"]
+    assert error["text"] in found["text"]
+    assert err == ""
+
+
+def test_columns_are_named_by_the_headers_of_the_table(capsys):
+    assert execute(["list", "--columns", "name,zz"]) == 2
+    assert "unknown column 'zz'; did you mean z?" in capsys.readouterr().err
+
+
+def test_notes_are_printed_to_stderr(capsys):
+    print_lines(["added cup1", "note: fridge1 is closed"])
+    out, err = capsys.readouterr()
+    assert (out, err) == ("added cup1\n", "note: fridge1 is closed\n")

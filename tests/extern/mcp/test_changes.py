@@ -7,8 +7,7 @@ import json
 import pytest
 
 from semmap.nodes.extern.mcp.changes import Changes
-from semmap.nodes.extern.mcp.limits import Limits
-from semmap.nodes.extern.mcp.rate_limit import Rate
+from semmap.nodes.extern.mcp.limits import Limits, Rate
 from semmap.nodes.extern.mcp.server import server
 from semmap.nodes.extern.mcp.tools import Tools, change_tools
 from semmap.schemas import errors
@@ -233,7 +232,7 @@ def test_so_many_changes_a_minute_and_no_more(client):
     ("fields", "sentence"),
     [
         ({"verb": "clear", "reason": "x"}, "verb must be one of"),
-        ({"verb": "add", "class_": "Cup", "reason": "x"}, "missing field at"),
+        ({"verb": "add", "class_": "Cup", "reason": "x"}, "missing field at, on, in or next_to"),
         ({"verb": "add", "class_": "Cup", "at": ON_TABLE}, "reason is missing"),
         ({"verb": "add", "class_": "Cup", "at": [1, 2], "reason": "x"}, "at must be 3 numbers"),
         ({"verb": "add", "class_": "Cup", "at": [1, 2, "NaN"], "reason": "x"}, "must be a number"),

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from semmap.nodes.extern.mcp.answers import BUDGET
-from semmap.nodes.extern.mcp.rate_limit import Rate
+from semmap.nodes.extern.mcp.limits import Rate
 from semmap.nodes.extern.mcp.server import server
 from semmap.nodes.extern.mcp.tools import READ_TOOLS, Tools
 from tests.extern.mcp.conftest import by_stdio, in_memory, run

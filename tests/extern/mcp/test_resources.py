@@ -9,9 +9,9 @@ from mcp.shared.exceptions import MCPError
 
 from semmap.nodes.extern.mcp import resources
 from semmap.nodes.extern.mcp.answers import BUDGET
-from semmap.nodes.extern.mcp.rate_limit import Rate
+from semmap.nodes.extern.mcp.limits import Rate
+from semmap.nodes.extern.mcp.resources import MOST, Subscriptions
 from semmap.nodes.extern.mcp.server import server
-from semmap.nodes.extern.mcp.subscriptions import MOST, Subscriptions
 from semmap.nodes.extern.mcp.tools import Tools
 from semmap.schemas import errors
 from tests.extern.mcp.conftest import by_stdio, in_memory, run

@@ -7,7 +7,7 @@ import pytest
 
 from semmap.nodes.extern.mcp import arguments
 from semmap.nodes.extern.mcp.answers import Answer
-from semmap.nodes.extern.mcp.rate_limit import Rate
+from semmap.nodes.extern.mcp.limits import Rate
 from semmap.nodes.extern.mcp.tools import READ_TOOLS, Tool, Tools, change_tools, error_text
 from semmap.schemas import errors
 from semmap.schemas.commands import COMMANDS

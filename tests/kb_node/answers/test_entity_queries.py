@@ -2,9 +2,9 @@
 
 import pytest
 
-from semmap.nodes.kb_node.answers import entity_queries, fact_intervals, questions
+from semmap.nodes.kb_node.answers import entity_queries, questions
+from semmap.nodes.kb_node.answers.past import fact_intervals
 from semmap.nodes.kb_node.documents import rdf
-from semmap.nodes.kb_node.relations.measuring.relation_table import PHRASES
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
@@ -14,7 +14,7 @@ from semmap.schemas.bridge import Entities
 from semmap.schemas.commands import Could, Explain, Get, Relations
 from semmap.schemas.commits import Edit, NewEntity, Transaction
 from semmap.schemas.entities import Pose
-from semmap.schemas.relations import Where
+from semmap.schemas.relations import PHRASES, Where
 from tests.kb_node import home
 
 

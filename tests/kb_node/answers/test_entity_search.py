@@ -1,17 +1,22 @@
 """Search by description in the shipped flat, and for entities that are missing."""
 
+import math
+
 import pytest
 from msgspec import structs
 
-from semmap.nodes.kb_node.answers.entity_search import EntitySearch
-from semmap.nodes.kb_node.answers.missing_entities import describe_missing
+from semmap.nodes.kb_node.answers.entity_search import EntitySearch, describe_missing, item, terms
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commands import Find
-from semmap.schemas.commits import Transaction
+from semmap.schemas.commits import NewEntity, Transaction
 from semmap.schemas.entities import Pose
+from tests.kb_node.reasoner.graphs import household
+from tests.kb_node.relations.entities import ROOM, TABLE
 
 
 def names(found):
@@ -133,6 +138,41 @@ def test_an_object_without_other_support_is_on_the_floor(flat):
     assert names(EntitySearch(flat).find(Find(text="the ball on the floor")).found) == {"ball1"}
     assert names(EntitySearch(flat).find(Find(text="la palla sul pavimento")).found) == {"ball1"}
     assert EntitySearch(flat).find(Find(text="the bowl on the floor")).found.outcome == "none"
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("the broom leaning against the wall", {"broom1"}),
+        ("the broom that leans against the wall", {"broom1"}),
+        ("what is leaning on the wall?", {"broom1"}),
+        ("the broom that is not leaning against the wall", {"broom2"}),
+        ("the wall leaning against the broom", set()),
+        ("la scopa appoggiata al muro", {"broom1"}),
+        ("la scopa appoggiata contro la parete", {"broom1"}),
+        ("la scopa appoggiata sul muro", set()),
+    ],
+)
+def test_what_leans_is_found_in_both_languages(flat, text, meant):
+    lean = math.radians(12.0)
+    half, foot = lean / 2, 3.0 + 1.35 * math.sin(lean) + 0.035 * math.cos(lean)
+    turn = (math.cos(half), 0.0, -math.sin(half), 0.0)
+    leaning = Pose(position_m=(foot, 2.0, 0.035 * math.sin(lean)), orientation_wxyz=turn)
+    things = (
+        ("wall1", "Wall", Pose(position_m=(2.95, 2.0, 0.0)), (0.1, 1.0, 2.5)),
+        ("broom1", "Broom", leaning, (0.07, 0.32, 1.35)),
+        ("broom2", "Broom", Pose(position_m=(3.036, 2.4, 0.0)), (0.07, 0.32, 1.35)),
+    )
+    add = tuple(
+        NewEntity(name=name, class_iri=v.bare(v.dm(kind)), pose=pose, size=size)
+        for name, kind, pose, size in things
+    )
+    flat.commit(Transaction(id="1", source="operator", add=add))
+    found = EntitySearch(flat).find(Find(text=text)).found
+    assert names(found) == meant, found
+    if meant == {"broom1"}:
+        (candidate,) = found.candidates
+        assert "leaning against wall1" in candidate.reasons
 
 
 def test_entities_that_are_not_listed_are_counted(flat):
@@ -260,3 +300,52 @@ def test_a_moved_entity_is_reported_with_its_time(flat):
     assert sought.found.outcome == "none"
     assert len(told) == 1
     assert told[0].startswith("apple1 was inside bowl1 until commit 2, ")
+
+
+def test_an_entity_has_its_labels_and_property_values_as_search_terms():
+    told = structs.replace(
+        TABLE,
+        alternative_references=("desk", ""),
+        properties={"isOpen": True, "hasColor": ("color_red", "color_blue"), "isOwnedBy": "anna"},
+    )
+    found = item(told)
+    assert (found.name, found.class_name, found.types, found.is_place) == (
+        "table1",
+        "Table",
+        {"Table"},
+        False,
+    )
+    assert found.references == ("kitchen table", "desk")
+    assert found.values == {
+        "isOpen": {True},
+        "hasColor": {"color_red", "color_blue"},
+        "isOwnedBy": {"anna"},
+    }
+    assert item(ROOM).is_place
+    assert item(structs.replace(TABLE, preferred_reference=None)).references == ()
+
+
+@pytest.fixture(scope="module")
+def spoken():
+    reasoner = Reasoner(household())
+    return terms(reasoner, ClassTable(reasoner))
+
+
+def test_classes_have_their_labels_in_every_language_and_their_names(spoken):
+    assert {("en", "Fridge", "Fridge")} <= set(spoken.classes)
+    assert {tag for tag, name, _ in spoken.classes if name == "Fridge"} >= {"en"}
+    assert "Color" not in {name for _, name, _ in spoken.classes}
+
+
+def test_qualities_are_distinguished_from_affordances(spoken):
+    qualities = {name for _, name, _ in spoken.qualities}
+    affordances = {name for _, name, _ in spoken.affordances}
+    assert "color_red" in qualities
+    assert affordances
+    assert qualities.isdisjoint(affordances)
+
+
+def test_a_class_has_the_affordances_that_the_tbox_states_for_it(spoken):
+    assert spoken.affords
+    names = {name for _, name, _ in spoken.affordances} | {"containing", "supporting", "grasping"}
+    assert any(found & names for found in spoken.affords.values())

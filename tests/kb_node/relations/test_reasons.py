@@ -2,11 +2,11 @@
 
 import pytest
 
-from semmap.nodes.kb_node.relations.measuring.relation_table import PHRASES
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.relation_reports import explain_relation, list_relations
 from semmap.schemas import errors
 from semmap.schemas.commands import Relations
+from semmap.schemas.relations import PHRASES
 from tests.kb_node.relations.entities import CORNER, ROOM, TABLE, TOP, thing
 
 FRIDGE = thing("fridge1", (2.0, -2.0, 0.0))

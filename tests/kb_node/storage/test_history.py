@@ -215,6 +215,8 @@ def test_the_history_of_a_renamed_entity_includes_its_earlier_names(tmp_path):
     semantic_map.commit(transaction(4, [(v.entity_iri("chair1"), v.dm("isBeside"), v.entity_iri("seat1"))]))
     rename(semantic_map, "seat1", "throne")
     past = HistoryReader(semantic_map._journal)
+    with pytest.raises(errors.UnknownName, match="seat1 was renamed to throne in commit 5; see: semmap"):
+        past.last_seen("seat1")
     assert [commit.seq for commit in past.history(History(name="throne"))] == [1, 2, 5]
     assert [commit.seq for commit in past.history(History(name="throne", limit=2))] == [2, 5]
     assert [commit.seq for commit in past.history(History(name="throne", since=2))] == [2, 5]

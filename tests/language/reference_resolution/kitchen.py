@@ -65,6 +65,7 @@ AT = {
 HOLDS = {
     ("isOn", "cup1", "table1"), ("isOn", "cup2", "table1"), ("isInside", "cup3", "sink1"),
     ("isInside", "wine1", "fridge1"), ("isNextTo", "cup1", "cup2"), ("isNextTo", "cup2", "cup1"),
+    ("isLeaningAgainst", "lamp1", "fridge1"),
     *(("isInside", name, "kitchen1") for name in AT),
 }  # fmt: skip
 SIZES = {"cup1": 0.1, "cup2": 0.1, "cup3": 0.2}

@@ -177,6 +177,20 @@ PHRASES = [
     ("la tazza nel lavandino", "one", "cup3", "cup3 matches", "a cup; in sink1"),
     ("la tazza più grande", "one", "cup3", "cup3 matches", "a cup; più grande; of 0.20 x 0.20 x 0.20 m"),
     ("le due tazze sul tavolo", "several", "cup1 cup2", "2 things match", "a cup; on table1"),
+    (
+        "the floor lamp propped against the fridge",
+        "one",
+        "lamp1",
+        "lamp1 matches",
+        "a floor lamp; leaning against fridge1",
+    ),
+    (
+        "la lampada da terra appoggiata al frigorifero",
+        "one",
+        "lamp1",
+        "lamp1 matches",
+        "a floor lamp; leaning against fridge1",
+    ),
     ("la tazza accanto alla tazza blu", "one", "cup1", "cup1 matches", "a cup; next to cup2"),
     (
         "tutte le tazze tranne quella blu",

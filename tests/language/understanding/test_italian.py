@@ -44,6 +44,7 @@ def test_clitics_are_words_of_their_own(text, words):
         ("me lo porti", "bring me it"),
         ("prendi del latte dalla cucina", "grab some milk from the kitchen"),
         ("vai vicino al mio letto", "go near my bed"),
+        ("prendi la tazza appoggiata al divano", "grab the cup against the couch"),
         ("apri la porta", "open the door"),
         ("porta la bottiglia", "bring the bottle"),
         ("gira a sinistra di 90 gradi", "turn left by 90 degrees"),

@@ -12,7 +12,7 @@ import click
 
 from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.commands.edit import set_, unset, update
-from semmap.nodes.extern.cli.common import print_lines, with_client
+from semmap.nodes.extern.cli.common import json_option, print_result, with_client
 from semmap.nodes.extern.cli.output import lines
 from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.client_commands import CommandMethods
@@ -28,6 +28,7 @@ _COMMANDS: Final[dict[str, click.Command]] = {"update": update, "set": set_, "un
 @click.option("--reason", default="", metavar="TEXT", help="Reason for the change, stored in the history.")
 @click.option("--id", "id", default="", metavar="ID", help="Command id; a batch sent twice is executed once.")
 @click.option("--dry-run", is_flag=True, help="Report what would change, without changing anything.")
+@json_option
 @with_client
 def batch(client: Client, file: Path, **fields: Any) -> None:
     """Apply several changes in one commit, or none of them.
@@ -42,7 +43,7 @@ def batch(client: Client, file: Path, **fields: Any) -> None:
         raise errors.BadFile(f"{file} is not a UTF-8 text file") from None
     if not changes:
         raise errors.BadRequest(f"{file}: no changes found; write one update, set or unset command per line")
-    print_lines(lines.format_change(client.batch(*changes, **fields)))
+    print_result(client.batch(*changes, **fields), lines.format_change)
 
 
 def read_changes(text: str) -> Iterator[Update | Set | Unset]:

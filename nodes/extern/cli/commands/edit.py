@@ -15,7 +15,9 @@ from semmap.nodes.extern.cli.common import (
     carry_options,
     drop_unset,
     frame_option,
-    print_lines,
+    json_option,
+    placing_options,
+    print_result,
     vector_option,
     with_client,
 )
@@ -26,9 +28,8 @@ from semmap.nodes.extern.cli.ontology_options import (
     tbox_file,
 )
 from semmap.nodes.extern.cli.output import lines
-from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.shell_completion import class_names, entity_names
-from semmap.nodes.extern.plan_files import is_plan, read_plan
+from semmap.nodes.extern.floorplans import is_plan, read_plan
 from semmap.schemas import errors
 
 if TYPE_CHECKING:
@@ -58,6 +59,7 @@ _if_is = click.option(
 )
 _describing = _options(
     vector_option("--at", metavar="X Y Z", help="Position of the bottom centre [m]."),
+    placing_options,
     frame_option("Frame of --at and of the rotation. Default: map"),
     yaw_option,
     click.option("--orientation", nargs=4, type=float, metavar="W X Y Z", help="Unit quaternion."),
@@ -71,7 +73,7 @@ _describing = _options(
 )
 
 
-@command(example='semmap add Cup cup1 --at 2.5 1 0.75 --ref "coffee cup"')
+@command(example='semmap add Cup cup1 --on table1 --ref "coffee cup"')
 @click.argument("class_", metavar="CLASS", shell_complete=class_names)
 @click.argument("name", required=False)
 @_describing
@@ -81,13 +83,14 @@ _describing = _options(
 )
 @click.option("--default", is_flag=True, help="Also use the label of the class as label.")
 @_dry_run
+@json_option
 @with_client
 def add(client: Client, **fields: Any) -> None:
     """Add an entity to the map.
 
-    Without --at, it is placed at the next free position.
+    Without --at, --on, --in and --next-to, it is placed at the next free position.
     """
-    print_lines(lines.format_change(client.add(**drop_unset(fields))))
+    print_result(client.add(**drop_unset(fields)), lines.format_change)
 
 
 @command(example="semmap update cup1 --at 2.5 1 0.75 --yaw 90deg")
@@ -109,10 +112,11 @@ def add(client: Client, **fields: Any) -> None:
 @click.option("--force", is_flag=True, help="Allow an object to become a place, or a place an object.")
 @carry_options
 @_dry_run
+@json_option
 @with_client
 def update(client: Client, **fields: Any) -> None:
     """Change an entity; omitted fields keep their values."""
-    print_lines(lines.format_change(client.update(**drop_unset(fields))))
+    print_result(client.update(**drop_unset(fields)), lines.format_change)
 
 
 @command("set", example="semmap set door1 isOpen true", cls=NegativeNumbers)
@@ -124,13 +128,16 @@ def update(client: Client, **fields: Any) -> None:
 @click.option("--confidence", type=float, metavar="P", help="Confidence, 0 to 1.")
 @_id
 @_dry_run
+@json_option
 @with_client
 def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fields: Any) -> None:
     """Set a property of an entity.
 
     The value of a functional property replaces the previous one. Other properties keep their previous values.
+    The range of the property gives the datatype. A text ends with its language where the range allows one:
+    Regal@de.
     """
-    print_lines(lines.format_change(client.set(name, property, *values, **_drop_none(fields))))
+    print_result(client.set(name, property, *values, **_drop_none(fields)), lines.format_change)
 
 
 @command(example="semmap unset cup1 hasColor", cls=NegativeNumbers)
@@ -140,10 +147,11 @@ def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fi
 @_if_is
 @_id
 @_dry_run
+@json_option
 @with_client
 def unset(client: Client, **fields: Any) -> None:
     """Remove one value of a property of an entity, or all."""
-    print_lines(lines.format_change(client.unset(**_drop_none(fields))))
+    print_result(client.unset(**_drop_none(fields)), lines.format_change)
 
 
 @command(example="semmap rename cup1 breakfast_cup")
@@ -151,13 +159,14 @@ def unset(client: Client, **fields: Any) -> None:
 @click.argument("new")
 @_id
 @_dry_run
+@json_option
 @with_client
 def rename(client: Client, **fields: Any) -> None:
     """Rename an entity, with all references to it.
 
     Its body in the scene gets the new name, too. The history of the new name includes earlier commits.
     """
-    print_lines(lines.format_change(client.rename(**drop_unset(fields))))
+    print_result(client.rename(**drop_unset(fields)), lines.format_change)
 
 
 @command(example="semmap track robot1 --from stream")
@@ -173,26 +182,29 @@ def rename(client: Client, **fields: Any) -> None:
 @click.option("--off", is_flag=True, help="Stop tracking; the entity keeps its last pose.")
 @_id
 @_dry_run
+@json_option
 @with_client
 def track(client: Client, **fields: Any) -> None:
     """Receive live poses of an entity on semmap/live/NAME.
 
     The newest pose is used and is not committed. When the entity stops, its pose is committed.
     """
-    print_lines(lines.format_change(client.track(**drop_unset(fields))))
+    print_result(client.track(**drop_unset(fields)), lines.format_change)
 
 
 @command(example="semmap remove cup1 cup2")
 @click.argument("names", nargs=-1, required=True, shell_complete=entity_names)
 @_dry_run
+@json_option
 @with_client
 def remove(client: Client, names: tuple[str, ...], dry_run: bool) -> None:
     """Remove entities from the map and the scene."""
-    print_lines(lines.format_change(client.remove(*names, dry_run=dry_run)))
+    print_result(client.remove(*names, dry_run=dry_run), lines.format_change)
 
 
 @command(example="semmap clear --dry-run")
 @_dry_run
+@json_option
 @with_client
 def clear(client: Client, dry_run: bool) -> None:
     """Remove all entities from the map and the scene."""
@@ -200,12 +212,13 @@ def clear(client: Client, dry_run: bool) -> None:
 
     with progress(client):
         reply = client.clear(dry_run=dry_run)
-    print_lines(lines.format_change(reply))
+    print_result(reply, lines.format_change)
 
 
 @command(example="semmap load demo/flat.ttl --replace")
 @click.argument("file", type=click.Path())
 @click.option("--replace", is_flag=True, help="Replace the current entities.")
+@click.option("--add-only", is_flag=True, help="Reject files with other values for current entities.")
 @click.option("--skip-unknown", is_flag=True, help="Skip entities of unknown classes.")
 @click.option("--strict", is_flag=True, help="Reject files that refer to undescribed entities.")
 @click.option(
@@ -216,13 +229,15 @@ def clear(client: Client, dry_run: bool) -> None:
 @import_option
 @spatial_root_option
 @_dry_run
+@json_option
 @with_client
 def load(client: Client, file: str, imports: tuple[tuple[str, Path], ...], **how: Any) -> None:
     """Load a map, a scene or a TBox from a file.
 
-    A map is an ABox in any RDF or OWL syntax, a JSON scene or a HuRIC map. A TBox is loaded with its imports.
-    A plan is the .yaml file of an occupancy grid of the ROS map server: its free space becomes rooms and
-    doors.
+    A map is an ABox in any RDF or OWL syntax, a JSON scene or a HuRIC map. What it states about a current
+    entity replaces its pose, size, labels and values of functional properties. A TBox is loaded with its
+    imports. A plan is the .yaml file of an occupancy grid of the ROS map server: its free space becomes rooms
+    and doors.
     """
     from semmap.nodes.extern.cli.output.progress import progress
 
@@ -236,7 +251,5 @@ def load(client: Client, file: str, imports: tuple[tuple[str, Path], ...], **how
             raise errors.NoAnswer(
                 f"{error.text}; {path.name} may or may not have been loaded; see: semmap history"
             ) from None
-    print_lines(lines.format_change(reply))
-    if is_plan(path) and not how["tbox"]:
-        for line in read_plan(path).lines:
-            print_escaped(f"  {line}")
+    plan = read_plan(path).lines if is_plan(path) and not how["tbox"] else ()
+    print_result(reply, lambda reply: (*lines.format_change(reply), *(f"  {line}" for line in plan)))

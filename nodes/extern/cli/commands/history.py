@@ -9,15 +9,25 @@ import click
 
 from semmap.nodes.extern.cli import output
 from semmap.nodes.extern.cli.command import command
-from semmap.nodes.extern.cli.common import TIME, print_json, print_lines, with_client
+from semmap.nodes.extern.cli.common import (
+    TIME,
+    json_option,
+    print_count,
+    print_json,
+    print_lines,
+    print_result,
+    with_client,
+)
 from semmap.nodes.extern.cli.output import lines
 from semmap.nodes.extern.cli.shell_completion import entity_names
-from semmap.schemas import errors
+from semmap.schemas import errors, wording
 from semmap.schemas.map_history import KeptRelation
 
 if TYPE_CHECKING:
     from semmap.nodes.extern.client import Client
 
+_MOST = 10_000
+"""The largest number of commits in a reply."""
 _format = click.option(
     "--format", "format", type=click.Choice(["table", "json"]), default="table", show_default=True
 )
@@ -34,7 +44,11 @@ _PIPED_WIDTH = 120
 @click.option("--since", metavar="COMMIT|TIME", help="First commit.")
 @click.option("--until", metavar="COMMIT|TIME", help=f"Last commit. {TIME}")
 @click.option(
-    "--limit", type=int, default=20, show_default=True, help="Number of commits; the newest are shown."
+    "--limit",
+    type=click.IntRange(1, _MOST),
+    default=20,
+    show_default=True,
+    help="Number of commits; the newest are shown.",
 )
 @_format
 @with_client
@@ -42,13 +56,19 @@ def history(
     client: Client, name: str | None, since: str | None, until: str | None, limit: int, format: str
 ) -> None:
     """Show the newest commits, or those of one entity, in order."""
-    commits = client.history(name, since=since, until=until, limit=limit)
+    found = client.history(name, since=since, until=until, limit=min(limit + 1, _MOST))
+    commits = found[-limit:]
     if format == "json":
         print_json(commits)
         return
     if commits:
-        output.show.console(_PIPED_WIDTH).print(output.show_past.history_table(commits))
-    print(f"{len(commits)} {'commit' if len(commits) == 1 else 'commits'}")
+        output.show.console(_PIPED_WIDTH).print(output.show.history_table(commits))
+    if len(found) == len(commits):
+        print_count(wording.counted(len(commits), "commit"))
+    elif name is None and since is None and until is None:
+        print_count(f"newest {len(commits)} of {commits[-1].seq} commits; for more: --limit N")
+    else:
+        print_count(f"newest {wording.counted(len(commits), 'commit')}; for more: --limit N")
 
 
 @command("last-seen", example="semmap last-seen cup1")
@@ -65,7 +85,7 @@ def last_seen(client: Client, name: str, format: str) -> None:
     if format == "json":
         print_json(sighting)
     else:
-        output.show.console().print(output.show_past.sighting_card(sighting))
+        output.show.console().print(output.show.sighting_card(sighting))
 
 
 @command(example="semmap diff 12:30")
@@ -108,6 +128,7 @@ def when(client: Client, name: str, relation: Any, other: str, format: str) -> N
 @command(example="semmap undo --dry-run")
 @click.argument("commit", type=int, required=False)
 @click.option("--dry-run", is_flag=True, help="Report what would change, without changing anything.")
+@json_option
 @with_client
 def undo(client: Client, commit: int | None, dry_run: bool) -> None:
     """Undo a commit, unless later ones depend on it.
@@ -118,4 +139,4 @@ def undo(client: Client, commit: int | None, dry_run: bool) -> None:
 
     with progress(client):
         reply = client.undo(commit, dry_run=dry_run)
-    print_lines(lines.format_change(reply))
+    print_result(reply, lines.format_change)

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from semmap.nodes.extern.cli.command import group
+from semmap.nodes.extern.cli.common import ENDPOINT, is_json, json_option, print_json, print_result
 from semmap.nodes.extern.cli.output import show
 from semmap.nodes.extern.cli.output.tables import table
 from semmap.nodes.identity.register import Member, Register
@@ -45,6 +46,7 @@ def keys() -> None:
 @click.argument("folder", type=_path, default=Path("keys"))
 @_host
 @_days
+@json_option
 def init(folder: Path, hosts: tuple[str, ...], days: int) -> None:
     """Create a certificate authority in FOLDER.
 
@@ -53,10 +55,13 @@ def init(folder: Path, hosts: tuple[str, ...], days: int) -> None:
     from semmap.nodes.identity import authority
 
     register = authority.init(folder, hosts, days)
-    click.echo(f"created a certificate authority in {folder} for a router at {', '.join(register.hosts)}")
-    click.echo(f"keep {folder / 'ca.key'} secret: its holder can issue any identity")
-    click.echo(f"create your certificate: semmap keys add NAME --role operator --dir {folder}")
-    click.echo(f"start the system:        semmap up --secure {folder}")
+    lines = (
+        f"created a certificate authority in {folder} for a router at {', '.join(register.hosts)}",
+        f"keep {folder / 'ca.key'} secret: its holder can issue any identity",
+        f"create your certificate: semmap keys add NAME --role operator --dir {folder}",
+        f"start the system:        semmap up --secure {folder}",
+    )
+    print_result(register, lambda _: lines)
 
 
 @keys.command(example="semmap keys add ann --role operator")
@@ -64,6 +69,7 @@ def init(folder: Path, hosts: tuple[str, ...], days: int) -> None:
 @click.option("--role", type=click.Choice(ROLES), required=True, help="Permissions of NAME.")
 @_folder
 @_days
+@json_option
 def add(name: str, role: Role, folder: Path, days: int) -> None:
     """Create a certificate for NAME.
 
@@ -71,8 +77,8 @@ def add(name: str, role: Role, folder: Path, days: int) -> None:
     """
     from semmap.nodes.identity import authority
 
-    _print_member("created", folder, authority.add(folder, name, role, days))
-    click.echo(f"to use it: semmap status --identity {folder / name}")
+    made = authority.add(folder, name, role, days)
+    _print_member("created", folder, made, f"to use it: semmap status --identity {folder / name}")
 
 
 @keys.command(example="semmap keys renew ann --days 365")
@@ -81,6 +87,7 @@ def add(name: str, role: Role, folder: Path, days: int) -> None:
 @_host
 @_folder
 @_days
+@json_option
 def renew(name: str, role: Role | None, hosts: tuple[str, ...], folder: Path, days: int) -> None:
     """Create a new key and certificate for NAME.
 
@@ -94,6 +101,7 @@ def renew(name: str, role: Role | None, hosts: tuple[str, ...], folder: Path, da
 @keys.command(example="semmap keys revoke ann")
 @click.argument("name")
 @_folder
+@json_option
 def revoke(name: str, folder: Path) -> None:
     """Revoke the certificates of NAME.
 
@@ -102,15 +110,21 @@ def revoke(name: str, folder: Path) -> None:
     from semmap.nodes.identity import authority
 
     member = authority.revoke(folder, name)
-    click.echo(f"revoked {member.name} ({member.role}); this name cannot be reused")
+    text = f"revoked {member.name} ({member.role}); this name cannot be reused"
+    print_result(member, lambda _: [text])
 
 
 @keys.command("list", example="semmap keys list --dir keys")
 @_folder
+@json_option
 def list_(folder: Path) -> None:
     """List the certificates with their roles and expiry dates."""
+    members = tuple(Register.read(folder).members.values())
+    if is_json():
+        print_json(members)
+        return
     rows = table("name", "role", "valid until", "state", fold=())
-    for member in Register.read(folder).members.values():
+    for member in members:
         expired = member.expires < datetime.now(UTC)
         state = "revoked" if member.revoked else "expired" if expired else "admitted"
         rows.add(member.name, member.role, f"{member.expires:%Y-%m-%d}", state)
@@ -121,12 +135,19 @@ def list_(folder: Path) -> None:
 @_folder
 @click.option(
     "--listen",
+    type=ENDPOINT,
     default="tls/0.0.0.0:7447",
     show_default=True,
     metavar="EP",
     help="Zenoh endpoint that the router listens on.",
 )
-@click.option("--connect", multiple=True, metavar="EP", help="Another router to connect to; may be repeated.")
+@click.option(
+    "--connect",
+    type=ENDPOINT,
+    multiple=True,
+    metavar="EP",
+    help="Another router to connect to; may be repeated.",
+)
 @click.option(
     "--namespace", default="", metavar="ROBOT", help="Robot whose Zenoh keys are routed; * for all."
 )
@@ -152,6 +173,7 @@ def zenohd(folder: Path, listen: str, connect: tuple[str, ...], namespace: str) 
     click.echo(network.as_file())
 
 
-def _print_member(action: str, folder: Path, member: Member) -> None:
+def _print_member(action: str, folder: Path, member: Member, *more: str) -> None:
     files = f"{folder / member.name}.crt and .key"
-    click.echo(f"{action} {files}: {member.name}, {member.role}, until {member.expires:%Y-%m-%d}")
+    line = f"{action} {files}: {member.name}, {member.role}, until {member.expires:%Y-%m-%d}"
+    print_result(member, lambda _: [line, *more])

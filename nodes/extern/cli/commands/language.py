@@ -101,12 +101,15 @@ def understand(client: Client, text: str, format: str, language: Language | None
     elif format == "lu4r":
         print_json(lu4r.document(found))
     else:
-        print_lines([frame.text for frame in found.frames] + ([found.question] if found.question else []))
+        done = found.steps or found.frames
+        print_lines(
+            [action.text for action in done] + [text for text in (found.answer, found.question) if text]
+        )
     for doubt in found.doubts:
         print_error(doubt)
     if found.unknown:
         print_error(f"unknown {'verbs' if len(found.unknown) > 1 else 'verb'}: {', '.join(found.unknown)}")
-    if not found.frames:
+    if not (found.frames or found.steps):
         if not found.unknown:
             print_error(_WHY[found.mood].format(text=text))
         sys.exit(errors.Refused.exit_status)

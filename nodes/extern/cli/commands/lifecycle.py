@@ -15,7 +15,7 @@ from msgspec import structs
 
 from semmap.nodes import bus
 from semmap.nodes.extern.cli.command import command
-from semmap.nodes.extern.cli.common import print_error
+from semmap.nodes.extern.cli.common import ENDPOINT, json_option, print_error, print_result
 from semmap.nodes.extern.cli.ontology_options import (
     TBoxFile,
     import_option,
@@ -28,7 +28,7 @@ from semmap.nodes.identity import SUPERVISOR
 from semmap.nodes.identity.register import Register
 from semmap.nodes.runtime import extras
 from semmap.nodes.supervisor.parts import nodes_of
-from semmap.nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data, is_endpoint
+from semmap.nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from semmap.ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from semmap.schemas import codec, errors
 from semmap.schemas.endpoints import ALL_ROBOTS, CONNECT_VARIABLE, NAMESPACE_VARIABLE
@@ -110,12 +110,19 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
     )
     @click.option(
         "--listen",
+        type=ENDPOINT,
         default=bus.DEFAULT_ENDPOINT,
         show_default=True,
         metavar="EP",
         help="Zenoh endpoint that the system listens on.",
     )
-    @click.option("--connect", multiple=True, metavar="EP", help="Zenoh endpoint to join; may be repeated.")
+    @click.option(
+        "--connect",
+        type=ENDPOINT,
+        multiple=True,
+        metavar="EP",
+        help="Zenoh endpoint to join; may be repeated.",
+    )
     @click.option(
         "--only",
         metavar="NODES",
@@ -163,6 +170,11 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         help="Position of a new robot [m]; a robot in the map starts at its last pose.  [default: 0 0 0]",
     )
     @click.option("--robot-yaw", type=float, default=0.0, metavar="RAD", help="Yaw of a new robot.")
+    @click.option(
+        "--reset-world",
+        is_flag=True,
+        help="With --truth scene: begin as in the world file. Default: where bodies last stood.",
+    )
     @click.option("--window", is_flag=True, help="Show the scene in a window (needs a display).")
     @click.option(
         "--models",
@@ -201,6 +213,13 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         default=None,
         metavar="FILE.json",
         help='Labels of an external detector and their classes, as in {"coffee mug": "Cup"}.',
+    )
+    @click.option(
+        "--class-map",
+        type=click.Path(path_type=Path),
+        default=None,
+        metavar="FILE.json",
+        help='Bodies of the world and their classes, as in {"mug_blue": "Cup"}.',
     )
     @click.option("--no-sim", is_flag=True, help="Do not start the simulator.")
     @click.option("--no-record", is_flag=True, help="Do not start the recorder.")
@@ -244,7 +263,14 @@ def up(settings: Settings) -> None:
 
 @command(example="semmap down --data maps/flat")
 @click.option("--data", type=_path, default=None, help="Data folder of the system.")
-@click.option("--connect", envvar=CONNECT_VARIABLE, metavar="EP", help="Endpoint that the system listens on.")
+@click.option(
+    "--connect",
+    type=ENDPOINT,
+    envvar=CONNECT_VARIABLE,
+    metavar="EP",
+    help="Endpoint that the system listens on.",
+)
+@json_option
 def down(data: Path | None, connect: str | None) -> None:
     """Stop a system that runs on this machine."""
     extras.require("semmap down", "kb")
@@ -258,12 +284,13 @@ def down(data: Path | None, connect: str | None) -> None:
             raise errors.NoAnswer(f"no system of this user listens on {connect}")
         (data,) = found
     Supervisor((data or default_data()).resolve()).shut_down()
-    click.echo("stopped")
+    print_result({"text": "stopped"}, lambda reply: [reply["text"]])
 
 
 @command(example="semmap repair --data maps/flat")
 @click.option("--data", type=_path, default=None, help="Data folder of the map; its system must be stopped.")
 @click.option("--tbox", type=TBoxFile(), default=None, help="TBox file to use if the stored TBox is damaged.")
+@json_option
 def repair(data: Path | None, tbox: Path | None) -> None:
     """Recover a damaged map up to its last intact commit.
 
@@ -272,7 +299,8 @@ def repair(data: Path | None, tbox: Path | None) -> None:
     extras.require("semmap repair", "kb")
     from semmap.nodes.kb_node.storage.repair.repair import repair as repair_journal
 
-    click.echo(repair_journal((data or default_data()).resolve(), print_error, tbox=tbox))
+    text = repair_journal((data or default_data()).resolve(), print_error, tbox=tbox)
+    print_result({"text": text}, lambda reply: [reply["text"]])
 
 
 @command(example="semmap node sim_node --connect tcp/192.168.1.10:7447")
@@ -287,7 +315,7 @@ def node(name: str, settings: Settings) -> None:
     if settings.namespace == ALL_ROBOTS and name != ROUTER:
         raise errors.BadRequest("--namespace '*' requires a shared router: semmap node router")
     extras.require(f"semmap node {name}", extras.OF_NODE[name])
-    from semmap.nodes.supervisor.launch import run_node, seed
+    from semmap.nodes.supervisor.launch import reset_world, run_node, seed
     from semmap.nodes.supervisor.privacy import UMASK, make_private
 
     os.umask(UMASK)
@@ -295,6 +323,8 @@ def node(name: str, settings: Settings) -> None:
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
     if name == "kb_node":
         seed(settings)
+    elif name == "sim_node" and settings.reset_world:
+        reset_world(settings)
     run_node(name, settings)
 
 
@@ -303,10 +333,11 @@ def _settings(
     abox: str | None, world: str | None, data: Path | None, fresh: bool, truth: str | None,
     threshold: float, angle_threshold: float, robot: str | None, robot_name: str,
     robot_at: tuple[float, float, float] | None, robot_yaw: float, stale: float, journal_every: float,
-    listen: str, connect: tuple[str, ...], window: bool, models: Path | None, camera_hz: float | None,
+    listen: str, connect: tuple[str, ...], reset_world: bool, window: bool, models: Path | None,
+    camera_hz: float | None,
     camera_size: tuple[int, int], camera_noise: bool, perception: bool, when_gone: str,
-    label_map: Path | None, no_sim: bool, no_record: bool, record_keep: str | None, only: str | None,
-    single: bool, secure: Path | None,
+    label_map: Path | None, class_map: Path | None, no_sim: bool, no_record: bool, record_keep: str | None,
+    only: str | None, single: bool, secure: Path | None,
     zenoh_config: Path | None, insecure: bool, namespace: str,
     web: bool, web_port: int | None, web_as: str | None,
 ) -> Settings:  # fmt: skip
@@ -361,6 +392,7 @@ def _settings(
         "connect": connect if secure is None else tuple(map(bus.to_tls, connect)),
         "only": nodes,
         "single": single,
+        "reset_world": reset_world,
         "window": window,
         "models": None if models is None else _folder(models),
         "camera_hz": (_PERCEPTION_HZ if perception else 0.0) if camera_hz is None else camera_hz,
@@ -368,6 +400,7 @@ def _settings(
         "camera_noise": camera_noise,
         "perception": perception,
         "when_gone": when_gone,
+        "class_map": _class_map(class_map, before),
         "label_map": {} if label_map is None else read_label_map(label_map),
         "sim": not no_sim,
         "record": not no_record,
@@ -386,6 +419,13 @@ def _settings(
     except errors.BadRequest as error:
         field, _, fault = error.text.removeprefix("malformed message: ").partition(" ")
         raise errors.BadRequest(f"{_option_of(field)} {fault}") from None
+
+
+def _class_map(file: Path | None, before: Settings | None) -> dict[str, str]:
+    """Return the classes of bodies of the world by name, by default those of the previous start."""
+    if file is None:
+        return {} if before is None else before.class_map
+    return read_label_map(file, "bodies", "mug_blue")
 
 
 def _robot_file(word: str) -> str:
@@ -434,8 +474,6 @@ def _require_protected(values: dict[str, Any], *, insecure: bool) -> None:
     Raises BadRequest, BadFile, NoAnswer.
     """
     listen, secure, config = values["listen"], values["secure"], values["zenoh_config"]
-    if not is_endpoint(listen):
-        return  # the settings reject it
     if config is not None:
         bus.zenoh_config.require_sound(config, secure=secure is not None)
     if secure is not None:

@@ -9,8 +9,14 @@ from typing import Any
 import click
 
 from semmap.nodes.extern.cli.command import command
-from semmap.nodes.extern.cli.common import TIME, connect_option, identity_option, namespace_option
-from semmap.nodes.extern.cli.output.printable import print_escaped
+from semmap.nodes.extern.cli.common import (
+    TIME,
+    connect_option,
+    identity_option,
+    json_option,
+    namespace_option,
+    print_file,
+)
 from semmap.nodes.runtime import playback_clock
 from semmap.schemas import errors
 
@@ -45,6 +51,7 @@ _SIZE, _FPS = (960, 640), 20
 @connect_option
 @identity_option
 @namespace_option
+@json_option
 def movie(
     file: Path,
     data: Path | None,
@@ -69,7 +76,7 @@ def movie(
         raise errors.BadFile(f"there is no file {world}")
     film = Film(longest_s=longest, world=world, **wanted)
     system = {"where": where, "identity": identity, "namespace": namespace}
-    print_escaped(make(file, film, data=data, overwrite=overwrite, tell=_progress, **system))
+    print_file(file, make(file, film, data=data, overwrite=overwrite, tell=_progress, **system))
 
 
 def _progress(text: str) -> None:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from semmap.nodes.extern.cli.command import NegativeNumbers, command
-from semmap.nodes.extern.cli.common import print_json, with_client
-from semmap.nodes.extern.cli.output.printable import print_escaped
+from semmap.nodes.extern.cli.common import json_option, print_json, print_lines, print_result, with_client
 from semmap.nodes.extern.cli.shell_completion import entity_names
 from semmap.schemas.plans import HEIGHTS_M, RADIUS_M
 
@@ -35,6 +34,7 @@ _height_range = click.option(
 @_height_range
 @click.option("--no-furniture", is_flag=True, help="Walls only.")
 @_as_of
+@json_option
 @with_client
 def floorplan(client: Client, file: Path, no_furniture: bool, **how: Any) -> None:
     """Write a floor plan to FILE.
@@ -45,8 +45,8 @@ def floorplan(client: Client, file: Path, no_furniture: bool, **how: Any) -> Non
     """
     from semmap.nodes.extern.floorplans import write_floorplan
 
-    for path in write_floorplan(client, file, furniture=not no_furniture, **how):
-        print_escaped(f"wrote {path}")
+    files = write_floorplan(client, file, furniture=not no_furniture, **how)
+    print_result({"files": list(map(str, files))}, lambda _: [f"wrote {path}" for path in files])
 
 
 @command(example="semmap route bedroom1 kitchen1 --radius 0.3", cls=NegativeNumbers)
@@ -69,8 +69,6 @@ def route(client: Client, start: str, end: str, form: str, **how: Any) -> None:
     if form == "json":
         print_json(found)
     else:
-        print_escaped(found.text)
-        for note in found.notes:
-            print_escaped(f"  note: {note}")
+        print_lines([found.text, *(f"note: {note}" for note in found.notes)])
     if found.closed:
         raise SystemExit(1)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import functools
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -18,9 +18,12 @@ from semmap.nodes.extern.cli.commands import sparql_output
 from semmap.nodes.extern.cli.common import (
     TIME,
     frame_option,
+    json_option,
     print_error,
+    print_event,
     print_json,
     print_lines,
+    print_result,
     supports_robots,
     with_client,
 )
@@ -30,15 +33,28 @@ from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.shell_completion import class_names, entity_names
 from semmap.nodes.extern.files import write_atomically
 from semmap.schemas import commands, errors, keys, roles
-from semmap.schemas.entities import Entity
 
 if TYPE_CHECKING:
     from semmap.nodes.extern.client import Client
 
 _format = functools.partial(click.option, "--format", "format")
 _as_of = click.option("--as-of", metavar="COMMIT|TIME", help=f"The map after a commit or at a time. {TIME}")
+COLUMNS: Final = ("name", "class", "x", "y", "z", "yaw", "size", "label", "body")
+"""The columns of `list`; the module of the table is imported only when it is printed."""
 _STATUS_S = 20.0
 """Timeout of `status` [s]: it also reports a system that is too busy to reply."""
+
+
+def _columns(ctx: click.Context, parameter: click.Parameter, value: str | None) -> tuple[str, ...]:
+    """Return the columns in a list of names."""
+    if value is None:
+        return COLUMNS
+    names = tuple(name.strip() for name in value.split(","))
+    for name in names:
+        if name not in COLUMNS:
+            meant = errors.did_you_mean(name, COLUMNS) or f"; use some of {', '.join(COLUMNS)}"
+            raise click.BadParameter(f"unknown column '{name}'{meant}", ctx, parameter)
+    return names
 
 
 @command("list", example="semmap list --class Cup --on table1")
@@ -70,10 +86,22 @@ _STATUS_S = 20.0
 @click.option("--to", metavar="THING|X,Y,Z", shell_complete=entity_names, help="See --nearest.")
 @frame_option("Frame of all positions, in the arguments and in the output. Default: map")
 @_format(type=click.Choice(["table", "json", "lu4r", "legacy"]), default="table", show_default=True)
+@click.option("--sort", type=click.Choice(COLUMNS), help="Sort by this column.")
+@click.option("--limit", type=click.IntRange(min=1), metavar="N", help="Only the first N entities.")
+@click.option("--columns", callback=_columns, metavar="NAME,...", help="Only these columns of the table.")
 @_as_of
 @supports_robots(of_robots.entities)
 @with_client
-def list_(client: Client, class_: str | None, format: Any, as_of: str | None, **where: Any) -> None:
+def list_(
+    client: Client,
+    class_: str | None,
+    format: Any,
+    as_of: str | None,
+    sort: str | None,
+    limit: int | None,
+    columns: tuple[str, ...],
+    **where: Any,
+) -> None:
     """List the entities.
 
     THING and PLACE are a name, a label or a class. X,Y,Z is a position [m].
@@ -81,11 +109,11 @@ def list_(client: Client, class_: str | None, format: Any, as_of: str | None, **
     if format in ("lu4r", "legacy"):
         print_json(client.send(commands.List(class_=class_, format=format, as_of=as_of, **where)))
         return
-    entities = client.list(class_, as_of=as_of, **where)
+    found = client.list(class_, as_of=as_of, **where)
     if format == "json":
-        print_json(entities)
+        print_json(output.show.sort_entities(found, sort)[:limit])
         return
-    _print_entities(entities)
+    of_robots.print_entities(found, sort, limit, columns)
     if as_of is None:
         print_lines(_suppressed_notes(client, filter(None, (where["on"], where["in_"]))))
 
@@ -98,7 +126,7 @@ def _suppressed_notes(client: Client, names: Iterable[str]) -> Iterator[str]:
         except errors.UnknownName:  # a label or a class
             continue
         if suppressed:
-            yield f"  note: relations of {name} that contradict the map are suppressed; see: semmap check"
+            yield f"note: relations of {name} that contradict the map are suppressed; see: semmap check"
 
 
 @command(example="semmap get cup1")
@@ -120,23 +148,23 @@ def get(client: Client, name: str, format: str, as_of: str | None, frame: str | 
 
 @command(example="semmap check")
 @click.option("--engine", type=click.Choice(["semmap", "owlrl"]), default="semmap", show_default=True)
+@json_option
 @with_client
 def check(client: Client, engine: Any) -> None:
     """Check whether the map is consistent; if not, explain why."""
     checked = client.check(engine)
-    print_escaped(f"{checked.text} ({checked.engine}, {checked.triples} triples, {checked.elapsed_s:.3f} s)")
-    print_lines(f"  note: {relation.text}" for relation in checked.denied)
-    print_lines(f"  note: {text}" for text in (*checked.withheld, *checked.crowds))
+    print_result(checked, lines.format_check)
     if not checked.consistent:
         sys.exit(errors.Inconsistent.exit_status)
 
 
 @command(example="semmap infer cup1")
 @click.argument("name", required=False, shell_complete=entity_names)
+@json_option
 @with_client
 def infer(client: Client, name: str | None) -> None:
     """List the inferred facts of one entity, or of all."""
-    print_lines(lines.format_inferred(client.infer(name)))
+    print_result(client.infer(name), lines.format_inferred)
 
 
 @command(example="semmap explain cup1 isLocatedIn kitchen1", cls=NegativeNumbers)
@@ -317,6 +345,7 @@ def sparql(client: Client, query: str, **options: Any) -> None:
     shell_complete=class_names,
     help="With --on, --in, --near: only objects of this class.",
 )
+@json_option
 @with_client
 def watch(client: Client, keyexpr: str, query: str | None, inferred: bool, **where: Any) -> None:
     """Print commits, or other messages, as they are published.
@@ -346,30 +375,21 @@ def _watch_key(client: Client, keyexpr: str) -> None:
     if keyexpr == keys.COMMIT.key:
         with client.commits() as commits:
             for commit in commits:
-                print_escaped(output.show.commit_line(commit))
+                print_event(commit, [output.show.commit_line(commit)])
     from semmap.nodes import bus
 
     if client.identity is not None:
-        followed = roles.followed(client.identity.role)
-        if not bus.includes(followed, keyexpr):
-            raise errors.Refused(
-                f"your certificate ({client.identity.role}) may not subscribe to '{keyexpr}'; allowed keys:"
-                f" {', '.join(followed)}"
-            )
+        role = client.identity.role
+        if not bus.includes(roles.followed(role), keyexpr):
+            raise errors.Refused(roles.not_subscribing(role, keyexpr))
     if not bus.intersects(keys.published(), keyexpr):
         print(
-            f"  note: semmap does not publish on '{keyexpr}', only other programs may; the keys of semmap are"
+            f"note: semmap does not publish on '{keyexpr}', only other programs may; the keys of semmap are"
             f" '{keys.ROOT}/**'",
             file=sys.stderr,
         )
     for key, payload in bus.listen(client.session, keyexpr):
-        print_escaped(f"{key}  {payload}")
-
-
-def _print_entities(entities: Sequence[Entity]) -> None:
-    if entities:
-        output.show.console().print(output.show.entity_table(entities))
-    print(output.show.entity_line(entities))
+        print_event({"key": key, "payload": payload}, [f"{key}  {payload}"])
 
 
 def _format_of(file: Path) -> commands.RdfFormat:

@@ -9,6 +9,7 @@ import click
 
 from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import (
+    ENDPOINT,
     TIME,
     connect_option,
     identity_option,
@@ -34,7 +35,9 @@ _path = click.Path(path_type=Path)
     metavar="S",
     help=f"Maximum wait between two commits.  [default: {playback_clock.LONGEST_S:g}]",
 )
-@click.option("--listen", metavar="EP", help="Zenoh endpoint of the replay. Default: a free port.")
+@click.option(
+    "--listen", type=ENDPOINT, metavar="EP", help="Zenoh endpoint of the replay. Default: a free port."
+)
 @click.option("--world", type=_path, help="Scene file. Default: the last world of the map.")
 @click.option("--no-sim", is_flag=True, help="Replay the map without a scene.")
 @click.option("--no-record", is_flag=True, help="Do not record the replay.")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from semmap.nodes.extern.cli import output
 from semmap.nodes.extern.cli.commands import sparql_output as sparql_answers
-from semmap.nodes.extern.cli.common import print_error, print_json, print_lines
+from semmap.nodes.extern.cli.common import print_count, print_error, print_json, print_lines
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.schemas import errors
 from semmap.schemas.entities import Entity
@@ -21,13 +21,31 @@ if TYPE_CHECKING:
     from semmap.nodes.extern.fleet.robots import Robots
 
 
-def entities(robots: Robots, class_: str | None, format: str, as_of: str | None, **where: Any) -> None:
+def print_entities(
+    found: Sequence[Entity], sort: str | None, limit: int | None, columns: Sequence[str]
+) -> None:
+    """Print a table of entities, and their number."""
+    shown = output.show.sort_entities(found, sort)[:limit]
+    if shown:
+        output.show.console().print(output.show.entity_table(shown, columns))
+    is_part = len(shown) < len(found)
+    print_count(f"{len(shown)} of {len(found)} entities" if is_part else output.show.entity_line(shown))
+
+
+def entities(
+    robots: Robots,
+    class_: str | None,
+    format: str,
+    as_of: str | None,
+    sort: str | None,
+    limit: int | None,
+    columns: tuple[str, ...],
+    **where: Any,
+) -> None:
     """Print the output of `semmap list --robots`."""
 
     def show(found: Sequence[Entity]) -> None:
-        if found:
-            output.show.console().print(output.show.entity_table(found))
-        print(output.show.entity_line(found))
+        print_entities(found, sort, limit, columns)
 
     _require(format, ("table", "json"))
     _require_own(where.pop("frame"))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from semmap.nodes.extern.cli.command import command
-from semmap.nodes.extern.cli.common import TIME, with_client
+from semmap.nodes.extern.cli.common import TIME, json_option, print_file, with_client
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.runtime import extras
 from semmap.schemas import errors, wording
@@ -108,6 +108,7 @@ def ros(
 @click.option("--until", metavar="COMMIT|TIME", help="End of the period. Default: now.")
 @click.option("--frame", default="map", show_default=True, help="Name of the map frame in ROS.")
 @_with_its_extra
+@json_option
 @with_client
 def mcap(client: Client, file: Path, since: str | None, until: str | None, frame: str) -> None:
     """Write a period of the history to an MCAP file.
@@ -122,4 +123,4 @@ def mcap(client: Client, file: Path, since: str | None, until: str | None, frame
             f"{file.name}: the suffix must be .mcap, as in {file.with_suffix('.mcap').name}"
         )
     count = write(file, states(client, since, until), topics(), frame=frame)
-    print_escaped(f"{wording.counted(count, 'message')} written to {file}")
+    print_file(file, f"{wording.counted(count, 'message')} written to {file}", messages=count)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from semmap.nodes.extern.cli import output
+from semmap.nodes.extern.cli.common import is_json, print_event
 from semmap.nodes.extern.cli.output.formats import Format
 from semmap.nodes.extern.cli.output.printable import print_escaped, write
 from semmap.nodes.extern.files import read_file
@@ -17,6 +18,7 @@ from semmap.schemas.sparql import Row
 
 if TYPE_CHECKING:
     from semmap.nodes.extern.client import Client
+    from semmap.nodes.extern.sparql_client import StandingQuery
 
 
 def read_query(word: str) -> str:
@@ -59,18 +61,24 @@ def watch(client: Client, query: str, *, inferred: bool) -> None:
     """Print the rows of a query, then the rows that appear and disappear."""
     with client.watch(read_query(query), inferred=inferred) as standing:
         _note(standing.notes)
-        if standing.rows:
-            print_rows(standing.variables, standing.rows)
-        print(f"{_rows(len(standing.rows))} (commit {standing.seq}); watching", flush=True)
+        if is_json():
+            print_event(_begin(standing), ())
+        else:
+            if standing.rows:
+                print_rows(standing.variables, standing.rows)
+            print(f"{_rows(len(standing.rows))} (commit {standing.seq}); watching", flush=True)
         for changed in standing.changes():
-            for line in output.sparql_formats.news(standing.variables, changed):
-                print_escaped(line)
+            print_event(changed, output.sparql_formats.news(standing.variables, changed))
+
+
+def _begin(standing: StandingQuery) -> dict[str, Any]:
+    return {"variables": standing.variables, "rows": standing.rows, "seq": standing.seq}
 
 
 def _note(notes: Iterable[str]) -> None:
     """Print the notes of a result to stderr."""
     for note in notes:
-        print_escaped(f"  note: {note}", file=sys.stderr)
+        print_escaped(f"note: {note}", file=sys.stderr)
 
 
 def print_rows(variables: tuple[str, ...], rows: tuple[Row, ...]) -> None:
@@ -84,12 +92,17 @@ def print_rows(variables: tuple[str, ...], rows: tuple[Row, ...]) -> None:
 def watch_places(client: Client, **where: Any) -> None:
     """Print the entities at a location, then those that appear and disappear there."""
     with client.watch(**where) as standing:
-        there = ", ".join(_names(standing.rows)) or "nothing"
-        print(f"{there} (commit {standing.seq}); watching", flush=True)
+        names = _names(standing.rows)
+        there = f"{', '.join(names) or 'nothing'} (commit {standing.seq}); watching"
+        print_event({"there": names, "seq": standing.seq}, [there])
         for changed in standing.changes():
-            for sign, rows in (("-", changed.disappeared), ("+", changed.appeared)):
+            for sign, key, rows in (
+                ("-", "disappeared", changed.disappeared),
+                ("+", "appeared", changed.appeared),
+            ):
                 for name in _names(rows):
-                    print_escaped(f"{sign} {name}  (commit {changed.seq})")
+                    event = {key: name, "seq": changed.seq}
+                    print_event(event, [f"{sign} {name}  (commit {changed.seq})"])
 
 
 def _names(rows: Iterable[Row]) -> list[str]:

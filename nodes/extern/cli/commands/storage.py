@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import click
 
+from semmap.nodes.extern.backup import restore as restore_map
 from semmap.nodes.extern.cli.command import command
-from semmap.nodes.extern.cli.common import print_error, print_json, with_client
+from semmap.nodes.extern.cli.common import json_option, print_error, print_json, print_text, with_client
 from semmap.nodes.extern.cli.output.printable import print_escaped
-from semmap.nodes.extern.restore import restore as restore_map
 
 if TYPE_CHECKING:
     from semmap.nodes.extern.client import Client
@@ -44,12 +44,13 @@ def backup(client: Client, file: Path, overwrite: bool, format: str) -> None:
 @click.argument("file", type=_path)
 @click.option("--data", type=_path, required=True, help="Data folder to restore the map to.")
 @click.option("--replace", is_flag=True, help="Move an existing map to DIR/kept.")
+@json_option
 def restore(file: Path, data: Path, replace: bool) -> None:
     """Restore a backup to a data folder.
 
     The system of that folder must be stopped. Afterwards, start it: semmap up --data DIR.
     """
-    print_escaped(restore_map(file, data, replace=replace, tell=print_error).text)
+    print_text(restore_map(file, data, replace=replace, tell=print_error))
 
 
 @command(example="semmap compact --keep 30d --dry-run")

@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from semmap.nodes.extern.cli.output import show as show
-    from semmap.nodes.extern.cli.output import show_past as show_past
     from semmap.nodes.extern.cli.output import sparql_formats as sparql_formats
     from semmap.nodes.extern.cli.output import tables as tables
 
-_LATE = {"show", "show_past", "sparql_formats", "tables"}
+_LATE = {"show", "sparql_formats", "tables"}
 
 
 def __getattr__(name: str) -> ModuleType:

@@ -6,11 +6,12 @@ from collections.abc import Iterable, Sequence
 from datetime import date, datetime
 
 from semmap.schemas import wording
+from semmap.schemas.changes import earlier_names
 from semmap.schemas.explanations import Explanation
 from semmap.schemas.language import Found
 from semmap.schemas.map_history import Difference
 from semmap.schemas.relations import Relation
-from semmap.schemas.replies import Changed, Inferred, LoggedCommit, Moved
+from semmap.schemas.replies import Changed, Checked, Inferred, LoggedCommit, Moved
 
 _MOST = 20
 """The maximum number of inferred facts, and of names of supported objects, that are printed."""
@@ -24,15 +25,22 @@ def format_change(reply: Changed) -> Iterable[str]:
     """Yield a change with its commit, the skipped entities, notes, and consequences of a dry run."""
     yield reply.text + (f" (commit {reply.commit})" if reply.commit is not None else "")
     yield from (f"  skipped: {skipped}" for skipped in reply.skipped)
-    yield from (f"  note: {note}" for note in reply.notes)
+    yield from (f"note: {note}" for note in reply.notes)
     yield from _few("would be inferred", reply.follows)
     yield from _few("would no longer be inferred", reply.no_longer_follows)
+
+
+def format_check(reply: Checked) -> Iterable[str]:
+    """Yield the result of a consistency check, and the relations that the geometry or the map contradicts."""
+    yield f"{reply.text} ({reply.engine}, {reply.triples} triples, {reply.elapsed_s:.3f} s)"
+    yield from (f"note: {relation.text}" for relation in reply.denied)
+    yield from (f"note: {text}" for text in (*reply.withheld, *reply.crowds))
 
 
 def format_move(reply: Moved) -> Iterable[str]:
     """Yield the move of a body, with the commit that updated the map, or the reason why there is none."""
     yield reply.text + (f" (commit {reply.commit})" if reply.commit is not None else "")
-    yield from (f"  note: {note}" for note in reply.notes)
+    yield from (f"note: {note}" for note in reply.notes)
 
 
 def format_difference(found: Difference) -> Iterable[str]:
@@ -57,7 +65,7 @@ def format_commit_changes(commit: LoggedCommit) -> str:
     for change in commit.changes:
         about.setdefault(change.name, []).append(change.text)
     shown = [f"{name}: {'; '.join(texts)}" for name, texts in list(about.items())[:_FEW_ENTITIES]]
-    touched = len({*commit.changed, *commit.removed})
+    touched = len({*commit.changed, *commit.removed} - earlier_names(commit.changes))
     if touched > len(shown):
         shown.append(f"{touched - len(shown)} more" if shown else wording.entities(touched))
     if commit.tbox:

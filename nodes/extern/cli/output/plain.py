@@ -14,7 +14,7 @@ _BETWEEN = "  "
 def lines(
     names: Sequence[str], rows: Iterable[Sequence[str]], to_the_right: Sequence[bool] = ()
 ) -> Iterator[str]:
-    """Yield the header, a rule, and a line for each row."""
+    """Yield the header, and a line for each row."""
     shown = [[escaped(cell) for cell in row] for row in rows]
     widths = [max(map(cell_len, column)) for column in zip(names, *shown, strict=True)]
     right = to_the_right or [False] * len(names)
@@ -22,8 +22,7 @@ def lines(
     def line(cells: Sequence[str]) -> str:
         spaces = [" " * (width - cell_len(cell)) for cell, width in zip(cells, widths, strict=True)]
         parts = [s + c if last else c + s for c, s, last in zip(cells, spaces, right, strict=True)]
-        return f" {_BETWEEN.join(parts).rstrip()}"
+        return _BETWEEN.join(parts).rstrip()
 
     yield line(names)
-    yield f" {'─' * (sum(widths) + len(_BETWEEN) * (len(widths) - 1))}"
     yield from map(line, shown)

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 from rich.tree import Tree
 
+from semmap.nodes.extern.cli.output.lines import format_commit_changes
 from semmap.nodes.extern.cli.output.printable import escaped
 from semmap.nodes.extern.cli.output.tables import card, printable, table
 from semmap.nodes.extern.phrasing import (
     author,
     english,
     labelled,
+    moment,
     pose_cells,
     pose_text,
     provenance_text,
@@ -25,15 +29,18 @@ from semmap.schemas import wording
 from semmap.schemas.attachments import holder_of
 from semmap.schemas.changes import value_in_words
 from semmap.schemas.commits import Commit
-from semmap.schemas.entities import ClassInfo, Entity, PropertyInfo, Value
+from semmap.schemas.entities import ClassInfo, Entity, Pose, PropertyInfo, Value
 from semmap.schemas.frames import Frame
 from semmap.schemas.joints import in_words
 from semmap.schemas.relations import Described, Relation
-from semmap.schemas.replies import SystemStatus
+from semmap.schemas.replies import LoggedCommit, Sighting, SystemStatus
 
 _WIDE = 100_000
 _LEVEL = 1e-3
 """A quaternion with smaller x and y is a rotation about the z axis."""
+ENTITY_COLUMNS: Final = ("name", "class", "x", "y", "z", "yaw", "size", "label", "body")
+_NUMBERS: Final = ("x", "y", "z", "yaw")
+_HEADERS: Final = {"yaw": "yaw°", "size": "size [m]"}
 _FOLDED = ("class", "size [m]", "label")
 
 
@@ -48,15 +55,43 @@ def console(piped_width: int = _WIDE) -> Console:
     return Console(highlight=False, soft_wrap=True, markup=False, width=piped_width)
 
 
-def entity_table(entities: Iterable[Entity]) -> Table:
-    """Return a table with one row per entity."""
-    rows = table("name", "class", "x", "y", "z", "yaw°", "size [m]", "label", "body", fold=_FOLDED)
-    for column in rows.columns[2:6]:
-        column.justify = "right"
-    for e in entities:
-        pose = e.pose if e.live is None else e.live.pose
-        rows.add(e.name, e.class_, *pose_cells(pose), size_text(e), e.preferred_reference or "", _body(e))
+def entity_table(entities: Iterable[Entity], columns: Sequence[str] = ENTITY_COLUMNS) -> Table:
+    """Return a table with one row per entity. `columns` are some of `ENTITY_COLUMNS`."""
+    rows = table(*(_HEADERS.get(name, name) for name in columns), fold=_FOLDED)
+    for name, column in zip(columns, rows.columns, strict=True):
+        column.justify = "right" if name in _NUMBERS else "left"
+    for entity in entities:
+        cells = _cells(entity)
+        rows.add(*(cells[name] for name in columns))
     return rows
+
+
+def _cells(e: Entity) -> dict[str, str]:
+    x, y, z, yaw = pose_cells(_pose(e))
+    label = e.preferred_reference or ""
+    values = (e.name, e.class_, x, y, z, yaw, size_text(e), label, _body(e))
+    return dict(zip(ENTITY_COLUMNS, values, strict=True))
+
+
+def sort_entities(entities: Sequence[Entity], column: str | None) -> list[Entity]:
+    """Return the entities in the order of one of `ENTITY_COLUMNS`; those without a value come last."""
+    if column is None:
+        return list(entities)
+
+    def key(entity: Entity) -> tuple[bool, Any]:
+        pose = _pose(entity)
+        if column in _NUMBERS and pose is not None:
+            return False, (*pose.position_m, pose.yaw_rad)[_NUMBERS.index(column)]
+        if column == "size" and entity.size_m is not None:
+            return False, math.prod(entity.size_m)
+        text = "" if column in (*_NUMBERS, "size") else _cells(entity)[column]
+        return not text, text or 0.0
+
+    return sorted(entities, key=key)
+
+
+def _pose(e: Entity) -> Pose | None:
+    return e.pose if e.live is None else e.live.pose
 
 
 def entity_line(entities: Sequence[Entity]) -> str:
@@ -88,6 +123,7 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         "aliases": ", ".join(e.alternative_references) or "-",
         **_stated(e, {p.name: p for p in properties}),
         "body": body,
+        **({"name in the world": e.body.body} if e.body is not None and e.body.body else {}),
         **(
             {"joints": ", ".join(map(in_words, e.body.joints))}
             if e.body is not None and e.body.joints
@@ -233,8 +269,8 @@ def status_line(status: SystemStatus) -> str:
 
 
 def status_notes(status: SystemStatus) -> Iterable[str]:
-    """Yield the notes of the nodes, which are about the TBox."""
-    return (f"TBox: {note}" for node in status.nodes for note in node.notes)
+    """Yield the notes of the nodes, which are about the TBox and the world."""
+    return (f"{wording.note_subject(node.node)}: {note}" for node in status.nodes for note in node.notes)
 
 
 def commit_line(commit: Commit) -> str:
@@ -287,3 +323,34 @@ def _grow(tree: Tree, parent: str, children: dict[str, list[str]], by_name: dict
 def _model(e: Entity) -> str:
     model = (e.body.model if e.body is not None else "") or e.model or "a box"
     return f"{model} (property model)" if "model" in e.properties else model
+
+
+def history_table(commits: Iterable[LoggedCommit]) -> Table:
+    """Return a table with one row per commit, and one per note."""
+    columns = ("commit", "time", "author", "reason", "confidence", "changes")
+    rows = table(*columns, fold=("author", "reason", "changes"))
+    rows.columns[0].justify = "right"
+    for c in commits:
+        rows.add(
+            str(c.seq),
+            moment(c.stamp_ns),
+            author(c),
+            c.reason,
+            "" if c.confidence is None else f"{c.confidence:.2f}",
+            format_commit_changes(c),
+        )
+        for note in c.notes:
+            rows.add("", "", "", "", "", f"note: {note}")
+    return rows
+
+
+def sighting_card(s: Sighting) -> Table:
+    """Return the last known pose of an entity, with its source."""
+    rows = {"name": s.name, "where": pose_text(s.pose), "last change": provenance_text(s.provenance)}
+    if s.removed is not None:
+        rows["removed"] = provenance_text(s.removed)
+    if s.seen_ns is not None:
+        rows["last observed"] = moment(s.seen_ns)
+    if s.removed is None or s.gone is not None:  # otherwise the row `removed` has the status
+        rows["status"] = s.text
+    return card(rows)

@@ -33,8 +33,11 @@ class Rows(Table):
         self._lines.append(cells)
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Render the table with its full width, even if the terminal is narrower and wraps the lines."""
-        if len(self._lines) >= _MANY:
+        """Render the table with its full width, even if the terminal is narrower and wraps the lines.
+
+        In a file or a pipe it is plain columns: the header first, and a line for each row.
+        """
+        if len(self._lines) >= _MANY or not console.is_terminal:
             return self._in_plain_lines()
         for cells in self._lines[self.row_count :]:
             self._lay_out(cells)

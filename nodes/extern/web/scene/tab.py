@@ -25,11 +25,10 @@ from semmap.nodes.extern.web.scene.annotations import (
 from semmap.nodes.extern.web.scene.assets import Assets
 from semmap.nodes.extern.web.scene.bodies import Bodies
 from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, select_labels
-from semmap.nodes.extern.web.scene.difference_boxes import difference_boxes
 from semmap.nodes.extern.web.scene.drawables import BOX, Drawable, Key, drawable_of
 from semmap.nodes.extern.web.scene.gizmo import Gizmo, Phase, place_on_support
+from semmap.nodes.extern.web.scene.map_overlay import difference_boxes, relation_lines
 from semmap.nodes.extern.web.scene.picking import Solid, edges_of, first_hit
-from semmap.nodes.extern.web.scene.relation_lines import relation_lines
 from semmap.nodes.extern.web.scene.rooms import Rooms
 from semmap.nodes.extern.web.scene.sensor_overlay import SensorOverlay
 from semmap.schemas import errors, keys

@@ -10,12 +10,11 @@ from semmap.nodes.kb_node.entities.alignments import shipped
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import measures
-from semmap.nodes.kb_node.relations.measuring.phrases import explain_measure, format_length
-from semmap.nodes.kb_node.relations.measuring.relation_table import PHRASES
+from semmap.nodes.kb_node.relations.measuring.phrases import explain_location, format_length
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Term, Triple
-from semmap.schemas.relations import Relation, RelationName
+from semmap.schemas.relations import PHRASES, Relation, RelationName
 
 PROPERTIES: Final[dict[Term, tuple[RelationName, bool]]] = {
     v.dm("isOn"): ("isOn", False),
@@ -86,7 +85,7 @@ def _find_reason(space: Space, relation: RelationName, solid: Solid, other: Soli
             return None
         apart = measures.gap(solid, other)
         return (
-            explain_measure(relation, solid, other, made)
+            explain_location(relation, solid, other, made)
             if apart < limits.touch_m
             else _describe_distance(solid, apart)
         )
@@ -110,7 +109,7 @@ def _find_reason(space: Space, relation: RelationName, solid: Solid, other: Soli
     return (
         f"it is not above any surface of {other.name}"
         if made is None
-        else explain_measure(relation, solid, other, made)
+        else explain_location(relation, solid, other, made)
     )
 
 

@@ -14,30 +14,37 @@ from semmap.nodes.kb_node.relations.geometry.forms import Bounds
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.arrangement import stands_on_ground
 from semmap.nodes.kb_node.relations.measuring.measures import Measure
-from semmap.nodes.kb_node.relations.measuring.relation_table import MIRRORED, PAIR_MEASURES
+from semmap.nodes.kb_node.relations.measuring.relation_table import (
+    MIRRORED,
+    ONE_WAY,
+    PAIR_RELATIONS,
+)
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.schemas.entities import Entity
 from semmap.schemas.relations import RelationName
 
-_ALL: Final = frozenset(MIRRORED)
-_SupportState = tuple[str | None, frozenset[str]]
-"""What an object is inside, and what it is on."""
+_ALL: Final = frozenset(PAIR_RELATIONS)
+_OF_THREE: Final[frozenset[RelationName]] = frozenset(("isNextTo", "isLeaningAgainst"))
+"""The relations of a pair that a third object can end, if it is between the two."""
+_SupportState = tuple[Solid | None, frozenset[Solid], bool]
+"""What an object is inside, what it is on, and whether it stands on the ground."""
 
 
 def measure_pair(
     space: Space, solid: Solid, other: Solid, wanted: Set[RelationName] = _ALL
 ) -> Iterator[tuple[RelationName, Measure]]:
-    """Yield the measured relations of a pair.
+    """Yield the measured relations of the first object to the second.
 
     An object is not reported as near or under what it is on or inside.
     """
     if is_separate(space, solid, other):
-        names: Iterable[RelationName] = (name for name in MIRRORED if name in wanted)
+        names: Iterable[RelationName] = (name for name in PAIR_RELATIONS if name in wanted)
     else:
         names = ("touches",) if "touches" in wanted else ()
     for name in names:
-        made = PAIR_MEASURES[name](space, solid, other)
+        made = PAIR_RELATIONS[name].measure(space, solid, other)
         if made is not None:
             yield name, made
 
@@ -64,7 +71,7 @@ def are_near(space: Space, one: Solid, other: Solid) -> bool:
 class PairFacts:
     """The requested facts of pairs, updated with the map.
 
-    A fact is reported once for a pair, with the alphabetically first name as its subject.
+    A fact with an inverse is reported once for a pair, with the alphabetically first name as its subject.
     """
 
     def __init__(self, space: Space) -> None:
@@ -73,14 +80,14 @@ class PairFacts:
         space.pop_shifted()
         self._whole: frozenset[RelationName] = frozenset()
         self._some: frozenset[str] = frozenset()
-        self._pairs: dict[str, dict[str, tuple[RelationName, ...]]] = {}
-        """By both names."""
+        self._pairs: dict[str, dict[str, tuple[Fact, ...]]] = {}
+        """By both names, in either order."""
         self._support_states: dict[str, _SupportState] = {}
 
     def set_scope(self, whole: Iterable[RelationName], some: Iterable[str]) -> Changed:
         """Keep the relations `whole` of all objects, and all relations of the objects `some`, from now on."""
         whole, some = frozenset(whole), frozenset(some)
-        whole |= {MIRRORED[relation] for relation in whole}
+        whole |= {MIRRORED[relation] for relation in whole if relation in MIRRORED}
         more, others = whole - self._whole, some - self._some
         is_less = not (whole >= self._whole and some >= self._some)
         self._whole, self._some = whole, some
@@ -91,7 +98,7 @@ class PairFacts:
             for name, there in list(self._pairs.items()):
                 for other, known in list(there.items()):
                     if name < other and not (name in some or other in some):
-                        now = tuple(relation for relation in known if relation in whole)
+                        now = tuple(fact for fact in known if fact[1] in whole)
                         self._replace((name, other), now, gone, come)
         if more:
             come |= self._compute(self.space.solids, more=more).come
@@ -99,9 +106,7 @@ class PairFacts:
 
     def holds(self, name: str, relation: RelationName, other: str) -> bool:
         """Return whether a fact holds for a pair, in either order."""
-        if other < name:
-            name, other, relation = other, name, MIRRORED[relation]
-        return relation in self._pairs.get(name, {}).get(other, ())
+        return _orient((name, relation, other)) in self._pairs.get(name, {}).get(other, ())
 
     def update(self, changed: Iterable[Entity | PlacedEntity], removed: Iterable[str] = ()) -> Changed:
         """Apply added, changed and removed entities."""
@@ -146,7 +151,8 @@ class PairFacts:
 
     def _get_support_state(self, solid: Solid) -> _SupportState:
         container, supports, _ = self.space.spatial_relations(solid)
-        return container and container[0].name, frozenset(support.name for support, _ in supports)
+        on_ground = stands_on_ground(self.space, solid)
+        return container and container[0], frozenset(support for support, _ in supports), on_ground
 
     def _compute(
         self, names: Iterable[str], moved: Iterable[Solid] = (), more: Set[RelationName] = frozenset()
@@ -173,7 +179,7 @@ class PairFacts:
                         now = self._measure(*pair, more)
                         if more:
                             known = self._pairs.get(pair[0], {}).get(pair[1], ())
-                            now = tuple(r for r in MIRRORED if r in now or r in known)
+                            now = tuple(dict.fromkeys((*known, *now)))
                         self._replace(pair, now, gone, come)
             for pair in self._pairs_across(moved):
                 if pair not in done:
@@ -184,7 +190,7 @@ class PairFacts:
     def _pairs_across(self, moved: Iterable[Solid]) -> Iterator[tuple[str, str]]:
         """Yield the pairs that these solids may be or have been between."""
         space = self.space
-        if "isNextTo" not in self._whole and not self._some:
+        if self._whole.isdisjoint(_OF_THREE) and not self._some:
             return
         for solid in moved:
             if solid.is_place:
@@ -198,9 +204,7 @@ class PairFacts:
                     if measures.overlap(solid.bounds, _unite(one.bounds, other.bounds)):
                         yield (one.name, other.name) if one.name < other.name else (other.name, one.name)
 
-    def _measure(
-        self, name: str, other_name: str, more: Set[RelationName] = frozenset()
-    ) -> tuple[RelationName, ...]:
+    def _measure(self, name: str, other_name: str, more: Set[RelationName] = frozenset()) -> tuple[Fact, ...]:
         solid, other = self.space.solids.get(name), self.space.solids.get(other_name)
         if solid is None or other is None or not _may_be_beside(self.space, solid, other):
             return ()
@@ -211,15 +215,20 @@ class PairFacts:
             return ()
         # If a small object supports a larger one, only relations of the small one are measured.
         one, two = (solid, other) if is_separate(self.space, solid, other) else (other, solid)
-        found = {relation for relation, made in measure_pair(self.space, one, two, wanted) if made.holds}
-        if one is other:
-            found = {MIRRORED[relation] for relation in found}
-        return tuple(relation for relation in MIRRORED if relation in found)
+        found = list(self._list_facts(one, two, wanted))
+        if reverse := wanted & ONE_WAY:
+            found += self._list_facts(two, one, reverse)
+        return tuple(found)
+
+    def _list_facts(self, one: Solid, two: Solid, wanted: Set[RelationName]) -> Iterator[Fact]:
+        for relation, made in measure_pair(self.space, one, two, wanted):
+            if made.holds:
+                yield _orient((one.name, relation, two.name))
 
     def _replace(
         self,
         pair: tuple[str, str],
-        now: tuple[RelationName, ...],
+        now: tuple[Fact, ...],
         gone: set[Fact],
         come: set[Fact],
     ) -> None:
@@ -227,8 +236,8 @@ class PairFacts:
         before = self._pairs.get(name, {}).get(other, ())
         if now == before:
             return
-        gone.update((name, relation, other) for relation in before if relation not in now)
-        come.update((name, relation, other) for relation in now if relation not in before)
+        gone.update(fact for fact in before if fact not in now)
+        come.update(fact for fact in now if fact not in before)
         for one, two in (pair, (other, name)):
             there = self._pairs.setdefault(one, {})
             if now:
@@ -239,10 +248,16 @@ class PairFacts:
                     del self._pairs[one]
 
 
+def _orient(fact: Fact) -> Fact:
+    """Return a fact with the alphabetically first name as its subject, unless it has no inverse."""
+    name, relation, other = fact
+    return (other, MIRRORED[relation], name) if other < name and relation in MIRRORED else fact
+
+
 def _may_be_beside(space: Space, one: Solid, other: Solid) -> bool:
     """Return whether two objects are close enough for any of the relations, by their bounds."""
     limits = space.limits
-    reach = max(measures.near_limit(one, other, limits), limits.contact_m)
+    reach = max(measures.near_limit(one, other, limits), limits.contact_m, limits.lean_gap_m)
     return measures.overlap(one.bounds, other.bounds, reach)
 
 

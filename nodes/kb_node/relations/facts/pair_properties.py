@@ -8,7 +8,7 @@ from typing import Final
 
 from semmap.nodes.kb_node.relations.facts.pair_facts import PairFacts
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
-from semmap.nodes.kb_node.relations.measuring.relation_table import MIRRORED
+from semmap.nodes.kb_node.relations.measuring.relation_table import MIRRORED, PAIR_RELATIONS
 from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Term, Triple
 from semmap.schemas.relations import RelationName
@@ -41,7 +41,7 @@ class PairProperties:
                 implied[s].add((o, True))
                 implied[o].add((s, True))
         self._implications: dict[RelationName, frozenset[_Implication]] = {
-            relation: _compute_closure(implied, relation, declared) for relation in MIRRORED
+            relation: _compute_closure(implied, relation, declared) for relation in PAIR_RELATIONS
         }
         self.sources: dict[Term, frozenset[RelationName]] = {
             property_: frozenset(
@@ -78,10 +78,10 @@ class PairProperties:
 def _compute_closure(
     implied: dict[Term, set[_Implication]], relation: RelationName, declared: Set[Term]
 ) -> frozenset[_Implication]:
-    own, mirrored = v.dm(relation), v.dm(MIRRORED[relation])
-    found: set[_Implication] = {
-        implication for implication in ((own, False), (mirrored, True)) if implication[0] in declared
-    }
+    own: list[_Implication] = [(v.dm(relation), False)]
+    if relation in MIRRORED:
+        own.append((v.dm(MIRRORED[relation]), True))
+    found = {implication for implication in own if implication[0] in declared}
     waiting = list(found)
     while waiting:
         property_, is_inverse = waiting.pop()

@@ -190,6 +190,47 @@ class Contact(NamedTuple):
     normal: Vector
 
 
+def _shift(point: Vector, vectors: tuple[Vector, ...], shares: tuple[float, ...]) -> Vector:
+    x, y, z = point
+    for share, (vx, vy, vz) in zip(shares, vectors, strict=True):
+        x, y, z = x + share * vx, y + share * vy, z + share * vz
+    return x, y, z
+
+
+def find_face(part: Convex, direction: Vector, slack: float) -> list[Vector]:
+    """Return the corners of the face, edge or vertex that is furthest in a direction (a unit vector).
+
+    Edges and discs whose angle to the face has at most the sine `slack` belong to it. A disc becomes an
+    octagon.
+    """
+    nx, ny, nz = direction
+    corners = [part.centre]
+    for vx, vy, vz in part.straight:
+        along = nx * vx + ny * vy + nz * vz
+        signs = (1.0, -1.0) if abs(along) <= slack * math.hypot(vx, vy, vz) else (math.copysign(1.0, along),)
+        corners = [(x + k * vx, y + k * vy, z + k * vz) for x, y, z in corners for k in signs]
+    if part.round:
+        along_each = [nx * x + ny * y + nz * z for x, y, z in part.round]
+        reach = math.hypot(*along_each)
+        shares: list[tuple[float, ...]]
+        if len(part.round) == 2 and reach <= slack * max(math.hypot(*vector) for vector in part.round):
+            shares = [(math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8)]
+        else:
+            shares = [tuple(along / reach for along in along_each)]
+        corners = [_shift(corner, part.round, share) for corner in corners for share in shares]
+    if part.points:
+        heights = [nx * x + ny * y + nz * z for x, y, z in part.points]
+        most = max(heights)
+        furthest = part.points[heights.index(most)]
+        kept = [
+            point
+            for point, height in zip(part.points, heights, strict=True)
+            if most - height <= slack * math.dist(point, furthest) + _LEVEL
+        ]
+        corners = [(x + a, y + b, z + c) for x, y, z in corners for a, b, c in kept]
+    return corners
+
+
 UP: Vector = (0.0, 0.0, 1.0)
 DOWN: Vector = (0.0, 0.0, -1.0)
 _SURE_M = 1e-6

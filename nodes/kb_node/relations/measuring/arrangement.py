@@ -108,3 +108,17 @@ def is_supported(space: Space, solid: Solid) -> bool:
     if container is not None or supports:
         return True
     return place is not None and abs(solid.bottom - place[0].bottom) <= space.limits.gap_m
+
+
+def stands_on_floor(space: Space, solid: Solid) -> bool:
+    """Return whether an object is in and on nothing but the floor of its place."""
+    container, supports, place = space.spatial_relations(solid)
+    if container is not None or supports or place is None:
+        return False
+    return abs(solid.bottom - place[0].bottom) <= space.limits.gap_m
+
+
+def stands_on_ground(space: Space, solid: Solid) -> bool:
+    """Return whether the bottom of an object is at the floor of its place, or at height 0 without one."""
+    place = space.spatial_relations(solid).place
+    return abs(solid.bottom - (place[0].bottom if place is not None else 0.0)) <= space.limits.gap_m

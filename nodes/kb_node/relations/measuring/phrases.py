@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from semmap.nodes.kb_node.relations.geometry.opening import joint_at
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring.arrangement import stands_on_floor
 from semmap.nodes.kb_node.relations.measuring.measures import Measure, hollow_around
-from semmap.nodes.kb_node.relations.measuring.relation_table import PHRASES
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.schemas import errors
 from semmap.schemas.joints import OPEN_FROM, Joint, in_words
-from semmap.schemas.relations import RelationName
+from semmap.schemas.relations import PHRASES, RelationName
 
+UNSUPPORTED = "has no known support"
 _LEVEL_M = 0.00005
 """Smaller distances would be printed as 0.0 mm."""
 
@@ -34,8 +37,8 @@ def format_height(gap_m: float) -> str:
     return f"{format_length(abs(gap_m))} {'above' if gap_m > 0.0 else 'below'}"
 
 
-def explain_measure(relation: RelationName, solid: Solid, other: Solid, made: Measure) -> str:
-    """Return the measurement behind a relation, as a clause."""
+def explain_location(relation: RelationName, solid: Solid, other: Solid, made: Measure) -> str:
+    """Return the measurement behind a stored relation, as a clause."""
     match relation:
         case "isOn" if made.holds and made.share == 0.0:
             return f"it has no other support and leans against a steep side of {other.name}"
@@ -52,21 +55,21 @@ def explain_measure(relation: RelationName, solid: Solid, other: Solid, made: Me
             part = f"{made.share:.0%} of its footprint" if solid.is_measured else "its position"
             is_ = "is" if made.share > 0.0 else "is not"
             return f"{part} {is_} within {other.name}"
-        case "isUnder":
-            below = format_length(made.gap_m)
-            return f"its top is {below} below {other.name}, which is over {made.share:.0%} of it"
-        case "isAbove":
-            return f"it is {format_length(made.gap_m)} above {other.name}, and over {made.share:.0%} of that"
         case "isAttachedTo":
             return f"it has no support and is {format_length(made.gap_m)} from the side of {other.name}"
-        case "touches":
-            return f"they are {format_length(made.gap_m)} apart" if made.gap_m > _LEVEL_M else "they meet"
-        case "isNextTo":
-            return (
-                f"they are {format_length(made.gap_m)} apart on the same support, with nothing between them"
-            )
-    limit = format_length(made.limit)
-    return f"they are {format_length(made.gap_m)} apart (isNear allows up to {limit} for their sizes)"
+    raise errors.InternalError(f"the relation '{relation}' is not stored")
+
+
+def describe_support(space: Space, solid: Solid) -> str:
+    """Return what an object is inside or on, as a predicate: "is inside bowl1"."""
+    container, supports, place = space.spatial_relations(solid)
+    if container is not None:
+        return f"is inside {container[0].name}"
+    if supports:
+        return f"is on {' and '.join(support.name for support, _ in supports)}"
+    if place is not None and stands_on_floor(space, solid):
+        return f"is on the floor of {place[0].name}"
+    return UNSUPPORTED
 
 
 def _hollow(solid: Solid, other: Solid) -> str:

@@ -1,81 +1,120 @@
-"""The table of spatial relations, from which the other lists of this node are derived."""
+"""The relations that are measured on demand: how each is measured and explained.
+
+`semmap.schemas.relations.RELATIONS` has the names, inverses and words of all relations.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final, Literal, NamedTuple
+from typing import Final, NamedTuple
 
+from semmap.nodes.geometry.polygons import distance
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import measures
-from semmap.nodes.kb_node.relations.measuring.arrangement import measure_next_to
+from semmap.nodes.kb_node.relations.measuring.arrangement import find_between, measure_next_to
+from semmap.nodes.kb_node.relations.measuring.leaning import explain_leaning, measure_leaning
 from semmap.nodes.kb_node.relations.measuring.measures import Measure
+from semmap.nodes.kb_node.relations.measuring.phrases import describe_support, format_length
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.schemas.relations import RelationName
+from semmap.schemas.relations import RELATIONS, RelationName
 
-PairMeasure = Callable[[Space, Solid, Solid], Measure | None]
+_LEVEL_M = 0.00005
+"""Smaller distances would be printed as 0.0 mm."""
 
 
-class RelationRow(NamedTuple):
-    """How a relation is named, and where its facts come from."""
+class PairRelation(NamedTuple):
+    """The functions of a relation of two objects."""
 
-    name: RelationName
-    phrase: str
-    """As in "cup1 is on table1"."""
-    kind: Literal["stored", "on demand", "side", "on request"]
-    """Stored facts have a rule in `facts/rules.py`, and facts on demand a measure. A side needs a viewer."""
-    inverse: RelationName | None = None
-    """The relation with exchanged arguments, if it is in this table. A symmetric one is its own inverse."""
-    measure: PairMeasure | None = None
-    """Measures a pair, for facts on demand."""
-    needs_sizes: bool = False
-    """Whether the sizes of both objects must be known."""
+    measure: Callable[[Space, Solid, Solid], Measure | None]
+    """Return whether the first object has the relation to the second, or None if it has not."""
+    explain: Callable[[Space, Solid, Solid, Measure | None], str]
+    """Return why the relation holds or does not hold, as a clause with the measured values."""
 
 
 def _measure_touch(space: Space, one: Solid, other: Solid) -> Measure | None:
     return None if other.is_place else measures.touches(one, other, space.limits)
 
 
+def _explain_touch(space: Space, one: Solid, other: Solid, made: Measure | None) -> str:
+    if made is not None and made.holds:
+        return f"they are {format_length(made.gap_m)} apart" if made.gap_m > _LEVEL_M else "they meet"
+    apart, limit = measures.gap(one, other), format_length(space.limits.contact_m)
+    if apart > space.limits.contact_m:
+        return f"they are {format_length(apart)} apart (touches allows up to {limit})"
+    return f"no part of one is within {limit} of a part of the other, although their boxes are"
+
+
 def _measure_under(space: Space, one: Solid, other: Solid) -> Measure | None:
     return measures.beneath(one, other, space.limits)
+
+
+def _explain_under(space: Space, one: Solid, other: Solid, made: Measure | None) -> str:
+    if made is None or not made.holds:
+        return _explain_not_beneath(space, one, other, made)
+    below = format_length(made.gap_m)
+    return f"its top is {below} below {other.name}, which is over {made.share:.0%} of it"
 
 
 def _measure_above(space: Space, one: Solid, other: Solid) -> Measure | None:
     return measures.beneath(other, one, space.limits)
 
 
+def _explain_above(space: Space, one: Solid, other: Solid, made: Measure | None) -> str:
+    if made is None or not made.holds:
+        return _explain_not_beneath(space, other, one, made)
+    return f"it is {format_length(made.gap_m)} above {other.name}, and over {made.share:.0%} of that"
+
+
+def _explain_not_beneath(space: Space, lower: Solid, upper: Solid, made: Measure | None) -> str:
+    if made is not None:
+        return (
+            f"{upper.name} is over only {made.share:.0%} of the smaller footprint of the two"
+            f" (isUnder requires at least {space.limits.beneath_share:.0%})"
+        )
+    apart = distance(lower.outline, upper.outline)
+    if apart > 0.0:
+        return f"seen from above, they are {format_length(apart)} apart"
+    return f"no part of {upper.name} is above the top of {lower.name}, at {format_length(lower.top)}"
+
+
 def _measure_near(space: Space, one: Solid, other: Solid) -> Measure | None:
     return measures.near(one, other, space.limits)
 
 
-TABLE: Final[tuple[RelationRow, ...]] = (
-    RelationRow("isOn", "is on", "stored", needs_sizes=True),
-    RelationRow("isInside", "is inside", "stored", needs_sizes=True),
-    RelationRow("isLocatedIn", "is in", "stored"),
-    RelationRow("isAttachedTo", "is attached to", "stored", needs_sizes=True),
-    RelationRow("touches", "touches", "on demand", "touches", _measure_touch, True),
-    RelationRow("isUnder", "is under", "on demand", "isAbove", _measure_under, True),
-    RelationRow("isAbove", "is above", "on demand", "isUnder", _measure_above, True),
-    RelationRow("isNextTo", "is next to", "on demand", "isNextTo", measure_next_to, True),
-    RelationRow("isNear", "is near", "on demand", "isNear", _measure_near, True),
-    RelationRow("isLeftOf", "is left of", "side"),
-    RelationRow("isRightOf", "is right of", "side"),
-    RelationRow("isInFrontOf", "is in front of", "side"),
-    RelationRow("isBehind", "is behind", "side"),
-    RelationRow("isBetween", "is between", "on request"),
-    RelationRow("isVisibleFrom", "is visible from", "on request"),
-)
-"""The relations of a pair are reported in this order."""
+def _explain_near(_: Space, one: Solid, other: Solid, made: Measure | None) -> str:
+    if made is None:
+        return "they are apart"
+    limit = format_length(made.limit)
+    return f"they are {format_length(made.gap_m)} apart (isNear allows up to {limit} for their sizes)"
 
-PHRASES: Final[dict[RelationName, str]] = {row.name: row.phrase for row in TABLE}
-SIDES: Final[tuple[RelationName, ...]] = tuple(row.name for row in TABLE if row.kind == "side")
-"""The relations that name a side of another object."""
-NEEDS_SIZES: Final[frozenset[RelationName]] = frozenset(row.name for row in TABLE if row.needs_sizes)
-"""The relations that require known sizes."""
-PAIR_MEASURES: Final[dict[RelationName, PairMeasure]] = {
-    row.name: row.measure for row in TABLE if row.measure is not None
+
+def _explain_next_to(space: Space, one: Solid, other: Solid, made: Measure | None) -> str:
+    if made is None:
+        return _explain_near(space, one, other, _measure_near(space, one, other))
+    apart = f"they are {format_length(made.gap_m)} apart"
+    if made.holds:
+        return f"{apart} on the same support, with nothing between them"
+    if made.share == 0.0:
+        ours, theirs = describe_support(space, one), describe_support(space, other)
+        if ours == theirs:
+            return f"{apart}, but neither has a known support"
+        return f"{apart}, but {one.name} {ours} and {other.name} {theirs}"
+    names = [third.name for third in find_between(space, one, other)]
+    return f"{apart}, but between them {'is' if len(names) == 1 else 'are'} {' and '.join(names)}"
+
+
+PAIR_RELATIONS: Final[dict[RelationName, PairRelation]] = {
+    "touches": PairRelation(_measure_touch, _explain_touch),
+    "isLeaningAgainst": PairRelation(measure_leaning, explain_leaning),
+    "isUnder": PairRelation(_measure_under, _explain_under),
+    "isAbove": PairRelation(_measure_above, _explain_above),
+    "isNextTo": PairRelation(measure_next_to, _explain_next_to),
+    "isNear": PairRelation(_measure_near, _explain_near),
 }
-"""The relations measured on demand."""
+"""The relations measured on demand, in the order in which those of a pair are reported."""
 MIRRORED: Final[dict[RelationName, RelationName]] = {
-    row.name: row.inverse for row in TABLE if row.measure is not None and row.inverse is not None
+    row.name: row.inverse for row in RELATIONS if row.name in PAIR_RELATIONS and row.inverse is not None
 }
-"""The relations measured on demand, each with its inverse."""
+"""The relations of them that have an inverse, or are their own."""
+ONE_WAY: Final[frozenset[RelationName]] = frozenset(PAIR_RELATIONS) - MIRRORED.keys()
+"""The relations of them without an inverse: both directions of a pair are measured."""

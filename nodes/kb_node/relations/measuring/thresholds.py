@@ -38,6 +38,10 @@ class Thresholds(Struct, frozen=True, kw_only=True):
     """Share of the smaller footprint that is over or under the other."""
     attached_m: float = 0.02
     """Between an attached object and what it is attached to."""
+    lean_gap_m: float = 0.05
+    """Between a leaning object and what it leans against, as `gap_m`."""
+    lean_deg: float = 5.0
+    """Between the vertical and the line from the base of a leaning object to the contact."""
 
     @property
     def upright(self) -> float:
@@ -65,6 +69,8 @@ ANNOTATIONS: Final = (
     AnnotatedThreshold("isNear", "greatestGap", "near_most_m", 100.0),
     AnnotatedThreshold("isNear", "greatestGapToSize", "near_share", 100.0),
     AnnotatedThreshold("isAttachedTo", "greatestGap", "attached_m", 1.0),
+    AnnotatedThreshold("isLeaningAgainst", "greatestGap", "lean_gap_m", 1.0),
+    AnnotatedThreshold("isLeaningAgainst", "leastTilt", "lean_deg", 45.0),
 )
 
 

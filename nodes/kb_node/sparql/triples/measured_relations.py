@@ -9,7 +9,7 @@ from semmap.nodes.kb_node.relations.facts.pair_facts import PairFacts
 from semmap.nodes.kb_node.relations.facts.pair_properties import PairProperties
 from semmap.nodes.kb_node.relations.facts.place_facts import Changed, Fact
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
-from semmap.nodes.kb_node.relations.measuring.relation_table import MIRRORED
+from semmap.nodes.kb_node.relations.measuring.relation_table import PAIR_RELATIONS
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.sparql.protocol import Placements
 from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, Delta
@@ -43,10 +43,10 @@ def needs_of(patterns: frozenset[Pattern] | None, derived: PairProperties) -> Ne
     If one end of a pattern is a known individual, only that one is needed.
     """
     if patterns is None:
-        return Needs(frozenset(MIRRORED) if derived.sources else frozenset())
+        return Needs(frozenset(PAIR_RELATIONS) if derived.sources else frozenset())
     relations, names = set[RelationName](), set[str]()
     for s, p, o in patterns:
-        sources = frozenset(MIRRORED) if p is None else derived.sources.get(p, frozenset())
+        sources = frozenset(PAIR_RELATIONS) if p is None else derived.sources.get(p, frozenset())
         end = s if s is not None else o
         if sources and end is None:
             relations |= sources

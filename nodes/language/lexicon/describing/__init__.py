@@ -13,6 +13,7 @@ from typing import Any, Final, Literal
 
 from semmap.nodes.language import lexicon
 from semmap.nodes.language.words import lemma
+from semmap.schemas.relations import RELATIONS
 
 Language = Literal["english", "italian"]
 LANGUAGES: Final[tuple[Language, ...]] = ("english", "italian")
@@ -94,6 +95,13 @@ class Describing:
             text = text.replace(apart, together)
         return text
 
+    def contract_last(self, phrase: str) -> Iterator[str]:
+        """Yield a phrase with each contraction of its last word and an article: accanto al, accanto alla."""
+        for apart, together in self.contractions.items():
+            preposition = apart[: apart.index(" ", 1)]
+            if f" {phrase}".endswith(preposition):
+                yield f" {phrase}".removesuffix(preposition).lstrip() + together.rstrip()
+
     def has(self, word: str) -> bool:
         """Return whether a word form is in the lexicon."""
         return (word,) in self.senses or word in self.never_corrected
@@ -143,7 +151,8 @@ def load(language: Language) -> Describing:
     )
     senses: dict[_Words, dict[str, Any]] = {}
     stems: dict[_Words, dict[str, Any]] = {}
-    for text, kind, value in _entries(table):
+    relations = {row.name: _list_phrases(made, getattr(row, language)) for row in RELATIONS}
+    for text, kind, value in _entries(table | {"relations": relations | table["relations"]}):
         words = tuple(made.split(text))
         senses.setdefault(words, {})[kind] = value
         if kind in _INFLECTED:
@@ -155,6 +164,10 @@ def load(language: Language) -> Describing:
         longest=max(map(len, senses)),
         content=frozenset(map(made.base, table["words"]["content"])),
     )
+
+
+def _list_phrases(words: Describing, phrases: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(text for phrase in phrases for text in (phrase, *words.contract_last(phrase)))
 
 
 def _entries(table: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]]:

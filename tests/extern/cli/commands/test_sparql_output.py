@@ -49,7 +49,7 @@ def test_a_query_of_the_past(system):
         client.remove("chair9")
         assert client.sparql("ASK { :chair9 a dm:Seat }", inferred=True, as_of=before + 1).verdict
     assert system.cli("sparql", "ASK { :chair9 a dm:Chair }", "--as-of", str(before + 1)) == "true\n"
-    note = "  note: unknown term :chair9; did you mean :chair1?\n"
+    note = "note: unknown term :chair9; did you mean :chair1?\n"
     assert system.cli("sparql", "ASK { :chair9 a dm:Chair }") == f"false\n{note}"
 
 

@@ -3,8 +3,9 @@
 import pytest
 
 from semmap.nodes.extern.cli.output import lines
+from semmap.schemas.changes import Change
 from semmap.schemas.relations import Relation
-from semmap.schemas.replies import Changed
+from semmap.schemas.replies import Changed, LoggedCommit
 
 
 @pytest.mark.parametrize(("count", "shown"), [(0, 0), (1, 1), (20, 20), (21, 19), (700, 19)])
@@ -36,3 +37,23 @@ def test_what_a_thing_bears_is_one_sentence():
     many = list(lines.format_relations([on(f"cup{n}") for n in range(30)]))
     assert many[0].startswith("table1 supports cup0, cup1")
     assert many[0].endswith("and 11 more")
+
+
+def test_a_renamed_entity_is_listed_once():
+    commit = LoggedCommit(
+        seq=2,
+        stamp_ns=1,
+        source="operator",
+        agent="",
+        verb="rename",
+        reason="rename mug1 to mug2",
+        confidence=None,
+        undoes=(),
+        tbox=False,
+        inserted=3,
+        retracted=3,
+        changed=("mug2",),
+        removed=("mug1",),
+        changes=(Change(name="mug2", kind="name", was="mug1", now="mug2"),),
+    )
+    assert lines.format_commit_changes(commit) == "mug2: renamed from mug1"

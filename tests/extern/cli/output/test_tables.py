@@ -8,7 +8,7 @@ import pytest
 from msgspec import structs
 from rich.console import Console
 
-from semmap.nodes.extern.cli.output import show, show_past, tables
+from semmap.nodes.extern.cli.output import show, tables
 from semmap.schemas.entities import BodyState, Entity, Pose, Provenance
 from semmap.schemas.relations import Described
 from semmap.schemas.replies import LoggedCommit, NodeStatus, SystemStatus
@@ -48,14 +48,15 @@ def system(*nodes):
 TABLES = {
     "entities": lambda: show.entity_table([entity("chair1"), entity("chair_in_the_corner_12")]),
     "card": lambda: show.entity_card(Described.of(entity("chair1"))),
-    "history": lambda: show_past.history_table([commit(8), commit(1234)]),
+    "history": lambda: show.history_table([commit(8), commit(1234)]),
     "status": lambda: show.status_table(system(node("kb_node"), node("perception_node", "09:12:01 no disk"))),
 }
 
 
-def drawn(table, width):
+def drawn(table, width, *, is_terminal=True):
     out = io.StringIO()
-    Console(file=out, width=width, highlight=False, soft_wrap=True, markup=False).print(table)
+    terminal = {"force_terminal": is_terminal, "color_system": None}
+    Console(file=out, width=width, highlight=False, soft_wrap=True, markup=False, **terminal).print(table)
     return out.getvalue()
 
 
@@ -75,11 +76,33 @@ def test_very_many_rows_are_the_same_without_being_laid_out():
     few = [entity(f"chair{i}") for i in range(500)] + [entity("a\nb"), entity("椅子")]
     text, longer = drawn(show.entity_table(few), 1000), drawn(show.entity_table(few * 3), 1000)
     assert "a\\nb" in longer
-    assert longer.count(" chair7 ") == 3
+    assert longer.count("chair7 ") == 3
     lines = [line.rstrip() for line in text.splitlines() if line.strip()]
-    assert [line.split() for line in longer.splitlines()[2 : len(lines)]] == [x.split() for x in lines[2:]]
-    columns = {line.index("Alternative") for line in longer.splitlines()[2:] if line.isascii()}
+    assert [line.split() for line in longer.splitlines()[1 : len(lines) - 1]] == [
+        x.split() for x in lines[2:]
+    ]
+    columns = {line.index("Alternative") for line in longer.splitlines()[1:] if line.isascii()}
     assert columns == {longer.splitlines()[0].index("class")}
+
+
+def test_in_a_pipe_it_is_the_header_and_a_line_for_each_row():
+    text = drawn(show.entity_table([entity("cup2"), entity("a\nb")], ("name", "z")), 40, is_terminal=False)
+    assert [line.split() for line in text.splitlines()] == [
+        ["name", "z"],
+        ["cup2", "0.761"],
+        [r"a\nb", "0.761"],
+    ]
+
+
+def test_entities_are_sorted_by_a_column_and_those_without_a_value_come_last():
+    low, high, lost = entity("b"), entity("a"), structs.replace(entity("c"), pose=None)
+    low = structs.replace(low, pose=Pose(position_m=(0.0, 0.0, -1.0)), size_m=(3.0, 3.0, 3.0))
+    names = {
+        column: [e.name for e in show.sort_entities([lost, low, high], column)]
+        for column in ["z", "name", "size"]
+    }
+    assert names == {"z": ["b", "a", "c"], "name": ["a", "b", "c"], "size": ["c", "a", "b"]}
+    assert show.sort_entities([lost, low], None) == [lost, low]
 
 
 def test_a_list_of_very_many_rows_takes_no_time():
@@ -92,13 +115,13 @@ def test_a_list_of_very_many_rows_takes_no_time():
 def test_what_a_row_is_known_by_stays_on_one_line():
     text = drawn(show.entity_table([entity("chair_in_the_corner_12")]), 60)
     assert all(word in text for word in ("chair_in_the_corner_12", " 12.345 ", " -6.789 ", " 0.761 "))
-    assert " 1234 " in drawn(show_past.history_table([commit(1234)]), 60)
+    assert " 1234 " in drawn(show.history_table([commit(1234)]), 60)
 
 
 def test_a_common_list_and_history_fit_80_columns():
     common = tables.table("name", "class", "size [m]", "reference", fold=("class", "size [m]", "reference"))
     common.add("cup1", "Cup", "0.08 x 0.11 x 0.095", "the old coffee cup of my grandmother, a blue one")
-    for table in (common, show_past.history_table([commit(8)]), TABLES["status"]()):
+    for table in (common, show.history_table([commit(8)]), TABLES["status"]()):
         assert all(len(line) <= 80 for line in drawn(table, 80).splitlines())
 
 
@@ -123,7 +146,7 @@ def test_bodies_that_could_not_be_made_are_reported_below_the_list():
 
 def test_each_note_on_a_commit_has_a_row_of_its_own():
     noted = structs.replace(commit(8), notes=("retracted: one", "on table1 was cup1"))
-    lines = drawn(show_past.history_table([noted, commit(9)]), 200).splitlines()
+    lines = drawn(show.history_table([noted, commit(9)]), 200).splitlines()
     assert [line.strip() for line in lines if "note: " in line] == [
         "note: retracted: one",
         "note: on table1 was cup1",

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from semmap.nodes.kb_node.relations.geometry.convex import _search_contact, contact, make_convex
+from semmap.nodes.kb_node.relations.geometry.convex import _search_contact, contact, find_face, make_convex
 from semmap.nodes.kb_node.relations.geometry.solids import solid_of
 from tests.kb_node.relations.entities import thing
 
@@ -90,3 +90,25 @@ def test_a_contact_is_computed_once():
     one, other = box((0.0, 0.0, 0.0), (0.3, 0.3, 0.3), YAW), box((0.34, 0.0, 0.0), (0.3, 0.3, 0.3), 0.0)
     assert contact(one, other) is contact(one, other)
     assert contact(one, other, -0.1) is not contact(one, other)
+
+
+@pytest.mark.parametrize(
+    ("model", "size", "turn_deg", "corners"),
+    [
+        ("", (0.4, 0.4, 1.0), 0.0, 4),  # a face
+        ("", (0.4, 0.4, 1.0), 4.0, 4),  # within the slack
+        ("", (0.4, 0.4, 1.0), 6.0, 2),  # an edge
+        ("can", (0.1, 0.1, 0.2), 0.0, 8),  # a disc, as an octagon
+        ("can", (0.1, 0.1, 0.2), 20.0, 1),  # a point of its rim
+        ("can", (0.1, 0.1, 0.2), 90.0, 2),  # a line of its side
+        ("ball", (0.2, 0.2, 0.2), 30.0, 1),
+    ],
+)
+def test_the_face_in_a_direction(model, size, turn_deg, corners):
+    half = math.radians(turn_deg) / 2
+    turn = (math.cos(half), 0.0, math.sin(half), 0.0)
+    (part,) = solid_of(thing("thing1", (1.0, 2.0, 3.0), model, size=size, turn=turn)).parts
+    found = find_face(part, (0.0, 0.0, -1.0), math.sin(math.radians(5.0)))
+    assert len(found) == corners
+    assert min(z for _, _, z in found) == pytest.approx(part.low[2], abs=1e-6)
+    assert max(z for _, _, z in found) <= part.low[2] + 0.4 * math.sin(math.radians(5.0))

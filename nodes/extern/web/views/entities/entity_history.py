@@ -49,7 +49,7 @@ def _texts(name: str, commit: LoggedCommit, places: Collection[Entity]) -> Itera
     """Yield the changes of the entity; a commit that changes very many entities does not list them."""
     texts = [
         _describe_move(c, places) if c.kind == "pose" else c.text for c in commit.changes if c.name == name
-    ]
+    ] or [f"renamed to {c.now}" for c in commit.changes if c.kind == "name" and c.was == name]
     if not texts and name in commit.removed:
         texts = ["removed"]
     yield from texts or ["changed, with many others"]

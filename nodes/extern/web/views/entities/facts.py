@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Final, NamedTuple, get_args
+from typing import Final, NamedTuple
 
 from semmap.nodes.extern.phrasing import english
 from semmap.nodes.kb_node.reasoner.explain.sentences import triple_clause
@@ -12,9 +12,9 @@ from semmap.ontology import vocabulary as v
 from semmap.schemas.changes import value_in_words
 from semmap.schemas.entities import Entity, PropertyInfo, Value
 from semmap.schemas.explanations import Triple
-from semmap.schemas.relations import Relation, RelationName
+from semmap.schemas.relations import FACTS, PHRASES, Relation
 
-_MEASURED: Final = frozenset(v.dm(name) for name in get_args(RelationName)) - {v.dm("isLocatedIn")}
+_MEASURED: Final = frozenset(map(v.dm, PHRASES)) - {v.dm("isLocatedIn")}
 """Properties that are only computed from poses; `isLocatedIn` can also be inferred."""
 _NEAR: Final = v.dm("isNear")
 _PARTS: Final = frozenset(
@@ -24,8 +24,6 @@ _PARTS: Final = frozenset(
     )
 )
 """Predicates of the entity triples that other parts of the details show."""
-_VIEWER: Final = frozenset(("isLeftOf", "isRightOf", "isInFrontOf", "isBehind", "isBetween", "isVisibleFrom"))
-"""Relations that are not facts of the map: they depend on a viewpoint, or relate three entities."""
 
 
 class ExplainArgs(NamedTuple):
@@ -151,7 +149,7 @@ def computed_facts(entity: Entity, relations: Iterable[Relation]) -> tuple[Fact,
         clause, _, measured = relation.text.partition(": ")
         text = clause.removeprefix(f"{entity.name} ") if is_subject else clause
         other = relation.object if is_subject else relation.subject
-        is_fact = relation.holds and relation.relation not in _VIEWER and bool(relation.object)
+        is_fact = relation.holds and relation.relation in FACTS and bool(relation.object)
         why = ExplainArgs(relation.subject, relation.relation, relation.object) if is_fact else None
         found.append(Fact(text, why, other=other, measured=measured))
     return tuple(found)

@@ -10,6 +10,7 @@ from semmap.nodes.extern.phrasing import english, labelled
 from semmap.ontology import vocabulary as v
 from semmap.schemas.changes import stated_in_words
 from semmap.schemas.entities import Entity, PropertyInfo, Stated
+from semmap.schemas.relations import FACTS
 
 Kind = Literal["switch", "number", "choice", "thing", "text"]
 
@@ -23,12 +24,7 @@ _NUMBERS: Final = frozenset(
 )
 _UNIT: Final = re.compile(r"^In ([a-z][a-z /]*)\.")
 _ENTITY_TRIPLES: Final = frozenset(("hasReference", "hasPosition", "hasSize"))
-_GEOMETRY: Final = frozenset(
-    (
-        *("isAbove", "isUnder", "isNear", "isNextTo", "touches", "isOn", "supports", "isInside", "holds"),
-        *("isLocatedIn", "contains", "isAttachedTo"),
-    )
-)
+_GEOMETRY: Final = FACTS | {"supports", "holds", "contains"}
 """Relations that are computed from poses; they are not offered for editing unless they are asserted."""
 _ONLY_OF: Final = {
     v.TBOX + "isOpen": "Openable_Thing",

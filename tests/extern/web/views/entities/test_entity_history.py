@@ -64,10 +64,12 @@ def test_rotations_and_first_poses_have_no_distance():
 def test_only_changes_of_the_entity_are_listed():
     other = Change(name="cup2", kind="added", now="Cup")
     assert texts(other, Change(name="cup1", kind="reference", was="cup", now="mug")) == (
-        "renamed 'cup' → 'mug'",
+        "label: 'cup' → 'mug'",
     )
     assert texts(other) == ("changed, with many others",)
     assert texts(removed=("cup1",)) == ("removed",)
+    renamed = Change(name="mug1", kind="name", was="cup1", now="mug1")
+    assert texts(renamed, removed=("cup1",)) == ("renamed to mug1",)
 
 
 def test_the_newest_event_is_first_with_author_and_reason():

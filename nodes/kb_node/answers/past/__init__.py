@@ -1,0 +1,1 @@
+"""Answers about the past of the map, from the journal."""

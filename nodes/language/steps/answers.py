@@ -1,0 +1,99 @@
+"""Answers from the map to the questions in a command, with their evidence."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from semmap.nodes.language.steps.meaning import Meaning, World, number_of
+
+_MOST: Final = 5
+"""Names in one answer."""
+_PROPERTIES: Final = {
+    **dict.fromkeys(("color", "colour"), "Color"),
+    **dict.fromkeys(("material",), "Material"),
+    **dict.fromkeys(("weight", "mass"), "mass"),
+    **dict.fromkeys(("size", "height"), "size"),
+    **dict.fromkeys(("position", "location"), "where"),
+    **dict.fromkeys(("name", "names", "identity"), "label"),
+    **dict.fromkeys(("number", "amount", "count", "quantity", "total"), "number"),
+}
+"""Nouns of properties -> what the map has of them."""
+
+
+def answer(message: str, head: str, topic: str, meaning: Meaning, world: World) -> str:
+    """Return the answer to a question about the `topic` of a command, or that one has to look.
+
+    `message` states what is asked in lower case (*how many*, *where is*, *the color*) and `head` is its head.
+    """
+    description = meaning.description
+    looks = (
+        meaning.is_person and description is not None and (description.attributes or description.superlative)
+    )
+    if looks or (not meaning.names and meaning.alike and _is_open(meaning)):
+        return f"'{topic}': the map cannot tell; look there"
+    names = meaning.names
+    words = message.split()
+    wanted = _PROPERTIES.get(head)
+    if words[:1] in (["is"], ["are"]):
+        return _with_evidence("yes", names, world) if names else _no(topic, meaning, world)
+    if words[:2] in (["how", "many"], ["how", "much"]) or wanted == "number":
+        return _with_evidence(str(len(names)), names, world) if names else f"0: {_none(topic)}"
+    if not names:
+        return _none(topic)
+    if words[:1] in (["which"], ["what"], ["who"]) and wanted is None:
+        return _with_evidence("", names, world)
+    if words[:1] == ["where"]:
+        wanted = "where"
+    if wanted is None:
+        return f"'{topic}': the map does not have {message}; look there"
+    return " ".join(filter(None, (_property(name, wanted, head, world) for name in names[:_MOST])))
+
+
+def _is_open(meaning: Meaning) -> bool:
+    return meaning.description is not None and bool(meaning.description.attributes) and not meaning.doubts
+
+
+def _none(topic: str) -> str:
+    return f"'{topic}': none is known; look there"
+
+
+def _no(topic: str, meaning: Meaning, world: World) -> str:
+    """Return *no*, with where the things of this kind are."""
+    if not meaning.alike:
+        return _none(topic)
+    return f"no: {_listed([f'{name} is {where}' for name in meaning.alike if (where := world.where(name))])}"
+
+
+def _with_evidence(result: str, names: Sequence[str], world: World) -> str:
+    """Return a result with the names that it is based on and when each was last seen."""
+    known = [f"{name} ({seen})" if (seen := world.seen(name)) else name for name in names]
+    return f"{result}: {_listed(known)}" if result else _listed(known)
+
+
+def _listed(texts: Sequence[str]) -> str:
+    more = f" ... and {len(texts) - _MOST} more" if len(texts) > _MOST else ""
+    return ", ".join(texts[:_MOST]) + more
+
+
+def _property(name: str, wanted: str, noun: str, world: World) -> str:
+    """Return the sentence with a property of an entity."""
+    item = world.index.items[name]
+    value = ""
+    if wanted == "where":
+        place = world.where(name)
+        seen = world.seen(name)
+        evidence = f" ({seen})" if seen else ""
+        return f"{name} is {place}{evidence}" if place else f"{name}: the place is not known; look for it"
+    if wanted == "label":
+        value = next(iter(item.references), "")
+    elif wanted == "mass":
+        mass = number_of(item.values.get("mass", frozenset()))
+        value = f"{mass:g} kg" if mass is not None else ""
+    elif wanted == "size":
+        size = world.geometry.size(name)
+        value = " x ".join(f"{length:g}" for length in size) + " m" if size is not None else ""
+    else:
+        values = sorted(str(v) for key, all_ in item.values.items() if key.endswith(wanted) for v in all_)
+        value = ", ".join(world.index.label(one, "english") for one in values)
+    return f"{name}: {noun} {value}" if value else f"{name}: the {noun} is not known; look at it"

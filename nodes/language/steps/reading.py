@@ -1,0 +1,295 @@
+"""Converts a command to steps: its roles are resolved in the map, and pronouns in the earlier steps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Final
+
+from semmap.nodes.language.lexicon import commands
+from semmap.nodes.language.steps import tokens
+from semmap.nodes.language.steps.answers import answer
+from semmap.nodes.language.steps.clauses import Clause, ClauseReader, Role
+from semmap.nodes.language.steps.meaning import Meaning, Meanings, Names, World
+from semmap.nodes.language.steps.noun_phrase import NounPhrase, PlacePhrase
+from semmap.schemas.language import Antecedent, CommandStep, Filler
+
+_LOCATED_BY: Final = {
+    **dict.fromkeys(("Taking", "Bringing", "Giving", "Removing", "Placing", "Pouring"), "Source"),
+    "Locating": "Ground",
+}
+"""Frames with the role that states where their object is."""
+_WORDS_ONLY: Final = frozenset(("Message", "Trigger", "Desired_state", "Manner", "Direction"))
+_PLACES: Final = frozenset(("Goal", "Source", "Ground", "Location", "Path"))
+
+
+@dataclass(slots=True)
+class Steps:
+    """The steps of a command, the sets of entities of which one is meant, doubts and answers."""
+
+    steps: list[CommandStep] = field(default_factory=list)
+    ambiguous: list[Names] = field(default_factory=list)
+    doubts: list[str] = field(default_factory=list)
+    unknown: list[str] = field(default_factory=list)
+    answers: list[str] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class _Mention:
+    """A filler that a later pronoun may refer to."""
+
+    step: int
+    role: str
+    filler: Filler
+    is_person: bool
+    is_plural: bool
+    is_place: bool
+    phrase: NounPhrase | None = None
+
+
+def read_steps(text: str, world: World) -> Steps:
+    """Return the steps of a command in English."""
+    return _StepReader(tokens.read(text), world).read()
+
+
+class _StepReader:
+    def __init__(self, text: tokens.Text, world: World) -> None:
+        self._t, self._world = text, world
+        self._g = commands.load()
+        self._meanings = Meanings(text, self._g, world)
+        self._mentions: list[_Mention] = []
+        self._found = Steps()
+
+    def read(self) -> Steps:
+        """Return the steps."""
+        nouns = self._world.index.nouns["english"]
+        parsed = ClauseReader(self._t, self._g, nouns, self._meanings.is_person, self._world.above).read()
+        found = self._found
+        for number, clause in enumerate(parsed.clauses):
+            for _, phrase in (mention for mention in parsed.context if mention[0] == number):
+                meaning = self._meanings.of(phrase, may_be_none=True)
+                filler = Filler(
+                    self._t.between(phrase.first, phrase.end),
+                    self._t.words[phrase.head],
+                    meaning.names,
+                    meaning.description,
+                )
+                mention = _Mention(
+                    0, "", filler, meaning.is_person, phrase.is_plural, meaning.is_place, phrase
+                )
+                self._mentions.append(mention)
+            found.steps.append(self._step(clause, len(found.steps) + 1))
+        found.unknown = list(dict.fromkeys(parsed.unknown))
+        for condition in dict.fromkeys(text for clause in parsed.clauses for text in clause.conditions):
+            found.doubts.append(f"'{condition}' is a condition; it is not checked")
+        for time in dict.fromkeys(text for clause in parsed.clauses for text in clause.times):
+            found.doubts.append(f"'{time}' is a time; nothing is done then by itself")
+        found.doubts += [f"'{text}' is not understood" for text in parsed.unused]
+        found.doubts = list(dict.fromkeys(found.doubts))
+        return found
+
+    def _step(self, clause: Clause, number: int) -> CommandStep:
+        roles: dict[str, tuple[Filler, ...]] = {}
+        mentions: list[_Mention] = []
+        where = self._where(clause)
+        self._guide(clause)
+        for role in clause.roles:
+            fillers = tuple(self._fillers(clause, role, number, where, mentions))
+            roles[role.role] = (*roles.get(role.role, ()), *fillers)
+        self._mentions += mentions
+        return CommandStep(
+            clause.frame,
+            clause.verb.lower(),
+            roles,
+            clause.negated,
+            "; ".join(dict.fromkeys(clause.conditions)),
+            "; ".join(dict.fromkeys(clause.times)),
+        )
+
+    def _guide(self, clause: Clause) -> None:
+        """Change the frame of *take them to the kitchen* if a pronoun refers to a person."""
+        theme = clause.role("Theme")
+        if clause.frame not in self._g.persons or theme is None or not theme.phrases:
+            return
+        phrase = theme.phrases[0]
+        if phrase.kind == "pronoun" and not self._g.is_a(phrase.noun, "person_pronoun"):
+            antecedent = self._antecedent(phrase, clause, theme, [])
+            if (
+                antecedent is not None
+                and antecedent.is_person
+                and (clause.role("Goal") or clause.role("Source"))
+            ):
+                clause.frame, theme.role = self._g.persons[clause.frame], "Cotheme"
+
+    def _where(self, clause: Clause) -> list[PlacePhrase]:
+        """Return where the object of a clause is, by its Source or Ground."""
+        role = clause.role(_LOCATED_BY.get(clause.frame, ""))
+        if role is None or not role.phrases:
+            return []
+        other = role.phrases[0]
+        preposition = " ".join(self._t.words[role.first : other.first])
+        return [PlacePhrase(preposition or "in", other, role.first, role.end)]
+
+    def _fillers(
+        self, clause: Clause, role: Role, number: int, where: list[PlacePhrase], mentions: list[_Mention]
+    ) -> Iterator[Filler]:
+        words = self._t.words
+        if role.role in _WORDS_ONLY or not role.phrases:
+            yield Filler(self._t.between(role.first, role.end), words[role.head])
+            return
+        is_object = role.role == self._g.frames[clause.frame].roles.get("object") or role.role in ("Cotheme",)
+        for k, phrase in enumerate(role.phrases):
+            first = role.first if k == 0 else phrase.first
+            end = role.end if k == len(role.phrases) - 1 else phrase.end
+            text, head = self._t.between(first, end), words[phrase.head]
+            if phrase.noun == "there" and role.role in _PLACES:
+                yield self._there(text, head, number)
+                continue
+            if phrase.kind in ("speaker", "robot", "here"):
+                yield Filler(text, head)
+                continue
+            if phrase.kind == "pronoun":
+                yield self._pronoun(phrase, text, head, clause, role, number, mentions)
+                continue
+            self._complete(phrase, mentions)
+            for other in phrase.excluded:
+                if other.noun in ("one", "ones"):  # any cup but not the red one
+                    other.noun, other.key = phrase.noun, phrase.key
+            places = where if is_object and role.role not in _PLACES else []
+            owner = self._owner(phrase)
+            meaning = self._meanings.of(
+                phrase,
+                places,
+                may_be_none=role.role == "Topic" or clause.frame in ("Counting", "Being_located", "Removing"),
+                as_place=role.role in _PLACES,
+                owner=owner,
+            )
+            filler = Filler(text, head, meaning.names, meaning.description)
+            self._note(meaning)
+            if role.role == "Topic" and (message := clause.role("Message")) is not None:
+                asked = self._t.between(message.first, message.end).lower()
+                self._found.answers.append(answer(asked, words[message.head], text, meaning, self._world))
+            mentions.append(
+                _Mention(
+                    number,
+                    role.role,
+                    filler,
+                    meaning.is_person,
+                    phrase.is_plural,
+                    role.role in _PLACES or meaning.is_place,
+                    phrase,
+                )
+            )
+            yield filler
+
+    def _complete(self, phrase: NounPhrase, now: list[_Mention]) -> None:
+        """Give a phrase without a noun that of the last thing: the red one."""
+        if phrase.noun in ("one", "ones"):
+            before = (
+                m.phrase
+                for m in reversed((*self._mentions, *now))
+                if m.phrase is not None and not m.is_person and not m.is_place
+            )
+            if (like := next(before, None)) is not None:
+                noun = like.noun.rpartition(" ")[2]  # of "red cup" only "cup"
+                phrase.noun, phrase.key = noun, self._meanings.key(noun)
+
+    def _there(self, text: str, head: str, number: int) -> Filler:
+        """Return the filler for *there*: the last place that was mentioned."""
+        before = (m for m in reversed(self._mentions) if m.is_place and m.step != number)
+        place = next(before, None)
+        if place is None:
+            self._found.doubts.append("'there' refers to no place that was mentioned")
+            return Filler(text, head)
+        refers = Antecedent(place.step, place.role) if place.step else None
+        return Filler(text, head, place.filler.entities, place.filler.description, refers)
+
+    def _note(self, meaning: Meaning) -> None:
+        self._found.doubts += meaning.doubts
+        if meaning.ambiguous:
+            self._found.ambiguous.append(meaning.names)
+
+    def _owner(self, phrase: NounPhrase) -> Names:
+        """Return the entities of a possessive pronoun: his, her, their."""
+        if phrase.owner is None or phrase.owner.kind != "pronoun":
+            return ()
+        person = next((mention for mention in reversed(self._mentions) if mention.is_person), None)
+        return person.filler.entities if person is not None else ()
+
+    # Pronouns
+
+    def _pronoun(
+        self,
+        phrase: NounPhrase,
+        text: str,
+        head: str,
+        clause: Clause,
+        role: Role,
+        number: int,
+        mentions: list[_Mention],
+    ) -> Filler:
+        antecedent = self._antecedent(phrase, clause, role, mentions)
+        if antecedent is None:
+            if self._g.is_a(phrase.noun, "possessive") and phrase.noun not in ("her",):
+                return Filler(text, head)
+            self._found.doubts.append(f"'{phrase.noun}' refers to nothing that was mentioned")
+            return Filler(text, head)
+        description = antecedent.filler.description
+        filler = Filler(
+            text,
+            head,
+            antecedent.filler.entities,
+            description,
+            Antecedent(antecedent.step, antecedent.role) if antecedent.step else None,
+        )
+        mentions.append(
+            _Mention(
+                number, role.role, filler, antecedent.is_person, antecedent.is_plural, antecedent.is_place
+            )
+        )
+        return filler
+
+    def _antecedent(
+        self, phrase: NounPhrase, clause: Clause, role: Role, now: list[_Mention]
+    ) -> _Mention | None:
+        g, word = self._g, phrase.noun
+        mentions = [mention for mention in self._mentions if mention.filler.text]
+        if role.role in ("Beneficiary", "Recipient", "Addressee") or g.is_a(word, "person_pronoun"):
+            return next((m for m in reversed(mentions) if m.is_person), None)
+        if g.is_a(word, "several_pronoun"):
+            people = clause.frame in (
+                "Cotheme",
+                "Guiding",
+                "Make_acquaintance",
+                "Greeting",
+                "Introducing",
+                "Being_located",
+                "Locating",
+            )
+            last = next(
+                (
+                    m
+                    for m in reversed(mentions)
+                    if m.is_plural and not m.is_place and not (people and not m.is_person)
+                ),
+                None,
+            )
+            person = next((m for m in reversed(mentions) if m.is_person), None)
+            if people and person is not None:
+                return person
+            if last is not None:
+                return last
+            thing = next((m for m in reversed(mentions) if not m.is_place and not m.is_person), None)
+            return thing or person
+        things = [m for m in mentions if not m.is_person]
+        if (
+            role.role in _PLACES
+            and (theme := next((m for m in now if not m.is_place and not m.is_person), None)) is not None
+        ):
+            things = [
+                m for m in things if m.filler.entities != theme.filler.entities or not m.filler.entities
+            ]
+        acted_on = next((m for m in reversed(things) if not m.is_place), None)
+        if acted_on is not None and clause.frame not in ("Motion", "Arriving"):
+            return acted_on
+        return next(reversed(things), None)

@@ -1,0 +1,262 @@
+"""The steps of commands in the shipped flat, with persons, cups and masses added."""
+
+import pytest
+
+from semmap.nodes.kb_node.answers.command_parser import CommandParser
+from semmap.nodes.kb_node.answers.entity_search import EntitySearch
+from semmap.ontology import entity_triples
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commands import Understand
+from semmap.schemas.commits import Transaction
+from semmap.schemas.entities import Pose
+
+
+@pytest.fixture
+def read(flat):
+    x, y, _ = flat.entity("table1").pose.position_m
+    _, _, top = flat.entity("bowl1").pose.position_m
+    kitchen = flat.entity("kitchen1").pose.position_m
+    triples = []
+    for colour, left in (("red", -0.3), ("blue", 0.3)):
+        pose = Pose(position_m=(x + left, y + 0.1, top))
+        triples += entity_triples.describe(f"{colour}cup", v.dm("Cup"), pose=pose, size_m=[0.08, 0.08, 0.1])
+        triples.append((v.entity_iri(f"{colour}cup"), v.dm("hasMainColor"), v.dm(f"color_{colour}")))
+    triples += entity_triples.describe(
+        "nora1", v.dm("Person"), pose=Pose(position_m=(kitchen[0], kitchen[1], 0.0)), size_m=[0.4, 0.5, 1.7],
+        preferred="Nora",
+    )  # fmt: skip
+    flat.commit(Transaction(id="more", source="operator", insert=tuple(triples)))
+    parser = CommandParser(flat, EntitySearch(flat))
+    return lambda text: parser.parse(Understand(text=text))
+
+
+def texts(understood):
+    return [step.text for step in understood.steps]
+
+
+def filler(understood, role, step=0):
+    return understood.steps[step].roles[role][0]
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        (
+            "Could you take the red cup and bring it to Nora?",
+            ["Taking(Theme=redcup)", "Bringing(Theme=redcup, Beneficiary=nora1)"],
+        ),
+        (
+            "Head over to the studio, then to the kitchen.",
+            ["Motion(Goal=studio1)", "Motion(Goal=kitchen1)"],
+        ),
+        (
+            "Put a plate on the desk and a cup on it",
+            [
+                "Placing(Theme=plate1|plate2, Goal=desk1)",
+                "Placing(Theme=bluecup|cup1|redcup, Goal=plate1|plate2)",
+            ],
+        ),
+        (
+            "In the kitchen, find Nora and say hello to her",
+            ["Locating(Sought_entity=nora1, Ground=kitchen1)", "Greeting(Addressee=nora1)"],
+        ),
+        (
+            "Look in the studio for the laptop",
+            ["Locating(Ground=studio1, Sought_entity=laptop1)"],
+        ),
+        (
+            "Take Nora from the kitchen to the sofa",
+            ["Guiding(Cotheme=nora1, Source=kitchen1, Goal=couch1)"],
+        ),
+        (
+            "Take the kettle to the studio",
+            ["Bringing(Theme=kettle1, Goal=studio1)"],
+        ),
+        (
+            "I'd like the milk, please",
+            ['Bringing(Beneficiary="I", Theme=milk1)'],
+        ),
+        (
+            "Tell Nora to come to the studio",
+            ['Request(Addressee=nora1, Message="to come to the studio")'],
+        ),
+        (
+            "Pick the kettle up",
+            ["Taking(Theme=kettle1)"],
+        ),
+        (
+            "Nora is in the kitchen. Follow her.",
+            ["Being_located(Theme=nora1, Location=kitchen1)", "Cotheme(Cotheme=nora1)"],
+        ),
+        (
+            "Give me the name of the person at the sink",
+            ['Telling(Addressee="me", Message="the name", Topic="of the person at the sink")'],
+        ),
+    ],
+)
+def test_a_command_is_a_list_of_steps(read, text, steps):
+    understood = read(text)
+    assert texts(understood) == steps
+    assert (understood.doubts, understood.unknown, understood.question) == ((), (), "")
+
+
+@pytest.mark.parametrize(
+    ("text", "attributes"),
+    [
+        ("follow the waving person in the studio", ("waving",)),
+        ("follow the woman who is pointing to the left in the studio", ("woman", "pointing to the left")),
+        ("follow the guest with long hair in the studio", ("with long hair",)),
+        ("follow the man in the green coat in the studio", ("man", "in the green coat")),
+        ("follow the person raising their left arm in the studio", ("raising their left arm",)),
+    ],
+)
+def test_a_person_told_by_looks_is_no_entity_of_the_map(read, text, attributes):
+    person = filler(read(text), "Cotheme")
+    assert (person.entities, person.description.attributes) == ((), attributes)
+    assert [place.entities for place in person.description.relation] == [("studio1",)]
+
+
+def test_a_person_told_by_place_is_whom_the_map_has_there(read):
+    assert filler(read("follow the person in the kitchen"), "Cotheme").entities == ("nora1",)
+
+
+def test_an_unknown_name_stays_open_and_a_known_one_keeps_the_stated_place(read):
+    unknown = filler(read("greet Noor in the studio"), "Addressee")
+    assert (unknown.entities, unknown.description.name) == ((), "Noor")
+    known = filler(read("greet Nora in the studio"), "Addressee")
+    assert (known.entities, known.description.relation[0].entities) == (("nora1",), ("studio1",))
+
+
+@pytest.mark.parametrize(
+    ("text", "condition", "time"),
+    [
+        ("if Nora leaves, take the kettle", "if Nora leaves", ""),
+        ("take the kettle if Nora leaves", "if Nora leaves", ""),
+        ("when the oven is on take the kettle", "when the oven is on", ""),
+        ("take the kettle as soon as it is hot", "as soon as it is hot", ""),
+        ("don't take the kettle unless I say so", "unless I say so", ""),
+        ("wait until the oven is off, then take the kettle", "wait until the oven is off", ""),
+        ("after closing the door, take the kettle", "after closing the door", ""),
+        ("at 10:00 take the kettle", "", "at 10:00"),
+        ("take the kettle in five minutes", "", "in five minutes"),
+        ("take the kettle every morning", "", "every morning"),
+        ("tomorrow evening take the kettle", "", "tomorrow evening"),
+    ],
+)
+def test_conditions_and_times_are_in_the_step_and_in_the_doubts(read, text, condition, time):
+    understood = read(text)
+    (step,) = understood.steps
+    assert (step.frame, step.condition, step.time) == ("Taking", condition, time)
+    assert any((condition or time) in doubt for doubt in understood.doubts)
+
+
+def test_a_condition_holds_for_all_steps_of_its_sentence(read):
+    understood = read("if Nora leaves, take the kettle and go to the studio. Open the fridge.")
+    assert [step.condition for step in understood.steps] == ["if Nora leaves", "if Nora leaves", ""]
+
+
+def test_negation_is_of_its_own_clause(read):
+    understood = read("don't take the red cup, take the blue one")
+    assert texts(understood) == ["not Taking(Theme=redcup)", "Taking(Theme=bluecup)"]
+    assert texts(read("take any cup but not the red one")) == ["Taking(Theme=bluecup|cup1)"]
+
+
+@pytest.mark.parametrize(
+    ("text", "doubt"),
+    [
+        ("take the red kettle", "red"),
+        ("take the yellow fridge", "fridge1 is not yellow; it is white"),
+        ("take the laptop that is not on the desk", "the laptop that is not on the desk"),
+        ("take the cups from the oven", "no cup is known on or in oven1"),
+        ("take the kettle from the desk", "kettle1 is not on or in desk1"),
+        ("take the three plates", "'the three plates': there are only 2"),
+        ("take Nora's cup", "no cup is known that belongs to Nora"),
+        ("take Gregor's cup", "'Gregor' is not known"),
+        ("take my cup", "'my cup': the owner is not known"),
+        ("bring the frobnicator", "'frobnicator' is not known"),
+        ("take the violin", "violin"),
+        ("go to the balcony", "balcony"),
+        ("take it", "'it' refers to nothing that was mentioned"),
+        ("go to the kitchen by helicopter", "by helicopter"),
+        ("this morning was nice, take the kettle", "nice"),
+    ],
+)
+def test_every_word_is_used_or_named(read, text, doubt):
+    understood = read(text)
+    assert doubt in " ".join((*understood.doubts, *understood.unknown, understood.question))
+
+
+def test_an_unknown_verb_is_named_beside_the_steps_that_are_known(read):
+    understood = read("defenestrate the kettle and go to the kitchen")
+    assert (understood.unknown, texts(understood)) == (("defenestrate",), ["Motion(Goal=kitchen1)"])
+
+
+def test_a_pronoun_refers_to_what_was_described_even_if_it_is_not_known(read):
+    understood = read("take a beer from the fridge and put it on the table")
+    theme = filler(understood, "Theme", 1)
+    assert (theme.entities, theme.description.class_, theme.refers.step) == ((), "Beer", 1)
+    assert filler(understood, "Goal", 1).entities == ("table1",)
+
+
+@pytest.mark.parametrize(
+    ("text", "entities"),
+    [
+        ("find Nora in the kitchen and follow her", ("nora1",)),
+        ("find Nora in the kitchen and follow them", ("nora1",)),
+        ("take the red cup, find Nora, and give it to her", ("nora1",)),
+        ("when Nora arrives, greet her", ("nora1",)),
+    ],
+)
+def test_pronouns_of_persons(read, text, entities):
+    last = read(text).steps[-1]
+    assert list(last.roles.values())[-1][0].entities == entities
+
+
+@pytest.mark.parametrize(
+    ("text", "entities", "superlative"),
+    [
+        ("take the smallest cup on the table", None, "smallest"),
+        ("take the leftmost cup on the table", ("bluecup", "redcup"), "leftmost"),
+        ("take the oldest cup on the table", ("bluecup", "redcup"), "oldest"),
+    ],
+)
+def test_superlatives_stay_in_the_description(read, text, entities, superlative):
+    theme = filler(read(text), "Theme")
+    assert theme.description.superlative == superlative
+    assert entities is None or theme.entities == entities
+
+
+@pytest.mark.parametrize(
+    ("text", "answer"),
+    [
+        ("how many plates are on the table?", "2: plate1, plate2"),
+        ("tell me how many cups are in the oven", "0: 'cups are in the oven': none is known; look there"),
+        ("who is in the kitchen?", "nora1"),
+        ("where is the kettle?", "kettle1 is on counter1"),
+        ("what color is the fridge?", "fridge1: color white"),
+        ("is the kettle on the desk?", "no: kettle1 is on counter1"),
+        ("is the kettle in the kitchen?", "yes: kettle1"),
+        ("what is the name of the person in the kitchen?", "nora1: name Nora"),
+        ("tell me the pose of Nora", "'of Nora': the map does not have the pose; look there"),
+        (
+            "how many people in the kitchen are waving?",
+            "'people in the kitchen are waving': the map cannot tell; look there",
+        ),
+    ],
+)
+def test_a_question_is_answered_from_the_map_or_one_has_to_look(read, text, answer):
+    understood = read(text)
+    assert (understood.answer, understood.doubts) == (answer, ())
+
+
+@pytest.mark.parametrize("text", ["how are you", "what a day", "I took the kettle", "hi"])
+def test_another_text_than_a_command_has_no_steps(read, text):
+    assert read(text).steps == ()
+
+
+def test_every_text_ends_in_steps_or_doubts(read):
+    words = ("the", "cup", "if", "on", "and", ",", "who", "'s", "not", "in", "that", "all", "one", "at", "it")
+    for first in words:
+        for second in words:
+            understood = read(f"take {first} {second}")
+            assert understood.steps or understood.doubts or understood.unknown

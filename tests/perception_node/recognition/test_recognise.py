@@ -1,0 +1,32 @@
+import numpy as np
+
+from semmap.nodes.perception_node.recognition.features import features_of
+from semmap.nodes.perception_node.recognition.recognise import reclassify_trimmed, trim
+from semmap.nodes.perception_node.recognition.recognition_model import shipped
+from semmap.nodes.perception_node.recognition.vote import leaf_probabilities
+from tests.perception_node.recognition.test_features import ALONE, WITH_A_SCRAP
+
+
+def test_trimming_takes_a_scrap_away():
+    whole, bare = WITH_A_SCRAP.box.size_m, ALONE.box.size_m
+    assert whole.prod() > 1.4 * bare.prod()
+    trimmed = trim(WITH_A_SCRAP).box.size_m
+    assert trimmed.prod() < 0.75 * whole.prod()
+    assert np.abs(np.log(trimmed / bare)).max() < 0.2
+
+
+def test_what_is_recognised_is_not_looked_at_again():
+    learnt = shipped()
+    chances = np.full((1, len(learnt.classes)), 0.0)
+    chances[0, learnt.classes.index("Book")] = 1.0
+    assert reclassify_trimmed([WITH_A_SCRAP], chances, learnt) is chances
+
+
+def test_a_thing_without_scraps_stays_what_it_was():
+    learnt = shipped()
+    chances = leaf_probabilities(learnt, features_of([ALONE]))
+    assert (reclassify_trimmed([ALONE], chances, learnt) == chances).all()
+
+
+def test_nothing_is_nothing():
+    assert reclassify_trimmed([], np.empty((0, len(shipped().classes))), shipped()).shape[0] == 0
