@@ -81,7 +81,7 @@ pictures: setup  ## Render the screenshots, the plan and the movie of the manual
 drive-picture: setup  ## Draw what cameras saw in the drive that `make demo` has recorded
 	$(BIN)/python -m demo.strip docs/drive.png
 
-relations-picture: setup  ## Draw the sixty situations of docs/relations.md
+relations-picture: setup  ## Draw the situations of docs/relations.md
 	$(BIN)/python -m benchmarks.relations.picture docs/relations.png
 
 foreign-picture: setup  ## Draw what foreign things are taken for by what learnt from all others in dist/parts

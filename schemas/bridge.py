@@ -47,11 +47,15 @@ class Outcome(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Loaded(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The result of loading: the last commit of `parts` parts, the changed entities, and skipped ones."""
+    """The result of loading: the last commit of `parts` parts, the changed entities, and skipped ones.
+
+    `counts` has the number of entities that the document describes by what changed: `new`, `moved`, ...
+    """
 
     commit: Effects | None
     parts: int = 1
     names: tuple[str, ...] = ()
+    counts: dict[str, int] = {}
     skipped: tuple[str, ...]
     notes: tuple[str, ...] = ()
 
@@ -205,6 +209,7 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
     filename: str
     replace: bool
     skip_unknown: bool
+    add_only: bool = False
     strict: bool = False
     parts: bool = False
     dry_run: bool = False

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import Literal
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Final, Literal
 
 from msgspec import Struct, field
 
 from semmap.schemas.entities import Entity, Pose, Stated, Value, angle_rad, distance_m
 
+UNCHANGED: Final = "as they were"
 _STILL_M = 5e-4
 _SLIGHT_RAD = 0.0175
 Kind = Literal[
@@ -84,6 +85,30 @@ def earlier_names(changes: Iterable[Change]) -> set[str]:
 def removed(name: str, class_name: str) -> Change:
     """Return the change for the removal of an entity."""
     return Change(name=name, kind="removed", was=class_name)
+
+
+def count_kinds(described: Iterable[tuple[Entity | None, Entity | None]]) -> dict[str, int]:
+    """Return the number of entities by what has changed between two states: `new`, `moved and resized`, ...
+
+    The second state is None for an entity that has not changed.
+    """
+    counts: dict[str, int] = {}
+    for was, now in described:
+        word = UNCHANGED
+        if now is not None:
+            kinds = {change.kind for change in between(was, now)}
+            words = dict.fromkeys(word for kind, word in _PARTICIPLES.items() if kind in kinds)
+            word = " and ".join(words) or "changed"
+        counts[word] = counts.get(word, 0) + 1
+    return counts
+
+
+def counts_in_words(counts: Mapping[str, int]) -> str:
+    """Return the counts of `count_kinds` as text: `2 new, 1 moved, 3 as they were`."""
+    ordered = sorted(counts.items(), key=lambda item: (item[0] == UNCHANGED, item[0] != "new", -item[1]))
+    return ", ".join(
+        f"{count} {'as it was' if word == UNCHANGED and count == 1 else word}" for word, count in ordered
+    )
 
 
 def in_words(changes: Iterable[Change]) -> str:
@@ -207,3 +232,12 @@ _WORDS = {
     "tracking": _tracking,
     "property": _property,
 }
+_PARTICIPLES: Final[Mapping[Kind, str]] = {
+    "added": "new",
+    "pose": "moved",
+    "size": "resized",
+    "class": "reclassified",
+    "reference": "relabelled",
+    "alternatives": "relabelled",
+}
+"""Words for the kinds of changes that are counted; an entity with other changes is `changed`."""

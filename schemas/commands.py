@@ -409,7 +409,9 @@ class Clear(Command[Changed], frozen=True, tag="clear"):
 class Load(Command[Changed], frozen=True, tag="load"):
     """Load a file: an ABox, a scene in JSON or a HuRIC map; the format is detected from the content.
 
-    `replace` removes the present entities in the same commit. `skip_unknown` skips entities of classes that
+    What the file states about an entity that is in the map replaces its pose, size, labels and values of
+    functional properties; with `add_only`, such a file is rejected. `replace` removes the present entities in
+    the same commit. `skip_unknown` skips entities of classes that
     the TBox lacks; otherwise one such entity causes the file to be rejected. `strict` rejects a file that
     refers to undefined individuals; otherwise they are reported in a note. With `tbox`, the file is a TBox
     that replaces the present one, unless the map is invalid under it; with `extend`, its statements are added
@@ -426,6 +428,7 @@ class Load(Command[Changed], frozen=True, tag="load"):
     content: bytes
     filename: Annotated[str, Meta(max_length=5000)] = ""
     replace: bool = False
+    add_only: bool = False
     skip_unknown: bool = False
     strict: bool = False
     tbox: bool = False

@@ -113,6 +113,26 @@ def free_name(class_name: str, taken: Container[str]) -> str:
     return f"{stem}{number}"
 
 
+def valid_name(text: str, taken: Container[str] = ()) -> str:
+    """Return a name for an object that is called `text` elsewhere, such as `Apple_01.2` for `Apple|+01.2`.
+
+    A valid text is its own name. Otherwise, each sequence of other characters becomes `_`, and a name that is
+    in `taken` gets the first unused number.
+    """
+    name = re.sub(rf"[^\w.\-{_MARKS}]+", "_", composed(text)).strip("_")[:120] if not is_name(text) else text
+    stem = name if is_name(name) else f"_{name}"
+    name, number = stem, 1
+    while name in taken:
+        number += 1
+        name = f"{stem}_{number}"
+    return name
+
+
+def is_name(text: str) -> bool:
+    """Return whether a text can be the name of an entity."""
+    return re.match(NAME_PATTERN, text) is not None
+
+
 def composed(name: str) -> str:
     """Return a name in Unicode's composed form (NFC), in which names are stored and compared."""
     return name if name.isascii() else unicodedata.normalize("NFC", name)
@@ -266,6 +286,8 @@ class BodyState(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     detail: str = ""
     model: str = ""
     """The model of the body; for a pending one, the model that it will have."""
+    body: str = ""
+    """The name of the body in the world file, if it is another one than the entity's."""
     own_size: bool = False
     """Whether the entity's size is that of its model, because the map has none."""
     joints: tuple[Joint, ...] = ()

@@ -166,6 +166,11 @@ def live_key(node: str, instance: str = "*") -> str:
     return f"{ROOT}/@live/{node}/{instance}"
 
 
+def session_key(instance: str = "*") -> str:
+    """Return the liveliness token of a session, by which nodes detect that a client has gone."""
+    return f"{ROOT}/@session/{instance}"
+
+
 def robots_live(node: str = "*") -> str:
     """Return the liveliness tokens of a node of all named robots, for a session without a namespace."""
     return f"*/{live_key(node)}"

@@ -71,6 +71,10 @@ class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     grip_commit: int = -1
     in_the_way: str = ""
     """For a non-colliding body, the body that occupies its place."""
+    body: str = ""
+    """Its name in the world file, if that is not a valid name of an entity."""
+    label: str = ""
+    """The words of its name, if they are not a label of its class: `red mug`."""
     robot: bool = False
     """Whether `semmap up --robot` created it: it becomes a tracked entity for any source of truth."""
 

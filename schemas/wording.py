@@ -32,6 +32,11 @@ def bodies(count: int) -> str:
     return counted(count, "body", "bodies")
 
 
+def note_subject(node: str) -> str:
+    """Return the subject of the notes of a node."""
+    return "world" if node == "sim_node" else "TBox"
+
+
 def fallen(name: str, pose: Pose) -> str:
     """Return a message about a robot that has fallen over, with the command to put it upright."""
     x, y, _ = pose.position_m

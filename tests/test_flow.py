@@ -246,12 +246,14 @@ def test_in_mode_scene_the_map_follows_what_stands_in_the_simulator(tmp_path):
     world.write_text(SCENE)
     words = ("--abox", "none", "--world", world, "--truth", "scene", "--no-record")
     with running(tmp_path / "data", *words) as system, system.client() as client:
-        names = {"chair_3", "seat", "mug"}
+        names = {"chair_3", "seat", "mug", "gizmo_1"}
         until(lambda: {e.name for e in client.list()} == names, "bodies become entities")
-        assert {e.class_ for e in client.list()} == {"Chair", "Seat", "Cup"}
+        assert {e.class_ for e in client.list()} == {"Chair", "Seat", "Cup", "Object"}
         assert client.get("seat").properties["isDirectPartOf"] == "chair_3"
         assert client.get("mug").provenance.source == "scene"
-        assert any("gizmo_1" in problem for problem in client.status().problems)
+        unknown = "unknown class of 1 body of the world: gizmo_1; name the classes in a JSON file"
+        assert any(unknown in line for line in system.said)
+        assert any(unknown in note for node in client.status().nodes for note in node.notes)
         ignored = "declared but ignored: stool_9 (no such body)"
         assert any(ignored in line for line in system.said)
         assert any(ignored in node.detail for node in client.status().nodes)

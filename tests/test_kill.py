@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 
 import pytest
 
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from tests.conftest import until
 from tests.killing import Busy, kill_again_and_again
 
@@ -64,3 +67,60 @@ def test_a_request_right_after_a_kill_waits_for_the_restart(empty_map):
             until(lambda: client.history(), "the knowledge base answers")
             os.kill(empty_map.pid("kb_node"), signal.SIGKILL)
             assert ask() == min(i + 2, 3)
+
+
+def write_file(path):
+    """Write a file on whose load the knowledge base works long enough to be killed meanwhile."""
+    path.write_text("".join(f"<{v.ABOX}c{i}> a <{v.TBOX}Chair> .\n" for i in range(20_000)))
+    return path
+
+
+def until_at_work(system):
+    in_work = system.data / "in_work" / "kb_node"
+    until(lambda: in_work.read_bytes()[:1] != b"\0", "the knowledge base works on a request")
+
+
+def kill_at_work(system):
+    """Kill the knowledge base while it works on a request."""
+    pid = system.pid("kb_node")
+    until_at_work(system)
+    os.kill(pid, signal.SIGKILL)
+    until(lambda: system.pid("kb_node") != pid, "it is back")
+
+
+def test_a_request_that_ended_the_node_twice_is_rejected(empty_map, tmp_path):
+    empty_map.begin_anew("none")
+    file, ended = write_file(tmp_path / "many.ttl"), []
+
+    def load(client):
+        try:
+            ended.append(client.load(file, dry_run=True))
+        except errors.SemmapError as error:
+            ended.append(error)
+
+    with empty_map.client() as client:
+        loading = threading.Thread(target=load, args=(client,))
+        loading.start()
+        kill_at_work(empty_map)
+        kill_at_work(empty_map)
+        loading.join(60)
+        (rejected,) = ended
+        assert isinstance(rejected, errors.Refused)
+        assert rejected.text == (
+            "kb_node: request rejected: it ended the node twice; restart the system to try it again"
+        )
+        assert client.add("Chair", "chair1", at=(1.0, 2.0, 0.0)).commit == 2
+
+
+def test_a_request_whose_client_has_gone_is_not_sent_again(empty_map, tmp_path):
+    empty_map.begin_anew("none")
+    file = write_file(tmp_path / "many.ttl")
+    with empty_map.client() as client:
+        pid = empty_map.pid("kb_node")
+        with empty_map.spawned("load", str(file)) as loading:
+            until_at_work(empty_map)
+            loading.kill()
+            loading.wait()
+            os.kill(pid, signal.SIGKILL)
+        assert client.add("Chair", "chair1", at=(1.0, 2.0, 0.0)).commit == 2
+        assert [entity.name for entity in client.list()] == ["chair1"]

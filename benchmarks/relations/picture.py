@@ -1,4 +1,4 @@
-"""The sixty situations as one image: `python -m benchmarks.relations.picture docs/relations.png`."""
+"""The situations as one image: `python -m benchmarks.relations.picture docs/relations.png`."""
 
 from __future__ import annotations
 

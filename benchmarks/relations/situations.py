@@ -1,4 +1,4 @@
-"""Sixty manually created situations with the relations that a person would state.
+"""Manually created situations with the relations that a person would state.
 
 `tests/kb_node/relations/test_situations.py` checks the relations against them, and `picture` draws them.
 """
@@ -32,13 +32,20 @@ class Situation(NamedTuple):
 
 
 def thing(
-    name: str, at: Vector, *, yaw: float = 0.0, turn: Quaternion | None = None, size: Size | None = None
+    name: str,
+    at: Vector,
+    *,
+    yaw: float = 0.0,
+    turn: Quaternion | None = None,
+    size: Size | None = None,
+    fixed: bool = False,
 ) -> Entity:
     """Create a thing by its model's name and a number; with a size and without such a model, a box."""
     model = name.rstrip("0123456789")
     known = model in shapes()
     return Entity(
         name=name, class_=model.title(), iri=f"urn:{name}", types=(), model=model if known else "",
+        fixed=fixed,
         pose=Pose(position_m=at, orientation_wxyz=turn or orientation_from_yaw(yaw)),
         size_m=size or (own_size_m(model) if known else None), provenance=_NOBODY,
         pose_provenance=_NOBODY, shape_provenance=_NOBODY, reference_provenance=_NOBODY,
@@ -80,6 +87,11 @@ def tall(model: str) -> float:
     return shapes()[model].size_m[2]
 
 
+def seat(model: str) -> float:
+    """Return the height of a model's lowest surface, such as a seat [m]."""
+    return surface(model, -1)
+
+
 TOP = tall("table")
 TABLE = thing("table1", (0.0, 0.0, 0.0))
 WALL = thing("wall1", (-0.9, 0.0, 0.0), size=(0.1, 3.0, 2.5))
@@ -87,6 +99,10 @@ FRIDGE = thing("fridge1", (0.0, 0.0, 0.0))
 SHELVES = thing("bookshelf1", (0.0, 0.0, 0.0))
 BOWL = thing("bowl1", (0.0, 0.0, TOP))
 BLOCK = (0.2, 0.2, 0.1)
+COUCH = thing("couch1", (0.0, 0.0, 0.0))
+CHAIR = thing("chair1", (0.0, 0.0, 0.0))
+BUCKET = thing("bucket1", (0.0, 0.0, 0.0))
+ROOM = place("room1", (0.0, 0.0, 0.0), (4.0, 4.0, 2.5))
 
 
 def on_table(name: str, x: float = 0.0, y: float = 0.0, z: float = 0.0, **fields: object) -> Entity:
@@ -286,6 +302,55 @@ SITUATIONS: tuple[Situation, ...] = (
     situation("of no known size", place("kitchen1", (0.0, 0.0, 0.0), (4.0, 4.0, 2.5)), TABLE,
               thing("thing1", (0.0, 0.0, TOP)),
               said="thing1 isLocatedIn kitchen1, table1 isLocatedIn kitchen1"),
+    situation("a cup on a tray on a couch", COUCH, thing("tray1", (0.1, 0.0, seat("couch"))),
+              thing("cup1", (0.1, 0.0, seat("couch") + 0.01)),
+              said="tray1 isOn couch1, cup1 isOn tray1", also="cup1 isAbove couch1",
+              never="cup1 isUnder couch1"),
+    situation("the second book on a chair", CHAIR, thing("book1", (0.03, 0.0, seat("chair"))),
+              thing("book2", (0.03, 0.0, seat("chair") + tall("book"))),
+              said="book1 isOn chair1, book2 isOn book1", never="book2 isUnder chair1"),
+    situation("a ball on an armchair's cushion", thing("armchair1", (0.0, 0.0, 0.0)),
+              thing("cushion1", (0.1, 0.0, seat("armchair"))),
+              thing("ball1", (0.1, 0.0, seat("armchair") + tall("cushion"))),
+              said="cushion1 isOn armchair1, ball1 isOn cushion1", never="ball1 isUnder armchair1"),
+    situation("a towel on a pillow on a bed", thing("bed1", (0.0, 0.0, 0.0)),
+              thing("pillow1", (-0.6, 0.3, surface("bed", -1))),
+              thing("towel1", (-0.6, 0.3, surface("bed", -1) + tall("pillow"))),
+              said="pillow1 isOn bed1, towel1 isOn pillow1", never="towel1 isUnder bed1"),
+    situation("a chair pushed under a desk", thing("desk1", (0.0, 0.0, 0.0)),
+              thing("chair1", (0.42, 0.25, 0.0), yaw=math.pi), also="chair1 isUnder desk1",
+              never="chair1 isAbove desk1"),
+    situation("a box under a chair", CHAIR, thing("box1", (0.0, 0.0, 0.0), size=BLOCK),
+              also="box1 isUnder chair1", never="box1 isAbove chair1"),
+    situation("a box behind a chair's backrest", CHAIR, thing("box1", (-0.35, 0.0, 0.0), size=BLOCK),
+              never="box1 isUnder chair1"),
+    situation("a picture three centimetres above a couch", COUCH,
+              thing("picture1", (-0.4, 0.0, tall("couch") + 0.03), fixed=True),
+              never="picture1 isOn couch1"),
+    situation("a picture on a wall, just above a couch", WALL, thing("couch1", (-0.4, 0.0, 0.0)),
+              thing("picture1", (-0.83, 0.0, tall("couch")), fixed=True), said="picture1 isAttachedTo wall1"),
+    situation("a ceiling light just above a wardrobe", ROOM, thing("wardrobe1", (0.0, 0.0, 0.0)),
+              thing("light1", (0.0, 0.0, tall("wardrobe")), fixed=True),
+              said="wardrobe1 isLocatedIn room1, light1 isLocatedIn room1", never="light1 isOn wardrobe1"),
+    situation("a hook with a jacket", ROOM, thing("jacket1", (0.0, 0.0, 0.8), size=(0.1, 0.5, 0.9)),
+              thing("jacket_hook1", (0.0, 0.0, 1.7), fixed=True),
+              said="jacket1 isLocatedIn room1, jacket_hook1 isLocatedIn room1",
+              never="jacket_hook1 isOn jacket1"),
+    situation("a tap on a counter", thing("counter1", (0.0, 0.0, 0.0)),
+              thing("tap1", (0.0, 0.0, tall("counter")), fixed=True), said="tap1 isOn counter1"),
+    situation("an umbrella in a bucket", BUCKET,
+              thing("umbrella1", (0.05, 0.0, 0.46), turn=about_y(-90.0)), said="umbrella1 isInside bucket1"),
+    situation("a broom with its stick in a bucket", BUCKET,
+              thing("broom1", (0.0, 0.0, 1.37), turn=about_y(180.0)), said="broom1 isInside bucket1"),
+    situation("a baguette in a basket", TABLE, on_table("basket1"),
+              on_table("baguette1", x=0.05, z=0.012, size=(0.07, 0.07, 0.65)),
+              said="basket1 isOn table1, baguette1 isInside basket1"),
+    situation("a stick that leans in a bucket", BUCKET,
+              thing("stick1", (-0.05, 0.0, 0.0135), size=(0.02, 0.02, 1.0), turn=about_y(20.0)),
+              said="stick1 isInside bucket1"),
+    situation("a stick beside a bucket", BUCKET, thing("stick1", (0.2, 0.0, 0.0), size=(0.02, 0.02, 1.0))),
+    situation("a bottle on a tray is not inside it", TABLE, on_table("tray1"), on_table("bottle1", z=0.01),
+              said="tray1 isOn table1, bottle1 isOn tray1"),
     situation("nine kilometres away", thing("table1", (9000.0, 0.0, 0.0)), thing("cup1", (9000.0, 0.0, TOP)),
               said="cup1 isOn table1"),
 )  # fmt: skip

@@ -106,7 +106,8 @@ def try_out(path: Path, names: list[str]) -> Outcome:
     with tempfile.TemporaryDirectory() as folder, own_system(Path(folder) / "data", *words) as client:
         entities, scene = _settled(client)
         problems = client.status().problems
-    told = [name for name in scene.left_out if any(name in problem for problem in problems)]
+    entities = {body.body or body.name for body in scene.bodies if body.name in entities}
+    told = list(scene.left_out)  # of which the status lists the first and counts the others
     told += [b.name for b in scene.bodies if any(problem.startswith(f"{b.name}: ") for problem in problems)]
     named = entities | set(told)
     lost = [name for name in names if name and name not in named]

@@ -3,6 +3,7 @@
 from semmap.nodes.bus import zenoh_config
 from semmap.nodes.bus.fragmentation import FRAGMENT_BYTES, MESSAGE_BYTES, PUBLICATION_BYTES
 from semmap.nodes.bus.liveliness import (
+    DepartureMonitor,
     LivelinessMonitor,
     declare_presence,
     find_robots,
@@ -61,6 +62,7 @@ __all__ = [
     "TLS",
     "BusyBackoff",
     "ConnectionClosed",
+    "DepartureMonitor",
     "Encoded",
     "ForeignReply",
     "LivelinessMonitor",

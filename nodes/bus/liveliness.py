@@ -17,6 +17,8 @@ from semmap.schemas import keys
 _ROBOTS_S: Final = 3.0
 _LOOK_S: Final = 1.0
 _LOOKS: Final = 6
+_MAX_GONE: Final = 10_000
+"""The largest number of remembered sessions; the oldest are dropped."""
 
 
 class LivelinessMonitor:
@@ -86,6 +88,31 @@ class LivelinessMonitor:
         gone = node
         for nodes in [nodes for nodes in list(self._tokens) if gone in nodes]:
             self._tokens.pop(nodes).cancel()  # type: ignore[no-untyped-call]
+
+
+class DepartureMonitor:
+    """The sessions that have gone. Every session of `open_session` holds a token; others never count as gone.
+
+    A session that is linked only through a node also counts as gone when that node goes: it receives no reply
+    to its present queries, and repeats them itself. Any thread may use it.
+    """
+
+    def __init__(self, session: zenoh.Session) -> None:
+        self._gone: dict[str, None] = {}
+        session.liveliness().declare_subscriber(keys.session_key(), self._on_change)
+
+    def has_gone(self, instance: str) -> bool:
+        """Return whether the session with this id has gone."""
+        return instance in self._gone
+
+    def _on_change(self, sample: zenoh.Sample) -> None:
+        instance = keys.last_chunk(str(sample.key_expr))
+        if sample.kind != zenoh.SampleKind.DELETE:
+            self._gone.pop(instance, None)
+            return
+        self._gone[instance] = None
+        if len(self._gone) > _MAX_GONE:
+            self._gone.pop(next(iter(self._gone)))
 
 
 def declare_presence(session: zenoh.Session, node: str) -> Any:

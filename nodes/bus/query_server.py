@@ -35,7 +35,7 @@ class Request(Struct, frozen=True):
 
     With `plain`, the reply may be `Encoded`. `who` is the client by the key; whether that is certified is
     decided by those who serve `semmap/as/*/cmd`. `source` is the session as reported by Zenoh, for
-    forwarding.
+    forwarding. A put has no client that waits.
     """
 
     verb: str
@@ -45,11 +45,21 @@ class Request(Struct, frozen=True):
     plain: bool = False
     who: str = ""
     source: Any = None
+    is_put: bool = False
 
     @property
     def asker(self) -> str:
         """Identifies the client: `who`, the id of the session, or "" if it is unknown."""
-        return self.who or ("" if self.source is None else str(self.source.source_id.zid))
+        return self.who or self._instance
+
+    @property
+    def waits(self) -> str:
+        """The id of the session that waits for the reply, or "" if none is known."""
+        return "" if self.is_put else self._instance
+
+    @property
+    def _instance(self) -> str:
+        return "" if self.source is None else str(self.source.source_id.zid)
 
     def read(self, kind: Any) -> Any:
         """Return the message, of type `kind`. Raises BadRequest."""
@@ -213,7 +223,7 @@ def serve_puts(session: zenoh.Session, prefix: str, receive: Callable[[Request],
         if len(payload) > fragmentation.MESSAGE_BYTES:
             send(errors.to_message(fragmentation.too_large(len(payload), fragmentation.MESSAGE_BYTES)), False)
             return
-        receive(Request(verb, payload, {}, send, source=sample.source_info))
+        receive(Request(verb, payload, {}, send, source=sample.source_info, is_put=True))
 
     session.declare_subscriber(f"{prefix}/**", zenoh.handlers.Callback(on_put, acks.end))
 

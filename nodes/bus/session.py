@@ -203,6 +203,8 @@ def open_session(network: Network) -> Iterator[zenoh.Session]:
         reason = str(error).split(" at /", 1)[0]
         raise errors.BadRequest(f"cannot open a session at {where}: {reason}") from None
     try:
+        token = session.liveliness().declare_token(keys.session_key(str(session.zid())))
         yield session
+        del token
     finally:
         session.close()  # type: ignore[no-untyped-call]

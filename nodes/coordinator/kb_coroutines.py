@@ -144,7 +144,7 @@ def _made_by(queries: Mapping[int, MadeBy]) -> KbCoroutine[dict[int, Answer]]:
 def _commits(transactions: Mapping[int, Transaction]) -> KbCoroutine[dict[int, Answer]]:
     try:
         outcomes = yield from ask(Transactions(transactions=tuple(transactions.values())))
-    except errors.BadRequest:  # one of them is invalid: find out which
+    except (errors.BadRequest, errors.Refused):  # one is invalid, or has ended the node: find out which
         return (yield from _each(transactions))
     return {i: _reply_of(outcome) for i, outcome in zip(transactions, outcomes, strict=True)}
 

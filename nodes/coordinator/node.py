@@ -13,6 +13,7 @@ from msgspec import structs
 from semmap.nodes.coordinator.access import admission, authority
 from semmap.nodes.coordinator.access.approvals import Approvals
 from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
+from semmap.nodes.coordinator.commands.joint_state import require_not_of_scene
 from semmap.nodes.coordinator.commands.registration import HANDLERS
 from semmap.nodes.coordinator.config import CoordinatorConfig
 from semmap.nodes.coordinator.early_commands import EarlyCommands
@@ -34,7 +35,7 @@ from semmap.nodes.coordinator.scheduler import Change, Results, Scheduler
 from semmap.nodes.runtime import memory
 from semmap.nodes.runtime.class_names import ClassNames
 from semmap.nodes.runtime.futures import SingleThreadFuture, settle, then
-from semmap.nodes.runtime.loop import Node, open_node
+from semmap.nodes.runtime.loop import HasGone, Node, open_node
 from semmap.nodes.runtime.map_follower import Follower, SnapshotLoaded
 from semmap.schemas import calls, keys, wording
 from semmap.schemas import commands as c
@@ -63,7 +64,7 @@ class Coordinator:
         self._config = config
         self._kb = KbClient(node)
         self._dispatcher = CommandDispatcher(self._kb.ask)
-        self._scheduler = Scheduler(self._change_together)
+        self._scheduler = Scheduler(self._change_together, node.has_gone)
         self._reconciler = Reconciler(config, self._dispatcher, self._follow, self._ask_sim, node.report)
         self._completion = Completion(config.truth, self._dispatcher, self._reconciler)
         self._watched = self._completion.watch(self._scheduler.change)
@@ -98,6 +99,8 @@ class Coordinator:
             c.Add.answered_by(frames.in_map_frame(self._change_and_wait_for_body)),
             c.Update.answered_by(frames.in_map_frame(self._change_and_wait_for_body)),
             c.Batch.answered_by(self._change_with_note),
+            c.Set.answered_by(self._change_with_note),
+            c.Unset.answered_by(self._change_with_note),
             c.Track.answered_by(self._track),
             c.Remove.answered_by(self._change_with_note),
             c.Clear.answered_by(self._change_with_note),
@@ -160,6 +163,7 @@ class Coordinator:
         )
         node.follow_newest(keys.POSES, self._on_poses)
         node.follow(keys.HEALTH, self._on_health)
+        node.monitor_departures()
         left = self._is_answered_by_kb
         node.serve(keys.CMD, handlers, puts=True, leave=left, admit=admission.admit_claimed, urgent=_URGENT)
         if config.keys is not None:
@@ -247,10 +251,10 @@ class Coordinator:
             made.add_done_callback(lambda _: self._node.soon(_release_memory))
         return made
 
-    def _change_together(self, changes: Sequence[Change]) -> Future[Results]:
+    def _change_together(self, changes: Sequence[Change], has_gone: HasGone) -> Future[Results]:
         is_alone = len(changes) == 1 and not len(self._scheduler)
         ask = self._kb.change if is_alone else self._kb.change_later
-        return run_async(self._dispatcher.run_together(changes), ask)
+        return run_async(self._dispatcher.run_together(changes), lambda call: ask(call, has_gone))
 
     def _wait_for_body(self, changed: Changed) -> Future[Changed]:
         future: Future[Changed] = SingleThreadFuture()
@@ -278,8 +282,13 @@ class Coordinator:
             future.set_result(structs.replace(changed, text=f"{changed.text}; body: {status}"))
         self._waiting = still
 
-    def _change_with_note(self, command: c.Add | c.Update | c.Batch | c.Remove | c.Clear) -> Future[Changed]:
+    def _change_with_note(
+        self, command: c.Add | c.Update | c.Batch | c.Set | c.Unset | c.Remove | c.Clear
+    ) -> Future[Changed]:
         """Change the map, and add a note if the scene or perception will override the change."""
+        if self._config.truth == "scene":
+            changes = command.changes if isinstance(command, c.Batch) else (command,)
+            require_not_of_scene(changes, self._reconciler.scene.bodies)
         made, note = self._scheduler.change(command), authority.describe_override(command, self._config.truth)
         if note is None:
             return made

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 
 from semmap.nodes.coordinator.reconciler.observed_state import ObservedState
 from semmap.nodes.runtime.futures import SingleThreadFuture, settle
+from semmap.nodes.runtime.loop import HasGone, never
 from semmap.schemas.commands import Add, Command, Set, Track, Unset, Update
 from semmap.schemas.replies import Changed
 
@@ -36,6 +37,7 @@ class _Waiting(NamedTuple):
     change: Change | None
     execute: Callable[[], Any]
     future: Future[Any]
+    has_gone: HasGone
 
 
 Group = frozenset[str | None]
@@ -45,9 +47,18 @@ Group = frozenset[str | None]
 class Scheduler:
     """Owned by the coordinator's thread, which calls `run_ready` when it has nothing else to do."""
 
-    def __init__(self, together: Callable[[Sequence[Change]], Future[Results]]) -> None:
-        """`together(changes)` executes a group of changes, or one that is sent alone."""
+    def __init__(
+        self,
+        together: Callable[[Sequence[Change], HasGone], Future[Results]],
+        client: Callable[[], HasGone] = lambda: never,
+    ) -> None:
+        """`together(changes, has_gone)` executes a group of changes, or one that is sent alone.
+
+        `has_gone()` returns whether all their clients have gone. `client()` returns that function for the
+        client of the change that is being scheduled.
+        """
         self._together = together
+        self._client = client
         self._waiting: deque[_Waiting] = deque()
         self._under_way: list[Group] = []
 
@@ -58,7 +69,7 @@ class Scheduler:
     def change(self, change: Change) -> Future[Changed]:
         """Schedule a change and return its future result."""
         future: Future[Changed] = SingleThreadFuture()
-        self._waiting.append(_Waiting(change, lambda: None, future))
+        self._waiting.append(_Waiting(change, lambda: None, future, self._client()))
         if len(self._waiting) >= MAX_GROUP_SIZE:
             self.run_ready()
         return future
@@ -68,7 +79,7 @@ class Scheduler:
         if not self._waiting and not self._under_way:
             return execute()
         future: Future[Any] = SingleThreadFuture()
-        self._waiting.append(_Waiting(None, execute, future))
+        self._waiting.append(_Waiting(None, execute, future, never))
         return future
 
     def run_ready(self) -> None:
@@ -82,8 +93,8 @@ class Scheduler:
             elif self._under_way:
                 return
             else:
-                _, execute, future = self._waiting.popleft()
-                settle(future, execute)
+                waiting = self._waiting.popleft()
+                settle(waiting.future, waiting.execute)
 
     def _next_group(self) -> list[Change]:
         """Return the changes at the front that depend neither on one another nor on a group under way.
@@ -91,12 +102,13 @@ class Scheduler:
         None of them begin beside a larger group, because more changes will have arrived when that is done.
         """
         if not self._under_way and len(self._waiting) == 1:  # the usual case
-            return [change for change, _, _ in self._waiting if change is not None]
+            return [waiting.change for waiting in self._waiting if waiting.change is not None]
         if len(self._under_way) == MAX_GROUPS or any(None in group for group in self._under_way):
             return []
         names = {name for group in self._under_way for name in group}
         members: list[Change] = []
-        for change, _, _ in islice(self._waiting, MAX_GROUP_SIZE):
+        for waiting in islice(self._waiting, MAX_GROUP_SIZE):
+            change = waiting.change
             name = None if change is None else _entity(change)
             if change is not None and name is None and not members and not self._under_way:
                 return [change]
@@ -107,17 +119,17 @@ class Scheduler:
         return members if all(len(members) >= len(group) for group in self._under_way) else []
 
     def _begin(self, members: Sequence[_Waiting]) -> None:
-        changes = [change for change, _, _ in members if change is not None]
+        changes = [member.change for member in members if member.change is not None]
         group = frozenset(map(_entity, changes))
         self._under_way.append(group)
 
         def on_done(done: Future[Results]) -> None:
             self._under_way.remove(group)
-            for i, (_, _, future) in enumerate(members):
-                settle(future, lambda i=i: _result(done.result()[i]))  # type: ignore[misc]
+            for i, member in enumerate(members):
+                settle(member.future, lambda i=i: _result(done.result()[i]))  # type: ignore[misc]
 
         try:
-            results = self._together(changes)
+            results = self._together(changes, lambda: all(member.has_gone() for member in members))
         except Exception as error:  # any error goes to those who wait
             results = SingleThreadFuture()
             results.set_exception(error)

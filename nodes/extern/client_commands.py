@@ -142,6 +142,9 @@ def _set(
 ) -> Command[replies.Changed]:
     """Set a data or object property of an entity: `client.set("door1", "isOpen", True)`.
 
+    The range of the property gives the datatype. A text ends with its language where the range allows one:
+    `client.set("shelf1", "title", "Regal@de")`.
+
     The value of a functional property replaces the previous one. Other properties keep their previous values.
     Raises PreconditionFailed in these cases:
 
@@ -194,6 +197,7 @@ def _load(
     path: str | Path,
     *,
     replace: bool = False,
+    add_only: bool = False,
     skip_unknown: bool = False,
     strict: bool = False,
     tbox: bool = False,
@@ -209,9 +213,11 @@ def _load(
 
     A plan is the YAML file of a map of the ROS map server: its free space is divided into rooms at the doors.
 
-    `replace` removes the current entities in the same commit. `skip_unknown` skips entities whose class is
-    not in the TBox. `strict` rejects a file that refers to undescribed entities. `parts` loads the file in
-    several commits, for files of any size.
+    What the file states about an entity that is in the map replaces its pose, size, labels and values of
+    functional properties, in one commit; with `add_only`, such a file is rejected. `replace` removes all
+    current entities in the same commit. `skip_unknown` skips entities whose class is not in the TBox.
+    `strict` rejects a file that refers to undescribed entities. `parts` loads the file in several commits,
+    for files of any size.
 
     With `tbox`, the file (or folder) is a TBox that replaces the current one, including its imports. These
     are found by `imports` (a file for each IRI), by a catalogue, or in the same folder. `spatial_root` are
@@ -232,6 +238,7 @@ def _load(
         content=packed(content),
         filename=filename,
         replace=replace,
+        add_only=add_only,
         skip_unknown=skip_unknown,
         strict=strict,
         tbox=tbox,

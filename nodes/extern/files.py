@@ -30,13 +30,13 @@ def read_file(path: Path) -> bytes:
     return content
 
 
-def read_label_map(path: Path) -> dict[str, str]:
-    """Return the classes by label of a detector, from a JSON file. Raises BadFile."""
+def read_label_map(path: Path, of: str = "labels", example: str = "coffee mug") -> dict[str, str]:
+    """Return the classes by label of a detector, or by name of a body, from a JSON file. Raises BadFile."""
     try:
         return msgspec.json.decode(read_file(path), type=dict[str, str])
     except msgspec.DecodeError:
         raise errors.BadFile(
-            f'{path} is not a JSON object of labels and classes, such as {{"coffee mug": "Cup"}}'
+            f'{path} is not a JSON object of {of} and classes, such as {{"{example}": "Cup"}}'
         ) from None
 
 

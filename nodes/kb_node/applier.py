@@ -41,12 +41,15 @@ class Applier:
         commit: Commit,
         make_durable: Callable[[Commit], Commit],
         noted: Callable[[Commit], Commit] = lambda commit: commit,
+        *,
+        strict: bool = False,
     ) -> Commit:
         """Return the commit, durable and with its effects.
 
         Raises Inconsistent, and what `make_durable` raises.
 
-        On any error everything is as before. `noted` adds notes when the reasoner has the change already.
+        On any error everything is as before. `noted` adds notes when the reasoner has the change already. If
+        `strict`, entities with several poses or sizes are rejected.
         """
         state = self._state
         subjects = preconditions.subjects(commit.retracted, commit.inserted)
@@ -64,7 +67,7 @@ class Applier:
         try:
             if not lenient:
                 self._require_agreement(commit)
-            commit = noted(self._with_effects(commit, owners, change, new))
+            commit = noted(self._with_effects(commit, owners, change, new, strict=strict))
             del owners, subjects, known, new, change  # for a large commit these take a third of the memory
             if state.derives_at_commits:
                 commit = self._with_places(commit)
@@ -150,9 +153,13 @@ class Applier:
             raise
         return Change.together(changes)
 
-    def _with_effects(self, commit: Commit, owners: Set[Term], change: Change, new: Set[Term]) -> Commit:
+    def _with_effects(
+        self, commit: Commit, owners: Set[Term], change: Change, new: Set[Term], *, strict: bool = False
+    ) -> Commit:
         state = self._state
-        reading = entity_changes.Reading(state.reasoner, state.classes, self._patterns, state.progress)
+        reading = entity_changes.Reading(
+            state.reasoner, state.classes, self._patterns, state.progress, strict=strict
+        )
         return entity_changes.add_effects(commit, change, state.by_name, reading, owners=owners, new=new)
 
     def _with_places(self, commit: Commit) -> Commit:

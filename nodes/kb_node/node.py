@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
+from pathlib import Path
 
 from semmap.nodes.kb_node.answers import entity_queries
 from semmap.nodes.kb_node.answers.location_queries import LocationQueries
@@ -24,7 +25,7 @@ from semmap.nodes.kb_node.sparql.standing_queries.row_publisher import RowPublis
 from semmap.nodes.kb_node.sparql.triples.large_map import LargeMap
 from semmap.nodes.kb_node.storage.checkpointing import Checkpointing
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
-from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
+from semmap.nodes.kb_node.storage.journal.sqlite_file import DiskFull, NotWritten
 from semmap.nodes.runtime import memory
 from semmap.nodes.runtime.loop import Node, open_node
 from semmap.schemas import errors, keys, wording
@@ -35,6 +36,8 @@ STARTS_AGAIN = 70
 """The exit status after which supervisord restarts the node."""
 _FETCHED_S = 0.05
 """Period of the check whether the map is still being fetched [s]."""
+_ROOM_PERIOD_S = 1.0
+"""Period of the check whether a full disk has space again [s]."""
 CHECKPOINT_DELAY_S = 3.0
 """Delay after a very large commit, which other nodes fetch first."""
 
@@ -56,7 +59,7 @@ class KnowledgeBase:
             self.map.all_derived,
             lambda: Placements(placed=self.map.placed(), limits=self.map.classes.limits),
         )
-        self.map.on_failure = node.stop
+        self.map.on_failure = node.stop_failed
         self.map.prepare = self._sparql.prepare
         self._location_queries = LocationQueries(self.map, RowPublisher(node.session).publish)
         self._queries = QueryHandlers(
@@ -167,13 +170,26 @@ class KnowledgeBase:
             self._checkpointing.close()
 
 
+def _open_journal(node: Node, path: Path) -> Journal | None:
+    """Open the journal, and wait while its disk is full. Returns None if the node is stopped meanwhile."""
+    while True:
+        try:
+            return Journal(path)
+        except DiskFull:
+            node.describe(f"disk full: waiting for space in {path.parent}")
+            if not node.wait(_ROOM_PERIOD_S):
+                return None
+
+
 def run(config: KbConfig) -> None:
     """Run the node until it is stopped."""
     path = config.data / FILENAME
     if not path.exists():
         raise errors.BadFile(f"there is no map in {config.data}; seed one with --tbox and --abox")
     with open_node("kb_node", config.network) as node:
-        journal = Journal(path)
+        journal = _open_journal(node, path)
+        if journal is None:
+            return
         try:
             with memory.uncollected(freeze=True):
                 knowledge_base = KnowledgeBase(node, journal, config)

@@ -150,7 +150,9 @@ class SemanticMap(MapState):
             return self._make_commit(transaction)
 
     def _make_commit(self, transaction: Transaction) -> Commit | None:
-        plan, apply = planning.make_plan(self, transaction), self._applier.apply
+        plan = planning.make_plan(self, transaction)
+        # edits keep one pose for each entity, but triples from outside may state several
+        apply = partial(self._applier.apply, strict=bool(transaction.insert))
         if plan is None:
             return None
         commit = planning.make_commit(transaction, plan, self.seq + 1)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import msgspec
 
 from semmap.nodes.geometry.polygons import Point
-from semmap.nodes.navigation.map_server import MapDescription, Pixels, grid_of
+from semmap.nodes.navigation.map_server import MapDescription, Pixels, grid_of, has_unknown_grey
 from semmap.nodes.navigation.rooms import RoomSegmentation, segment_rooms
 from semmap.schemas import errors, scene_files
 from semmap.schemas.polygons import simple, wkt
@@ -44,7 +44,14 @@ def loaded_plan(described: MapDescription, pixels: Pixels, name: str) -> LoadedP
             f"{name} has no free area of more than 2 square metres; check its thresholds, resolution"
             " and negate"
         )
-    return _scene(found, described)
+    plan = _scene(found, described)
+    if not has_unknown_grey(described, pixels):
+        return plan
+    note = (
+        "note: pixels of value 205 are unknown, although free_thresh"
+        f" {described.free_thresh:g} makes them free; ROS's map_saver writes unknown cells so"
+    )
+    return replace(plan, lines=(*plan.lines, note))
 
 
 def _scene(found: RoomSegmentation, described: MapDescription) -> LoadedPlan:

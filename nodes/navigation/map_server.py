@@ -190,6 +190,18 @@ def _pgm(content: bytes, name: str) -> Pixels:
         raise errors.BadFile(f"{name} is truncated: it has fewer than {width} x {height} pixels") from None
 
 
+def has_unknown_grey(described: MapDescription, pixels: Pixels) -> bool:
+    """Return whether grey is unknown in an image, although `free_thresh` makes it free.
+
+    A trinary image with the three values 0, 205 and 254 was written by ROS's map_saver, for which 205 is
+    unknown, also with its default threshold of 0.25.
+    """
+    is_free = described.free_thresh > 1.0 - _GREY / 255.0
+    if described.mode != "trinary" or described.negate or not is_free:
+        return False
+    return {*np.unique(pixels).tolist()} == {_BLACK, _GREY, _WHITE}
+
+
 def grid_of(described: MapDescription, pixels: Pixels) -> OccupancyGrid:
     """Return the grid of an image in its own frame: not rotated, lower left corner at (0, 0)."""
     shade = pixels.astype(np.float64) / 255.0
@@ -201,6 +213,8 @@ def grid_of(described: MapDescription, pixels: Pixels) -> OccupancyGrid:
     with np.errstate(invalid="ignore"):
         cells[occupied < described.free_thresh] = FREE
         cells[occupied > described.occupied_thresh] = OCCUPIED
+    if has_unknown_grey(described, pixels):
+        cells[pixels == _GREY] = UNKNOWN
     height, width = pixels.shape
     return OccupancyGrid(Frame(0.0, 0.0, described.resolution, width, height), cells[::-1].copy())
 

@@ -87,7 +87,7 @@ def _of_outsider(role: Role) -> list[Rule]:
         ("egress", ("declare_queryable",), [*_declared(asked), f"{keys.commands_as()}/*", *recovered]),
         ("ingress", ("declare_liveliness_subscriber", "liveliness_query"), seen),
         ("egress", ("liveliness_token",), seen),
-        ("ingress", ("liveliness_token",), [keys.live_key(keys.WEB)]),
+        ("ingress", ("liveliness_token",), [keys.live_key(keys.WEB), keys.session_key()]),
         ("ingress", ("put",), published),
         ("egress", ("declare_subscriber",), [*published, keys.HEALTH.key]),
     ]
@@ -96,7 +96,7 @@ def _of_outsider(role: Role) -> list[Rule]:
 def _of_node() -> list[Rule]:
     """Return the rules of a node, which may do everything except send commands under another name."""
     recovered = keys.recovery(_EVERYTHING)
-    everything = [_EVERYTHING, _PRESENCE, recovered]
+    everything = [_EVERYTHING, _PRESENCE, keys.session_key(), recovered]
     but_queries = tuple(message for message in _EVERY_MESSAGE if message != "query")
     return [
         ("ingress", but_queries, everything),

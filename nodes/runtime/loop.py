@@ -19,7 +19,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Container, Iterator, Mapping
 from concurrent.futures import Future
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from itertools import count
 from typing import Any, TypeVar
@@ -27,6 +27,7 @@ from typing import Any, TypeVar
 from semmap.nodes import bus
 from semmap.nodes.runtime.fair_queue import FairQueue
 from semmap.nodes.runtime.heartbeat import Heartbeat
+from semmap.nodes.runtime.requests_in_work import RequestsInWork, is_counted
 from semmap.schemas import errors, keys
 from semmap.schemas.calls import Call, Handler, Relay, largest, reply_type
 
@@ -37,6 +38,15 @@ _MAX_WAITING = 20_000
 """Largest number of waiting publications of a topic; then the oldest are dropped."""
 
 R = TypeVar("R")
+
+HasGone = Callable[[], bool]
+"""Returns whether all clients that wait for a reply have gone."""
+
+
+def never() -> bool:
+    """Return that a client has not gone, or is not known."""
+    return False
+
 
 Handlers = Mapping[str, tuple[Any, Callable[[Any], Any]]]
 """Maps a verb to the type of its message and a function, which may return a Future or a Relay.
@@ -63,6 +73,9 @@ class Node:
         self._requests: FairQueue[_Work] = FairQueue()
         self._has_room: Callable[[], bool] = lambda: True
         self._current: bus.Request | None = None
+        self._in_work = RequestsInWork.of(name)
+        self._has_failed = False
+        self._departures: bus.DepartureMonitor | None = None
         self._is_immediate = False
         """An immediate request is among the events."""
         self._timers: list[tuple[float, int, Callable[[], None]]] = []
@@ -77,6 +90,23 @@ class Node:
     def asker(self) -> str:
         """The client of the request that is being handled, as far as it can be identified."""
         return "" if self._current is None else self._current.asker
+
+    def monitor_departures(self) -> None:
+        """Do not forward a request again if its client has gone; call this before `serve`."""
+        self._departures = bus.DepartureMonitor(self.session)
+
+    def has_gone(self) -> HasGone:
+        """Return a function that returns whether the client of the current request has gone.
+
+        A client that sent a put does not wait, so it never counts as gone.
+        """
+        return never if self._current is None else self._departure_of(self._current)
+
+    def _departure_of(self, request: bus.Request) -> HasGone:
+        client, departures = request.waits, self._departures
+        if not client or departures is None:
+            return never
+        return lambda: departures.has_gone(client)
 
     def serve(
         self,
@@ -226,13 +256,22 @@ class Node:
         return answer
 
     def ask_later(
-        self, prefix: str, call: Call[R], *, timeout_s: float = bus.TIMEOUT_S, patience_s: float = 0.0
+        self,
+        prefix: str,
+        call: Call[R],
+        *,
+        timeout_s: float = bus.TIMEOUT_S,
+        patience_s: float = 0.0,
+        has_gone: HasGone = never,
     ) -> Future[R]:
         """Like `ask`, without waiting; the future is resolved on this node's own thread.
 
-        The query is repeated while no node serves the key, for up to `patience_s`.
+        The query is repeated while no node serves the key, for up to `patience_s`, unless the client
+        `has_gone`.
         """
-        return self._ask_later(prefix, call, timeout_s=timeout_s, patience_s=patience_s, decoded=True)
+        return self._ask_later(
+            prefix, call, timeout_s=timeout_s, patience_s=patience_s, decoded=True, has_gone=has_gone
+        )
 
     def _ask_later(
         self,
@@ -242,6 +281,7 @@ class Node:
         timeout_s: float,
         patience_s: float,
         decoded: bool,
+        has_gone: HasGone = never,
         asked_by: bus.Request | None = None,
     ) -> Future[Any]:
         """Send a query; the result is the message or, unless `decoded`, its encoded form.
@@ -302,7 +342,7 @@ class Node:
                     round_s = timeout_s
                     send()
             except errors.NoAnswer as error:
-                if (now_s := time.monotonic()) < deadline_s:
+                if (now_s := time.monotonic()) < deadline_s and not has_gone():
                     self._at(now_s + _RETRY_S, send)
                 else:
                     future.set_exception(error)
@@ -355,6 +395,11 @@ class Node:
         """End `run` after the current event."""
         self._events.put(self._stop)
 
+    def stop_failed(self) -> None:
+        """End `run` after the current event, and count the current request as one that ends the node."""
+        self._has_failed = True
+        self.stop()
+
     def tick(self) -> None:
         """Run due timers and the heartbeat. Work that takes seconds calls this regularly."""
         now = time.monotonic()
@@ -364,24 +409,32 @@ class Node:
 
     def run(self) -> None:
         """Handle events until stopped, and one request between every two events."""
-        heartbeat = self._heartbeat
         while not self._stopping:
-            self.tick()
-            if self._take_request():
-                if not self._events.empty():
-                    self._guard(self._events.get())
-                continue
-            if self._events.empty():
-                for handle in self._idle:
-                    self._guard(handle)
-                if len(self._requests) and not self._is_immediate and self._has_room():
-                    continue
-            due_s = min(heartbeat.due_s, self._timers[0][0] if self._timers else math.inf)
-            wait_s = max(0.0, due_s - time.monotonic())
-            try:
-                self._guard(self._events.get(timeout=wait_s))
-            except queue.Empty:
-                continue
+            self._step()
+
+    def wait(self, pause_s: float) -> bool:
+        """Handle events for `pause_s`, and return whether the node is to go on; for waits before `ready`."""
+        until_s = time.monotonic() + pause_s
+        self.later(pause_s, _wake)
+        while not self._stopping and time.monotonic() < until_s:
+            self._step()
+        return not self._stopping
+
+    def _step(self) -> None:
+        self.tick()
+        if self._take_request():
+            if not self._events.empty():
+                self._guard(self._events.get())
+            return
+        if self._events.empty():
+            for handle in self._idle:
+                self._guard(handle)
+            if len(self._requests) and not self._is_immediate and self._has_room():
+                return
+        due_s = min(self._heartbeat.due_s, self._timers[0][0] if self._timers else math.inf)
+        wait_s = max(0.0, due_s - time.monotonic())
+        with suppress(queue.Empty):
+            self._guard(self._events.get(timeout=wait_s))
 
     def _handle_immediate(self, handle: _Work) -> None:
         self._is_immediate = False
@@ -415,19 +468,31 @@ class Node:
     ) -> None:
         self._current = request
         try:
-            if request.verb not in handlers:
-                raise errors.UnknownVerb(
-                    f"unknown command '{request.verb}'; available: {', '.join(sorted(handlers))}"
-                )
-            kind, function = handlers[request.verb]
-            result = function(admit(request.who, request.read(kind)))
+            result = self._execute(request, handlers, admit)
         except Exception as error:
             self._refuse(request, error)
             return
+        finally:
+            self._current = None
         if isinstance(result, Future):
             result.add_done_callback(lambda future: self._answer_later(request, future))
         else:
             self._answer(request, result)
+
+    def _execute(self, request: bus.Request, handlers: Handlers, admit: Admit) -> Any:
+        """Return the result of a request's handler. Raises its error."""
+        if request.verb not in handlers:
+            raise errors.UnknownVerb(
+                f"unknown command '{request.verb}'; available: {', '.join(sorted(handlers))}"
+            )
+        kind, function = handlers[request.verb]
+        if is_counted(kind):
+            self._in_work.begin(request.asker, request.verb, request.payload)
+        try:
+            return function(admit(request.who, request.read(kind)))
+        finally:
+            if not self._has_failed:
+                self._in_work.end()
 
     def _answer(self, request: bus.Request, result: Any) -> None:
         if isinstance(result, Relay):
@@ -443,6 +508,7 @@ class Node:
             timeout_s=relay.timeout_s,
             patience_s=bus.RESTART_S,
             decoded=not request.plain,
+            has_gone=self._departure_of(request),
             asked_by=request,
         )
         future.add_done_callback(lambda done: self._answer_later(request, done))
@@ -465,7 +531,7 @@ class Node:
 
 
 def _wake() -> None:
-    """An event that only wakes the loop for a waiting request."""
+    """An event that only wakes the loop."""
 
 
 @contextmanager

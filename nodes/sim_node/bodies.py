@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import mujoco
 import numpy as np
-from msgspec import structs
+from msgspec import Struct, structs
 from numpy.typing import NDArray
 
 from semmap.nodes.sim_node.models.parts import Vec3, rotation_matrix
@@ -50,11 +50,21 @@ class BodyRecord:
     """The body of a world file of which it is a part."""
     anchored: bool = False
     """Whether a joint or its parent body fixes it, so that it cannot be moved manually."""
+    body: str = ""
+    """Its name in MuJoCo, which can be invalid as the name of an entity; by default `name`."""
+    label: str = ""
+    """The words of its name, if they are not a label of its class."""
+    is_sure: bool = True
+    """Whether its name or the world file determines its class."""
     robot: bool = False
     held_by: str = ""
     grip: Pose | None = None
     """Its pose in the frame of the bottom centre of the body to which it is attached."""
     grip_commit: int = -1
+
+    def __post_init__(self) -> None:
+        """Set the name in MuJoCo."""
+        self.body = self.body or self.name
 
     @property
     def static(self) -> bool:
@@ -82,11 +92,26 @@ class BodyRecord:
             ),
             joint_commit=self.joint_commit,
             part_of=self.part_of,
+            body="" if self.body == self.name else self.body,
+            label=self.label,
             robot=self.robot,
             held_by=self.held_by,
             grip=self.grip,
             grip_commit=self.grip_commit,
         )
+
+
+class StoredBody(Struct, frozen=True, forbid_unknown_fields=True):
+    """The state of one body, which can be restored after a restart.
+
+    `joints` has the coordinates in MuJoCo of each joint, by its name there. `held_by` is the body that it is
+    attached to, and `grip` its pose in that body's frame.
+    """
+
+    pose: Pose
+    joints: dict[str, tuple[float, ...]] = {}
+    held_by: str = ""
+    grip: Pose | None = None
 
 
 @dataclass(frozen=True)
@@ -152,6 +177,14 @@ class BodyIndex:
         if self.joint_ball.any():
             positions[self.joint_ball] = 2.0 * np.arccos(np.minimum(1.0, np.abs(positions[self.joint_ball])))
         return np.asarray(positions)
+
+    def joint_coordinates(self, name: str) -> dict[str, slice]:
+        """Return where the coordinates of each joint of a body are in `qpos`, by its name in MuJoCo."""
+        rows = {joint: self.joint_row[joint] for joint in self.records[self.row[name]].joint_names}
+        return {
+            joint: slice(start := int(self.joint_qpos[row]), start + (4 if self.joint_ball[row] else 1))
+            for joint, row in rows.items()
+        }
 
     def poses(self, data: mujoco.MjData) -> Floats:
         """Return (N, 7) bottom centre [m] and quaternion wxyz of each body, map frame."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -54,3 +55,7 @@ class SimConfig:
     still: bool = False
     """Whether to start with paused time: bodies stay at their ordered poses."""
     robot: RobotConfig | None = None
+    class_map: Mapping[str, str] = field(default_factory=dict)
+    """The classes of bodies of the world file, by name with or without its number."""
+    is_truth: bool = False
+    """Whether the scene is the source of truth, so that every body becomes an entity."""

@@ -16,6 +16,7 @@ from semmap.nodes.runtime.loop import Node, open_node
 from semmap.nodes.sim_node.config import SimConfig
 from semmap.nodes.sim_node.models.sources import Models
 from semmap.nodes.sim_node.robots.base_controller import Outcome
+from semmap.nodes.sim_node.scene_state import FILENAME, SceneStore
 from semmap.nodes.sim_node.vision.video_renderer import Plane, SceneSnapshot, VideoRenderer
 from semmap.nodes.sim_node.vision.view import FROM_ABOVE, View, camera_view, overview
 from semmap.nodes.sim_node.window import Window
@@ -78,7 +79,11 @@ class Simulator:
         classes = self._classes(config)
         if config.world is not None:
             node.describe(f"compiling the world {config.world.name}")
-        self._world = open_world(config.world, models, node.tick, classes, config.robot)
+        self._world = open_world(config.world, models, node.tick, classes, config.robot, config.class_map)
+        self._store: SceneStore | None = None
+        if config.is_truth and config.world is not None and config.data is not None:
+            self._store = SceneStore(config.data / FILENAME, self._world, config.world)
+            node.note((*self._world.notes, *self._store.restore()))
         self._paused = config.still
         self._clock_s = time.monotonic()
         self._poses = bus.publisher(node.session, keys.POSES)
@@ -116,7 +121,7 @@ class Simulator:
         node.ready(self._summary())
 
     def _classes(self, config: SimConfig) -> ClassNames:
-        """Return the TBox's classes, if the world file names bodies by class."""
+        """Return the TBox's classes, if the world file needs them."""
         if not names_classes(config.world):
             return ClassNames()
         self._node.describe("waiting for the knowledge base")
@@ -130,7 +135,9 @@ class Simulator:
         return ClassNames(found)
 
     def close(self) -> None:
-        """Stop the renderer and close the window."""
+        """Store the scene, stop the renderer and close the window."""
+        if self._store is not None:
+            self._store.write()
         self._renderer.close()
         if self._window is not None:
             self._window.close()
@@ -277,6 +284,8 @@ class Simulator:
 
     def _publish(self) -> None:
         poses = self._world.poses()
+        if self._store is not None:
+            self._store.update(poses)
         self._poses.put(codec.encode(poses), encoding=codec.encoding_of(poses))
 
     def _summary(self) -> str:

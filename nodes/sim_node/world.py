@@ -6,14 +6,15 @@ import copy
 import math
 import time
 import uuid
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import mujoco
 import numpy as np
 from msgspec import structs
 
 from semmap.nodes.sim_node import order_validation
-from semmap.nodes.sim_node.bodies import Floats, Ints, pose_of
+from semmap.nodes.sim_node.bodies import Floats, Ints, StoredBody, pose_of
+from semmap.nodes.sim_node.body_classes import BodyClasses
 from semmap.nodes.sim_node.models.facets import surface_of
 from semmap.nodes.sim_node.models.library import build as library_model
 from semmap.nodes.sim_node.models.world_surface import body_surface, world_surface
@@ -62,20 +63,22 @@ class World:
         name: str = "empty",
         models: ModelSource = library_model,
         while_waiting: Callable[[], None] = lambda: None,
-        is_class: Callable[[str], bool] = lambda word: False,
+        classes: BodyClasses | None = None,
     ) -> None:
         """Start from a scene that compiles, or from a bare floor.
 
         `while_waiting` is called repeatedly while models are read and compiled. It may call `step`, `poses`
-        and `snapshot`, which do not include new bodies yet. `is_class` returns whether a word names a class:
-        parts of the world's bodies with such names become bodies.
+        and `snapshot`, which do not include new bodies yet. `classes` finds the classes of the
+        world's bodies, and which of their parts are separate bodies.
         """
         ground = ground or base_scene.bare_floor()
         self.ignored = base_scene.ignored(ground)
         """Declarations of the world file without effect, each with the reason."""
-        self._engine = Engine(ground, while_waiting, is_class)
+        self._engine = Engine(ground, while_waiting, classes)
         self.left_out = self._engine.left_out
         """Bodies of the world file that are only parts of others, by name or by their parent."""
+        self.notes = base_scene.describe_names(self._engine.records.values())
+        """Notes on the names and classes of the bodies of the world file."""
         self._settling = Settling(self._engine)
         self._models, self._while_waiting = models, while_waiting
         self.name = name
@@ -243,6 +246,24 @@ class World:
             }
         )
         return len(self)
+
+    def stored_bodies(self, names: Iterable[str]) -> dict[str, StoredBody]:
+        """Return the states of those of these bodies that exist."""
+        index, poses, qpos = self._engine.index, self._engine.poses(), self.data.qpos
+        return {
+            name: StoredBody(
+                pose_of(poses[index.row[name]]),
+                {joint: tuple(qpos[at].tolist()) for joint, at in index.joint_coordinates(name).items()},
+                record.held_by,
+                record.grip,
+            )
+            for name in names
+            if (record := self._engine.records.get(name)) is not None
+        }
+
+    def restore(self, states: Mapping[str, StoredBody]) -> None:
+        """Put bodies and their joints into states of an earlier run of the same world, without speed."""
+        self._settling.restore(states)
 
     def aim_overview_camera(self) -> None:
         """Aim the bare floor's camera so that all bodies just fit."""

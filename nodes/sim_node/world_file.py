@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import codecs
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ import mujoco
 import numpy as np
 
 from semmap.nodes.runtime.class_names import ClassNames
+from semmap.nodes.sim_node.body_classes import BodyClasses
 from semmap.nodes.sim_node.config import RobotConfig
 from semmap.nodes.sim_node.models.parts import rotation_matrix
 from semmap.nodes.sim_node.order_validation import ModelSource
@@ -54,20 +55,23 @@ def open_world(
     while_waiting: Callable[[], None] = lambda: None,
     classes: ClassNames | None = None,
     robot: RobotConfig | None = None,
+    class_map: Mapping[str, str] | None = None,
 ) -> World:
     """Open the world of a file, with an optional robot; a bare floor without a file.
 
     Bodies of a JSON scene are furniture of the world (commit 0). Each has the model of its class, and is
     fixed if its class is, according to `classes`; an unknown class has the model of its own name. If the
-    scene has no cameras, one that sees all of it is added. `while_waiting` is as in `World`. Raises BadFile
-    for an invalid file, or a body that cannot be created.
+    scene has no cameras, one that sees all of it is added. `class_map` has the classes of bodies of an MJCF
+    scene, by name. `while_waiting` is as in `World`. Raises BadFile for an invalid file, an unknown class, or
+    a body that cannot be created.
     """
     if path is None:
         return _world(base_scene.bare_floor(), robot, models=models, while_waiting=while_waiting)
     if not is_scene(path):
         ground = run_in_background(lambda: base_scene.read_mjcf(path), while_waiting)
-        known = classes or ClassNames()
-        how = {"name": path.name, "models": models, "while_waiting": while_waiting, "is_class": known.has}
+        _name_single_body(ground, path)
+        found = _body_classes(classes or ClassNames(), class_map or {})
+        how = {"name": path.name, "models": models, "while_waiting": while_waiting, "classes": found}
         return _world(ground, robot, **how)
     scene = scene_files.read(_read(path), path.name)
     views = (
@@ -91,6 +95,23 @@ def _world(ground: mujoco.MjSpec, robot: RobotConfig | None, **how: Any) -> Worl
     if robot is not None:
         world.mark_robot(robot.name)
     return world
+
+
+def _body_classes(classes: ClassNames, class_map: Mapping[str, str]) -> BodyClasses:
+    """Return the classes of bodies by their names. Raises BadFile for an unknown class in `class_map`."""
+    known = classes.by_name
+    try:
+        named = {name: classes.find(word).name if known else word for name, word in class_map.items()}
+    except UnknownClass as error:
+        raise BadFile(f"--class-map: {error.text}") from None
+    return BodyClasses(known.values(), named)
+
+
+def _name_single_body(ground: mujoco.MjSpec, path: Path) -> None:
+    """Name the only body of a file like the file, if it has no name."""
+    bodies = ground.worldbody.bodies
+    if len(bodies) == 1 and not bodies[0].name and path.stem not in {body.name for body in ground.bodies}:
+        bodies[0].name = path.stem
 
 
 def _view(camera: scene_files.Camera) -> View:

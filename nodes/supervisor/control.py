@@ -7,6 +7,7 @@ import contextlib
 import hashlib
 import io
 import os
+import shutil
 import signal
 import socket
 import subprocess
@@ -22,6 +23,7 @@ from typing import Any
 from supervisor.xmlrpc import SupervisorTransport
 
 from semmap.nodes.runtime.notify import NOTIFY_VARIABLE
+from semmap.nodes.runtime.requests_in_work import IN_WORK_VARIABLE
 from semmap.nodes.supervisor import orphans, registry
 from semmap.nodes.supervisor.privacy import UMASK, make_private
 from semmap.nodes.supervisor.settings import SETTINGS, Settings
@@ -51,6 +53,7 @@ class Supervisor:
     def __init__(self, data: Path) -> None:
         self.data = data
         self.logs = data / "logs"
+        self._in_work = data / "in_work"
         self._settings_path = data / SETTINGS
         self._conf_path = data / "supervisord.conf"
 
@@ -75,10 +78,18 @@ class Supervisor:
         return codec.decode(self._settings_path.read_bytes(), Settings)
 
     def start(self, settings: Settings, *, web_token: str = "") -> subprocess.Popen[bytes]:
-        """Start supervisord and the nodes; `web_token` opens the page, and is not written to disk."""
-        self.logs.mkdir(parents=True, exist_ok=True)
-        self._settings_path.write_bytes(codec.encode_json(settings))
-        self._conf_path.write_text(self._conf(settings))
+        """Start supervisord and the nodes; `web_token` opens the page, and is not written to disk.
+
+        Raises BadFile if the data folder cannot be written.
+        """
+        try:
+            self.logs.mkdir(parents=True, exist_ok=True)
+            shutil.rmtree(self._in_work, ignore_errors=True)
+            self._in_work.mkdir(mode=0o700, exist_ok=True)
+            self._settings_path.write_bytes(codec.encode_json(settings))
+            self._conf_path.write_text(self._conf(settings))
+        except OSError as error:
+            raise self._cannot_store(error) from None
         command = [
             sys.executable,
             "-P",
@@ -88,7 +99,11 @@ class Supervisor:
             "-c",
             str(self._conf_path),
         ]
-        environment = {**os.environ, NOTIFY_VARIABLE: str(self.notices)}
+        environment = {
+            **os.environ,
+            NOTIFY_VARIABLE: str(self.notices),
+            IN_WORK_VARIABLE: str(self._in_work.resolve()),
+        }
         if web_token:
             environment[WEB_TOKEN_VARIABLE] = web_token
         with (self.logs / "supervisord.out").open("wb") as out:
@@ -112,7 +127,7 @@ class Supervisor:
             make_private(self.data)
             self._settings_path.write_bytes(codec.encode_json(settings))
         except OSError as error:
-            raise errors.BadFile(f"cannot store data in {self.data}: {error.strerror}") from None
+            raise self._cannot_store(error) from None
         command = [
             sys.executable,
             "-P",
@@ -137,6 +152,9 @@ class Supervisor:
             reason = stderr.strip().removeprefix("seed: ") or f"seeding failed with status {run.returncode}"
             raise (errors.BadFile if run.returncode == 2 else errors.Refused)(reason)
         return made.strip()
+
+    def _cannot_store(self, error: OSError) -> errors.BadFile:
+        return errors.BadFile(f"cannot store data in {self.data}: {error.strerror}")
 
     def is_running(self) -> bool:
         """Return whether it replies."""

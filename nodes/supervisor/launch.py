@@ -60,6 +60,8 @@ def seed(settings: Settings) -> None:
 
         Path(settings.data).mkdir(parents=True, exist_ok=True)
         write_own(None if settings.models is None else Path(settings.models), _own_shapes(settings))
+    if settings.reset_world:
+        reset_world(settings)
     if "kb_node" not in settings.nodes:
         return
     if (replay := settings.replay) is not None:
@@ -85,6 +87,13 @@ def seed(settings: Settings) -> None:
         fresh=settings.fresh,
     )
     print(summary)
+
+
+def reset_world(settings: Settings) -> None:
+    """Delete the stored scene, so that the bodies begin as in the world file."""
+    from semmap.nodes.sim_node.scene_state import FILENAME
+
+    (Path(settings.data) / FILENAME).unlink(missing_ok=True)
 
 
 def _own_shapes(settings: Settings) -> Path:
@@ -144,7 +153,21 @@ def _sim_node(settings: Settings) -> None:
     data = Path(settings.data)
     still = settings.replay is not None
     world, robot = Path(settings.world), _robot(settings)
-    run(SimConfig(world, models, settings.window, cameras, network, data, patience_s, still, robot))
+    run(
+        SimConfig(
+            world,
+            models,
+            settings.window,
+            cameras,
+            network,
+            data,
+            patience_s,
+            still,
+            robot,
+            settings.class_map,
+            settings.truth == "scene",
+        )
+    )
 
 
 def _perception_node(settings: Settings) -> None:

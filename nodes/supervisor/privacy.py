@@ -10,7 +10,7 @@ from typing import Final
 UMASK: Final = 0o077
 """The umask of the processes that write them."""
 _FILES: Final = ("journal.sqlite*", "*.closure", "settings.json", "supervisord.*")
-_FOLDERS: Final = ("logs", "recordings", "kept", "sparql")
+_FOLDERS: Final = ("in_work", "logs", "recordings", "kept", "sparql")
 
 
 def make_private(data: Path) -> None:

@@ -80,6 +80,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     record_keep: str | None = None
     """Limit of the recordings by age or size; None keeps all."""
     fresh: bool = False
+    reset_world: bool = False
+    """Whether the bodies begin as in the world file, and not where they last stood."""
     window: bool = False
     models: str | None = None
     """Folder of the user's model files."""
@@ -92,6 +94,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     perception: bool = False
     when_gone: Literal["remove", "mark"] = "remove"
     """What to do with an entity that perception added and no longer sees."""
+    class_map: dict[str, str] = {}
+    """Maps names of bodies of the world file to classes."""
     label_map: dict[str, str] = {}
     """Maps labels of an external detector to classes."""
     web: bool = False

@@ -28,7 +28,7 @@ from semmap.nodes.supervisor.settings import Replay, Settings
 from semmap.nodes.supervisor.watchdog import Watchdog
 from semmap.ontology import EMPTY_WORLD, FLAT_WORLD
 from semmap.ontology.model_shapes import varieties_of
-from semmap.schemas import errors, keys
+from semmap.schemas import errors, keys, wording
 from semmap.schemas.calls import reply_type
 from semmap.schemas.commands import Classes, Get, List, Status
 from semmap.schemas.endpoints import WEB_TOKEN_VARIABLE
@@ -177,7 +177,7 @@ class _Foreground:
             self._pids[health.node] = health.pid
             self._say(f"{health.node:<{_COLUMN}} ready{again}  pid {health.pid:<7} {health.detail}")
             for note in health.notes:
-                self._say(f"{'TBox':<{_COLUMN}} {note}")
+                self._say(f"{wording.note_subject(health.node):<{_COLUMN}} {note}")
 
     def _report_replay(self, replay: Replay, health: Health) -> None:
         """Print once that the replay is complete."""

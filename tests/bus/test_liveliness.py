@@ -62,3 +62,15 @@ def test_queries_to_a_node_are_cancelled_when_it_goes(lifelines_and_token):
     until(lambda: all(lifeline.is_cancelled for lifeline in old), "the liveliness are cut")
     assert not others.is_cancelled
     assert not liveliness.token_for(("kb_node",)).is_cancelled
+
+
+def test_a_session_has_gone_when_it_ends(pair):
+    server, client = pair
+    departures = bus.DepartureMonitor(server)
+    with bus.open_session(bus.Network(connect=(f"{client.info.links()[0].dst}",))) as third:
+        instance = str(third.zid())
+        until(lambda: third.info.peers_zid() or third.info.routers_zid(), "it is linked")
+        assert not departures.has_gone(instance)
+    until(lambda: departures.has_gone(instance), "it has gone")
+    assert not departures.has_gone(str(client.zid()))
+    assert not departures.has_gone("never there")

@@ -20,6 +20,7 @@ from semmap.nodes.runtime.class_names import ClassNames
 from semmap.nodes.runtime.futures import settle
 from semmap.schemas import errors
 from semmap.schemas.bridge import Outcome
+from tests.kb_node.handlers.test_loading import loading
 
 TBOX = b"""
 @prefix : <http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#> .
@@ -61,6 +62,7 @@ def dispatcher(semantic_map):
         "commit": lambda transaction: _changed(
             semantic_map, lambda: semantic_map.commit(transaction), transaction.dry_run
         ),
+        "load": loading(semantic_map, []).on_load,
         "snapshot": Pages(semantic_map).snapshot,
         "commits": lambda several: tuple(
             Outcome(error=errors.to_message(result))

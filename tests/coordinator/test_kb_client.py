@@ -76,3 +76,12 @@ def test_what_takes_long_is_not_waited_for(network):
     assert not answer.done()
     requests[0].reply(COMMIT)
     assert answer.result(PATIENCE_S) == Effects.of(COMMIT)
+
+
+@pytest.mark.parametrize("how", ["change", "change_later"])
+def test_a_change_whose_client_has_gone_is_not_sent_again(network, how, monkeypatch):
+    asked = questions_asked(monkeypatch)
+    answer = getattr(network[0], how)(TRANSACTION, lambda: True)
+    with pytest.raises(errors.NoAnswer):
+        answer.result(PATIENCE_S)
+    assert len(asked) == (how == "change_later")

@@ -20,7 +20,8 @@ class KnowledgeBase:
     def __init__(self):
         self.groups: list[tuple[list[str | None], Future]] = []
 
-    def __call__(self, changes):
+    def __call__(self, changes, has_gone):
+        self.has_gone = has_gone
         self.groups.append(([getattr(change, "name", None) for change in changes], Future()))
         return self.groups[-1][1]
 
@@ -131,7 +132,7 @@ def test_an_error_is_the_result_of_its_change_and_a_fault_that_of_its_group(kb, 
 def test_an_unexpected_exception_is_the_result_and_frees_the_queue(immediate):
     futures = []
 
-    def together(changes):
+    def together(changes, _):
         if immediate and not futures:
             futures.append(None)
             raise MemoryError("no memory")
@@ -224,3 +225,23 @@ def test_at_most_two_groups_are_under_way(kb, turns):
         turns.run_ready()
     assert kb.names == [["a"], ["b"]]
     assert len(turns) == 1
+
+
+def test_the_clients_of_a_group_have_gone_when_each_of_them_has(kb):
+    gone = {"a": False, "b": False}
+    clients = iter(gone)
+
+    def client():
+        name = next(clients)
+        return lambda: gone[name]
+
+    turns = Scheduler(kb, client)
+    move(turns, "a")
+    move(turns, "b")
+    turns.run_ready()
+    assert kb.names == [["a", "b"]]
+    assert not kb.has_gone()
+    gone["a"] = True
+    assert not kb.has_gone()
+    gone["b"] = True
+    assert kb.has_gone()

@@ -4,6 +4,7 @@ import functools
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from semmap.nodes.kb_node import planning
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
@@ -99,6 +100,12 @@ def transaction(number, insert=(), retract=(), **fields):
     """Return a transaction with the command id `number`."""
     fields = {"source": "operator", **fields}
     return Transaction(id=str(number), insert=tuple(insert), retract=tuple(retract), **fields)
+
+
+def restated(semantic_map: SemanticMap, number, insert):
+    """Apply a commit of an older version, which accepted several poses of an entity."""
+    plan = planning.Plan(retracted=(), inserted=tuple(insert), notes=())
+    return semantic_map.restate(planning.make_commit(transaction(number), plan, semantic_map.seq + 1))
 
 
 def chair(name="chair1", at=(1.0, 2.0, 0.0), **described):

@@ -2,6 +2,7 @@
 
 import gzip
 import queue
+import resource
 import subprocess
 import sys
 from contextlib import contextmanager, suppress
@@ -391,3 +392,38 @@ def test_descriptions_use_the_labels(session):
     assert ask(session, "relations", then) == by_name
     with pytest.raises(errors.BadRequest, match=r"'Chair' is ambiguous: .* name one of them"):
         ask(session, "relations", Relations(name="Chair"))
+
+
+def test_a_full_disk_is_waited_for(tmp_path):
+    bench = Bench(tmp_path)
+    with bench.session() as session:
+        beats = queue.Queue()
+        subscriber = bus.follow(session, keys.HEALTH, lambda _, health: beats.put(health))
+        with ended(bench.start()):
+            await_answer(session)
+            ask(session, "commit", transaction("a", chair("a")))
+        assert (bench.data / "journal.sqlite-wal").exists()  # the commit is not in the journal yet
+        with ended(bench.start()) as process:
+            limit_file_size(process.pid, 1)
+            await_full_disk(beats, process.pid)
+            limit_file_size(process.pid, resource.RLIM_INFINITY)
+            assert "a" in {entity.name for entity in await_answer(session).entities}
+        with ended(bench.start()) as process:
+            limit_file_size(process.pid, 1)
+            await_full_disk(beats, process.pid)
+            process.terminate()
+            assert process.wait(PATIENCE_S) == 0
+        subscriber.undeclare()
+
+
+def limit_file_size(pid, size):
+    resource.prlimit(pid, resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
+
+
+def await_full_disk(beats, pid):
+    """Wait for a heartbeat of this process that reports a full disk."""
+    while True:
+        health = beats.get(timeout=PATIENCE_S)
+        if health.pid == pid and health.detail.startswith("disk full: waiting for space in"):
+            assert health.state == "starting"
+            return

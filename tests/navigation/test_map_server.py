@@ -53,6 +53,28 @@ def test_negate_raw_and_lists_over_lines():
 
 
 @pytest.mark.parametrize(
+    ("values", "mode", "expected"),
+    [
+        ((0, 205, 254), "trinary", UNKNOWN),  # map_saver's default threshold makes it free
+        ((0, 205, 254), "scale", FREE),
+        ((0, 205, 250), "trinary", FREE),
+        ((0, 205, 254, 255), "trinary", FREE),
+        ((0, 205), "trinary", FREE),
+    ],
+)
+def test_grey_is_unknown_in_an_image_of_the_map_saver(values, mode, expected):
+    described = read_yaml(f"image: x\nresolution: 1\nmode: {mode}\nfree_thresh: 0.25\n", "m.yaml")
+    cells = grid_of(described, np.array([values], dtype=np.uint8)).cells
+    assert cells[0, 1] == expected
+    assert cells[0, 0] == OCCUPIED
+
+
+def test_grey_of_a_negated_image_is_what_its_thresholds_say():
+    described = read_yaml("image: x\nresolution: 1\nnegate: 1\nfree_thresh: 0.25\n", "m.yaml")
+    assert grid_of(described, np.array([[0, 205, 254]], dtype=np.uint8)).cells[0, 1] == OCCUPIED
+
+
+@pytest.mark.parametrize(
     ("text", "said"),
     [
         ("resolution: 0.05\n", "requires image: FILE and resolution: METRES"),

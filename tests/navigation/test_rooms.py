@@ -1,6 +1,7 @@
 """Segmentation of synthetic plans: number of rooms, and intersection over union."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -179,6 +180,20 @@ def test_a_plan_becomes_places_and_doors_where_its_origin_says():
     assert [len(door.set) for door in doors] == [2, 2, 2]
     assert made.lines[0].startswith("room1: ")
     assert made.lines[-1].startswith("doorway3: ")
+
+
+def test_unknown_grey_is_noted_and_makes_no_rooms():
+    grid, _ = drawn()
+    pixels = np.pad(pixels_of(grid), 60, constant_values=205)
+    described = MapDescription(image="x", resolution=SIDE, free_thresh=0.25)
+    usual = loaded_plan(replace(described, free_thresh=0.196), pixels, "plan.yaml")
+    made = loaded_plan(described, pixels, "plan.yaml")
+    assert made.scene == usual.scene
+    assert made.lines == (
+        *usual.lines,
+        "note: pixels of value 205 are unknown, although free_thresh 0.25 makes them free;"
+        " ROS's map_saver writes unknown cells so",
+    )
 
 
 def test_a_plan_without_rooms_is_refused():

@@ -13,8 +13,10 @@ from semmap.schemas.entities import (
     angle_rad,
     distance_m,
     free_name,
+    is_name,
     orientation_from_yaw,
     parse_angle,
+    valid_name,
 )
 from semmap.schemas.errors import BadRequest
 
@@ -81,3 +83,26 @@ def test_commands_take_angles_with_a_unit():
     )
     with pytest.raises(BadRequest, match="the angle 90 exceeds one turn"):
         Move(name="c", yaw=90)
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("chair_3", "chair_3"),
+        ("mug 2", "mug_2"),
+        ("basket_1/base", "basket_1_base"),
+        ("Apple|+01.2", "Apple_01.2"),
+        ("Apple|-01.2", "Apple_-01.2"),
+        ("003_cracker_box", "_003_cracker_box"),
+        ("tazza caffè", "tazza_caffè"),
+        ("|+", "_"),
+        ("x" * 200, "x" * 120),
+    ],
+)
+def test_other_characters_of_a_name_become_underscores(text, name):
+    assert valid_name(text) == name
+    assert is_name(name)
+
+
+def test_a_taken_name_gets_a_number():
+    assert valid_name("mug 2", {"mug_2", "mug_2_2"}) == "mug_2_3"

@@ -3,8 +3,10 @@
 import mujoco
 import pytest
 
+from semmap.nodes.sim_node.body_classes import BodyClasses
 from semmap.nodes.sim_node.world import World
 from semmap.schemas.scenes import JointOrder, Placement
+from tests.household import household_classes
 from tests.sim_node.orders import bodies, order, pose
 
 KITCHEN = """<mujoco><compiler angle="radian"/><custom>
@@ -31,21 +33,22 @@ KITCHEN = """<mujoco><compiler angle="radian"/><custom>
 
 @pytest.fixture
 def kitchen() -> World:
-    return World(mujoco.MjSpec.from_string(KITCHEN), is_class={"microwave", "cup"}.__contains__)
+    return World(mujoco.MjSpec.from_string(KITCHEN), classes=BodyClasses(household_classes()))
 
 
 def test_by_a_text_or_a_name_like_a_class_a_part_is_a_body_of_its_own(kitchen):
     found = {name: (body.class_, body.part_of) for name, body in bodies(kitchen).items()}
     assert found == {
-        "desk": ("desk", ""),
-        "microwave_1": ("microwave", "desk"),
+        "desk": ("Desk", ""),
+        "microwave_1": ("Microwave", "desk"),
         "shut": ("Cabinet", "desk"),
-        "arm": ("arm", ""),
+        "cup_2": ("Cup", "desk"),
+        "arm": ("Object", ""),
     }
 
 
 def test_what_is_left_out_and_what_is_declared_in_vain_is_named(kitchen):
-    assert set(kitchen.left_out) == {"leaf", "cup 2", "hand", "a nameless part of desk"}
+    assert set(kitchen.left_out) == {"leaf", "hand", "a nameless part of desk"}
     assert kitchen.ignored == [
         "ghost (no such body)",
         "nothing (no such joint)",
@@ -55,7 +58,13 @@ def test_what_is_left_out_and_what_is_declared_in_vain_is_named(kitchen):
 
 def test_a_joint_is_of_the_nearest_body_that_it_moves_or_is_part_of(kitchen):
     found = {name: [joint.name for joint in body.joints] for name, body in bodies(kitchen).items()}
-    assert found == {"desk": [], "microwave_1": ["door"], "shut": ["flap"], "arm": ["wheel", "wrist"]}
+    assert found == {
+        "desk": [],
+        "cup_2": [],
+        "microwave_1": ["door"],
+        "shut": ["flap"],
+        "arm": ["wheel", "wrist"],
+    }
 
 
 def test_which_end_is_closed_is_told_by_a_text_or_where_it_stands_at_first(kitchen):

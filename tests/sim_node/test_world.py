@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from semmap.nodes.sim_node.body_classes import BodyClasses
 from semmap.nodes.sim_node.models.facets import surface_of
 from semmap.nodes.sim_node.models.library import build as library_model
 from semmap.nodes.sim_node.physics import base_scene, build
@@ -13,7 +14,8 @@ from semmap.nodes.sim_node.world import World
 from semmap.schemas.entities import Pose, angle_rad, distance_m
 from semmap.schemas.errors import BadFile, Refused
 from semmap.schemas.scenes import DriveBase, GripOrder, JointOrder, Placement
-from tests.sim_node.orders import hand, order, pose
+from tests.household import household_classes
+from tests.sim_node.orders import bodies, hand, order, pose
 
 
 def body(world, name):
@@ -394,7 +396,7 @@ ROVER = """<mujoco><worldbody>
 @pytest.fixture
 def rover():
     ground = mujoco.MjSpec.from_string(ROVER)
-    world = World(ground, name="hall", is_class=lambda word: word == "gripper")
+    world = World(ground, name="hall", classes=BodyClasses(class_map={"gripper": "Gripper"}))
     world.mark_robot("rover")
     return world
 
@@ -616,3 +618,45 @@ def test_a_world_that_can_rest_can_be_asked_how_much_is_awake():
     assert world.scene().sim_time_s == pytest.approx(2.0)
     assert world.poses().version == world.scene().version
     assert world.poses().run == world.run
+
+
+ODD = """<mujoco><worldbody><geom type="plane" size="0 0 .1"/>
+<body name="mug 2" pos="0 0 .05"><freejoint/><geom type="cylinder" size=".04 .05"/></body>
+<body name="mug_2" pos="1 0 .05"><freejoint/><geom type="cylinder" size=".04 .05"/></body>
+<body name="shelf/1" pos="2 0 .5"><geom type="box" size=".2 .5 .5"/></body>
+<body name="desk_caddy" pos="3 0 .05"><freejoint/><geom type="box" size=".1 .1 .05"/></body>
+</worldbody></mujoco>"""
+
+
+@pytest.fixture
+def odd():
+    return World(mujoco.MjSpec.from_string(ODD), classes=BodyClasses(household_classes()))
+
+
+def test_bodies_with_other_names_have_the_names_of_their_entities(odd):
+    found = {name: (there.body, there.class_) for name, there in bodies(odd).items()}
+    assert found == {
+        "mug_2_2": ("mug 2", "Cup"),
+        "mug_2": ("", "Cup"),
+        "shelf_1": ("shelf/1", "Shelf"),
+        "desk_caddy": ("", "Object"),
+    }
+    assert odd.notes == (
+        "2 bodies of the world have other names in the map: mug 2 is mug_2_2 and shelf/1 is shelf_1",
+        "unknown class of 1 body of the world: desk_caddy; name the classes in a JSON file, such as"
+        ' {"desk_caddy": "CLASS"}, and start with --class-map FILE',
+    )
+
+
+def test_bodies_with_other_names_are_moved_attached_and_deleted(odd):
+    odd.step(0.5)
+    odd.move([hand("mug_2_2", pose(4.0, 1.0))])
+    odd.step(0.5)
+    assert body(odd, "mug_2_2").pose.position_m == pytest.approx((4.0, 1.0, 0.0), abs=0.01)
+    odd.move([hand("shelf_1", pose(5.0, 1.0))])
+    assert body(odd, "shelf_1").pose.position_m == pytest.approx((5.0, 1.0, 0.0), abs=0.01)
+    assert odd.grip([GripOrder(name="mug_2_2", holder="shelf_1")]).failed == {}
+    odd.step(0.2)
+    assert body(odd, "mug_2_2").held_by == "shelf_1"
+    odd.delete(["shelf_1"])
+    assert bodies(odd).keys() == {"mug_2_2", "mug_2", "desk_caddy"}

@@ -10,6 +10,7 @@ from semmap.nodes.sim_node.vision.view import camera_names, camera_view
 from semmap.nodes.sim_node.world_file import open_world
 from semmap.schemas.entities import ClassInfo
 from semmap.schemas.errors import BadFile
+from tests.household import household_classes
 
 SCENE = {
     "entities": [{"class": "Chair", "name": "chair9", "at": [1, 2, 0]}, {"class": "Cup", "at": [0, 0, 0]}]
@@ -152,3 +153,20 @@ def test_a_world_that_is_too_large_for_mujocos_estimate_is_refused_with_what_hel
         BadFile, match=r'Could not allocate memory; set the limit in the file: <size memory="200M"/>$'
     ):
         base_scene.read_mjcf(tmp_path / "world.xml")
+
+
+def test_the_only_body_of_a_file_has_the_name_of_the_file(tmp_path):
+    path = tmp_path / "blue_mug.xml"
+    path.write_text("<mujoco><worldbody><body><freejoint/><geom size='.1'/></body></worldbody></mujoco>")
+    (mug,) = open_world(path, Models(), classes=ClassNames(household_classes())).scene().bodies
+    assert (mug.name, mug.class_, mug.label) == ("blue_mug", "Cup", "blue mug")
+
+
+def test_the_class_map_states_classes_by_name_or_label(tmp_path):
+    path = tmp_path / "world.xml"
+    path.write_text("<mujoco><worldbody><body name='caddy_1'><geom size='.1'/></body></worldbody></mujoco>")
+    known = ClassNames(household_classes())
+    (caddy,) = open_world(path, Models(), classes=known, class_map={"caddy": "cesto"}).scene().bodies
+    assert caddy.class_ == "Basket"
+    with pytest.raises(BadFile, match="--class-map: unknown class 'Baskett'; did you mean Basket"):
+        open_world(path, Models(), classes=known, class_map={"caddy": "Baskett"})

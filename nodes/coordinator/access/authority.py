@@ -10,7 +10,7 @@ from collections.abc import Iterable
 
 from semmap.nodes.coordinator.config import Truth
 from semmap.schemas import errors
-from semmap.schemas.commands import Add, Batch, Clear, Command, Remove, Update
+from semmap.schemas.commands import Batch, Clear, Command, Remove, Update
 from semmap.schemas.entities import LESSER, Entity
 
 _COMES_BACK = {
@@ -34,7 +34,7 @@ def require_authority(command: Command, concerned: Iterable[Entity]) -> None:
             )
 
 
-def describe_override(command: Add | Update | Batch | Remove | Clear, truth: Truth) -> str | None:
+def describe_override(command: Command, truth: Truth) -> str | None:
     """Return a note if the scene or perception will override the change; None otherwise."""
     if isinstance(command, (Remove, Clear)):
         return _COMES_BACK.get(truth)

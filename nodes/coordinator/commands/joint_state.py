@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 from semmap.nodes.coordinator.commands.map_view import MapView
 from semmap.schemas import errors
-from semmap.schemas.commands import Set, Update
-from semmap.schemas.joints import IS_OPEN, OPENNESS, Joint
+from semmap.schemas.commands import Command, Set, Unset, Update
+from semmap.schemas.joints import IS_OPEN, OPENING, OPENNESS, SWITCHING, Joint
+from semmap.schemas.scenes import Body
 
 
 def normalize_property(property_: str) -> str:
@@ -32,6 +33,33 @@ def require_openable(view: MapView, command: Set | Update) -> None:
             f"{body.name} has no door, lid or drawer that could be open or shut{why};"
             f" for its joint positions, see jointPositions in: semmap get {body.name}"
         )
+
+
+def require_not_of_scene(changes: Iterable[Command], bodies: Mapping[str, Body]) -> None:
+    """Raise Refused, with the command to use, if a change states joint positions that the scene determines.
+
+    This is for a scene that is the source of truth: the map would follow it and undo the change.
+    """
+    for change in changes:
+        if isinstance(change, (Set, Unset)):
+            words: tuple[str, ...] = (change.property,)
+        elif isinstance(change, Update):
+            words = (*properties_in(change.set), *properties_in(change.unset))
+        else:
+            continue
+        if (body := bodies.get(change.name)) is None:
+            continue
+        stated = {normalize_property(re.split("[:#/]", word)[-1]) for word in words}
+        for properties, joints in (
+            (SWITCHING, [joint for joint in body.joints if joint.switches]),
+            (OPENING, [joint for joint in body.joints if not joint.switch]),
+        ):
+            if joints and (found := [p for p in properties if normalize_property(p) in stated]):
+                joint = f" --joint {joints[0].name}" if properties is SWITCHING else ""
+                raise errors.Refused(
+                    f"{found[0]} of {body.name} follows from the scene, which is the source of truth"
+                    f" (--truth scene); to change it: semmap open {body.name}{joint}, or semmap close"
+                )
 
 
 def properties_in(statements: Iterable[str]) -> tuple[str, ...]:

@@ -17,6 +17,7 @@ from semmap.nodes.coordinator.commands.commit import (
     reload_map,
 )
 from semmap.nodes.coordinator.commands.map_view import MapView
+from semmap.nodes.coordinator.commands.plausibility import require_same_nature
 from semmap.nodes.coordinator.commands.registration import handles
 from semmap.nodes.coordinator.files import huric
 from semmap.nodes.coordinator.files.content import kind_of
@@ -24,11 +25,11 @@ from semmap.nodes.coordinator.free_names import FreeNames
 from semmap.nodes.coordinator.kb_coroutines import KbCoroutine, ask
 from semmap.nodes.runtime import memory
 from semmap.nodes.runtime.class_names import AmbiguousClass, ClassNames
-from semmap.schemas import errors, scene_files, wording
+from semmap.schemas import changes, errors, scene_files, wording
 from semmap.schemas.bridge import LoadDocument, LoadTBox
 from semmap.schemas.commands import Load
-from semmap.schemas.commits import Effects, NewEntity, Transaction
-from semmap.schemas.entities import ClassInfo
+from semmap.schemas.commits import Edit, Effects, NewEntity, Transaction
+from semmap.schemas.entities import ClassInfo, Entity
 from semmap.schemas.packing import unpacked
 from semmap.schemas.replies import Changed
 from semmap.schemas.scene_files import Described
@@ -56,6 +57,8 @@ def load(view: MapView, command: Load) -> KbCoroutine[Changed]:
         return (yield from _load_tbox(view, command))
     if command.spatial_root:
         raise errors.BadRequest("--spatial-root is for a TBox: add --tbox")
+    if command.add_only and command.replace:
+        raise errors.BadRequest("give either --add-only or --replace")
     if command.extend:
         raise errors.BadRequest("--extend applies to TBoxes only; add --tbox")
     if command.replace:
@@ -70,42 +73,56 @@ def load(view: MapView, command: Load) -> KbCoroutine[Changed]:
 def _load_described(view: MapView, command: Load, described: Iterable[Described]) -> KbCoroutine[Changed]:
     with memory.uncollected():
         known, skipped, notes = _sort_out(view.classes, described, skip_unknown=command.skip_unknown)
-        taken_names = set() if command.replace else set(view.entities)
-        free = FreeNames()
+        there: Mapping[str, Entity] = {} if command.replace else view.entities
+        taken_names, free = set(there), FreeNames()
         new: list[NewEntity] = []
-        names: dict[str, None] = {}
+        edits: list[Edit] = []
+        names: dict[str, Entity | None] = {}
         for item, found in known:
             name = item.name or free.name(found.name, taken_names)
             if name in names:
                 raise errors.NameTaken(
                     f"the name '{name}' is given twice in {command.filename or 'the file'}"
                 )
-            if name in taken_names:
+            names[name] = was = there.get(name)
+            if was is None:
+                taken_names.add(name)
+                new.append(transactions.new_entity(name, found, item))
+            elif command.add_only:
                 raise errors.NameTaken(
-                    f"the name '{name}' is already taken; --replace clears the present map first"
+                    f"the name '{name}' is already taken; to replace its pose, size and labels, load the file"
+                    " without --add-only"
                 )
-            taken_names.add(name)
-            names[name] = None
-            new.append(transactions.new_entity(name, found, item))
+            else:
+                require_same_nature(was, found, force=False)
+                edits.append(transactions.edit_entity(was, found, item))
         leaving = tuple(view.entities) if command.replace else ()
-        change = transactions.build(command, f"load {command.filename}", remove=leaving, add=new)
+        change = transactions.build(command, f"load {command.filename}", remove=leaving, edit=edits, add=new)
     if command.parts:
         made = yield from _commit_parts(view, change)
     else:
         made = yield from commit(view, change)
-    return _loaded(command, made, tuple(names), skipped, notes)
+    if made is not None and made.trial is not None:
+        changed = {entity.name: entity for entity in made.changed}
+    else:
+        changed = {name: view.entities[name] for name in names if name in view.entities}
+    counts = changes.count_kinds(
+        (was, now if now != was else None) for name, was in names.items() for now in (changed.get(name),)
+    )
+    return _loaded(command, made, tuple(names), skipped, notes, counts)
 
 
 def _commit_parts(view: MapView, whole: Transaction) -> KbCoroutine[Effects | None]:
     """Commit a scene in parts and return the last commit; the last part has the command's id."""
     last: Effects | None = None
     done: list[int] = []
-    starts = range(0, len(whole.add), PART)
+    starts = range(0, max(len(whole.add), len(whole.edit)), PART)
     for number, start in enumerate(starts, start=1):
         part = structs.replace(
             whole,
             id=whole.id if number == len(starts) else f"{whole.id}/{number}",
             reason=f"{whole.reason}, part {number} of {len(starts)}",
+            edit=whole.edit[start : start + PART],
             add=whole.add[start : start + PART],
         )
         try:
@@ -127,6 +144,7 @@ def _load_document(view: MapView, command: Load) -> KbCoroutine[Changed]:
         content=command.content,
         filename=command.filename,
         replace=command.replace,
+        add_only=command.add_only,
         skip_unknown=command.skip_unknown,
         strict=command.strict,
         parts=command.parts,
@@ -138,14 +156,14 @@ def _load_document(view: MapView, command: Load) -> KbCoroutine[Changed]:
         yield from apply(view, loaded.commit)
     elif loaded.commit is not None:
         yield from reload_map(view)
-    return _loaded(command, loaded.commit, loaded.names, loaded.skipped, loaded.notes)
+    return _loaded(command, loaded.commit, loaded.names, loaded.skipped, loaded.notes, loaded.counts)
 
 
 def _load_tbox(view: MapView, command: Load) -> KbCoroutine[Changed]:
-    if command.replace or command.skip_unknown or command.strict:
+    if command.replace or command.add_only or command.skip_unknown or command.strict:
         raise errors.BadRequest(
-            "--replace, --skip-unknown and --strict apply to maps only: a TBox always replaces the present"
-            " one (or extends it, with --extend) and leaves the map as it is"
+            "--replace, --add-only, --skip-unknown and --strict apply to maps only: a TBox always replaces"
+            " the present one (or extends it, with --extend) and leaves the map as it is"
         )
     require_operator(command, "extend the TBox" if command.extend else "replace the TBox")
     file = command.filename or "the file"
@@ -210,10 +228,15 @@ def _loaded(
     names: tuple[str, ...],
     skipped: tuple[str, ...],
     notes: tuple[str, ...],
+    counts: Mapping[str, int],
 ) -> Changed:
-    text = f"loaded {wording.entities(len(names))} from {command.filename or 'the file'}"
+    """Return the reply to a load; `counts` are the numbers of entities by what has changed."""
+    file, total = command.filename or "the file", wording.entities(sum(counts.values()))
+    text = f"loaded {total} from {file}"
     if commit is None:
-        text = f"{command.filename or 'the file'} adds nothing to the map"
+        text = f"{file} changes nothing in the map"
+    if counts.keys() - {"new"}:
+        text += f": {changes.counts_in_words(counts)}"
     if skipped:
         text += f", left out {len(skipped)}"
     return make_reply(commit, text, names=names, skipped=skipped, notes=notes)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, NamedTuple
 
+from semmap.ontology import vocabulary as v
 from semmap.schemas import errors, polygons
 from semmap.schemas.attachments import GRASP_POSE, IS_GRASPED_BY, pose_text
 from semmap.schemas.commands import Add, Attach, Batch, Command, Detach, Set, Track, Unset, Update
@@ -210,6 +211,28 @@ def new_entity(name: str, found: ClassInfo, text: Described) -> NewEntity:
         alt=text.alt,
         affordances=text.affords,
         set=(*extent, *map(_assignment, text.set)),
+    )
+
+
+def edit_entity(entity: Entity, found: ClassInfo, text: Described) -> Edit:
+    """Return the change of an entity to what a file describes; what the file omits stays.
+
+    Raises BadRequest for an invalid pose, and Refused for a new box if the extent is a polygon.
+    """
+    new = new_entity(entity.name, found, text)
+    if text.extent is None and (new.pose is not None or new.size is not None):
+        _require_box(Update(name=entity.name, at=text.at, size=text.size), entity)
+    affordances = (Statement(property=v.HAS_AFFORDANCE, values=tuple(map(v.dm, new.affordances))),)
+    return Edit(
+        name=entity.name,
+        class_iri=new.class_iri,
+        at=None if new.pose is None else new.pose.position_m,
+        orientation=None if new.pose is None else new.pose.orientation_wxyz,
+        yaw=text.yaw if new.pose is None else None,
+        size=new.size,
+        ref=new.ref,
+        alt=new.alt or None,
+        set=(*new.set, *(affordances if new.affordances else ())),
     )
 
 

@@ -27,6 +27,7 @@ from semmap.schemas import errors, wording
 from semmap.schemas.attachments import holder_of
 from semmap.schemas.commands import Add
 from semmap.schemas.entities import rounded
+from semmap.schemas.joints import is_on, openness
 from semmap.schemas.replies import Changed
 from semmap.schemas.scenes import Body, GripOrder, JointOrder, Placement
 
@@ -314,11 +315,7 @@ class MapUpdater:
                 self._report(f"{name} cannot become an entity yet: {error}")
 
         if body.class_ is None:
-            failed(
-                errors.UnknownClass(
-                    'unknown class; name it like chair_3, or add <text name="semmap:BODY" data="CLASS"/>'
-                )
-            )
+            failed(errors.UnknownClass("unknown class; name it like chair_3, or start with --class-map FILE"))
             return
         pose = rounded(body.pose)
         x, y, z = pose.position_m
@@ -330,6 +327,7 @@ class MapUpdater:
             at=(x, y, z),
             orientation=pose.orientation_wxyz,
             size=body.size_m,
+            ref=body.label or None,
             track="sim" if body.robot else None,
             set=(*((f"{_PART_OF}={whole}",) if whole else ()), *joints),
         )
@@ -344,12 +342,14 @@ class MapUpdater:
         return not self._waits.must_wait(whole, (name,), self._scene.sim_time_s)
 
     def _joint_assignments(self, body: Body) -> tuple[str, ...]:
-        """Return the joint positions of a robot as assignments, if they differ from those of its model.
+        """Return the joint positions of a new entity as assignments.
 
-        The arm sinks under its own weight when the simulation begins. As part of the commit that adds the
-        robot, this needs no commit of its own before or after those that add the parts.
+        Those of a robot are stated if they differ from its model, because the arm sinks under its own weight
+        when the simulation begins. Others are stated if they open or switch something, so that the contents
+        of a closed cupboard are known to be hidden.
         """
-        if not (body.robot and joints_differ_from_model(body, self._thresholds)):
+        states_something = openness(body.joints) is not None or is_on(body.joints) is not None
+        if not (joints_differ_from_model(body, self._thresholds) if body.robot else states_something):
             return ()
         return tuple(f"{one.property}={one.values[0]}" for one in joint_statements(body.joints))
 

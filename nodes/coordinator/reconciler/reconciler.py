@@ -262,6 +262,7 @@ class Reconciler:
                 status="ghost" if body.ghost else "present",
                 detail=scene_report.describe_ghost(body) if body.ghost else "",
                 model=body.model,
+                body=body.body,
                 joints=body.joints,
                 openness=openness(body.joints),
                 switched_on=is_on(body.joints),

@@ -67,8 +67,8 @@ def bodies_left_out(names: Collection[str]) -> list[str]:
         return []
     only_parts = "is only a part of another" if len(names) == 1 else "are only parts of others"
     return [
-        f"{wording.bodies(len(names))} of the world {only_parts}: {', '.join(names)}"
-        ' (to have one, add <text name="semmap:BODY" data="CLASS"/>)'
+        f"{wording.bodies(len(names))} of the world {only_parts}: {wording.few(names, 6)}"
+        " (to have one, start with --class-map FILE)"
     ]
 
 

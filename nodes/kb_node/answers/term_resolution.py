@@ -6,6 +6,7 @@ from typing import Final
 
 from semmap.nodes.kb_node.entities import property_values
 from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.reasoner.data_ranges import read_common
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.sparql.queries.text import query_prefixes
 from semmap.ontology import prefixes
@@ -145,8 +146,10 @@ def _is_data(reasoner: Reasoner, predicate: Term) -> bool:
 
 def _literal(semantic_map: SemanticMap, predicate: Term, text: str) -> Term:
     """Return the literal for `text`, as `set` reads it; a plain string if the property has no range."""
-    known = semantic_map.classes.property_table.by_iri.get(predicate)
-    if known is not None:
-        return property_values.literal(known.name, known.ranges, text)
-    ranges = frozenset(o for _, _, o in semantic_map.reasoner.asserted(predicate, v.RDFS_RANGE))
-    return property_values.literal(v.local_name(predicate), ranges, text) if ranges else v.literal(text)
+    table = semantic_map.classes.property_table
+    if (known := table.by_iri.get(predicate)) is not None:
+        return property_values.literal(known.name, known.data_range, text)
+    data_range = read_common(table.ranges(predicate), semantic_map.reasoner.asserted)
+    if data_range is None:
+        return v.literal(text)
+    return property_values.literal(v.local_name(predicate), data_range, text)

@@ -8,10 +8,11 @@ from operator import itemgetter
 from typing import NamedTuple
 
 from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.entities.property_values import retype
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
-from semmap.schemas import errors
+from semmap.schemas import errors, wording
 from semmap.schemas.explanations import Term, Triple
 
 _VOCABULARIES = (v.RDF, v.RDFS, v.OWL, v.XSD)
@@ -39,6 +40,8 @@ def filter_document(
 ) -> FilteredDocument:
     """Return the triples of a document that the map accepts. Numbers may be of any numeric datatype.
 
+    A literal outside the range of its property gets a datatype of the range if its text is a value of that.
+
     Raises UnknownClass with all individuals of unknown classes, unless `skip_unknown`. In that case
     individuals that have only unknown classes are left out, with the triples that describe only them, and the
     others lose the unknown classes. Raises BadFile for a TBox.
@@ -48,6 +51,7 @@ def filter_document(
     if _has_other_numbers(by_property, classes.number_datatypes):
         triples = _with_numbers(triples, classes.number_datatypes)
         by_property = entity_triples.group_by_property(triples)
+    triples, by_property, retyped = _with_datatypes(triples, by_property, classes)
     types_said = by_property.get(v.RDF_TYPE, [])
     used = set(map(itemgetter(2), types_said))
     declared = {s for s, _, o in types_said if o in _CLASSES} if used & _CLASSES else set[Term]()
@@ -73,6 +77,7 @@ def filter_document(
         kept = _without(removed, [t for t in triples if t not in doubtful])
         by_property = entity_triples.group_by_property(kept)
     notes = (
+        *retyped,
         *_unknown_properties(by_property, classes),
         *_own_classes(declared, classes),
         *_incomplete_values(by_property, kept),
@@ -93,7 +98,7 @@ def undeclared_classes(triples: Iterable[Triple], classes: ClassTable) -> set[Te
 def find_undescribed(
     triples: Sequence[Triple], reasoner: Reasoner, stays: Callable[[Triple], bool] = lambda _: True
 ) -> dict[Term, Triple]:
-    """Return individuals that are referenced but not described, each with the first triple that does so.
+    """Return named individuals that are referenced but not described, each with the first such triple.
 
     What the reasoner holds counts as a description, if `stays` is True for it.
     """
@@ -101,7 +106,8 @@ def find_undescribed(
     by_property = entity_triples.group_by_property(triples)
     related = {o for p in relations & by_property.keys() for _, _, o in by_property[p]}
     related.difference_update(map(itemgetter(0), by_property.get(v.RDF_TYPE, ())))
-    strange = {o for o in related if not any(map(stays, reasoner.asserted(o, v.RDF_TYPE, None)))}
+    named = (o for o in related if o.startswith("<"))
+    strange = {o for o in named if not any(map(stays, reasoner.asserted(o, v.RDF_TYPE, None)))}
     found: dict[Term, Triple] = {}
     for triple in triples if strange else ():
         if triple[2] in strange and triple[1] in relations:
@@ -146,6 +152,30 @@ def _with_numbers(triples: list[Triple], kinds: Mapping[Term, Term]) -> list[Tri
         (s, p, v.literal(v.lexical(o), kinds[p])) if p in kinds and o.endswith(_NUMBERS) else (s, p, o)
         for s, p, o in triples
     ]
+
+
+def _with_datatypes(
+    triples: list[Triple], by_property: dict[Term, list[Triple]], classes: ClassTable
+) -> tuple[list[Triple], dict[Term, list[Triple]], list[str]]:
+    """Return the triples with literals in the ranges of their properties as far as possible, and a note."""
+    changed: dict[Triple, Triple] = {}
+    counts: dict[str, int] = {}
+    for prop in classes.property_table.by_iri.values():
+        if prop.data_range is None:
+            continue
+        usual = tuple(f"^^{datatype}" for datatype in prop.data_range.datatypes)
+        for triple in by_property.get(prop.iri, ()):
+            s, p, o = triple
+            if not o.endswith(usual) and o.startswith('"') and (term := retype(prop.data_range, o)) != o:
+                changed[triple] = (s, p, term)
+                word = f"{prop.name} ({v.local_name(v.datatype_of(term))})"
+                counts[word] = counts.get(word, 0) + 1
+    if not changed:
+        return triples, by_property, []
+    few = ", ".join(list(counts)[:_FEW]) + (" and others" if len(counts) > _FEW else "")
+    note = f"{wording.counted(sum(counts.values()), 'value')} stored with the datatype of the property: {few}"
+    triples = [changed.get(triple, triple) for triple in triples]
+    return triples, entity_triples.group_by_property(triples), [note]
 
 
 def _unknown_properties(by_property: Mapping[Term, list[Triple]], classes: ClassTable) -> list[str]:

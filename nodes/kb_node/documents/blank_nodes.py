@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from semmap.schemas.explanations import Term, Triple
 
@@ -13,20 +13,35 @@ def relabel_like(new: Collection[Triple], known: Collection[Triple]) -> frozense
 
     The two graphs must not share labels.
     """
+    return frozenset(relabel(new, find_matches(new, known)))
+
+
+def relabel(triples: Iterable[Triple], labels: Mapping[Term, Term]) -> Iterator[Triple]:
+    """Yield the triples with other labels of blank nodes. Triples without these stay the same objects."""
+    return (
+        (labels.get(t[0], t[0]), t[1], labels.get(t[2], t[2])) if t[0] in labels or t[2] in labels else t
+        for t in triples
+    )
+
+
+def find_matches(new: Collection[Triple], known: Collection[Triple]) -> dict[Term, Term]:
+    """Return the blank nodes of `new` that `known` describes in the same way, with their labels in `known`.
+
+    The two graphs must not share labels.
+    """
     colors = _colors([*new, *known])
     free: dict[int, list[Term]] = defaultdict(list)
     for node in sorted({t for s, _, o in known for t in (s, o) if t in colors}, reverse=True):
         free[colors[node]].append(node)
     nodes = sorted({t for s, _, o in new for t in (s, o) if t in colors})
-    labels = {node: alike.pop() for node in nodes if (alike := free[colors[node]])}
-    return frozenset((labels.get(s, s), p, labels.get(o, o)) for s, p, o in new)
+    return {node: alike.pop() for node in nodes if (alike := free[colors[node]])}
 
 
 def _colors(triples: Iterable[Triple]) -> Mapping[Term, int]:
     """Return a number for each blank node; indistinguishable ones have the same (color refinement)."""
     about: dict[Term, list[Triple]] = defaultdict(list)
     for triple in triples:
-        for node in filter(_is_blank, {triple[0], triple[2]}):
+        for node in filter(is_blank, {triple[0], triple[2]}):
             about[node].append(triple)
     colors = dict.fromkeys(about, 0)
     count = 0
@@ -50,5 +65,6 @@ def _seen_from(node: Term, triples_about: Iterable[Triple], colors: Mapping[Term
     return sorted((name(s), p, name(o)) for s, p, o in triples_about)
 
 
-def _is_blank(term: Term) -> bool:
+def is_blank(term: Term) -> bool:
+    """Return whether a term is a blank node."""
     return term.startswith("_:")

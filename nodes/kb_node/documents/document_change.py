@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import chain
 from operator import is_
 
 from semmap.nodes.kb_node.documents import abox_document, rdf
+from semmap.nodes.kb_node.documents.replacement import Replacement, find_replacement
 from semmap.nodes.kb_node.documents.tbox import tbox_declarations, tbox_validation
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.ontology import vocabulary as v
 from semmap.schemas import errors, wording
 from semmap.schemas.bridge import LoadDocument, LoadTBox
 from semmap.schemas.commits import Transaction
@@ -18,11 +21,11 @@ from semmap.schemas.packing import unpacked
 
 def make_document_transaction(
     semantic_map: SemanticMap, load: LoadDocument, triples: Iterable[Triple]
-) -> tuple[Transaction, abox_document.FilteredDocument]:
-    """Return the transaction of an ABox document, and what was filtered from it.
+) -> tuple[Transaction, abox_document.FilteredDocument, Replacement]:
+    """Return the transaction of an ABox document, what was filtered from it, and what it replaces.
 
-    Raises UnknownClass, BadFile for a TBox, and UnknownName for undescribed individuals if the load is
-    strict.
+    Raises UnknownClass, BadFile for a TBox, UnknownName for undescribed individuals if the load is strict,
+    and NameTaken if it may only add and the document has other values for what is in the map.
     """
     filtered = abox_document.filter_document(triples, semantic_map.classes, skip_unknown=load.skip_unknown)
     stays = semantic_map.tbox.__contains__ if load.replace else lambda _: True
@@ -31,12 +34,23 @@ def make_document_transaction(
         if load.strict:
             raise errors.UnknownName(note)
         filtered.notes.append(f"{note}; --strict rejects such files")
+    replaced = Replacement({}, filtered.triples)
+    if not load.replace:
+        replaced = find_replacement(
+            filtered.triples, semantic_map.reasoner, semantic_map.classes, semantic_map.tbox
+        )
+    if replaced.retract and load.add_only:
+        names = sorted(v.local_name(owner) for owner in replaced.retract)
+        raise errors.NameTaken(
+            f"{load.filename or 'the file'} has other values for {wording.few(names, 5)}; to replace those of"
+            " the map, load it without --add-only"
+        )
     transaction = _transaction(
         load,
-        retract=semantic_map.abox() if load.replace else (),
-        insert=_outside(filtered.triples, semantic_map.tbox),
+        retract=semantic_map.abox() if load.replace else chain.from_iterable(replaced.retract.values()),
+        insert=_outside(replaced.insert, semantic_map.tbox),
     )
-    return transaction, filtered
+    return transaction, filtered, replaced
 
 
 def is_exact_copy(triples: Sequence[Triple], transaction: Transaction) -> bool:

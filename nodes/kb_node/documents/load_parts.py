@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import Final
 
 from msgspec import structs
 
 from semmap.schemas import errors
 from semmap.schemas.commits import Commit, Transaction
-from semmap.schemas.explanations import Triple
+from semmap.schemas.explanations import Term, Triple
 
 PART: Final = 100_000
 """Triples per part. The last entity of a part is completed."""
@@ -17,21 +18,27 @@ _STAR: Final = 64
 """Largest number of triples of an entity."""
 
 
-def split(transaction: Transaction, size: int = PART) -> list[Transaction]:
+def split(
+    transaction: Transaction, size: int = PART, replaced: Mapping[Term, list[Triple]] = MappingProxyType({})
+) -> list[Transaction]:
     """Split a transaction into parts. Only the last part has the original id.
 
-    The command therefore counts as done only when all parts are.
+    The command therefore counts as done only when all parts are. `replaced` are its removed triples, by the
+    individual that they describe: they are removed by the part that describes it.
     """
     triples = transaction.insert
     ends = list(_ends(triples, size))
+    pending = dict(replaced)
     parts = []
     for number, (start, end) in enumerate(zip([0, *ends], ends, strict=False), start=1):
         is_last = number == len(ends)
+        owners = pending.keys() if is_last else pending.keys() & {s for s, _, _ in triples[start:end]}
         parts.append(
             structs.replace(
                 transaction,
                 id=transaction.id if is_last else f"{transaction.id}/{number}",
                 reason=f"{transaction.reason}, part {number} of {len(ends)}",
+                retract=tuple(t for owner in sorted(owners) for t in pending.pop(owner)),
                 insert=triples[start:end],
             )
         )

@@ -40,8 +40,11 @@ class AlignedSize(NamedTuple):
 def pose(alignments: Iterable[Alignment], about: About, iri: Term, size_m: Size | None) -> Pose | None:
     """Return the pose of an entity's bottom centre in the map frame, or None if there is none."""
     asserted = find_pose(alignments, about, iri)
-    if asserted is None:
-        return None
+    return None if asserted is None else bottom_pose(asserted, size_m)
+
+
+def bottom_pose(asserted: AlignedPose, size_m: Size | None) -> Pose:
+    """Return the pose of the bottom centre of an entity of this size."""
     return Pose(
         position_m=shift_along_z(
             asserted.position, asserted.orientation, -_origin_height(asserted.words, size_m)
@@ -65,6 +68,11 @@ def names(alignments: Iterable[Alignment], about: About, iri: Term) -> list[str]
 
 def find_pose(alignments: Iterable[Alignment], about: About, iri: Term) -> AlignedPose | None:
     """Return the first valid pose; poses relative to another frame are ignored."""
+    return next(find_poses(alignments, about, iri), None)
+
+
+def find_poses(alignments: Iterable[Alignment], about: About, iri: Term) -> Iterator[AlignedPose]:
+    """Yield all valid poses in the map frame."""
     for words in (words for known in alignments for words in known.pose):
         for nodes in _paths(about, iri, words.path):
             values = about(nodes[-1])
@@ -74,20 +82,33 @@ def find_pose(alignments: Iterable[Alignment], about: About, iri: Term) -> Align
             turned = _vector(values.get(words.orientation, ()), 4) if words.orientation is not None else None
             orientation = _quaternion(turned, words) if turned is not None else IDENTITY
             if orientation is not None:
-                return AlignedPose(words, nodes, position, orientation)  # type: ignore[arg-type]
-    return None
+                yield AlignedPose(words, nodes, position, orientation)  # type: ignore[arg-type]
 
 
 def find_size(alignments: Iterable[Alignment], about: About, iri: Term) -> AlignedSize | None:
     """Return the first size that is complete and positive."""
+    return next(find_sizes(alignments, about, iri), None)
+
+
+def find_sizes(alignments: Iterable[Alignment], about: About, iri: Term) -> Iterator[AlignedSize]:
+    """Yield all sizes that are complete and positive."""
     for words in (words for known in alignments for words in known.size):
         for nodes in _paths(about, iri, words.path):
             values = about(nodes[-1])
             found = [_vector(values.get(p, ()), 1) for p in (words.x, words.y, words.z)]
             extent = tuple(number[0] for number in found if number is not None and number[0] > 0)
             if len(extent) == 3:
-                return AlignedSize(words, nodes, extent)
-    return None
+                yield AlignedSize(words, nodes, extent)
+
+
+def value_triples(asserted: AlignedPose | AlignedSize, about: About) -> list[Triple]:
+    """Return the triples with the numbers of a pose or size."""
+    node, words = asserted.nodes[-1], asserted.words
+    numbers = (
+        (words.position, words.orientation) if isinstance(words, PoseMapping) else (words.x, words.y, words.z)
+    )
+    values = about(node)
+    return [(node, p, o) for p in numbers if p is not None for o in values.get(p, ())]
 
 
 def pose_triples(

@@ -32,6 +32,8 @@ class Reading(NamedTuple):
     patterns: Patterns
     progress: Callable[[], None]
     """Called now and then."""
+    strict: bool = False
+    """Whether several poses or sizes of an entity are an error. Older maps may have such entities."""
 
 
 def add_effects(
@@ -47,11 +49,11 @@ def add_effects(
 
     `before` are the entities by name. `owners` are the individuals that the commit's triples describe, before
     or after it. The commit contains all triples about `new` individuals. Raises NameTaken, and BadRequest for
-    an invalid entity.
+    an invalid entity, also one with several poses or sizes if the reading is strict.
     """
     changed: dict[str, Entity] = {}
     removed: list[Departed] = []
-    reasoner, classes, _, progress = reading
+    reasoner, classes, _, progress, strict = reading
     provenance = commit.provenance
     at_sight, seen, unseen = _read_regular(change, reading, provenance)
     others = (owners - seen) | change.others | unseen
@@ -65,6 +67,8 @@ def add_effects(
     for iri in with_progress(sorted({*at_sight, *concerned}), progress):
         was = None if iri in new else known(before, iri)
         entity: Entity | None
+        if strict and iri not in at_sight:
+            entity_reading.require_one_place(about, classes, iri)
         if moved and was is not None and iri not in moved:
             entity = entity_reading.read_moved(reasoner, was, provenance)
         else:

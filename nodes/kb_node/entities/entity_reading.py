@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence, Set
-from itertools import islice
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
+from contextlib import suppress
+from itertools import islice, product
 
 from msgspec import structs
 
@@ -27,6 +28,8 @@ _FEW = 16
 _MANY_TRIPLES = 100
 """Triples per subject beyond which looking it up is faster than scanning."""
 _MAX_PATH = 8
+_SAME_M = 1e-6
+"""Positions and sizes that differ by less are the same, in another vocabulary or spelling."""
 _IRI = re.compile("<(https?|urn|file):", re.IGNORECASE)
 _OF_THE_TBOX = Provenance(commit=0, stamp_ns=0, source="file", reason="the TBox says so")
 
@@ -106,6 +109,44 @@ def read_place(about: About, classes: ClassTable, iri: Term) -> tuple[Pose | Non
     if v.HAS_EXTENT in asserted:
         return _around(iri, asserted[v.HAS_EXTENT], pose, size_m)
     return pose, size_m
+
+
+def require_one_place(about: About, classes: ClassTable, iri: Term) -> None:
+    """Raise BadRequest for an entity with several poses or sizes, in whatever vocabularies they are."""
+    asserted, known = about(iri), classes.alignments
+    positions = _find_vectors(about, asserted.get(v.HAS_POSITION, ()), v.COORDINATE_XYZ)
+    orientations = _find_vectors(about, asserted.get(v.HAS_POSITION, ()), v.ORIENTATION_WXYZ)
+    sizes = _find_vectors(about, asserted.get(v.HAS_SIZE, ()), v.SIZE_XYZ)
+    if known:
+        _, size_m = read_place(about, classes, iri)
+        for found in aligned_values.find_poses(known, about, iri):
+            positions.append(aligned_values.bottom_pose(found, size_m).position_m)
+        sizes += [found.size_m for found in aligned_values.find_sizes(known, about, iri)]
+    for what, vectors in (("positions", positions), ("orientations", orientations), ("sizes", sizes)):
+        others = (other for other in vectors[1:] if math.dist(vectors[0], other) > _SAME_M)
+        if (other := next(others, None)) is not None:
+            both = " and ".join(
+                "({})".format(", ".join(f"{x:g}" for x in one)) for one in (vectors[0], other)
+            )
+            raise errors.BadRequest(f"{v.local_name(iri)} has two {what}: {both}; state one")
+
+
+def _find_vectors(about: About, nodes: Sequence[Term], properties: Sequence[Term]) -> list[tuple[float, ...]]:
+    """Return all complete vectors that the individuals have: one for each combination of valid numbers."""
+    found: list[tuple[float, ...]] = []
+    for node in nodes:
+        asserted = about(node)
+        numbers = [list(_read_numbers(asserted.get(p, ()))) for p in properties]
+        found += islice(product(*numbers), _FEW)
+    return found
+
+
+def _read_numbers(terms: Iterable[Term]) -> Iterator[float]:
+    """Yield the finite numbers of literals."""
+    for term in terms:
+        with suppress(ValueError):
+            if term[0] == '"' and math.isfinite(number := float(v.lexical(term))):
+                yield number
 
 
 def _around(iri: Term, extents: Sequence[Term], pose: Pose | None, size_m: Size | None) -> tuple[Pose, Size]:

@@ -225,9 +225,13 @@ class Draft:
 
     def _place(self, entity: Entity, nodes: Sequence[Term], pose: Pose, size_m: Size | None) -> None:
         about = self._reasoner.about
-        asserted = (
-            None if nodes else aligned_values.find_pose(self._classes.alignments, about, v.iri(entity.iri))
-        )
+        aligned = list(aligned_values.find_poses(self._classes.alignments, about, v.iri(entity.iri)))
+        asserted = aligned[0] if aligned and not nodes else None
+        for other in aligned if asserted is None else aligned[1:]:  # maps of older versions may have several
+            if self._is_own_path(other.nodes):
+                self._retract(aligned_values.value_triples(other, about))
+            else:
+                self._detach(other.nodes, other.words.path, other.words.position)
         if asserted is not None and self._is_own_path(asserted.nodes):
             self._change(aligned_values.pose_triples(asserted, pose, size_m, about))
             return

@@ -92,4 +92,4 @@ def _objects(by_property: _Said, property_: Term, subjects: Sequence[Term]) -> l
 def _looks(classes_of: Iterable[Term], classes: ClassTable) -> tuple[list[ClassModel], dict[Term, int]]:
     """Return the appearance of the classes, and the index of the appearance by class."""
     rows = {c: row for row, c in enumerate(dict.fromkeys(classes_of))}
-    return [ClassModel(classes.models[c], c in classes.places) for c in rows], rows
+    return [ClassModel(classes.models[c], c in classes.places, c in classes.fixed) for c in rows], rows

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from semmap.nodes.kb_node.entities import property_values
 from semmap.nodes.kb_node.entities.property_names import PropertyNames
 from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.reasoner.data_ranges import DataRange, read_common
 from semmap.nodes.kb_node.sparql.queries.text import query_prefixes
 from semmap.ontology import vocabulary as v
 from semmap.ontology.model_choice import require_model
@@ -34,13 +35,17 @@ _OF_A_STAR = frozenset((v.LEXICAL_REFERENCE, *v.COORDINATE_XYZ, *v.ORIENTATION_W
 
 
 class Property(NamedTuple):
-    """A data or object property. `ranges` includes those of its superproperties."""
+    """A data or object property. `ranges` includes those of its superproperties.
+
+    `data_range` are the values that a data property may have; None if they are not limited.
+    """
 
     iri: Term
     name: str
     is_data: bool
     functional: bool
     ranges: frozenset[Term]
+    data_range: DataRange | None = None
 
 
 class PropertyTable:
@@ -77,15 +82,14 @@ class PropertyTable:
         for p, is_data in sorted(declared.items()):
             if p in STRUCTURAL or p in edges:
                 continue
-            above = self._above(p)
+            ranges = _TEXT if p == v.MODEL else self.ranges(p)
             self.by_iri[p] = Property(
                 iri=p,
                 name=names.names[p],
                 is_data=is_data,
-                functional=p == v.MODEL or any(self._is(q, v.OWL_FUNCTIONAL_PROPERTY) for q in above),
-                ranges=_TEXT
-                if p == v.MODEL
-                else frozenset(o for q in above for _, _, o in reasoner.asserted(q, v.RDFS_RANGE, None)),
+                functional=self.is_functional(p),
+                ranges=ranges,
+                data_range=read_common(ranges, reasoner.asserted) if is_data else None,
             )
 
     def read_values(self, asserted: Mapping[Term, Iterable[Term]]) -> dict[str, property_values.Stated]:
@@ -123,7 +127,7 @@ class PropertyTable:
         if prop.iri == v.MODEL:
             require_model(text)
         if prop.is_data:
-            return property_values.literal(prop.name, prop.ranges, text)
+            return property_values.literal(prop.name, prop.data_range, text)
         term = self._term(text)
         if term is not None:
             if any(self._reasoner.asserted(term)):
@@ -135,6 +139,15 @@ class PropertyTable:
         if not hint and 0 < len(allowed) <= _FEW:
             hint = f"; {prop.name} takes {', '.join(allowed)}"
         raise errors.UnknownName(f"no individual is named '{text}'{hint}")
+
+    def ranges(self, p: Term) -> frozenset[Term]:
+        """Return the ranges of a property, known or not, and of its superproperties."""
+        asserted = self._reasoner.asserted
+        return frozenset(o for q in self._above(p) for _, _, o in asserted(q, v.RDFS_RANGE, None))
+
+    def is_functional(self, p: Term) -> bool:
+        """Return whether a property, known or not, or one of its superproperties is functional."""
+        return p == v.MODEL or any(self._is(q, v.OWL_FUNCTIONAL_PROPERTY) for q in self._above(p))
 
     def rows(self) -> Iterator[PropertyInfo]:
         """Yield one row per property, by name."""
@@ -149,7 +162,7 @@ class PropertyTable:
                 kind="data" if prop.is_data else "object",
                 functional=prop.functional,
                 domain=self._called(domains),
-                range=self._called(prop.ranges),
+                range=self._called(prop.ranges) or ((prop.data_range.text,) if prop.data_range else ()),
                 labels=self._labels(prop.iri),
                 comment=v.lexical(comments[0]) if comments else "",
                 values={v.local_name(i): _label(self._labels(i)) for i in sorted(self._allowed(prop))},

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Set
 
 from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.nodes.kb_node.reasoner.data_ranges import DataRange, Datatype
+from semmap.nodes.kb_node.reasoner.explain.words import article
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors, polygons
 from semmap.schemas.changes import value_in_words
@@ -24,9 +25,11 @@ _FLOATS = frozenset((v.XSD_FLOAT, v.iri(f"{v.XSD}double")))
 _INFINITE = frozenset(("INF", "-INF", "+INF", "NaN"))
 """The values that are not finite in XML Schema."""
 _LARGEST_FLOAT = 3.4028234663852886e38
+_XSD = f"<{v.XSD}"
 _DECIMAL = v.iri(f"{v.XSD}decimal")
 _INTEGER = v.iri(f"{v.XSD}integer")
 _TEXTS = frozenset((v.RDF_LANG_STRING, v.iri(f"{v.RDF}PlainLiteral"), datatypes.LITERAL))
+"""Datatypes in which a text may have a language."""
 _LARGEST = 1 << 63
 _OF_INTEGERS = frozenset(
     v.iri(v.XSD + name)
@@ -37,6 +40,7 @@ _OF_INTEGERS = frozenset(
     )
 )
 _SAID = {
+    v.RDF_LANG_STRING: "a text with its language, such as Tasse@de",
     v.XSD_BOOLEAN: "true or false",
     **dict.fromkeys(_FLOATS, "a number"),
     _DECIMAL: "a decimal number",
@@ -44,28 +48,40 @@ _SAID = {
 }
 
 
-def literal(name: str, ranges: Set[Term], text: str) -> Term:
-    """Return the literal that `text` denotes for property `name` with these ranges.
+def literal(name: str, data_range: DataRange | None, text: str) -> Term:
+    """Return the literal that `text` denotes for property `name` with this range.
 
-    `text` is a literal in N-Triples syntax, or its lexical form; a text may end with @ and a language.
-    Without a range, true and false are booleans, and numbers are numbers. Raises BadRequest.
+    `text` is a literal in N-Triples syntax, or its lexical form. Where the range allows it, a text may end
+    with @ and a language. The datatype is the first one of the range in which the text is a value of the
+    range. Without a range, true and false are booleans, and numbers are numbers. Raises BadRequest.
     """
     if _LITERAL.fullmatch(text):
-        return _checked(name, ranges, text, text)
-    if v.WKT_LITERAL in ranges:
+        if datatypes.is_ill_typed(text) or (data_range and data_range.contains(text) is False):
+            raise _range_error(name, text, data_range)
+        return text
+    if data_range is None:
+        return _guessed(text)
+    if v.WKT_LITERAL in data_range.datatypes:
         return v.literal(polygons.wkt(polygons.read_wkt(text)), v.WKT_LITERAL)
-    known = sorted(r for r in ranges if datatypes.is_datatype(r) and r not in _TEXTS)
-    if not known:
-        return _text(text) if ranges & _TEXTS or ranges == {v.XSD_STRING} else _guessed(text)
-    (datatype, *_) = known
-    if datatype == v.XSD_STRING:
-        return v.literal(text)
-    written = text.strip()
-    if datatype == v.XSD_BOOLEAN:
-        written = _BOOLEANS.get(written.casefold(), written)
-    elif datatype in _FLOATS:
-        written = _float(name, written, datatype)
-    return _checked(name, ranges, text, v.literal(written, datatype))
+    written = (_written(name, datatype, text) for datatype in data_range.datatypes)
+    for term in written if data_range.datatypes else (_guessed(text),):
+        if not datatypes.is_ill_typed(term) and data_range.contains(term) is not False:
+            return term
+    raise _range_error(name, text, data_range)
+
+
+def retype(data_range: DataRange, term: Term) -> Term:
+    """Return a literal outside a range with a datatype of the range, if its text is a value of that.
+
+    Other literals are returned as they are.
+    """
+    if data_range.contains(term) is not False or v.language_of(term) is not None:
+        return term
+    for datatype in data_range.datatypes:
+        other = v.literal(v.lexical(term), None if datatype == v.XSD_STRING else datatype)
+        if datatype not in _TEXTS and not datatypes.is_ill_typed(other) and data_range.contains(other):
+            return other
+    return term
 
 
 def is_same_value(one: Term, other: Term) -> bool:
@@ -100,21 +116,31 @@ def to_text(term: Term) -> str:
     return value_in_words(to_json_value(term))
 
 
-def _checked(name: str, ranges: Set[Term], text: str, term: Term) -> Term:
-    """Return the literal. Raises BadRequest if it is not in the range."""
-    if datatypes.is_ill_typed(term):
-        raise _range_error(name, text, v.datatype_of(term))
-    for datatype in sorted(r for r in ranges if datatypes.is_datatype(r)):
-        if datatypes.excludes(datatype, term):
-            raise _range_error(name, text, datatype)
-    return term
+def _written(name: str, datatype: Term, text: str) -> Term:
+    """Return the literal of a datatype that people write as `text`. Raises BadRequest if it is too large."""
+    if datatype in _TEXTS:
+        return _text(text)
+    if datatype == v.XSD_STRING:
+        return v.literal(text)
+    written = text.strip()
+    if datatype == v.XSD_BOOLEAN:
+        written = _BOOLEANS.get(written.casefold(), written)
+    elif datatype in _FLOATS:
+        written = _float(name, written, datatype)
+    return v.literal(written, datatype)
 
 
-def _range_error(name: str, text: str, datatype: Term) -> errors.BadRequest:
-    kind = f"xsd:{v.local_name(datatype)}"
-    if _LITERAL.fullmatch(text):
-        return errors.BadRequest(f"{name} takes a literal of {kind}, not {text}")
-    return errors.BadRequest(f"{name} takes {_SAID.get(datatype) or kind}, not '{text}'")
+def _range_error(name: str, text: str, data_range: DataRange | None) -> errors.BadRequest:
+    if data_range is None:
+        kind = Datatype(v.datatype_of(text)).text
+        return errors.BadRequest(f"{name}: {text} is not a literal of xsd:{kind}")
+    is_literal = _LITERAL.fullmatch(text)
+    takes = article(data_range.text)
+    if isinstance(data_range, Datatype):
+        kind = f"xsd:{data_range.text}" if data_range.term.startswith(_XSD) else data_range.text
+        takes = f"a literal of {kind}" if is_literal else _SAID.get(data_range.term) or kind
+    given = text if is_literal else f"'{text}'"
+    return errors.BadRequest(f"{name} takes {takes}, not {given}")
 
 
 def _text(text: str) -> Term:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import uuid
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 
 from semmap.nodes.kb_node.answers import dry_runs
@@ -15,9 +15,11 @@ from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.ontology import vocabulary as v
+from semmap.schemas import changes
 from semmap.schemas.bridge import LoadDocument, Loaded, LoadTBox
 from semmap.schemas.calls import Handler, by_verb
 from semmap.schemas.commits import Commit, Effects, Transaction
+from semmap.schemas.entities import Entity
 from semmap.schemas.packing import unpacked
 
 
@@ -69,26 +71,36 @@ class LoadHandlers:
             )
             del content
             report(f"{len(triples):,} triples to check and write")
-            transaction, filtered = document_change.make_document_transaction(self._map, load, triples)
+            transaction, filtered, replaced = document_change.make_document_transaction(
+                self._map, load, triples
+            )
             if not document_change.is_exact_copy(triples, transaction):
                 self._sparql.discard_prepared()
+            known = {
+                entity.name: entity for entity in filter(None, map(self._map.find_by_iri, replaced.known))
+            }
+            retract = replaced.retract
             if load.dry_run:
                 names, tried = self._dry_run_load(transaction)
+                after = {entity.name: entity for entity in tried.changed} if tried is not None else {}
                 return Loaded(
                     commit=tried,
                     names=names,
+                    counts=_count(known, _described(tried) if tried is not None else (), after),
                     skipped=tuple(filtered.skipped),
                     notes=tuple(filtered.notes),
                 )
             skipped, notes = tuple(filtered.skipped), filtered.notes
-            del triples, filtered  # for very many triples each list takes much memory
-            parts = load_parts.split(transaction) if load.parts else [transaction]
+            del triples, filtered, replaced  # for very many triples each list takes much memory
+            parts = load_parts.split(transaction, replaced=retract) if load.parts else [transaction]
             commit = partial(self._commit, told=load.told)
             commits = load_parts.commit_each(parts, commit, report if load.parts else lambda _: None)
+            names = tuple(dict.fromkeys(name for commit in commits for name in _described(commit)))
             return Loaded(
                 commit=effects(commits[-1] if commits else None),
                 parts=len(commits),
-                names=tuple(dict.fromkeys(name for commit in commits for name in _described(commit))),
+                names=names,
+                counts=_count(known, names, self._map.by_name),
                 skipped=skipped,
                 notes=(*notes, *(note for earlier in commits[:-1] for note in earlier.notes)),
             )
@@ -137,6 +149,14 @@ class LoadHandlers:
         )
 
 
-def _described(commit: Commit) -> Iterator[str]:
+def _count(known: Mapping[str, Entity], names: Iterable[str], after: Mapping[str, Entity]) -> dict[str, int]:
+    """Count the entities that a document describes: those of `names`, and the others that were known."""
+    concerned = dict.fromkeys(names)
+    described = ((known.get(name), after[name]) for name in concerned if name in after)
+    unchanged = ((known[name], None) for name in known.keys() - concerned.keys())
+    return changes.count_kinds((*described, *unchanged))
+
+
+def _described(commit: Commit | Effects) -> Iterator[str]:
     """Yield the entities that a load describes; others may only have changed classes because of it."""
     return (entity.name for entity in commit.changed if entity.provenance.commit == commit.seq)

@@ -1,5 +1,8 @@
 """Table 8 of OWL 2 RL: the values of literals, and the datatypes that contain them.
 
+Beyond the table, the datatypes of XML Schema for times and durations, `owl:real`, `owl:rational`, `rdf:HTML`
+and `rdf:JSON` are supported.
+
 A value is a hashable key. Equal keys are the same value (dt-eq), different keys different values (dt-diff).
 Floats are compared by their IEEE 754 representation, as OWL 2 requires: `0.0` and `-0.0` are two values.
 """
@@ -8,6 +11,7 @@ from __future__ import annotations
 
 import base64
 import binascii
+import json
 import re
 import struct
 from collections.abc import Callable, Collection, Hashable
@@ -26,7 +30,7 @@ from semmap.nodes.kb_node.reasoner.terms import PREFIXES, iri, is_literal, liter
 Value = tuple[str, Hashable]
 """The name of a primitive datatype, and the key of a value in it."""
 
-_XSD, _RDF = PREFIXES["xsd"], PREFIXES["rdf"]
+_XSD, _RDF, _OWL = PREFIXES["xsd"], PREFIXES["rdf"], PREFIXES["owl"]
 LITERAL: Final = iri("rdfs:Literal")
 
 _INTEGERS: Final[dict[str, tuple[int | None, int | None]]] = {
@@ -75,6 +79,20 @@ _BOOLEAN = {"true": True, "1": True, "false": False, "0": False}
 _ZONE = r"(Z|[+-](?:0\d|1[0-3]):[0-5]\d|[+-]14:00)?"
 _DATE_TIME = re.compile(rf"(\d{{4}})-(\d\d)-(\d\d)T(\d\d):(\d\d):(\d\d)(\.\d+)?{_ZONE}")
 _DATE = re.compile(rf"(\d{{4}})-(\d\d)-(\d\d){_ZONE}")
+_TIME = re.compile(rf"(\d\d):(\d\d):(\d\d)(\.\d+)?{_ZONE}")
+_PARTS_OF_DATES: Final = {
+    "gYear": re.compile(rf"(-?(?:[1-9]\d{{3,}}|0\d{{3}})){_ZONE}"),
+    "gYearMonth": re.compile(rf"(-?(?:[1-9]\d{{3,}}|0\d{{3}})-(?:0[1-9]|1[0-2])){_ZONE}"),
+    "gMonth": re.compile(rf"(--(?:0[1-9]|1[0-2])){_ZONE}"),
+    "gMonthDay": re.compile(
+        rf"(--(?:(?:0[1-9]|1[0-2])-(?:[01]\d|2[0-9])|(?:0[13-9]|1[0-2])-30|(?:0[13578]|1[02])-31)){_ZONE}"
+    ),
+    "gDay": re.compile(rf"(---(?:0[1-9]|[12]\d|3[01])){_ZONE}"),
+}
+_DURATION = re.compile(
+    r"(-)?P(?=[\dT])(?:(\d+)Y)?(?:(\d+)M)?(?:(\d+)D)?(?:T(?=\d)(?:(\d+)H)?(?:(\d+)M)?(?:(\d+(?:\.\d+)?)S)?)?"
+)
+_RATIONAL = re.compile(r"([+-]?\d+)\s*/\s*(\d+)")
 _BASE64 = re.compile(r"(?:[\w+/]{4})*(?:[\w+/]{2}==|[\w+/]{3}=)?", re.ASCII)
 _IRI = re.compile(
     r"(?:[A-Za-z][A-Za-z0-9+.-]*:|(?![^/?#]*:))"  # a scheme, or a relative reference without a leading colon
@@ -108,7 +126,7 @@ def value(term: Term) -> Value | None:
             return ("text", (collapsed, "")) if _STRINGS[name].fullmatch(collapsed) else None
         read = _READERS.get(name)
         return read(text) if read else None
-    except (ValueError, OverflowError, binascii.Error, expat.ExpatError):
+    except (ValueError, OverflowError, RecursionError, binascii.Error, expat.ExpatError):
         return None
 
 
@@ -132,6 +150,8 @@ def _spelled(found: Value) -> Term:
         return quoted(key[0], language=key[1])
     if kind == "decimal" and key.denominator == 1:
         return quoted(str(key.numerator), datatype=_XSD + "integer")
+    if kind == "decimal" and not _is_decimal(key):
+        return quoted(f"{key.numerator}/{key.denominator}", datatype=_OWL + "rational")
     write = _WRITERS.get(kind)
     return quoted(write(key) if write else key, datatype=kind if ":" in kind else _XSD + kind)
 
@@ -171,6 +191,21 @@ def _write_date_time(key: tuple[str, str, Fraction]) -> str:
     return moment.removesuffix("+00:00") + decimals + ("Z" if zone == "zoned" else "")
 
 
+def _write_time(zone: str, seconds: Fraction) -> str:
+    whole = int(seconds)
+    text = f"{whole // 3600:02}:{whole // 60 % 60:02}:{whole % 60:02}"
+    decimals = _write_decimal(seconds - whole)[1:] if seconds != whole else ""
+    return f"{text}{decimals}{'Z' if zone == 'zoned' else ''}"
+
+
+def _write_duration(months: int, seconds: Fraction) -> str:
+    sign = "-" if months < 0 or seconds < 0 else ""
+    date_part = f"{abs(months)}M" if months else ""
+    number = abs(seconds)
+    shown = str(number.numerator) if number.denominator == 1 else _write_decimal(number)
+    return f"{sign}P{date_part}" + (f"T{shown}S" if number or not months else "")
+
+
 def is_ill_typed(term: Term) -> bool:
     """Return whether a literal is outside the lexical space of its datatype."""
     return value(term) is None and is_datatype(f"<{literal(term).datatype}>")
@@ -188,7 +223,9 @@ def contains(datatype: Term, term: Term) -> bool:
     kind, key = found
     name = datatype[1:-1].removeprefix(_XSD)
     if kind == "decimal":
-        return name == "decimal" or (name in _INTEGERS and isinstance(key, Fraction) and _in_range(key, name))
+        if name in _INTEGERS:
+            return isinstance(key, Fraction) and _in_range(key, name)
+        return name in _REALS or (name == "decimal" and _is_decimal(key))
     if kind == "text":
         text, language = key
         if language:
@@ -198,7 +235,58 @@ def contains(datatype: Term, term: Term) -> bool:
         )
     if kind == "dateTime":
         return name == "dateTime" or (name == "dateTimeStamp" and key[0] == "zoned")
+    if kind == "duration":
+        months, seconds = key
+        zero = {"dayTimeDuration": months, "yearMonthDuration": seconds, "duration": 0}.get(name)
+        return zero == 0
     return kind == name
+
+
+def order_key(term: Term) -> tuple[str, Any] | None:
+    """Return what orders the value of a literal among others of the same kind; None without an order.
+
+    Numbers of all datatypes are one kind. Points in time with and without a time zone are two.
+    """
+    found = value(term)
+    if found is None:
+        return None
+    kind: str
+    key: Any
+    kind, key = found
+    if kind == "decimal":
+        return ("number", key)
+    if kind in ("float", "double"):
+        (number,) = struct.unpack("<f" if kind == "float" else "<d", key)
+        return ("number", number)
+    if kind == "duration":
+        months, seconds = key
+        if months and seconds:
+            return None
+        return ("months", months) if months else ("seconds", seconds)
+    if kind in ("dateTime", "time"):
+        return (f"{kind} {key[0]}", key[1:])
+    if kind == "date" or kind in _PARTS_OF_DATES:
+        number = int(key[0]) if kind == "gYear" else key[0]
+        return (f"{kind} {key[1]}", number)
+    return None
+
+
+def length(term: Term) -> int | None:
+    """Return the length of a text in characters, or of binary data in octets; None for other values."""
+    found = value(term)
+    if found is None or found[0] not in ("text", "anyURI", "hexBinary", "base64Binary"):
+        return None
+    key: Any = found[1]
+    return len(key[0] if found[0] == "text" else key)
+
+
+def _is_decimal(number: Fraction) -> bool:
+    """Return whether a number has finitely many decimal places."""
+    rest = number.denominator
+    for factor in (2, 5):
+        while rest % factor == 0:
+            rest //= factor
+    return rest == 1
 
 
 def distinguishes_strings(datatype: Term) -> bool:
@@ -217,6 +305,8 @@ def includes(wide: Term, narrow: Term) -> bool:
     if wide in (narrow, LITERAL):
         return True
     one, other = (term[1:-1].removeprefix(_XSD) for term in (wide, narrow))
+    if one in _REALS:
+        return other == "decimal" or other in _INTEGERS or other in _REALS
     if one == "decimal":
         return other in _INTEGERS
     if one in _INTEGERS and other in _INTEGERS:
@@ -224,6 +314,8 @@ def includes(wide: Term, narrow: Term) -> bool:
         return _is_within(lowest, highest, low, high)
     if one == _RDF + "PlainLiteral":
         return other in _STRINGS or narrow == iri("rdf:langString")
+    if one == "duration":
+        return other in ("dayTimeDuration", "yearMonthDuration")
     return one in _WIDER.get(other, ()) or (one, other) == ("dateTime", "dateTimeStamp")
 
 
@@ -345,6 +437,60 @@ def _date(text: str) -> Value | None:
     return ("date", (date(year, month, day), match[4]))
 
 
+def _time(text: str) -> Value | None:
+    match = _TIME.fullmatch(text.strip(" \t\n\r"))
+    if match is None:
+        return None
+    hour, minute, second = map(int, match.groups()[:3])
+    fraction = Fraction(match[4] or "0")
+    if hour > 24 or minute > 59 or second > 59 or (hour == 24 and (minute or second or fraction)):
+        return None
+    zone = _zone(match[5])
+    shift = zone.utcoffset(None) if zone else timedelta()
+    seconds = hour * 3600 + minute * 60 + second - int(shift.total_seconds())
+    return ("time", ("zoned" if zone else "local", seconds % 86400 + fraction))
+
+
+def _part_of_a_date(name: str) -> Callable[[str], Value | None]:
+    def read(text: str) -> Value | None:
+        match = _PARTS_OF_DATES[name].fullmatch(text.strip(" \t\n\r"))
+        if match is None:
+            return None
+        zone = match[2] or ""
+        return (name, (match[1], "Z" if zone in ("+00:00", "-00:00") else zone))
+
+    return read
+
+
+def _duration(text: str) -> Value | None:
+    match = _DURATION.fullmatch(text.strip(" \t\n\r"))
+    if match is None:
+        return None
+    sign = -1 if match[1] else 1
+    years, months, days, hours, minutes = (int(part or 0) for part in match.groups()[1:6])
+    seconds = Fraction(match[7] or 0) + minutes * 60 + hours * 3600 + days * 86400
+    return ("duration", (sign * (years * 12 + months), sign * seconds))
+
+
+def _day_time_duration(text: str) -> Value | None:
+    return _duration(text) if not re.search("Y|M", text.partition("T")[0]) else None
+
+
+def _year_month_duration(text: str) -> Value | None:
+    return _duration(text) if not re.search("D|T", text) else None
+
+
+def _rational(text: str) -> Value | None:
+    match = _RATIONAL.fullmatch(text.strip(" \t\n\r"))
+    if match is None:
+        return _decimal(text)
+    return ("decimal", Fraction(int(match[1]), int(match[2]))) if int(match[2]) else None
+
+
+def _json(text: str) -> Value | None:
+    return (_RDF + "JSON", json.dumps(json.loads(text), sort_keys=True, separators=(",", ":")))
+
+
 def _plain(text: str) -> Value | None:
     match = _PLAIN.fullmatch(text)
     return ("text", (match[1], match[2].lower())) if match else None
@@ -372,8 +518,17 @@ _READERS: Final[dict[str, Callable[[str], Value | None]]] = {
     "dateTime": _date_time,
     "dateTimeStamp": _stamp,
     "date": _date,
+    "time": _time,
+    **{name: _part_of_a_date(name) for name in _PARTS_OF_DATES},
+    "duration": _duration,
+    "dayTimeDuration": _day_time_duration,
+    "yearMonthDuration": _year_month_duration,
+    _OWL + "real": _rational,
+    _OWL + "rational": _rational,
     _RDF + "PlainLiteral": _plain,
     _RDF + "XMLLiteral": _xml,
+    _RDF + "HTML": lambda text: (_RDF + "HTML", text),
+    _RDF + "JSON": _json,
 }
 _WRITERS: Final[dict[str, Callable[[Any], str]]] = {
     "decimal": _write_decimal,
@@ -384,8 +539,12 @@ _WRITERS: Final[dict[str, Callable[[Any], str]]] = {
     "base64Binary": lambda octets: base64.b64encode(octets).decode(),
     "dateTime": _write_date_time,
     "date": lambda key: key[0].isoformat() + (key[1] or ""),
+    "time": lambda key: _write_time(*key),
+    "duration": lambda key: _write_duration(*key),
+    **dict.fromkeys(_PARTS_OF_DATES, "".join),
 }
 """Functions that write values. Values of other types are their own spelling."""
+_REALS: Final = (_OWL + "real", _OWL + "rational")
 _KNOWN: Final = frozenset(
     {f"<{_XSD}{name}>" for name in (*_INTEGERS, *_STRINGS)}
     | {f"<{name if ':' in name else _XSD + name}>" for name in _READERS}

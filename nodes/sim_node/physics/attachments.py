@@ -22,19 +22,19 @@ def add_welds(spec: mujoco.MjSpec, records: Mapping[str, BodyRecord]) -> None:
     """Weld attached bodies to their holders, and exclude collisions with all parts of the holder."""
     for record in attached_records(records):
         holder = records[record.held_by]
-        body = spec.body(holder.name)
-        spec.body(record.name).gravcomp = 1.0  # its weight must not bend the arm
+        body = spec.body(holder.body)
+        spec.body(record.body).gravcomp = 1.0  # its weight must not bend the arm
         weld = spec.add_equality(
             type=mujoco.mjtEq.mjEQ_WELD,
             objtype=mujoco.mjtObj.mjOBJ_BODY,
-            name1=holder.name,
-            name2=record.name,
+            name1=holder.body,
+            name2=record.body,
             solref=_STIFF,
             solimp=_HARD,
         )
         weld.data[:11] = [0.0, 0.0, 0.0, *_in_body_frames(record, holder), 1.0]
         for name in _whole_of(spec, body):
-            spec.add_exclude(bodyname1=name, bodyname2=record.name)
+            spec.add_exclude(bodyname1=name, bodyname2=record.body)
 
 
 def attached_records(records: Mapping[str, BodyRecord]) -> list[BodyRecord]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import logging
 import math
-import re
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from itertools import count
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.sim_node.bodies import BodyRecord, Floats, pose_of
+from semmap.nodes.sim_node.body_classes import BodyClasses, Found
 from semmap.nodes.sim_node.physics.build import COLLISION_GROUP, IMPEDANCE
 from semmap.nodes.sim_node.physics.joint_texts import (
     CLOSED_TEXT,
@@ -25,9 +26,10 @@ from semmap.nodes.sim_node.physics.joint_texts import (
     read_texts,
 )
 from semmap.nodes.sim_node.vision.view import OPTICAL, View, look_at
-from semmap.schemas.entities import NAME_PATTERN
+from semmap.schemas.entities import is_name, valid_name
 from semmap.schemas.errors import BadFile
 from semmap.schemas.joints import Joint
+from semmap.schemas.wording import bodies, few
 
 # by default MuJoCo writes a log file into the working directory
 mujoco.set_mju_user_warning(logging.getLogger("mujoco").warning)
@@ -137,7 +139,7 @@ def _add_names(spec: mujoco.MjSpec) -> None:
     _name(spec.worldbody.bodies, "body", spec.bodies, lambda body: bool(body.name) or not _has_joints(body))
     _name(spec.joints, "joint", spec.joints, lambda joint: bool(joint.name))
     # a camera's name is part of its keys
-    _name(spec.cameras, "camera", spec.cameras, lambda camera: bool(re.match(NAME_PATTERN, camera.name)))
+    _name(spec.cameras, "camera", spec.cameras, lambda camera: is_name(camera.name))
 
 
 def _has_joints(body: mujoco.MjsBody) -> bool:
@@ -177,36 +179,35 @@ def _compiled(spec: mujoco.MjSpec) -> Compiled:
 
 
 def bodies_of(
-    spec: mujoco.MjSpec, compiled: Compiled, is_class: Callable[[str], bool] = lambda word: False
+    spec: mujoco.MjSpec, compiled: Compiled, classes: BodyClasses | None = None
 ) -> dict[str, BodyRecord]:
-    """Return the world's own bodies: all named ones on the top level, and nested ones with `_is_body`.
+    """Return the world's own bodies by the names of their entities, with the classes that `classes` finds.
 
-    A joint belongs to the body that it moves, or else to its nearest parent body.
+    These are all named bodies on the top level, and nested ones whose class is declared or certain. A joint
+    belongs to the body that it moves, or else to its nearest parent body.
     """
     model, data = compiled
-    classes = _declared(spec)
+    classes, declared = classes or BodyClasses(), _declared(spec)
     ends = JointTexts.of(spec)
     switches = {joint for joint in range(model.njnt) if ends.is_switch(model, joint)}
     follow = coupled_joints(model, switches)  # a burner coupled to a knob opens nothing
     records: dict[str, BodyRecord] = {}
+    taken = {body.name for body in spec.bodies if is_name(body.name)}
+    found: dict[str, Found] = {"": Found(None, is_sure=False)}
     owner = [""] * model.nbody
     for number in range(1, model.nbody):  # parents have lower numbers than their parts
-        name, whole = model.body(number).name, int(model.body_parentid[number])
-        if name and (whole == 0 or _is_body(name, classes, is_class)):
-            class_ = classes.get(name) or class_from_name(name)
-            records[name] = _record(model, data, spec.body(name), class_, owner[whole])
-        owner[number] = name if name in records else owner[whole]
+        body, whole = model.body(number).name, int(model.body_parentid[number])
+        owner[number] = owner[whole]
+        stated = declared.get(body)
+        is_of = Found(stated, is_sure=True, is_stated=True) if stated else classes.find(body)
+        if body and (whole == 0 or classes.is_separate(body, is_of, found[owner[whole]])):
+            name = body if is_name(body) else valid_name(body, taken)
+            taken.add(name)
+            records[name] = _record(model, data, spec.body(body), name, is_of, owner[whole])
+            owner[number], found[name] = name, is_of
         if owner[number] and model.body_jntnum[number]:
             _give_joints(records[owner[number]], model, number, ends, switches, follow)
     return records
-
-
-def _is_body(name: str, classes: Mapping[str, str], is_class: Callable[[str], bool]) -> bool:
-    """Return whether a nested body is a separate body: declared by a text, or named like a class."""
-    if not re.match(NAME_PATTERN, name):
-        return False
-    word = class_from_name(name)
-    return name in classes or (word is not None and is_class(word))
 
 
 def ignored(spec: mujoco.MjSpec) -> list[str]:
@@ -220,8 +221,6 @@ def ignored(spec: mujoco.MjSpec) -> list[str]:
     for name in _declared(spec):
         if name not in named:
             found.append(f"{name} (no such body)")
-        elif not re.match(NAME_PATTERN, name):
-            found.append(f"{name} (no entity can have this name)")
     for prefix, how in ((CLOSED_TEXT, "closed"), (OFF_TEXT, "off")):
         for name, end in read_texts(spec, prefix):
             if name not in joints:
@@ -231,8 +230,8 @@ def ignored(spec: mujoco.MjSpec) -> list[str]:
     return found
 
 
-def left_out(model: mujoco.MjModel, records: Collection[str]) -> tuple[str, ...]:
-    """Return the bodies of a world that are not in `records`, by name or by their parent."""
+def left_out(model: mujoco.MjModel, bodies: Collection[str]) -> tuple[str, ...]:
+    """Return the bodies of a world that are not in `bodies`, by name or by their parent."""
     names = [model.body(number).name for number in range(model.nbody)]
     found = []
     above = [""] * model.nbody
@@ -241,15 +240,36 @@ def left_out(model: mujoco.MjModel, records: Collection[str]) -> tuple[str, ...]
         above[number] = names[number] or whole
         if not names[number]:
             found.append(f"a nameless part of {whole or 'the ground'}")
-        elif names[number] not in records:
+        elif names[number] not in bodies:
             found.append(names[number])
     return tuple(found)
 
 
 def names_classes(spec: mujoco.MjSpec) -> bool:
-    """Return whether names of classes determine the bodies of this scene."""
-    known = {*_declared(spec), *(body.name for body in spec.worldbody.bodies), ""}
+    """Return whether the names of bodies determine their classes."""
+    known = {*_declared(spec), ""}
     return any(body.name not in known for body in spec.bodies[1:])
+
+
+def describe_names(records: Collection[BodyRecord]) -> tuple[str, ...]:
+    """Return notes on the bodies with other names in the map, and on those without a certain class."""
+    renamed = [f"{record.body} is {record.name}" for record in records if record.body != record.name]
+    unsure = [record.body for record in records if not record.is_sure]
+    notes = []
+    if renamed:
+        have = (
+            "a body of the world has another name"
+            if len(renamed) == 1
+            else (f"{len(renamed)} bodies of the world have other names")
+        )
+        notes.append(f"{have} in the map: {few(renamed, 5)}")
+    if unsure:
+        line = json.dumps({unsure[0]: "CLASS"}, ensure_ascii=False)
+        notes.append(
+            f"unknown class of {bodies(len(unsure))} of the world: {few(unsure, 5)};"
+            f" name the classes in a JSON file, such as {line}, and start with --class-map FILE"
+        )
+    return tuple(notes)
 
 
 def _declared(spec: mujoco.MjSpec) -> dict[str, str]:
@@ -311,13 +331,8 @@ def _joint(
     )
 
 
-def class_from_name(name: str) -> str | None:
-    """Return the class part of a name: `chair` for `chair_3`; None for digits only."""
-    return re.sub(r"[\W_]*\d*$", "", name) or None
-
-
 def _record(
-    model: mujoco.MjModel, data: mujoco.MjData, body: mujoco.MjsBody, class_: str | None, part_of: str
+    model: mujoco.MjModel, data: mujoco.MjData, body: mujoco.MjsBody, name: str, found: Found, part_of: str
 ) -> BodyRecord:
     number = model.body(body.name).id
     geoms = np.flatnonzero(_within(model, number)[model.geom_bodyid])
@@ -327,8 +342,8 @@ def _record(
     bottom = data.xpos[number] + data.xmat[number].reshape(3, 3) @ np.asarray(origin)
     joints = body.joints
     return BodyRecord(
-        name=body.name,
-        class_=class_,
+        name=name,
+        class_=found.class_,
         model="",
         size_m=(float(high[0] - low[0]), float(high[1] - low[1]), float(high[2] - low[2])),
         origin_m=origin,
@@ -337,6 +352,9 @@ def _record(
         entity=False,
         masks=[(geom.contype, geom.conaffinity) for geom in body.geoms],
         part_of=part_of,
+        body=body.name,
+        label=found.label,
+        is_sure=found.is_sure,
         anchored=bool(part_of or (joints and joints[0].type != mujoco.mjtJoint.mjJNT_FREE)),
     )
 

@@ -203,7 +203,7 @@ def mask_of(part: Part) -> tuple[int, int]:
 
 def set_standing(spec: mujoco.MjSpec, record: BodyRecord, pose: Pose) -> None:
     """Set the pose of a body in `spec`, and its collision and joints as in the record."""
-    body = spec.body(record.name)
+    body = spec.body(record.body)
     position, quaternion = frame_of(pose, record.origin_m)
     body.pos, body.quat = position, quaternion
     body.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT

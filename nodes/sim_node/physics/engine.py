@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from typing import Final
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from semmap.nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, frame_of, pose_of
+from semmap.nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, StoredBody, frame_of, pose_of
+from semmap.nodes.sim_node.body_classes import BodyClasses
 from semmap.nodes.sim_node.models.library import Model
 from semmap.nodes.sim_node.physics import attachments, base_scene, body_slots, build, sleep
 from semmap.nodes.sim_node.physics.body_slots import BodySlot
@@ -17,9 +19,11 @@ from semmap.nodes.sim_node.physics.rest import JointRestDetector, RestDetector
 from semmap.nodes.sim_node.placement.obstacles import Obstacles
 from semmap.nodes.sim_node.robots.base_controller import BaseController
 from semmap.nodes.sim_node.vision.view import View
-from semmap.schemas.entities import Pose, compose
+from semmap.schemas.entities import Pose, angle_rad, compose, distance_m
 
 _STEPS_A_CHECK = 25
+_MOVED: Final = 1e-6
+"""A static body farther from its pose than this [m, rad] is compiled there."""
 
 
 class Engine:
@@ -34,12 +38,11 @@ class Engine:
         self,
         ground: mujoco.MjSpec,
         while_waiting: Callable[[], None],
-        is_class: Callable[[str], bool] = lambda word: False,
+        classes: BodyClasses | None = None,
     ) -> None:
         """Compile the ground without bodies. `while_waiting` is called repeatedly, and may call `step`.
 
-        `is_class` returns whether a word names a class, which makes parts of the world's bodies separate
-        bodies.
+        `classes` finds the classes of the world's bodies, and which of their parts are separate bodies.
         """
         world = build.run_in_background(lambda: base_scene.prepare(ground), while_waiting)
         self._while_waiting = while_waiting
@@ -47,8 +50,8 @@ class Engine:
         self._shapes: dict[str, Model] = {}
         self._slots: dict[str, BodySlot] = {}
         self._free_slots: list[BodySlot] = []
-        self.records = base_scene.bodies_of(ground, world, is_class)
-        self.left_out = base_scene.left_out(world.model, self.records)
+        self.records = base_scene.bodies_of(ground, world, classes)
+        self.left_out = base_scene.left_out(world.model, {record.body for record in self.records.values()})
         """Bodies of the world file that are only parts of others, by name or by their parent."""
         self.revision = 0
         self.compiling = False
@@ -93,7 +96,7 @@ class Engine:
 
     def remove(self, names: Sequence[str]) -> None:
         """Remove bodies."""
-        own = [name for name in names if name not in self._shapes]
+        own = [self.records[name].body for name in names if name not in self._shapes]
         jointed = any(self._shapes[name].leaves for name in names if name in self._shapes)
         jointed = attachments.involves_attachment(names, self.records) or jointed
         for record in self.records.values():
@@ -104,8 +107,8 @@ class Engine:
             self._release_slot(name)
             self._shapes.pop(name, None)
             del self.records[name]
-        for name in own:
-            if (body := self._ground.body(name)) is not None:  # else it was removed with its parent
+        for in_mujoco in own:
+            if (body := self._ground.body(in_mujoco)) is not None:  # else it was removed with its parent
                 self._ground.delete(body)
         if own or jointed:
             self._recompile({})
@@ -133,6 +136,23 @@ class Engine:
         poses = self.poses()
         self._recompile({name: pose_of(poses[self.index.row[name]]) for name in names})
         self.carry(names)
+
+    def restore(self, states: Mapping[str, StoredBody]) -> None:
+        """Set bodies to these states, without speed."""
+        for name, state in states.items():
+            record = self.records[name]
+            is_held = state.held_by in self.records
+            record.held_by, record.grip = (state.held_by, state.grip) if is_held else ("", None)
+            for joint, at in self.index.joint_coordinates(name).items():
+                if len(coordinates := state.joints.get(joint, ())) == at.stop - at.start:
+                    self.data.qpos[at] = coordinates
+        own = {name: state.pose for name, state in states.items() if not self.records[name].anchored}
+        self.put({name: pose for name, pose in own.items() if not self.records[name].static})
+        here = dict(zip(self.index.names, map(pose_of, self.poses()), strict=True))
+        stand = {name: pose for name, pose in own.items() if not _is_at(pose, here[name])}
+        if stand or any(self.records[name].held_by for name in states):
+            self._recompile(stand)
+        mujoco.mj_kinematics(self.model, self.data)
 
     def carry(self, names: Collection[str]) -> None:
         """Move attached bodies, and those attached to them, to their attach poses."""
@@ -271,8 +291,8 @@ class Engine:
 
     def _indexed(self) -> BodyIndex:
         numbers = {
-            name: self._slots[name].body if name in self._slots else self.model.body(name).id
-            for name in self.records
+            name: self._slots[name].body if name in self._slots else self.model.body(record.body).id
+            for name, record in self.records.items()
         }
         return BodyIndex.of(self.model, self.records, numbers)
 
@@ -364,3 +384,7 @@ class Engine:
         self.data.qpos[bad] = before[bad]
         self.data.qvel[~np.isfinite(self.data.qvel)] = 0.0
         self.data.qacc_warmstart[:] = 0.0
+
+
+def _is_at(pose: Pose, here: Pose) -> bool:
+    return max(distance_m(pose, here), angle_rad(pose, here)) <= _MOVED

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 
 import numpy as np
 
-from semmap.nodes.sim_node.bodies import pose_of
+from semmap.nodes.sim_node.bodies import StoredBody, pose_of
 from semmap.nodes.sim_node.order_validation import Newcomer
 from semmap.nodes.sim_node.physics.engine import Engine
 from semmap.nodes.sim_node.placement.clearance import place
@@ -70,6 +70,13 @@ class Settling:
         engine.wake({*disturbed, *names, *(engine.records[name].held_by for name in names)})
         self._free_ghosts(disturbed)
         self.version += 1
+
+    def restore(self, states: Mapping[str, StoredBody]) -> None:
+        """Put bodies into states of an earlier run, in which they had room."""
+        if states:
+            self._engine.restore(states)
+            self._engine.disturb([self._engine.index.row[name] for name in states])
+            self.version += 1
 
     def step(self, duration_s: float) -> None:
         """Advance the time; ghosts near moved bodies are checked again when all bodies rest."""

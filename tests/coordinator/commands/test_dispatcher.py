@@ -25,6 +25,7 @@ from semmap.schemas.commits import Commit, Transaction
 from semmap.schemas.entities import Pose, orientation_from_yaw
 from semmap.schemas.replies import Changed
 from semmap.schemas.scenes import Body
+from tests.kb_node import home
 
 
 def add(dispatcher: CommandDispatcher, class_: str = "Chair", name: str | None = None, **fields) -> Changed:
@@ -309,15 +310,80 @@ def test_replace_clears_the_map_in_the_same_commit(dispatcher):
 
 def test_loading_a_name_twice_is_rejected(dispatcher):
     load_text(dispatcher, '{"entities": [{"class": "Chair", "name": "a"}]}')
-    with pytest.raises(errors.NameTaken, match="'a'"):
+    with pytest.raises(errors.NameTaken, match=r"'a' is already taken; .* without --add-only"):
         load_text(
-            dispatcher, '{"entities": [{"class": "Chair", "name": "b"}, {"class": "Chair", "name": "a"}]}'
+            dispatcher,
+            '{"entities": [{"class": "Chair", "name": "b"}, {"class": "Chair", "name": "a"}]}',
+            add_only=True,
         )
     with pytest.raises(errors.NameTaken, match="'c'"):
         load_text(
             dispatcher, '{"entities": [{"class": "Chair", "name": "c"}, {"class": "Chair", "name": "c"}]}'
         )
     assert set(dispatcher.map.entities) == {"a"}
+
+
+SCENE = """{"entities": [
+    {"class": "Chair", "name": "a", "at": [1, 2, 0], "yaw": 0.5, "size": [1, 1, 1], "ref": "seat"},
+    {"class": "Chair", "name": "b", "at": [3, 2, 0], "alt": ["stool"]},
+    {"class": "Chair", "name": "c", "at": [5, 2, 0], "set": ["isOpen=no"]}
+]}"""
+
+
+def test_a_scene_that_is_loaded_again_replaces_what_it_describes(dispatcher):
+    assert load_text(dispatcher, SCENE).text == "loaded 3 entities from scene.json"
+    same = load_text(dispatcher, SCENE)
+    assert (same.commit, same.text) == (None, "scene.json changes nothing in the map: 3 as they were")
+    edited = (
+        SCENE.replace("[1, 2, 0]", "[9, 2, 0]").replace("[1, 1, 1]", "[2, 1, 1]").replace("stool", "perch")
+    )
+    edited = edited.replace("isOpen=no", "isOpen=yes")
+    edited = edited.replace("\n]}", ',\n{"class": "Chair", "name": "d"}]}')
+    dry = load_text(dispatcher, edited, dry_run=True)
+    reply = load_text(dispatcher, edited)
+    assert reply.text == (
+        "loaded 4 entities from scene.json: 1 new, 1 moved and resized, 1 relabelled, 1 changed"
+    )
+    assert dry.text.endswith(reply.text)
+    a, b, c, _ = (dispatcher.map.entity(name) for name in "abcd")
+    assert (a.pose.position_m, a.pose.yaw_rad, a.size_m) == (
+        (9.0, 2.0, 0.0),
+        pytest.approx(0.5),
+        (2.0, 1.0, 1.0),
+    )
+    assert (a.preferred_reference, b.alternative_references, c.properties) == (
+        "seat",
+        ("perch",),
+        {"isOpen": True},
+    )
+    assert reply.commit == 2
+
+
+def test_an_abox_that_is_loaded_again_replaces_what_it_describes(dispatcher):
+    position = "dm:float_coordinates_x {} ; dm:float_coordinates_y 0 ; dm:float_coordinates_z 0"
+    text = home.PREFIXES + ":a a dm:Chair ; dm:hasPosition [ " + position + " ] . :b a dm:Chair ."
+
+    def loaded(x, **fields):
+        content = text.replace("{}", str(x)).encode()
+        return dispatcher.change(c.Load(content=content, filename="map.ttl", **fields))
+
+    assert loaded(1).text == "loaded 2 entities from map.ttl"
+    assert loaded(1).text == "map.ttl changes nothing in the map: 2 as they were"
+    with pytest.raises(errors.NameTaken, match=r"map.ttl has other values for a; .* without --add-only"):
+        loaded(2, add_only=True)
+    assert loaded(2, dry_run=True).text.endswith("loaded 2 entities from map.ttl: 1 moved, 1 as it was")
+    assert loaded(2).text == "loaded 2 entities from map.ttl: 1 moved, 1 as it was"
+    assert dispatcher.map.entity("a").pose.position_m == (2.0, 0.0, 0.0)
+    with pytest.raises(errors.BadRequest, match="either --add-only or --replace"):
+        loaded(2, add_only=True, replace=True)
+
+
+def test_a_scene_in_parts_also_replaces(dispatcher, monkeypatch):
+    monkeypatch.setattr("semmap.nodes.coordinator.commands.load.PART", 2)
+    dispatcher.change(c.Load(content=five_chairs(), filename="five.json"))
+    moved = five_chairs().replace(b'"name"', b'"at": [1, 1, 0], "name"')
+    reply = dispatcher.change(c.Load(content=moved, filename="five.json", parts=True))
+    assert reply.text == "loaded 5 entities from five.json: 5 moved"
 
 
 def follow(dispatcher, name, pose):
@@ -484,7 +550,7 @@ def in_their_turn(dispatcher: CommandDispatcher, changes: list) -> list:
         settle(future, lambda: dispatcher._ask(call))
         return future
 
-    turns = Scheduler(lambda group: run_async(dispatcher.run_together(group), ask_later))
+    turns = Scheduler(lambda group, _: run_async(dispatcher.run_together(group), ask_later))
     futures = [turns.change(change) for change in changes]
     turns.run_ready()
     return [future.exception() or future.result() for future in futures]

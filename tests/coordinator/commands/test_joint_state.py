@@ -2,6 +2,7 @@
 
 import pytest
 
+from semmap.nodes.coordinator.commands.joint_state import require_not_of_scene
 from semmap.schemas import commands as c
 from semmap.schemas import errors
 from semmap.schemas.joints import Joint
@@ -9,6 +10,7 @@ from tests.coordinator.scene.test_joint_commands import HINGE, SWITCH, body
 
 BALL = Joint(name="neck1", kind="ball")
 DOOR = Joint(name="door", kind="hinge", lower=0.0, upper=1.0, closed=0.0)
+BODIES = {"thing1": body(DOOR, SWITCH), "door1": body(DOOR)}
 NO = "thing1 has no door, lid or drawer that could be open or shut: its joint"
 TOLD = "; for its joint positions, see jointPositions in: semmap get thing1"
 
@@ -60,3 +62,40 @@ def test_other_properties_may_be_set(home):
     have(home, BALL)
     home.change(c.Set(name="thing1", property="note", values=("loose",)))
     assert home.map.entity("thing1").properties["note"] == ("loose",)
+
+
+@pytest.mark.parametrize(
+    ("command", "what"),
+    [
+        (c.Set(name="thing1", property="isSwitchedOn", values=(True,)), "isSwitchedOn"),
+        (c.Set(name="thing1", property="is switched on", values=(False,)), "isSwitchedOn"),
+        (c.Set(name="thing1", property="dm:switchPositions", values=("switch1=1",)), "switchPositions"),
+        (c.Unset(name="thing1", property="isSwitchedOn"), "isSwitchedOn"),
+        (c.Update(name="thing1", unset=("isSwitchedOn",)), "isSwitchedOn"),
+        (c.Set(name="thing1", property="isOpen", values=(True,)), "isOpen"),
+        (c.Update(name="thing1", set=("openness=0.5",)), "openness"),
+        (c.Set(name="thing1", property="jointPositions", values=("door=1",)), "jointPositions"),
+    ],
+)
+def test_what_the_scene_determines_is_rejected_with_the_command_to_use(command, what):
+    joint = " --joint knob1" if "witch" in what else ""
+    with pytest.raises(errors.Refused) as told:
+        require_not_of_scene((c.Set(name="cup1", property="isOpen", values=(True,)), command), BODIES)
+    assert told.value.text == (
+        f"{what} of thing1 follows from the scene, which is the source of truth (--truth scene);"
+        f" to change it: semmap open thing1{joint}, or semmap close"
+    )
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        c.Set(name="thing1", property="color", values=("red",)),
+        c.Update(name="thing1", at=(0.0, 0.0, 0.0)),
+        c.Remove(names=("thing1",)),
+        c.Set(name="cup1", property="isOpen", values=(True,)),
+        c.Set(name="door1", property="isSwitchedOn", values=(True,)),
+    ],
+)
+def test_other_changes_are_of_the_map(command):
+    require_not_of_scene((command,), BODIES)

@@ -619,11 +619,10 @@ def test_world_bodies_without_entities_are_problems_if_the_scene_is_the_truth(di
     assert reconciler.problems()[1:] == [
         "sofa: a scene body that becomes an entity when it comes to rest",
         "leg: a part of sofa, which is not an entity yet",
-        "1 body of the world is only a part of another: screw"
-        ' (to have one, add <text name="semmap:BODY" data="CLASS"/>)',
+        "1 body of the world is only a part of another: screw (to have one, start with --class-map FILE)",
     ]
     reconciler.scene.left_out = ("screw", "nut")
-    assert "are only parts of others: screw, nut" in reconciler.problems()[-1]
+    assert "are only parts of others: screw and nut" in reconciler.problems()[-1]
 
 
 def test_a_body_of_the_scene_becomes_an_entity_after_what_it_is_part_of(dispatcher):
@@ -647,6 +646,28 @@ def test_a_body_of_the_scene_becomes_an_entity_after_what_it_is_part_of(dispatch
     dispatcher.change(add)
     reconciler.reconcile({"leg"})
     assert (added[-1].name, added[-1].set) == ("leg", ("isDirectPartOf=sofa",))
+
+
+def test_a_new_entity_has_the_words_of_its_body_and_what_is_open_and_closed(dispatcher):
+    added = []
+    reconciler = Reconciler(
+        CoordinatorConfig("scene"),
+        dispatcher,
+        lambda change: added.append(change) or Future(),
+        lambda call: Future(),
+        print,
+    )
+    reconciler.scene.known = True
+    order = BodyOrder(name="wardrobe_1", class_="Wardrobe", pose=Pose(position_m=(1.0, 2.0, 0.0)), commit=0)
+    hinge = Joint(name="hinge", kind="hinge", position=0.0, lower=0.0, upper=1.57, closed=0.0)
+    reconciler.scene.bodies["wardrobe_1"] = structs.replace(
+        standing(order), joints=(hinge,), label="oak wardrobe", body="wardrobe 1"
+    )
+    reconciler.reconcile()
+    ((add),) = added
+    assert (add.ref, add.set) == ("oak wardrobe", ("isOpen=false", "openness=0", "jointPositions=hinge=0"))
+    dispatcher.change(structs.replace(add, class_="Chair", set=()))
+    assert reconciler.body_state(dispatcher.map.entities["wardrobe_1"]).body == "wardrobe 1"
 
 
 def test_bodies_moved_together_are_committed_together_once_all_rest(dispatcher):

@@ -5,7 +5,7 @@ from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
-from tests.kb_node import home
+from tests.kb_node import home, stating
 from tests.kb_node.home import turtle
 
 MAPS_OWN = (
@@ -139,3 +139,20 @@ def test_only_a_few_of_many_incomplete_values_are_reported(classes):
     text = "".join(f":s{i} dm:float_size_x 1 ." for i in range(50))
     *_, note = abox_document.filter_document(turtle(text), classes, skip_unknown=False).notes
     assert note.endswith("s4 has no float_size_y and no float_size_z and 45 more")
+
+
+def test_literals_outside_a_range_get_a_datatype_of_it():
+    classes = ClassTable(Reasoner(stating.TBOX))
+    said = turtle(
+        ":a a dm:Chair ; dm:seats '4' , 5 ; dm:mass 3 ; dm:madeOn 'noon' ; dm:serial 7 ; dm:note 8 ."
+    )
+    meant = turtle(
+        ":a a dm:Chair ; dm:seats '4'^^xsd:nonNegativeInteger , 5 ; dm:mass '3'^^xsd:float ;"
+        " dm:madeOn 'noon' ; dm:serial '7' ; dm:note 8 ."
+    )
+    triples, _, notes = abox_document.filter_document(said, classes, skip_unknown=False)
+    assert set(triples) == set(meant)
+    assert notes == [
+        "3 values stored with the datatype of the property: mass (float), seats (nonNegativeInteger),"
+        " serial (string)"
+    ]

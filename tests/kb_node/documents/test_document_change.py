@@ -15,20 +15,20 @@ def document(**fields):
 
 
 def test_a_transaction_has_the_author_of_the_load(semantic_map):
-    made, _ = document_change.make_document_transaction(semantic_map, document(), turtle(":a a dm:Chair ."))
+    made, *_ = document_change.make_document_transaction(semantic_map, document(), turtle(":a a dm:Chair ."))
     assert (made.id, made.source, made.agent, made.verb, made.reason) == ("7", "file", "a", "load", "why")
     assert (made.insert, made.retract) == (turtle(":a a dm:Chair ."), ())
 
 
 def test_triples_of_the_tbox_are_not_part_of_the_abox(semantic_map):
     both = turtle(":a a dm:Chair . dm:Chair a owl:Class .")
-    made, _ = document_change.make_document_transaction(semantic_map, document(), both)
+    made, *_ = document_change.make_document_transaction(semantic_map, document(), both)
     assert made.insert == turtle(":a a dm:Chair .")
 
 
 def test_replaced_triples_are_removed_in_the_same_transaction(semantic_map):
     semantic_map.commit(transaction(1, chair()))
-    made, _ = document_change.make_document_transaction(
+    made, *_ = document_change.make_document_transaction(
         semantic_map, document(replace=True), turtle(":a a dm:Chair .")
     )
     assert set(made.retract) == set(chair())
@@ -36,7 +36,7 @@ def test_replaced_triples_are_removed_in_the_same_transaction(semantic_map):
 
 def test_skipped_individuals_are_reported(semantic_map):
     content = turtle(":a a dm:Chair . :b a dm:Chiar .")
-    made, filtered = document_change.make_document_transaction(
+    made, filtered, _ = document_change.make_document_transaction(
         semantic_map, document(skip_unknown=True), content
     )
     assert made.insert == turtle(":a a dm:Chair .")
@@ -66,7 +66,7 @@ STRANGE = ":a a dm:Chair ; dm:isLocatedIn :kitchn . :kitchn dm:isLocatedIn :b . 
 
 
 def test_undescribed_individuals_are_noted(semantic_map):
-    made, filtered = document_change.make_document_transaction(semantic_map, document(), turtle(STRANGE))
+    made, filtered, _ = document_change.make_document_transaction(semantic_map, document(), turtle(STRANGE))
     assert set(made.insert) == set(turtle(STRANGE))
     assert filtered.notes == [
         "referenced but not described: kitchn (a isLocatedIn kitchn); --strict rejects such files"
@@ -97,7 +97,7 @@ def test_undescribed_individuals_are_rejected_if_the_load_is_strict(semantic_map
 )
 def test_described_individuals_are_accepted(semantic_map, text, strict):
     semantic_map.commit(transaction(1, turtle(":hall a dm:Location .")))
-    _, filtered = document_change.make_document_transaction(
+    _, filtered, _ = document_change.make_document_transaction(
         semantic_map, document(strict=strict), turtle(text)
     )
     assert not any("not described" in note for note in filtered.notes)

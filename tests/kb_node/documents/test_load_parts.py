@@ -30,6 +30,20 @@ def test_an_empty_load_has_no_parts():
     assert split(transaction("load")) == []
 
 
+def test_replaced_triples_are_removed_by_the_part_that_describes_their_individual():
+    replaced = {star[0][0]: [("old", "p", star[0][0])] for star in CHAIRS} | {
+        "elsewhere": [("old", "p", "o")]
+    }
+    parts = split(LOAD, 20, replaced)
+    assert len(parts) > 2
+    for part in parts[:-1]:
+        assert {o for _, _, o in part.retract} == {star[0][0] for star in CHAIRS} & {
+            s for s, _, _ in part.insert
+        }
+    removed = [triple for part in parts for triple in part.retract]
+    assert sorted(removed) == sorted(triple for triples in replaced.values() for triple in triples)
+
+
 def test_each_part_is_a_commit(semantic_map):
     told = []
     made = commit_each(split(LOAD, 20), semantic_map.commit, told.append)

@@ -159,15 +159,19 @@ def test_new_values_use_the_vocabulary_of_semmap_and_are_read_back(kitchen, tmp_
     assert (filtered.skipped, filtered.notes) == ([], [])
 
 
-def test_the_vocabulary_of_semmap_takes_precedence(kitchen):
+def test_of_two_poses_in_an_older_map_an_edit_leaves_one(kitchen):
     star = home.turtle(
         "<http://lab.org/kitchen.owl#drawer1> dm:hasPosition :p ."
         " :p dm:float_coordinates_x 3.0 ; dm:float_coordinates_y 3.0 ; dm:float_coordinates_z 3.0 ."
     )
-    kitchen.commit(home.transaction(2, star))
+    with pytest.raises(errors.BadRequest) as rejected:
+        kitchen.commit(home.transaction(2, star))
+    assert rejected.value.text == "drawer1 has two positions: (3, 3, 3) and (1.4, 0.9, 0.68); state one"
+    home.restated(kitchen, 2, star)
     assert kitchen.entity("drawer1").pose.position_m == (3.0, 3.0, 3.0)
     edited(kitchen, at=(4.0, 4.0, 4.0))
     assert kitchen.entity("drawer1").pose.position_m == (4.0, 4.0, 4.0)
+    assert not said(kitchen, TRANSLATION)
 
 
 def test_a_shared_pose_stays_with_the_other_entity(kitchen):

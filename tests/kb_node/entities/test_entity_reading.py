@@ -118,15 +118,58 @@ def test_the_most_specific_asserted_class_is_the_class_of_the_entity(semantic_ma
     assert entity_of(semantic_map, ":a a dm:Door .").fixed
 
 
-def test_one_of_two_positions_is_read_and_both_belong_to_the_entity(semantic_map):
+def test_of_two_positions_in_an_older_map_one_is_read_and_both_belong_to_the_entity(semantic_map):
     two = ":a dm:hasPosition :p2 , :p1 ." + "".join(
         f':p{i} dm:float_coordinates_x "{i}"^^xsd:float ;'
         " dm:float_coordinates_y 0 ; dm:float_coordinates_z 0 ."
         for i in (1, 2)
     )
-    assert entity_of(semantic_map, two).pose == Pose(position_m=(1.0, 0.0, 0.0))
+    home.restated(semantic_map, 1, turtle(f":a a dm:Chair . {two}"))
+    assert semantic_map.entity("a").pose == Pose(position_m=(1.0, 0.0, 0.0))
     (star,) = semantic_map.stars(["a"])
     assert {s for s, _, _ in star.own} == {v.entity_iri(n) for n in ("a", "p1", "p2")}
+
+
+ORIGIN = "dm:float_coordinates_x '0'^^xsd:float ; dm:float_coordinates_y 0 ; dm:float_coordinates_z 0"
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        (f":a dm:hasPosition [ {ORIGIN} , 2 ] .", "a has two positions: (0, 0, 0) and (0, 0, 2); state one"),
+        (
+            f":a dm:hasPosition [ {ORIGIN} ] , [ {ORIGIN.replace('0', '3')} ] .",
+            "a has two positions: (0, 0, 0) and (3, 3, 3); state one",
+        ),
+        (
+            f":a dm:hasPosition [ {ORIGIN} {turned(1, 0, 0, 0)} {turned(0, 0, 0, 1)} ] .",
+            "a has two orientations: (1, 0, 0, 0) and (1, 0, 0, 1); state one",
+        ),
+        (
+            ":a dm:hasSize [ dm:float_size_x 1 ; dm:float_size_y 1 ; dm:float_size_z 1 , 2 ] .",
+            "a has two sizes: (1, 1, 1) and (1, 1, 2); state one",
+        ),
+    ],
+)
+def test_two_poses_or_sizes_of_an_entity_are_rejected(semantic_map, text, complaint):
+    before = home.state(semantic_map)
+    with pytest.raises(errors.BadRequest) as rejected:
+        entity_of(semantic_map, text)
+    assert sorted(rejected.value.text.split()) == sorted(complaint.split()) or complaint.startswith(
+        "a has 16"
+    )
+    assert home.state(semantic_map) == before
+
+
+def test_a_second_pose_of_a_known_entity_is_rejected_but_the_same_pose_in_another_spelling_is_not(
+    semantic_map,
+):
+    entity_of(semantic_map, f":a dm:hasPosition :p . :p {ORIGIN} .")
+    same = f":a dm:hasPosition [ {ORIGIN.replace(' 0', ' 0.0e0')} ] ."
+    semantic_map.commit(transaction("same", turtle(same)))
+    with pytest.raises(errors.BadRequest, match="two positions"):
+        semantic_map.commit(transaction("other", turtle(":p dm:float_coordinates_y 5 .")))
+    assert semantic_map.entity("a").pose == Pose(position_m=(0.0, 0.0, 0.0))
 
 
 SHARED = [(v.entity_iri(n), v.HAS_PREFERRED_REFERENCE, v.entity_iri("r")) for n in ("chair1", "chair2")]

@@ -228,7 +228,7 @@ def test_a_label_that_is_also_an_alias_stays_an_alias(semantic_map):
 def test_several_sizes_become_one(semantic_map):
     added(semantic_map, size=(1.0, 1.0, 1.0))
     other = entity_triples.size(v.entity_iri("chair1"), v.entity_iri("other"), (2.0, 2.0, 2.0))
-    semantic_map.commit(transaction(1, other))
+    home.restated(semantic_map, 1, other)
     edited(semantic_map, size=(3.0, 3.0, 3.0))
     assert semantic_map.entity("chair1").size_m == (3.0, 3.0, 3.0)
     assert len(semantic_map.abox()) == 1 + 5

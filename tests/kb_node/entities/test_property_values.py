@@ -2,14 +2,22 @@
 
 import pytest
 
-from semmap.nodes.kb_node.entities.property_values import is_same_value, literal, to_json_value
+from semmap.nodes.kb_node.entities.property_values import is_same_value, literal, retype, to_json_value
+from semmap.nodes.kb_node.reasoner.data_ranges import read_common
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
+from tests.kb_node.home import turtle
 
 INTEGER, DECIMAL, DOUBLE, BYTE, TIME = (
     v.iri(v.XSD + name) for name in ("integer", "decimal", "double", "byte", "dateTime")
 )
 ANY_TEXT = v.iri(f"{v.RDFS}Literal")
+
+
+def nothing(*pattern):
+    """Return the triples of an empty graph."""
+    return ()
 
 
 @pytest.mark.parametrize(
@@ -40,7 +48,7 @@ ANY_TEXT = v.iri(f"{v.RDFS}Literal")
     ],
 )
 def test_text_is_typed_by_the_range(ranges, text, term, shown):
-    assert literal("p", frozenset(ranges), text) == term
+    assert literal("p", read_common(ranges, nothing), text) == term
     assert to_json_value(term) == shown
     assert type(to_json_value(term)) is type(shown)
 
@@ -62,8 +70,88 @@ def test_text_is_typed_by_the_range(ranges, text, term, shown):
 )
 def test_a_value_outside_the_range_is_rejected(datatype, text, said):
     with pytest.raises(errors.BadRequest) as caught:
-        literal("p", frozenset((datatype,)), text)
+        literal("p", read_common([datatype], nothing), text)
     assert caught.value.text == said
+
+
+DEFINED = turtle(
+    ":percent a rdfs:Datatype ; owl:equivalentClass [ owl:onDatatype xsd:integer ; owl:withRestrictions"
+    " ( [ xsd:minInclusive 0 ] [ xsd:maxInclusive 100 ] ) ] ."
+    " :alias a rdfs:Datatype ; owl:equivalentClass xsd:float ."
+    " :level a rdfs:Datatype ; owl:oneOf ( 'low' 2 ) . :vector a rdfs:Datatype ."
+    " :number a rdfs:Datatype ; owl:unionOf ( xsd:integer xsd:float ) ."
+    " :noByte a rdfs:Datatype ; owl:datatypeComplementOf xsd:byte ."
+)
+
+
+def range_of(name):
+    """Return a datatype of the graph above, or one of XML Schema or RDF."""
+    term = v.iri(v.XSD + name[4:]) if name.startswith("xsd:") else v.entity_iri(name)
+    term = v.RDF_LANG_STRING if name == "langString" else term
+    return read_common([term], Facts(dict.fromkeys(DEFINED)).match)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "lexical", "datatype"),
+    [
+        ("xsd:time", "12:00:00", "12:00:00", "time"),
+        ("xsd:gYear", "2026", "2026", "gYear"),
+        ("xsd:duration", "P1D", "P1D", "duration"),
+        ("percent", "95", "95", "integer"),
+        ("alias", "3", "3.0", "float"),
+        ("level", "low", "low", "string"),
+        ("level", "2", "2", "integer"),
+        ("number", "3", "3", "integer"),
+        ("number", "2.5", "2.5", "float"),
+        ("noByte", "300", "300", "integer"),
+    ],
+)
+def test_the_datatype_is_one_of_the_range(name, text, lexical, datatype):
+    assert literal("p", range_of(name), text) == v.literal(lexical, v.iri(v.XSD + datatype))
+
+
+def test_a_datatype_without_a_definition_and_a_language_are_kept():
+    assert literal("p", range_of("vector"), "1 2 3") == v.literal("1 2 3", v.entity_iri("vector"))
+    assert literal("p", range_of("langString"), "Regal@de") == v.literal("Regal", lang="de")
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("xsd:time", "noon", "p takes xsd:time, not 'noon'"),
+        ("percent", "-5", "p takes an integer from 0 to 100, not '-5'"),
+        (
+            "percent",
+            '"300"^^<http://www.w3.org/2001/XMLSchema#int>',
+            'p takes an integer from 0 to 100, not "300"^^',
+        ),
+        ("level", "mid", """p takes one of "low", "2", not 'mid'"""),
+        ("number", "many", "p takes an integer or float, not 'many'"),
+        ("noByte", "3", "p takes anything but byte, not '3'"),
+        ("langString", "Regal", "p takes a text with its language, such as Tasse@de, not 'Regal'"),
+    ],
+)
+def test_a_value_outside_a_defined_range_is_rejected(name, text, said):
+    with pytest.raises(errors.BadRequest) as caught:
+        literal("p", range_of(name), text)
+    assert caught.value.text.startswith(said)
+
+
+@pytest.mark.parametrize(
+    ("name", "before", "after"),
+    [
+        ("percent", v.literal("95"), v.literal("95", INTEGER)),
+        ("percent", v.literal("300", INTEGER), v.literal("300", INTEGER)),
+        ("alias", v.literal("1.5", DECIMAL), v.literal("1.5", v.XSD_FLOAT)),
+        ("xsd:string", v.literal("5", INTEGER), v.literal("5")),
+        ("xsd:integer", v.literal("5", lang="en"), v.literal("5", lang="en")),
+        ("langString", v.literal("a"), v.literal("a")),
+    ],
+)
+def test_a_literal_outside_a_range_is_retyped_if_its_text_is_a_value(name, before, after):
+    data_range = range_of(name)
+    assert data_range is not None
+    assert retype(data_range, before) == after
 
 
 def test_values_are_compared_by_value():

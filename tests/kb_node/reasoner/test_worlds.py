@@ -15,10 +15,16 @@ from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.reasoner.terms import SAME_AS, TYPE, iri, is_literal, is_named
 from tests.depth import tries
 from tests.kb_node.reasoner import proofs
-from tests.kb_node.reasoner.worlds import AXIOMS, KEYS, NOMINALS, TRANSITIVE, World
+from tests.kb_node.reasoner.worlds import AXIOMS, KEYS, NOMINALS, RANGES, TRANSITIVE, World
 
 STEPS_OF_A_WORLD = 25
-THEMES = {"everything": AXIOMS, "keys": KEYS, "nominals": NOMINALS, "transitive": TRANSITIVE}
+THEMES = {
+    "everything": AXIOMS,
+    "keys": KEYS,
+    "nominals": NOMINALS,
+    "transitive": TRANSITIVE,
+    "ranges": RANGES,
+}
 SCHEMA_PREDICATES = [iri("rdfs:subClassOf"), iri("rdfs:domain"), iri("owl:equivalentProperty")]
 
 

@@ -105,6 +105,32 @@ TRANSITIVE = [text for text in AXIOMS if "TransitiveProperty" in text] * 6 + [
     for text in AXIOMS
     if "{e}" in text or text.startswith("{p} ") or "rdfs:subClassOf" in text or "disjointWith" in text
 ]
+DATA_RANGES = (
+    *[
+        f"[ a rdfs:Datatype ; owl:onDatatype {datatype} ; owl:withRestrictions ( {facets} ) ]"
+        for datatype, facets in (
+            ("xsd:integer", "[ xsd:minInclusive 2 ]"),
+            ("xsd:integer", "[ xsd:minInclusive 0 ] [ xsd:maxExclusive 2 ]"),
+            ("xsd:float", "[ xsd:maxInclusive '1.5'^^xsd:float ]"),
+            ("xsd:string", "[ xsd:pattern '[a-c]' ]"),
+            ("rdf:PlainLiteral", "[ rdf:langRange 'en' ]"),
+            (":unknown", "[ xsd:minLength 1 ]"),
+        )
+    ],
+    "[ a rdfs:Datatype ; owl:oneOf ( {l} {l} ) ]",
+    "[ a rdfs:Datatype ; owl:unionOf ( {t} {x} ) ]",
+    "[ a rdfs:Datatype ; owl:intersectionOf ( {t} {x} ) ]",
+    "[ a rdfs:Datatype ; owl:datatypeComplementOf {x} ]",
+    "{t}",
+)
+RANGES = [
+    "{d} rdfs:range {x}",
+    ":Named a rdfs:Datatype ; owl:equivalentClass {x}",
+    "{d} rdfs:range :Named",
+    "{c} owl:equivalentClass [ a owl:Restriction ; owl:onProperty {d} ; owl:someValuesFrom {x} ]",
+    "{c} rdfs:subClassOf [ a owl:Restriction ; owl:onProperty {d} ; owl:allValuesFrom {x} ]",
+    "{c} owl:disjointUnionOf ( {c} {c} )",
+] * 3 + [text for text in AXIOMS if "{d}" in text or "disjointWith" in text]
 
 
 class Change(NamedTuple):
@@ -132,6 +158,7 @@ class World:
             "i": INDIVIDUALS[: 4 if few else None],
             "l": self.random.choice((LITERALS, LITERALS[:5])),
             "t": DATATYPES,
+            "x": DATA_RANGES,
             "n": "01",
             "e": EXPRESSIONS,
             "r": [f"[ a owl:Restriction ; {text} ]" for text in used(RESTRICTIONS)],

@@ -1,4 +1,4 @@
-"""Sixty situations written by hand, whose relations match human judgement."""
+"""Situations written by hand, whose relations match human judgement."""
 
 import pytest
 
@@ -9,9 +9,8 @@ from semmap.nodes.kb_node.relations.relation_reports import list_relations
 from semmap.schemas.commands import Relations
 
 
-def test_there_are_sixty():
-    assert len(SITUATIONS) == 60
-    assert len({situation.title for situation in SITUATIONS}) == 60
+def test_their_titles_are_unique():
+    assert len({situation.title for situation in SITUATIONS}) == len(SITUATIONS) >= 78
 
 
 @pytest.mark.parametrize("situation", SITUATIONS, ids=lambda situation: situation.title)

@@ -19,9 +19,9 @@ from semmap.schemas import codec
 from semmap.schemas.entities import Entity, Pose, Provenance
 
 DIGESTS = {
-    "rules": "866c583d92a0dbe7",
+    "rules": "c7b28fd4106c7f0f",
     "layouts": "4b9f0fd61df3924d",
-    "closure": "543217405dc297c7",
+    "closure": "9984797e89890a87",
     "entities": "1600f749a51e3eda",
     "columns": "5be64fedcc6339af",
 }
@@ -79,7 +79,7 @@ def test_the_format_changes_with_inferences_and_layout():
         "entities": digest(entities),
         "columns": digest(sorted(map(_unlabelled, stored(reasoner.columns())))),
     }
-    assert (FORMAT, found) == (6, DIGESTS), "add 1 to FORMAT, and write the digests down here"
+    assert (FORMAT, found) == (7, DIGESTS), "add 1 to FORMAT, and write the digests down here"
 
 
 def _unlabelled(text):

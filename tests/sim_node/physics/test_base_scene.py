@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from semmap.nodes.sim_node.body_classes import BodyClasses
 from semmap.nodes.sim_node.physics import base_scene
 from semmap.nodes.sim_node.physics.build import IMPEDANCE
 from semmap.nodes.sim_node.vision.view import camera_view, look_at
@@ -22,7 +23,7 @@ def records(body, *, texts="", more="", classes=()):
     custom = "".join(f'<text name="{name}" data="{data}"/>' for name, data in dict(texts or {}).items())
     ground = spec(body, more=f"<custom>{custom}</custom>{more}")
     compiled = base_scene.prepare(ground)
-    return base_scene.bodies_of(ground, compiled, lambda word: word in classes)
+    return base_scene.bodies_of(ground, compiled, BodyClasses(class_map={word: word for word in classes}))
 
 
 def test_a_bare_floor_is_endless_and_has_a_camera_that_looks_over_it():
@@ -133,20 +134,6 @@ def test_what_moves_and_has_no_name_is_given_one_that_nobody_has():
     assert [camera.name for camera in ground.cameras] == ["camera_1", "door"]
 
 
-@pytest.mark.parametrize(
-    ("name", "expected"),
-    [
-        ("chair_3", "chair"),
-        ("chair", "chair"),
-        ("side-table-12", "side-table"),
-        ("mug__", "mug"),
-        ("12", None),
-    ],
-)
-def test_a_class_is_read_off_a_name(name, expected):
-    assert base_scene.class_from_name(name) == expected
-
-
 def test_a_body_has_the_box_around_all_its_geometry_in_its_own_frame():
     crate = """<body name="crate_1" pos="1 2 3" euler="0 0 90"><freejoint/>
       <geom type="box" size="0.1 0.2 0.3" pos="0.1 0 0.3"/>
@@ -190,7 +177,8 @@ CUPBOARD = """<body name="cupboard"><geom size="1"/>
 def test_a_part_is_a_body_of_its_own_by_a_text_or_a_name_like_a_class():
     assert records(CUPBOARD).keys() == {"cupboard"}
     found = records(CUPBOARD, classes=("drawer", "hinge part"))
-    assert found.keys() == {"cupboard", "drawer_1"}
+    assert found.keys() == {"cupboard", "drawer_1", "hinge_part"}
+    assert found["hinge_part"].body == "hinge part"
     assert (found["drawer_1"].part_of, found["drawer_1"].anchored) == ("cupboard", True)
     assert found["drawer_1"].joint_names == ("slide",)
     assert found["cupboard"].joints == ()
@@ -251,7 +239,6 @@ def test_what_texts_declare_in_vain_is_named():
     )
     assert base_scene.ignored(ground) == [
         "missing (no such body)",
-        "a b (no entity can have this name)",
         "x (no such joint)",
         "j (closed at 'left'; use lower or upper)",
         "j (off at 'right'; use lower or upper)",
@@ -273,17 +260,18 @@ def test_what_is_only_a_part_is_named_by_itself_or_by_what_it_is_part_of():
 @pytest.mark.parametrize(
     ("body", "text", "depends"),
     [
-        ('<body name="a"/>', "", False),
+        ('<body name="a"/>', "", True),
+        ("<body/>", "", False),
         ('<body name="a"><body name="b"/></body>', "", True),
-        ('<body name="a"><body/></body>', "", False),
+        ('<body name="a"><body/></body>', '<custom><text name="semmap:a" data="A"/></custom>', False),
         (
             '<body name="a"><body name="b"/></body>',
-            '<custom><text name="semmap:b" data="B"/></custom>',
+            '<custom><text name="semmap:a" data="A"/><text name="semmap:b" data="B"/></custom>',
             False,
         ),
     ],
 )
-def test_classes_matter_only_for_named_parts_that_are_not_declared(body, text, depends):
+def test_classes_matter_only_for_named_bodies_that_are_not_declared(body, text, depends):
     assert base_scene.names_classes(spec(body, more=text)) is depends
 
 

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from semmap.nodes.sim_node.body_classes import BodyClasses
 from semmap.nodes.sim_node.models.library import build as library_model
 from semmap.nodes.sim_node.order_validation import validate_spawn
 from semmap.nodes.sim_node.physics import base_scene
@@ -27,7 +28,7 @@ KITCHEN = """<mujoco><worldbody>
 
 def engine(*orders, mjcf=None):
     ground = base_scene.bare_floor() if mjcf is None else mujoco.MjSpec.from_string(mjcf)
-    made = Engine(ground, lambda: None, lambda word: word == "lid")
+    made = Engine(ground, lambda: None, BodyClasses(class_map={"lid": "lid"}))
     add(made, *orders)
     return made
 

@@ -134,6 +134,8 @@ def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fi
     """Set a property of an entity.
 
     The value of a functional property replaces the previous one. Other properties keep their previous values.
+    The range of the property gives the datatype. A text ends with its language where the range allows one:
+    Regal@de.
     """
     print_result(client.set(name, property, *values, **_drop_none(fields)), lines.format_change)
 
@@ -216,6 +218,7 @@ def clear(client: Client, dry_run: bool) -> None:
 @command(example="semmap load demo/flat.ttl --replace")
 @click.argument("file", type=click.Path())
 @click.option("--replace", is_flag=True, help="Replace the current entities.")
+@click.option("--add-only", is_flag=True, help="Reject files with other values for current entities.")
 @click.option("--skip-unknown", is_flag=True, help="Skip entities of unknown classes.")
 @click.option("--strict", is_flag=True, help="Reject files that refer to undescribed entities.")
 @click.option(
@@ -231,9 +234,10 @@ def clear(client: Client, dry_run: bool) -> None:
 def load(client: Client, file: str, imports: tuple[tuple[str, Path], ...], **how: Any) -> None:
     """Load a map, a scene or a TBox from a file.
 
-    A map is an ABox in any RDF or OWL syntax, a JSON scene or a HuRIC map. A TBox is loaded with its imports.
-    A plan is the .yaml file of an occupancy grid of the ROS map server: its free space becomes rooms and
-    doors.
+    A map is an ABox in any RDF or OWL syntax, a JSON scene or a HuRIC map. What it states about a current
+    entity replaces its pose, size, labels and values of functional properties. A TBox is loaded with its
+    imports. A plan is the .yaml file of an occupancy grid of the ROS map server: its free space becomes rooms
+    and doors.
     """
     from semmap.nodes.extern.cli.output.progress import progress
 

@@ -170,6 +170,11 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         help="Position of a new robot [m]; a robot in the map starts at its last pose.  [default: 0 0 0]",
     )
     @click.option("--robot-yaw", type=float, default=0.0, metavar="RAD", help="Yaw of a new robot.")
+    @click.option(
+        "--reset-world",
+        is_flag=True,
+        help="With --truth scene: begin as in the world file. Default: where bodies last stood.",
+    )
     @click.option("--window", is_flag=True, help="Show the scene in a window (needs a display).")
     @click.option(
         "--models",
@@ -208,6 +213,13 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         default=None,
         metavar="FILE.json",
         help='Labels of an external detector and their classes, as in {"coffee mug": "Cup"}.',
+    )
+    @click.option(
+        "--class-map",
+        type=click.Path(path_type=Path),
+        default=None,
+        metavar="FILE.json",
+        help='Bodies of the world and their classes, as in {"mug_blue": "Cup"}.',
     )
     @click.option("--no-sim", is_flag=True, help="Do not start the simulator.")
     @click.option("--no-record", is_flag=True, help="Do not start the recorder.")
@@ -303,7 +315,7 @@ def node(name: str, settings: Settings) -> None:
     if settings.namespace == ALL_ROBOTS and name != ROUTER:
         raise errors.BadRequest("--namespace '*' requires a shared router: semmap node router")
     extras.require(f"semmap node {name}", extras.OF_NODE[name])
-    from semmap.nodes.supervisor.launch import run_node, seed
+    from semmap.nodes.supervisor.launch import reset_world, run_node, seed
     from semmap.nodes.supervisor.privacy import UMASK, make_private
 
     os.umask(UMASK)
@@ -311,6 +323,8 @@ def node(name: str, settings: Settings) -> None:
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
     if name == "kb_node":
         seed(settings)
+    elif name == "sim_node" and settings.reset_world:
+        reset_world(settings)
     run_node(name, settings)
 
 
@@ -319,10 +333,11 @@ def _settings(
     abox: str | None, world: str | None, data: Path | None, fresh: bool, truth: str | None,
     threshold: float, angle_threshold: float, robot: str | None, robot_name: str,
     robot_at: tuple[float, float, float] | None, robot_yaw: float, stale: float, journal_every: float,
-    listen: str, connect: tuple[str, ...], window: bool, models: Path | None, camera_hz: float | None,
+    listen: str, connect: tuple[str, ...], reset_world: bool, window: bool, models: Path | None,
+    camera_hz: float | None,
     camera_size: tuple[int, int], camera_noise: bool, perception: bool, when_gone: str,
-    label_map: Path | None, no_sim: bool, no_record: bool, record_keep: str | None, only: str | None,
-    single: bool, secure: Path | None,
+    label_map: Path | None, class_map: Path | None, no_sim: bool, no_record: bool, record_keep: str | None,
+    only: str | None, single: bool, secure: Path | None,
     zenoh_config: Path | None, insecure: bool, namespace: str,
     web: bool, web_port: int | None, web_as: str | None,
 ) -> Settings:  # fmt: skip
@@ -377,6 +392,7 @@ def _settings(
         "connect": connect if secure is None else tuple(map(bus.to_tls, connect)),
         "only": nodes,
         "single": single,
+        "reset_world": reset_world,
         "window": window,
         "models": None if models is None else _folder(models),
         "camera_hz": (_PERCEPTION_HZ if perception else 0.0) if camera_hz is None else camera_hz,
@@ -384,6 +400,7 @@ def _settings(
         "camera_noise": camera_noise,
         "perception": perception,
         "when_gone": when_gone,
+        "class_map": _class_map(class_map, before),
         "label_map": {} if label_map is None else read_label_map(label_map),
         "sim": not no_sim,
         "record": not no_record,
@@ -402,6 +419,13 @@ def _settings(
     except errors.BadRequest as error:
         field, _, fault = error.text.removeprefix("malformed message: ").partition(" ")
         raise errors.BadRequest(f"{_option_of(field)} {fault}") from None
+
+
+def _class_map(file: Path | None, before: Settings | None) -> dict[str, str]:
+    """Return the classes of bodies of the world by name, by default those of the previous start."""
+    if file is None:
+        return {} if before is None else before.class_map
+    return read_label_map(file, "bodies", "mug_blue")
 
 
 def _robot_file(word: str) -> str:

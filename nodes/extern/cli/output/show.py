@@ -123,6 +123,7 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         "aliases": ", ".join(e.alternative_references) or "-",
         **_stated(e, {p.name: p for p in properties}),
         "body": body,
+        **({"name in the world": e.body.body} if e.body is not None and e.body.body else {}),
         **(
             {"joints": ", ".join(map(in_words, e.body.joints))}
             if e.body is not None and e.body.joints
@@ -268,8 +269,8 @@ def status_line(status: SystemStatus) -> str:
 
 
 def status_notes(status: SystemStatus) -> Iterable[str]:
-    """Yield the notes of the nodes, which are about the TBox."""
-    return (f"TBox: {note}" for node in status.nodes for note in node.notes)
+    """Yield the notes of the nodes, which are about the TBox and the world."""
+    return (f"{wording.note_subject(node.node)}: {note}" for node in status.nodes for note in node.notes)
 
 
 def commit_line(commit: Commit) -> str:

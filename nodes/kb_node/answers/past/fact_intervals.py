@@ -41,6 +41,7 @@ class _PlacedEntity(Struct, frozen=True):
     size_m: Size | None = None
     place: bool = False
     model: str = ""
+    fixed: bool = False
     properties: dict[str, Stated] = {}
 
     @property
@@ -57,6 +58,7 @@ class _PlacedEntity(Struct, frozen=True):
             extent=stated if isinstance(stated, str) else "",
             held_by=held_by if isinstance(held_by, str) else "",
             joints=positions_of(self.model, self.size_m or own_size_m(self.model), self.properties),
+            fixed=self.fixed,
         )
 
 

@@ -62,9 +62,11 @@ class Kinds:
         self.ill_typed = Kind(frozenset(), 0, 0)
         self.ill_typed.base, self.ill_typed.clash = self.ill_typed, (ILL_TYPED, ILL_TYPED)
 
-        self._numbers = [] if schema.literals else [self._literal(f'"1"^^{name}') for name in _FLOATING]
-        """The kinds of all numbers, unless the schema mentions single literals."""
-        has_one_text_kind = not schema.literals and not any(
+        self._ranges = {number: data_range for number, (data_range, _) in schema.data_ranges.items()}
+        is_by_value = bool(schema.literals or self._ranges)
+        self._numbers = [] if is_by_value else [self._literal(f'"1"^^{name}') for name in _FLOATING]
+        """The kinds of all numbers, unless the schema distinguishes single literals."""
+        has_one_text_kind = not is_by_value and not any(
             map(datatypes.distinguishes_strings, schema.datatypes)
         )
         self._text = self._literal('""') if has_one_text_kind else None
@@ -95,6 +97,9 @@ class Kinds:
         value, known = datatypes.value(term), self._schema.datatypes.items()
         given = {number for name, number in known if datatypes.contains(name, term)}
         excluded = {number for name, number in known if datatypes.excludes(name, term)}
+        for number, data_range in self._ranges.items():
+            if (is_in := data_range.contains(term)) is not None:
+                (given if is_in else excluded).add(number)
         nominal = self._schema.literals.get(value) if value else self._schema.nominals.get(term)
         if nominal is not None:
             given.add(nominal)

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Final
 
+from semmap.nodes.kb_node.reasoner.data_ranges import read_range
 from semmap.nodes.kb_node.reasoner.explain.words import VerbPhrase, Words, article, is_uncountable
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.reasoner.terms import (
     FIRST,
     NIL,
@@ -34,6 +36,7 @@ class AxiomVerbalizer:
         self._values: dict[tuple[Term, Term], Term] = {}
         for s, p, o in triples:
             self._values.setdefault((s, p), o)
+        self._facts = Facts(dict.fromkeys(triples))
         mentions = [triple for triple in triples if triple[1] not in (FIRST, REST)]
         self._mentioned = {term for s, _, o in mentions for term in (s, o)}
         self._relations: Final[dict[Term, Callable[[Term, Term], str]]] = {
@@ -43,6 +46,7 @@ class AxiomVerbalizer:
             iri("owl:complementOf"): lambda c, d: self._defined(c, self._negated(d)),
             iri("owl:intersectionOf"): lambda c, head: self._defined(c, self._all_of(head)),
             iri("owl:unionOf"): lambda c, head: self._defined(c, self._one_of(head)),
+            iri("owl:disjointUnionOf"): lambda c, head: self._defined(c, f"is either {self._either(head)}"),
             iri("owl:oneOf"): lambda c, head: f"{self.member_phrase(c)} is one of {self._names(head)}",
             iri("owl:hasKey"): self._key,
             iri("rdfs:subPropertyOf"): self._sub_property,
@@ -102,6 +106,8 @@ class AxiomVerbalizer:
             return f"is {self.member_phrase(cls)}"
         if prop := self.get(cls, "owl:onProperty"):
             return self._restricted(cls, prop)
+        if phrase := self.range_phrase(cls):
+            return f"is {article(phrase)}"
         if head := self.get(cls, "owl:intersectionOf"):
             return self._all_of(head)
         if head := self.get(cls, "owl:unionOf"):
@@ -111,6 +117,11 @@ class AxiomVerbalizer:
         if negated := self.get(cls, "owl:complementOf"):
             return self._negated(negated)
         return "belongs to an anonymous class"
+
+    def range_phrase(self, cls: Term) -> str:
+        """Return a phrase for an anonymous data range, such as `integer from 0 to 100`, or ""."""
+        found = None if is_named(cls) else read_range(cls, self._facts.match)
+        return "" if found is None else found[0].text
 
     def _restricted(self, cls: Term, prop: Term) -> str:
         verb = self.verb_phrase(prop)
@@ -147,6 +158,9 @@ class AxiomVerbalizer:
         if all(map(is_named, members)):
             return f"is {_listed([self.member_phrase(member) for member in members], 'or')}"
         return _listed([self.membership(member) for member in members], "or")
+
+    def _either(self, head: Term) -> str:
+        return _listed([self.member_phrase(member) for member in self.members(head)], "or")
 
     def _sub_class(self, narrow: Term, wide: Term) -> str:
         if wide == NOTHING:

@@ -73,7 +73,12 @@ class SchemaSupport:
         name, negative = self._schema.classes[cls], self._schema.negatives.get(cls)
         if negative is not None:
             return self.axiom(negative, *_NEGATIVE)
-        return self.about(name.strip("{}")) | self.restriction(cls)
+        return self.about(name.strip("{}")) | self.restriction(cls) | self.data_range(cls)
+
+    def data_range(self, cls: int) -> Found:
+        """Return the triples that define a class as a data range."""
+        definition = self._schema.data_ranges.get(cls)
+        return {} if definition is None else self.facts(definition[1])
 
     def _cached(self, find: Callable[[_K], Found], about: _K) -> Found:
         key = (find.__name__, about)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Final, NamedTuple
 
+from semmap.nodes.kb_node.reasoner.data_ranges import FACETS
 from semmap.nodes.kb_node.reasoner.explain.axiom_sentences import AxiomVerbalizer
 from semmap.nodes.kb_node.reasoner.explain.words import Words, base_form
 from semmap.nodes.kb_node.reasoner.explanations import Step, Term, Triple
@@ -19,8 +20,9 @@ from semmap.nodes.kb_node.reasoner.terms import (
     literal,
 )
 
-_STRUCTURE: Final = frozenset(
+_STRUCTURE: Final = FACETS.union(
     iris(
+        "owl:onDatatype owl:withRestrictions owl:datatypeComplementOf "
         "rdf:first rdf:rest owl:onProperty owl:onClass owl:onDataRange owl:members owl:distinctMembers "
         "owl:sourceIndividual owl:assertionProperty owl:targetIndividual owl:targetValue owl:someValuesFrom "
         "owl:allValuesFrom owl:hasValue owl:hasSelf owl:maxCardinality owl:cardinality "
@@ -285,6 +287,6 @@ def _ill_typed(fact: Triple, verbalizer: _Verbalizer) -> str:
     s, p, o = fact
     text, kind = (s, o) if p == TYPE and is_literal(s) else (o, f"<{literal(o).datatype}>")
     own, words, name = f"<{literal(text).datatype}>", verbalizer.words, verbalizer.name(text)
-    if own != kind:
-        return f"{name} ({words.cls(own)}) is not a value of {words.cls(kind)}"
-    return f"{name} is not a value of {words.cls(kind)}"
+    wanted = verbalizer.axioms.range_phrase(kind) or words.cls(kind)
+    found = f"{name} ({words.cls(own)})" if own != kind else name
+    return f"{found} is not {wanted if wanted.startswith('one of ') else f'a value of {wanted}'}"

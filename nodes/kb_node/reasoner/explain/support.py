@@ -192,9 +192,17 @@ class Support:
 
     def _type_fact(self, node: int, given: int) -> Found:
         name = self._schema.classes[given]
-        if name.startswith("{") or self._abox.is_literal(node):
+        if self._abox.is_literal(node):
+            return self._schema_support.data_range(given) | self._mention(node)
+        if name.startswith("{"):
             return {}
         return {(self._abox.store.terms[node], TYPE, name): None}
+
+    def _mention(self, node: int) -> Found:
+        """Return an asserted triple with a literal, which makes its value part of the graph."""
+        store = self._abox.store
+        edges = [edge for edge in store.into.all(node) if store.source[edge] in GIVEN]
+        return self._edge(edges[0]) if edges else {}
 
     def _derivations(self, node: int, cls: int, depth: int) -> Iterator[Found]:
         """Yield derivations of a class that use more than subclass axioms."""

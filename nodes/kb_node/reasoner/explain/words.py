@@ -151,7 +151,7 @@ def is_uncountable(noun: str) -> bool:
 
 def article(noun: str) -> str:
     """Return a noun with "a" or "an"."""
-    if not noun[:1].isalnum() or noun.startswith(("something ", "a ", "an ", "one of ")):
+    if not noun[:1].isalnum() or noun.startswith(("something ", "anything ", "a ", "an ", "one of ")):
         return noun
     if is_uncountable(noun):
         return noun

@@ -13,6 +13,7 @@ from functools import cache
 from itertools import combinations
 
 from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.nodes.kb_node.reasoner.data_ranges import Definition, read_all
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts, Reason
 from semmap.nodes.kb_node.reasoner.rules.matching import Pattern, Plan, bind, pattern, patterns, plan, unify
@@ -40,6 +41,8 @@ class Closure(Facts):
         self._literals: dict[datatypes.Value, list[Term]] = {k: list(v) for k, v in base._literals.items()}
         self._datatypes: list[Term] = list(base._datatypes)
         self._compared: list[Term] = list(base._compared)
+        self._ranges: dict[Term, Definition] = dict(base._ranges)
+        self._mentions: dict[Term, Triple] = dict(base._mentions)
         self._agenda: deque[Triple] = deque()
         for term in mentions:
             self._register(term)
@@ -57,6 +60,8 @@ class Closure(Facts):
                 self.facts[triple] = None
         while self._agenda and self.clash is None:
             self._fire(self._agenda.popleft())
+            if not self._agenda:
+                self._read_ranges()
 
     # Facts
 
@@ -65,15 +70,49 @@ class Closure(Facts):
             return
         self.facts[fact] = reason
         self._agenda.append(fact)
+        if reason is None and is_literal(fact[2]):
+            self._mentions.setdefault(fact[2], fact)
         for term in fact:
             self._register(term)
             if is_literal(term) and datatypes.is_ill_typed(term):
                 self._conclude("dt-not-type", (fact,), None)
         s, p, o = fact
         if p == TYPE and is_literal(s) and datatypes.is_datatype(o) and datatypes.excludes(o, s):
-            self._conclude("dt-not-type", (fact,), None)
+            self._reject((fact,))
+        if p == TYPE and is_literal(s) and o in self._ranges:
+            self._exclude(fact)
         if p == SAME_AS and is_literal(o) and s != o:
             self._add_differences(fact)
+
+    def _read_ranges(self) -> None:
+        """Apply table 8 to data ranges that the graph defines: restrictions, enumerations, combinations."""
+        for node, definition in read_all(self.match).items():
+            if node not in self._ranges:
+                self._ranges[node] = definition
+                for same in list(self._literals.values()):
+                    for literal in same:
+                        self._include(literal, node)
+                for fact in list(self.match(None, TYPE, node)):
+                    if is_literal(fact[0]):
+                        self._exclude(fact)
+
+    def _include(self, literal: Term, node: Term) -> None:
+        data_range, definition = self._ranges[node]
+        if data_range.contains(literal):
+            self._add((literal, TYPE, node), Reason("dt-type2", tuple(definition)))
+
+    def _exclude(self, fact: Triple) -> None:
+        data_range, definition = self._ranges[fact[2]]
+        if data_range.contains(fact[0]) is False:
+            self._reject((fact, *definition))
+
+    def _reject(self, premises: tuple[Triple, ...]) -> None:
+        """Note that a literal is not in its datatype, with a triple that mentions it (dt-not-type)."""
+        literal = premises[0][0]
+        mention = self._mentions.get(literal)
+        if mention is not None and not any(literal in leaf for leaf in self.leaves(premises[0])):
+            premises += (mention,)  # the datatypes alone contradict each other only about a given value
+        self._conclude("dt-not-type", premises, None)
 
     def _register(self, term: Term) -> None:
         """Apply table 8 to a new term, as far as it matters for this graph."""
@@ -89,6 +128,8 @@ class Closure(Facts):
                 self._add((other, SAME_AS, term), Reason("dt-eq", ()))
             same.append(term)
             self._type(term, self._datatypes)
+            for node in self._ranges:
+                self._include(term, node)
 
     def _type(self, literal: Term, candidates: Sequence[Term]) -> None:
         for datatype in candidates:
@@ -233,6 +274,7 @@ class _Empty(Closure):
         self.clash, self.facts, self._agenda = None, {}, deque()
         self._index, self._triggers, self._watchers = {}, {}, {}
         self._literals, self._datatypes, self._compared = {}, [], []
+        self._ranges, self._mentions = {}, {}
         for number in NUMBERS:
             self._register(number)
         for rule in RULES:

@@ -111,6 +111,8 @@ ext-card     | ?r owl:cardinality 0                               |             
 ext-card     | ?r owl:cardinality 1                               |                                            | ?r owl:maxCardinality 1
 ext-card     | ?r owl:qualifiedCardinality 0                      |                                            | ?r owl:maxQualifiedCardinality 0
 ext-card     | ?r owl:qualifiedCardinality 1                      |                                            | ?r owl:maxQualifiedCardinality 1
+ext-union    | ?c owl:disjointUnionOf ?l, ?m in ?l                |                                            | ?m rdfs:subClassOf ?c
+ext-union    | ?c owl:disjointUnionOf ?l, ?m,?n of ?l             |                                            | ?m owl:disjointWith ?n
 ext-range    | ?r owl:onDataRange ?c                              |                                            | ?r owl:onClass ?c
 """  # noqa: E501
 

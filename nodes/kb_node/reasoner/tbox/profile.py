@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 
 from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.nodes.kb_node.reasoner.data_ranges import read_range
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.reasoner.rules.rule_table import NUMBERS
@@ -23,8 +24,6 @@ _CARDINALITIES = iris(
 _MINIMA = iris("owl:minCardinality owl:minQualifiedCardinality")
 _PREDICATES = {
     iri("owl:disjointUnionOf"): "disjoint union",
-    iri("owl:withRestrictions"): "restricted datatype",
-    iri("owl:datatypeComplementOf"): "datatype complement",
     iri("owl:hasSelf"): "self restriction",
     iri("owl:onProperties"): "restriction of several properties",
 }
@@ -76,7 +75,7 @@ def _axiom(facts: Facts, s: Term, p: Term, o: Term) -> Iterator[str]:
 
 def _below(facts: Facts, cls: Term, where: str) -> Iterator[str]:
     """Yield what an expression has beyond the allowed subclasses (`subClassExpression`)."""
-    if cls[0] == "<":
+    if cls[0] == "<" or read_range(cls, facts.match) is not None:
         return
     for _, p, o in facts.match(cls):
         if p in iris("owl:intersectionOf owl:unionOf"):
@@ -90,6 +89,8 @@ def _below(facts: Facts, cls: Term, where: str) -> Iterator[str]:
 
 def _above(facts: Facts, cls: Term, where: str) -> Iterator[str]:
     """Yield what an expression has beyond the allowed superclasses (`superClassExpression`)."""
+    if read_range(cls, facts.match) is not None:
+        return
     for _, p, o in facts.match(cls):
         if p == iri("owl:intersectionOf"):
             for member in _members(facts, o) if cls[0] != "<" else ():

@@ -13,7 +13,8 @@ from collections.abc import Iterable, Iterator
 from functools import cached_property
 from itertools import combinations
 
-from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.nodes.kb_node.reasoner import data_ranges, datatypes
+from semmap.nodes.kb_node.reasoner.data_ranges import Definition
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.reasoner.rules.rule_table import NUMBERS
@@ -93,6 +94,12 @@ class Schema:
     def datatypes(self) -> dict[Term, int]:
         """The supported datatypes that the schema mentions, with their class numbers."""
         return {term: n for term, n in self._class_numbers.items() if datatypes.is_datatype(term)}
+
+    @cached_property
+    def data_ranges(self) -> dict[int, Definition]:
+        """The data ranges that the schema defines and mentions, by their class numbers."""
+        defined = data_ranges.read_all(self.closure.match)
+        return {self._class_numbers[t]: found for t, found in defined.items() if t in self._class_numbers}
 
     # Roles
 

@@ -10,6 +10,7 @@ from functools import lru_cache
 from typing import Final
 
 from semmap.nodes.kb_node.reasoner import datatypes
+from semmap.nodes.kb_node.reasoner.data_ranges import FACETS
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.rules.rule_table import ANNOTATIONS
 from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
@@ -39,7 +40,7 @@ _PLAIN_PREDICATES = _EXTREME | frozenset(
     }
 )
 _SCHEMA_PREDICATES = frozenset(
-    iris("rdfs:subClassOf rdfs:subPropertyOf rdfs:domain rdfs:range rdf:first rdf:rest")
+    (*iris("rdfs:subClassOf rdfs:subPropertyOf rdfs:domain rdfs:range rdf:first rdf:rest"), *FACETS)
 )
 """Schema predicates outside the OWL namespace. Those in it are schema unless they are plain."""
 _PLAIN_CLASSES = frozenset(

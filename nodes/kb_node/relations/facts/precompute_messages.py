@@ -20,10 +20,11 @@ from semmap.schemas.explanations import Term
 
 
 class ClassModel(NamedTuple):
-    """The model of the entities of a class, and whether they are places."""
+    """The model of the entities of a class, and whether they are places or fixed."""
 
     model: str
     place: bool
+    fixed: bool = False
 
 
 FactsByName = dict[str, tuple[About, ...]]
@@ -54,7 +55,7 @@ class ExpectedEntities(Struct, frozen=True, array_like=True):
     def placed(self) -> Iterator[PlacedEntity]:
         """Yield each entity. Raises ValueError or IndexError for an invalid number."""
         for iri, class_index, position, orientation, size in self.arrivals:
-            name, (model, place) = v.entity_name(iri), self.classes[class_index]
+            name, (model, place, fixed) = v.entity_name(iri), self.classes[class_index]
             position_m, turn, size_m = map(_read, (position, orientation, size))
             yield PlacedEntity(
                 name=name,
@@ -63,6 +64,7 @@ class ExpectedEntities(Struct, frozen=True, array_like=True):
                 size_m=size_m,
                 place=place,
                 model=chosen(model, name, size_m),
+                fixed=fixed,
             )
 
 

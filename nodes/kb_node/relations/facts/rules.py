@@ -113,7 +113,8 @@ def _may_support(space: Space, solid: Solid, other: Solid) -> bool:
     gap = limits.gap_m + _ROUNDING
     if other.bottom > solid.top + gap or other.top < solid.bottom - gap:
         return False
-    if not (other.is_level and solid.is_level) or (other.volume < solid.volume and solid.hollows):
+    may_hold = solid.hollows and (other.volume < solid.volume or other.bottom > solid.bottom)
+    if may_hold or not (other.is_level and solid.is_level):
         return True
     return other.bottom >= solid.bottom - limits.contact_m and other.highest_bottom >= solid.lowest_top - gap
 

@@ -42,6 +42,7 @@ class Columns:
         self.top: Final[Floats] = np.array([solid.top for solid in solids])
         self.is_place: Final[Bools] = np.array([solid.is_place for solid in solids], dtype=bool)
         self.is_measured: Final[Bools] = np.array([solid.is_measured for solid in solids], dtype=bool)
+        self.is_fixed: Final[Bools] = np.array([solid.is_fixed for solid in solids], dtype=bool)
         self.volume: Final[Floats] = self.forms.volume[self.form]
         self.is_near: Final[Bools] = np.abs(self.position).max(axis=1) < _FAR_M
         """Whether it is near enough to the origin to be compared in arrays."""
@@ -57,6 +58,7 @@ def solids_of(entities: Iterable[Entity | PlacedEntity]) -> list[Solid]:
     forms: list[Form] = []
     are_places: list[bool] = []
     are_measured: list[bool] = []
+    are_fixed: list[bool] = []
     for entity in entities:
         pose = entity.pose
         if pose is not None:
@@ -66,6 +68,7 @@ def solids_of(entities: Iterable[Entity | PlacedEntity]) -> list[Solid]:
             forms.append(form_in(entity, pose, shape))
             are_places.append(entity.place)
             are_measured.append(shape[1] is not None)
+            are_fixed.append(entity.fixed)
     each, row = _index_forms(forms)
     reach = Extents(each)
     x, y, z = flat(positions, 3).T
@@ -73,7 +76,7 @@ def solids_of(entities: Iterable[Entity | PlacedEntity]) -> list[Solid]:
     bottom = z + reach.bottoms()[row]
     top = z + reach.top[row]
     extents = zip(map(tuple, bounds.tolist()), bottom.tolist(), top.tolist(), strict=True)
-    return list(map(Solid, names, positions, forms, are_places, are_measured, extents))
+    return list(map(Solid, names, positions, forms, are_places, are_measured, extents, are_fixed))
 
 
 def _index_forms(forms: Sequence[Form]) -> tuple[list[Form], Ints]:

@@ -26,6 +26,8 @@ class PlacedEntity(Struct, frozen=True, kw_only=True, array_like=True):
     """The holder to which it is attached, or ""."""
     joints: Positions = AS_DRAWN
     """The joint positions of its model."""
+    fixed: bool = False
+    """Whether it is mounted and does not settle."""
 
     @classmethod
     def of(cls, entity: Entity) -> PlacedEntity:
@@ -40,6 +42,7 @@ class PlacedEntity(Struct, frozen=True, kw_only=True, array_like=True):
             extent=extent_in(entity),
             held_by=holder_in(entity),
             joints=joints_in(entity),
+            fixed=entity.fixed,
         )
 
 

@@ -41,8 +41,8 @@ class Solid:
     """
 
     __slots__ = (
-        "__dict__", "bottom", "bounds", "form", "is_level", "is_measured", "is_place", "name", "position",
-        "top",
+        "__dict__", "bottom", "bounds", "form", "is_fixed", "is_level", "is_measured", "is_place", "name",
+        "position", "top",
     )  # fmt: skip
 
     def __init__(
@@ -53,6 +53,7 @@ class Solid:
         is_place: bool,
         is_measured: bool,
         extent: Extent | None = None,
+        is_fixed: bool = False,
     ) -> None:
         """`extent` is the bounds, bottom and top, if they are already known."""
         self.name: Final = name
@@ -60,6 +61,8 @@ class Solid:
         self.form: Final = form
         self.is_place: Final = is_place
         self.is_measured: Final = is_measured
+        self.is_fixed: Final = is_fixed
+        """Whether it is mounted, such as a picture or a sink."""
         form.users += 1
         self.is_level: Final = form.is_level
         """Whether it is tilted by less than a fifth of a degree."""
@@ -222,13 +225,15 @@ def solid_of(entity: Entity | PlacedEntity, before: Solid | None = None) -> Soli
     extent, turn = size or UNMEASURED, pose.orientation_wxyz
     if before is None or not before.form.is_of(model, extent, turn, joints):
         form = form_of(model, extent, turn, joints)
-        return Solid(entity.name, pose.position_m, form, entity.place, size is not None)
+        return Solid(
+            entity.name, pose.position_m, form, entity.place, size is not None, is_fixed=entity.fixed
+        )
     form = before.form
     form.users -= 1
     stays = before.position[2] == pose.position_m[2]
     is_alike = stays and (before.is_place, before.is_measured) == (entity.place, size is not None)
     known = (_bounds(form, pose.position_m), before.bottom, before.top) if is_alike else None
-    return Solid(entity.name, pose.position_m, form, entity.place, size is not None, known)
+    return Solid(entity.name, pose.position_m, form, entity.place, size is not None, known, entity.fixed)
 
 
 def form_in(entity: Entity | PlacedEntity, pose: Pose, shape: Shape) -> Form:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from semmap.nodes.geometry.polygons import area, clipped, distance, hull
+from semmap.nodes.geometry.polygons import area, clipped, hull
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.measures import Measure
@@ -13,10 +13,6 @@ from semmap.nodes.kb_node.relations.measuring.space import Space
 
 _OPPOSITE = -math.cos(math.radians(60.0))
 """An object between two others sees them in directions at least 120 degrees apart."""
-BESIDE_M = 0.2
-"""The largest horizontal distance at which an object can be attached [m]."""
-ALONGSIDE = 0.5
-"""The least share of the height of an attached object that is alongside what it is attached to."""
 
 
 def measure_next_to(space: Space, one: Solid, other: Solid) -> Measure | None:
@@ -78,8 +74,10 @@ def measure_attachment(space: Space, solid: Solid, other: Solid) -> Measure | No
 
     None if it is not beside the other one, or is supported.
     """
-    made = _measure_against(space, solid, other)
-    return None if made is None or is_supported(space, solid) else made
+    made = measures.against(solid, other, space.limits)
+    if made is None or is_supported(space, solid) or not space.may_hold(other, solid):
+        return None
+    return made
 
 
 def find_attachments(space: Space, solid: Solid) -> Iterator[Solid]:
@@ -94,25 +92,12 @@ def find_attachments(space: Space, solid: Solid) -> Iterator[Solid]:
         if other.top > solid.bottom
         and other.bottom < highest
         and not other.is_place
-        and (made := _measure_against(space, solid, other))
+        and (made := measures.against(solid, other, space.limits))
         and made.holds
+        and space.may_hold(other, solid)
     ]
     if found and not is_supported(space, solid):
         yield from sorted(found, key=lambda other: other.name)
-
-
-def _measure_against(space: Space, solid: Solid, other: Solid) -> Measure | None:
-    limits = space.limits
-    if solid is other or solid.is_place or other.is_place or not solid.is_measured:
-        return None
-    if solid.bottom <= other.bottom + limits.gap_m or solid.top <= solid.bottom:
-        return None
-    share = (min(solid.top, other.top) - solid.bottom) / (solid.top - solid.bottom)
-    if share <= 0.0 or not measures.overlap(solid.bounds, other.bounds, BESIDE_M):
-        return None
-    apart = distance(solid.outline, other.outline)
-    holds = apart <= limits.attached_m and share >= ALONGSIDE
-    return Measure(holds, apart, share, limit=limits.attached_m)
 
 
 def is_supported(space: Space, solid: Solid) -> bool:

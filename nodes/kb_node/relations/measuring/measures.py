@@ -24,8 +24,18 @@ _SIDEWAYS = math.sin(math.radians(10.0))
 """A contact normal closer to the horizontal than this means that two objects are side by side."""
 _FLAT = math.cos(math.radians(2.0))
 """A contact normal this close to the vertical means a flat contact."""
-_FLOOR_M = 0.002
-"""Tolerance between the floor of a hollow and the top that forms it."""
+_MOST = 0.5
+"""The share of a base above which an object stands in a container."""
+_HOLDER_DEPTH = 0.2
+"""The least depth of a container from which objects stick out, relative to its width."""
+BESIDE_M = 0.2
+"""The largest horizontal distance at which an object can be attached [m]."""
+ALONGSIDE = 0.5
+"""The least share of the height of an attached object that is alongside what it is attached to."""
+_SAMPLES = 8
+"""Samples along each side of a footprint."""
+FLOOR_M = 0.002
+"""Tolerance between the floor of a hollow and the top that forms it. A floor is thicker."""
 
 
 _Piece = tuple[Sequence[Point], float, float]
@@ -44,6 +54,8 @@ class Measure(NamedTuple):
     """Height of the surface in the map."""
     limit: float = 0.0
     """The greatest gap, or least share, for which the relation holds."""
+    by_base: bool = False
+    """Whether the share is of the base, for an object that stands in a container and sticks out of it."""
 
 
 def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
@@ -133,7 +145,7 @@ def is_in_open_hollow(lower: Solid, upper: Solid, made: Measure) -> bool:
     whole = area(upper.outline)
     for hollow in lower.hollows:
         (x0, y0, z0), (x1, y1, _) = hollow.low, hollow.high
-        if hollow.open and abs(lower.position[2] + z0 - made.height_m) <= _FLOOR_M:
+        if hollow.open and abs(lower.position[2] + z0 - made.height_m) <= FLOOR_M:
             floor = [lower.to_map((x, y, 0.0))[:2] for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
             if area(clipped(upper.outline, floor)) > 0.5 * whole:
                 return True
@@ -202,14 +214,23 @@ def over(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
 def inside(inner: Solid, outer: Solid, limits: Thresholds) -> Measure | None:
     """Return the share of a volume within a hollow of the other solid.
 
-    None without a hollow, or if that is smaller.
+    If the object sticks out of an open hollow in which it stands, such as an umbrella, it is the share of its
+    base. None without a hollow, or if that is smaller.
     """
     if not outer.hollows or inner is outer or inner.is_place or not inner.is_measured:
         return None
-    if inner.volume >= outer.volume or not overlap(inner.bounds, outer.bounds):
+    if not overlap(inner.bounds, outer.bounds):
         return None
-    share = max([_compute_share_in(inner, outer, hollow) for hollow in outer.hollows])
-    return Measure(share >= limits.inside_share, share=share, limit=limits.inside_share)
+    share = 0.0
+    if is_smaller := inner.volume < outer.volume:
+        share = max([_compute_share_in(inner, outer, hollow) for hollow in outer.hollows])
+    if share < limits.inside_share and outer.is_level:
+        standing = max([_compute_base_share_in(inner, outer, hollow, limits) for hollow in outer.hollows])
+        if standing > _MOST:
+            return Measure(True, share=standing, limit=_MOST, by_base=True)
+    return (
+        Measure(share >= limits.inside_share, share=share, limit=limits.inside_share) if is_smaller else None
+    )
 
 
 def hollow_around(inner: Solid, outer: Solid) -> Interior:
@@ -229,6 +250,31 @@ def _compute_share_in(inner: Solid, outer: Solid, hollow: Interior) -> float:
         return 0.0
     walls = [outer.to_map((x, y, 0.0))[:2] for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
     return area(clipped(inner.outline, walls)) * height / inner.volume
+
+
+def is_holder(hollow: Interior) -> bool:
+    """Return whether a hollow is open and deeper than a tray, so that objects may stick out of it."""
+    (x0, y0, z0), (x1, y1, z1) = hollow.low, hollow.high
+    return hollow.open and z1 - z0 >= _HOLDER_DEPTH * min(x1 - x0, y1 - y0)
+
+
+def _compute_base_share_in(inner: Solid, outer: Solid, hollow: Interior, limits: Thresholds) -> float:
+    """Return the share of a base that stands in the lower half of a holder; of a leaning one, its foot."""
+    (x0, y0, z0), (x1, y1, z1) = hollow.low, hollow.high
+    above = inner.bottom - outer.position[2]
+    if not (is_holder(hollow) and max(FLOOR_M, z0 - limits.gap_m) < above <= (z0 + z1) / 2):
+        return 0.0
+    walls = [outer.to_map((x, y, 0.0))[:2] for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
+    if not inner.is_upright:
+        return float(contains(walls, min(inner.parts, key=_get_bottom).lowest))
+    whole = area(inner.base)
+    if not 0.0 < whole <= area(walls):
+        return 0.0
+    return area(clipped(inner.base, walls)) / whole
+
+
+def _get_bottom(part: Convex) -> float:
+    return part.low[2]
 
 
 def touches(one: Solid, other: Solid, limits: Thresholds) -> Measure | None:
@@ -331,6 +377,19 @@ def _compute_plan_gap(one: Solid, other: Solid) -> float:
     return distance(one.outline, other.outline)
 
 
+def against(solid: Solid, other: Solid, limits: Thresholds) -> Measure | None:
+    """Return how a solid is against the side of another one, off its base. None if it is not beside it."""
+    if solid is other or solid.is_place or other.is_place or not solid.is_measured:
+        return None
+    if solid.bottom <= other.bottom + limits.gap_m or solid.top <= solid.bottom:
+        return None
+    share = (min(solid.top, other.top) - solid.bottom) / (solid.top - solid.bottom)
+    if share <= 0.0 or not overlap(solid.bounds, other.bounds, BESIDE_M):
+        return None
+    apart = distance(solid.outline, other.outline)
+    return Measure(apart <= limits.attached_m and share >= ALONGSIDE, apart, share, limit=limits.attached_m)
+
+
 def near(one: Solid, other: Solid, limits: Thresholds) -> Measure | None:
     """Return the gap relative to the sizes of both, as Gapp (1994) scales distances. None without a size."""
     if one is other or not (one.has_parts and other.has_parts):
@@ -348,23 +407,60 @@ def near_limit(one: Solid, other: Solid, limits: Thresholds) -> float:
 def beneath(lower: Solid, upper: Solid, limits: Thresholds) -> Measure | None:
     """Return how one solid is below a part of another, such as a box under a table.
 
-    None if nothing is above.
+    A part counts only where it is over the other footprint. None if nothing is above.
     """
     if lower is upper or lower.is_place or upper.is_place or not (lower.is_measured and upper.is_measured):
         return None
     if not overlap(lower.bounds, upper.bounds):
         return None
-    least = lower.top - limits.touch_m
-    above = lower.top + limits.contact_m  # a surface at the height of its own top is beside it
-    ceilings = [support.height for support in upper.supports if support.height > above]
-    if upper.bottom >= least:
-        ceilings.append(upper.bottom)
-    smaller = max(min(lower.footprint, upper.footprint), 1e-9)
-    share = area(clipped(lower.outline, upper.outline)) / smaller
-    if share == 0.0 or not ceilings:
+    if upper.bottom >= lower.top - limits.touch_m:
+        smaller = max(min(lower.footprint, upper.footprint), 1e-9)
+        share = area(clipped(lower.outline, upper.outline)) / smaller
+        height, gap_m = upper.bottom, upper.bottom - lower.top
+    elif upper.highest_bottom < lower.lowest_top - limits.touch_m:
         return None
-    height = min(ceilings)
-    return Measure(share >= limits.beneath_share, height - lower.top, share, height, limits.beneath_share)
+    else:
+        share, height, gap_m = _compute_interlocked_share(lower, upper, limits)
+    if share == 0.0:
+        return None
+    return Measure(share >= limits.beneath_share, gap_m, share, height, limits.beneath_share)
+
+
+def _compute_interlocked_share(lower: Solid, upper: Solid, limits: Thresholds) -> tuple[float, float, float]:
+    """Return the share of the smaller footprint where a part of `upper` is over `lower`, sampled on a grid.
+
+    Also return the height of the lowest such part, and its gap to the top of `lower` at that place [m]. A
+    chair's backrest beside a desk does not matter to the seat below the desk.
+    """
+    x0, y0, x1, y1 = (lower if lower.footprint < upper.footprint else upper).bounds
+    steps = [(k + 0.5) / _SAMPLES for k in range(_SAMPLES)]
+    points = [(x0 + u * (x1 - x0), y0 + v * (y1 - y0)) for u in steps for v in steps]
+    counted, gaps = 0, list[tuple[float, float]]()
+    for point in points:
+        below, above = _list_parts_at(lower, point), _list_parts_at(upper, point)
+        counted += bool(below if lower.footprint < upper.footprint else above)
+        if not below:
+            continue
+        top = max(part.high[2] for part in below)
+        over = [part.low[2] for part in above if part.low[2] >= top - limits.touch_m]
+        if over:
+            gaps.append((min(over) - top, min(over)))
+    if not gaps:
+        return 0.0, 0.0, 0.0
+    gap_m, height = min(gaps)
+    return len(gaps) / counted, height, gap_m
+
+
+def _list_parts_at(solid: Solid, point: Point) -> list[Convex]:
+    """Return the parts that the vertical line through a point meets."""
+    x, y = point
+    return [
+        part
+        for part in solid.parts
+        if part.low[0] <= x <= part.high[0]
+        and part.low[1] <= y <= part.high[1]
+        and (part.is_square or contains(part.projection, point))
+    ]
 
 
 def _is_rectangle_within(one: Bounds, other: Bounds) -> bool:

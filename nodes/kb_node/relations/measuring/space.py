@@ -25,6 +25,9 @@ _STEP = 2000
 MANY: Final = 100
 """From this number on, solids are added and relations computed in arrays. Fewer are faster one by one."""
 
+_MOUNTED_M = 0.01
+"""The greatest gap between a fixed object and its support."""
+
 
 class SpatialRelations(NamedTuple):
     """What an object is inside, what it is on, and its place. What it is inside, it is not on."""
@@ -222,6 +225,8 @@ class Space:
             made = measures.on(solid, other, limits)
             if made is not None:
                 below.append((other, made))
+        if solid.is_fixed and below:
+            below = self._select_fixed_supports(solid, below, place and place[0])
         floor = None if place is None else solid.bottom - place[0].bottom
         return SpatialRelations(
             container, self._supports(solid, below, container, floor) if below else (), place
@@ -288,6 +293,35 @@ class Space:
             return ()
         return tuple(sorted(level, key=lambda found: (-found[1].share, found[0].name)))
 
+    def may_hold(self, other: Solid, solid: Solid) -> bool:
+        """Return whether a solid may hold another one: a fixed one hangs on no object that hangs itself."""
+        if not solid.is_fixed or other.is_fixed:
+            return True
+        place = self.spatial_relations(solid).place
+        return _stands_in(other, place and place[0], self.limits)
+
+    def _select_fixed_supports(self, solid: Solid, below: list[Found], place: Solid | None) -> list[Found]:
+        """Return the supports of a fixed solid, which is mounted and does not settle.
+
+        A wall or the ceiling holds it first. Otherwise it is on a fixed or standing solid at exactly its
+        height.
+        """
+        limits = self.limits
+        if place is not None and abs(place.top - solid.top) <= limits.gap_m:
+            return []
+        may_hold = [
+            (other, made)
+            for other, made in below
+            if abs(made.gap_m) <= _MOUNTED_M and (other.is_fixed or _stands_in(other, place, limits))
+        ]
+        for other in self.supporters_around(solid, limits.attached_m):
+            made = measures.against(solid, other, limits)
+            if made is None or not made.holds or any(other is support for support, _ in may_hold):
+                continue
+            if other.is_fixed or _stands_in(other, place, limits):
+                return []
+        return may_hold
+
     def _is_within(self, solid: Solid, container: Solid) -> bool:
         made = measures.inside(solid, container, self.limits)
         return made is not None and made.holds
@@ -320,6 +354,11 @@ class SpaceCache:
 
     def __exit__(self, *_: object) -> None:
         self._space.cache = None
+
+
+def _stands_in(solid: Solid, place: Solid | None, limits: Thresholds) -> bool:
+    """Return whether a solid stands on the floor of a place. Without a place its floor is unknown."""
+    return place is None or abs(solid.bottom - place.bottom) <= limits.gap_m
 
 
 def _ignore_progress() -> None:

@@ -20,7 +20,6 @@ from semmap.nodes.kb_node.relations.geometry.form_columns import Bools, Floats, 
 from semmap.nodes.kb_node.relations.geometry.planar import GUARD
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import measures
-from semmap.nodes.kb_node.relations.measuring.arrangement import ALONGSIDE, BESIDE_M
 from semmap.nodes.kb_node.relations.measuring.broad_phase import (
     BroadPhase,
     find_cells,
@@ -82,6 +81,7 @@ class Survey:
         to_place = columns.is_place[other]
         self._find_places(one[to_place], other[to_place])
         self._find_containers_and_supports(one[~to_place], other[~to_place])
+        self.may_hang |= columns.is_fixed[: len(self.may_hang)]
         self._find_attachments(*hanging)
 
     def _pairs(self, broad: BroadPhase, margin_m: float) -> tuple[Ints, Ints, Bools]:
@@ -163,20 +163,23 @@ class Survey:
         one, other = one[sure], other[sure]
         self._find_containers(one, other)
         found = find_supports(columns, one, other, limits)
-        # The supports of a contained solid are in the same container, and so smaller than it.
+        self.is_open[found.upper[columns.is_fixed[found.upper]]] = True
+        # The supports of a contained solid are in the same container, and so smaller than it or above it.
         container = self.container[found.upper]
         has_container = container != NO_ROW
         counts = ~has_container | (columns.volume[found.lower] < columns.volume[container])
+        counts |= columns.bottom[found.lower] > columns.bottom[container]
         self.is_open[found.upper[counts & (~found.holds | has_container)]] = True
         counts &= found.holds
         self._find_supports(found.upper[counts], found.lower[counts], found.gap_m[counts])
 
     def _find_containers(self, one: Ints, other: Ints) -> None:
-        """Find the smallest hollow that contains enough of the volume."""
+        """Find the smallest hollow that contains enough of the volume, or in which an object stands."""
         columns, forms, limits = self._columns, self._columns.forms, self._limits
         count = forms.hollows.count[columns.form[other]]
-        may = (count > 0) & (columns.volume[one] < columns.volume[other])
-        one, other, count = one[may], other[may], count[may]
+        is_smaller = columns.volume[one] < columns.volume[other]
+        may = (count > 0) & (is_smaller | (columns.bottom[one] > columns.bottom[other]))
+        one, other, count, is_smaller = one[may], other[may], count[may], is_smaller[may]
         if not len(one):
             return
         pair, turn = repeat_rows(count)
@@ -195,12 +198,16 @@ class Survey:
         covers = planar.are_within(*planar.compute_extents(columns.position[i, :2] - middle, a, b, u, v))
         is_exact = forms.is_square[form] & forms.is_square[its]
         least = np.where(is_exact, most, np.where(covers, area * deep, 0.0))
+        above = columns.bottom[i] - base
+        stands = (above > measures.FLOOR_M - GUARD) & (above < (floor + lid) / 2 + GUARD) & (shared > 0.0)
         begins = np.cumsum(count) - count
         most, least = np.maximum.reduceat(most, begins), np.maximum.reduceat(least, begins)
+        may_stand = np.logical_or.reduceat(stands, begins)
         doubt = planar.compute_uncertainty(columns.position[one], area[begins])
         sure = columns.is_sure[other]
-        inside = sure & (least > limits.inside_share + doubt)
-        for k in np.flatnonzero(~inside & ~(sure & (most < limits.inside_share - doubt))).tolist():
+        inside = sure & is_smaller & (least > limits.inside_share + doubt)
+        outside = sure & ~may_stand & (~is_smaller | (most < limits.inside_share - doubt))
+        for k in np.flatnonzero(~inside & ~outside).tolist():
             made = measures.inside(self.solids[one[k]], self.solids[other[k]], limits)
             inside[k] = made is not None and made.holds
         self._store_smallest(
@@ -238,7 +245,7 @@ class Survey:
         bottom, top = columns.bottom[one], columns.top[one]
         alongside = (np.minimum(top, columns.top[other]) - bottom) / np.maximum(
             top - bottom, 1e-12
-        ) - ALONGSIDE
+        ) - measures.ALONGSIDE
         above = bottom - columns.bottom[other] - limits.gap_m
         is_near = columns.is_near[one] & columns.is_near[other]
         may = ((alongside > -GUARD) & (above > -GUARD)) | ~is_near
@@ -247,7 +254,7 @@ class Survey:
             columns.bounds[one, :2] - columns.bounds[other, 2:],
             columns.bounds[other, :2] - columns.bounds[one, 2:],
         )
-        slack = min(limits.attached_m, BESIDE_M) - np.sqrt((np.maximum(apart, 0.0) ** 2).sum(axis=1))
+        slack = min(limits.attached_m, measures.BESIDE_M) - np.sqrt((np.maximum(apart, 0.0) ** 2).sum(axis=1))
         exact = is_near[may] & forms.is_square[columns.form[one]] & forms.is_square[columns.form[other]]
         plain = exact & columns.is_sure[one] & (np.minimum(alongside, above) > GUARD) & (slack > GUARD)
         self.may_hang[one[~plain & ~(exact & (slack < -GUARD))]] = True

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import shlex
 import sqlite3
+import tempfile
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -17,6 +19,8 @@ from semmap.schemas import errors
 _PAGE_BYTES: Final = 4096
 _LOG_BYTES: Final = 1025 * _PAGE_BYTES
 """SQLite restarts its write-ahead log after 1000 pages and what the last commit wrote."""
+_ROOM_BYTES: Final = 64 * _PAGE_BYTES
+_NO_ROOM: Final = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 NEW_MAP_HINT = "start a new map with --fresh (this one is kept)"
 
 
@@ -28,13 +32,17 @@ class NotWritten(errors.Refused):
     """The disk rejected a write, and nothing was written."""
 
 
+class DiskFull(errors.Refused):
+    """The file cannot be opened before there is free space on its disk. It is undamaged."""
+
+
 class JournalFile:
     """An open file. Any thread may use its connection while `reading` or `writing`, one at a time."""
 
     def __init__(self, path: Path) -> None:
         """Open the file at `path` in WAL mode with `synchronous=FULL`.
 
-        Raises InUse, Refused if it is damaged.
+        Raises InUse, DiskFull, Refused if it is damaged.
         """
         if write_ahead.has_damaged_copy(path):
             raise _log_damage_error(path)
@@ -42,7 +50,7 @@ class JournalFile:
         try:
             try:
                 self._open(path)
-            except InUse:
+            except (InUse, DiskFull):
                 raise
             except errors.Refused:
                 if log is None or log.has_valid_header:
@@ -59,8 +67,12 @@ class JournalFile:
 
     def _count_valid_frames(self) -> int:
         """Return the number of log frames that SQLite accepted."""
-        with self.reading() as db:
-            _, frames, _ = db.execute("PRAGMA wal_checkpoint(PASSIVE)").fetchone()
+        try:
+            with self.reading() as db:
+                _, frames, _ = db.execute("PRAGMA wal_checkpoint(PASSIVE)").fetchone()
+        except errors.Refused:
+            self._db.close()
+            raise
         return int(frames)
 
     def _open(self, path: Path) -> None:
@@ -161,7 +173,19 @@ def _to_refused(path: Path, error: sqlite3.DatabaseError) -> errors.Refused:
     if "locked" in str(error):
         stop = f"semmap down --data {path.parent}"
         return InUse(f"another knowledge base is using {path}; stop it with: {stop}")
+    if not has_room(path.parent):
+        return DiskFull(f"{path} cannot be opened: disk full; free some space, then start again")
     return errors.Refused(f"{path} cannot be read: {error}; {NEW_MAP_HINT}")
+
+
+def has_room(folder: Path) -> bool:
+    """Return whether there is room for a small file in a folder, by the disk, quotas and limits."""
+    try:
+        with tempfile.TemporaryFile(dir=folder) as file:
+            os.posix_fallocate(file.fileno(), 0, _ROOM_BYTES)
+    except OSError as error:
+        return error.errno not in _NO_ROOM
+    return True
 
 
 def repair_hint(path: Path) -> str:

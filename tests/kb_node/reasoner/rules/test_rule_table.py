@@ -100,6 +100,8 @@ ENTAILED = [
     ("scm-int", ":c owl:intersectionOf :l . " + AB, ":c rdfs:subClassOf :b"),
     ("scm-uni", ":c owl:unionOf :l . " + AB, ":b rdfs:subClassOf :c"),
     ("ext-card", f":r owl:cardinality {ONE}", f":r owl:maxCardinality {ONE}"),
+    ("ext-union", ":c owl:disjointUnionOf :l . " + AB, ":b rdfs:subClassOf :c"),
+    ("ext-union", ":c owl:disjointUnionOf :l . " + AB, ":a owl:disjointWith :b"),
     ("ext-range", ":r owl:onDataRange xsd:float", ":r owl:onClass xsd:float"),
 ]
 CONTRADICTORY = [

@@ -107,9 +107,10 @@ class World:
         size = dice.choice([own, own, own, None, tuple(round(dice.uniform(0.02, 1.5), 3) for _ in range(3))])
         if dice.random() < 0.1 and size is not None:
             size = (size[1], size[0], size[2])
-        return self.entity(f"{model or 'thing'}{k}", model, self.at(), size, self.turn())
+        is_fixed = dice.random() < 0.15
+        return self.entity(f"{model or 'thing'}{k}", model, self.at(), size, self.turn(), fixed=is_fixed)
 
-    def entity(self, name, model, at, size, turn, place=False):
+    def entity(self, name, model, at, size, turn, place=False, fixed=False):
         pose = Pose(position_m=at, orientation_wxyz=turn)
         return PlacedEntity(
             name=name,
@@ -119,6 +120,7 @@ class World:
             place=place,
             model=model,
             joints=self.joints(model, size or own_size_m(model)),
+            fixed=fixed,
         )
 
     def joints(self, model, size):

@@ -52,13 +52,13 @@ def world(rows):
 
 def coming(entities):
     """Return the expected entities, with the models of their classes."""
-    looks = list(dict.fromkeys(ClassModel(entity.model, entity.place) for entity in entities))
+    looks = list(dict.fromkeys(ClassModel(entity.model, entity.place, entity.fixed) for entity in entities))
     return ExpectedEntities(
         looks,
         [
             ExpectedEntity(
                 f"<{entity.iri}>",
-                looks.index(ClassModel(entity.model, entity.place)),
+                looks.index(ClassModel(entity.model, entity.place, entity.fixed)),
                 tuple(f'"{value!r}"^^<float>' for value in entity.pose.position_m),
                 entity.pose.orientation_wxyz,
                 entity.size_m,

@@ -1,10 +1,18 @@
+import resource
 import shutil
 import sqlite3
 import threading
+from contextlib import contextmanager
 
 import pytest
 
-from semmap.nodes.kb_node.storage.journal.sqlite_file import InUse, JournalFile, NotWritten
+from semmap.nodes.kb_node.storage.journal.sqlite_file import (
+    DiskFull,
+    InUse,
+    JournalFile,
+    NotWritten,
+    has_room,
+)
 from semmap.schemas import errors
 
 
@@ -65,6 +73,35 @@ def test_written_data_survives_a_kill(file, tmp_path):
     assert numbers(again) == [1, 2]
     again.close()
     assert not log_of(left).exists()
+
+
+@contextmanager
+def full(size=1):
+    """No file of this process may become larger than `size` bytes."""
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+
+
+def test_a_full_disk_is_reported_as_such_and_loses_nothing(file, tmp_path):
+    write(file, *range(5000))
+    left = tmp_path / "left"
+    left.mkdir()
+    for path in (tmp_path / "journal.sqlite", log_of(tmp_path)):  # as after a kill
+        shutil.copy(path, left)
+    for _ in range(3):
+        with full():
+            assert not has_room(left)
+            with pytest.raises(DiskFull, match="disk full; free some space") as reported:
+                JournalFile(left / "journal.sqlite")
+        assert "--fresh" not in reported.value.text
+    assert has_room(left)
+    again = JournalFile(left / "journal.sqlite")
+    assert numbers(again) == list(range(5000))
+    again.close()
 
 
 @pytest.mark.parametrize("kind", [write, write_together])
