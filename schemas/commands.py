@@ -611,7 +611,7 @@ class Find(Command[Found], frozen=True, tag="find"):
     """Find the entities that a noun phrase describes: "the red cup on the kitchen table".
 
     `viewer` (a name, or a label or class of only one entity) or `viewpoint` defines left, right and behind.
-    "My" refers to `asker`.
+    "My" refers to `asker`. `answer` answers the clarification question about `text`: "the one on the desk".
     """
 
     ROLES: ClassVar[Roles] = ANYBODY
@@ -620,6 +620,7 @@ class Find(Command[Found], frozen=True, tag="find"):
     viewer: Word | None = None
     viewpoint: ViewPoint | None = None
     asker: Word | None = None
+    answer: Text | None = None
 
 
 class PlanFloor(Command[Plan], frozen=True, tag="floorplan"):

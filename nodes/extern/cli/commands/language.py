@@ -59,6 +59,7 @@ def tell(client: Client, name: str | None, words: int, format: str) -> None:
 )
 @from_pose
 @click.option("--for", "asker", metavar="NAME", help="Speaker: the person that 'my' refers to.")
+@click.option("--answer", metavar="TEXT", help="Answer to the clarification question: 'the one on the desk'.")
 @click.option("--format", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @with_client
 def find(client: Client, text: str, format: str, **fields: Any) -> None:
