@@ -28,6 +28,7 @@ class Grammar:
     verbs: Mapping[Words, str]  # verb with its particles -> frame
     longest_verb: int
     kinds: Mapping[str, Mapping[Words, None]]  # class of expressions -> its expressions
+    opening: Mapping[str, frozenset[str]]  # class of expressions -> their first words
     longest: Mapping[str, int]  # class of expressions -> words of its longest
     persons: Mapping[str, str]  # frame -> frame with a person as its object
     numbers: Mapping[str, int]
@@ -35,6 +36,8 @@ class Grammar:
 
     def match(self, kind: str, words: Sequence[str], i: int) -> int:
         """Return the number of words of the longest expression of a class that begins at `i`, or 0."""
+        if i >= len(words) or words[i] not in self.opening[kind]:
+            return 0
         known = self.kinds[kind]
         for length in range(min(self.longest[kind], len(words) - i), 0, -1):
             if tuple(words[i : i + length]) in known:
@@ -88,6 +91,7 @@ def load() -> Grammar:
         verbs,
         max(map(len, verbs)),
         kinds,
+        {kind: frozenset(text[0] for text in texts) for kind, texts in kinds.items()},
         {kind: max(map(len, texts)) for kind, texts in kinds.items()},
         table["persons"],
         table["numbers"],
