@@ -17,7 +17,7 @@ import zenoh
 from numpy.typing import NDArray
 
 import semmap
-from semmap.wire import OBSERVATIONS, CameraFrame, camera_key, decode, encode
+from semmap.wire import OBSERVATIONS, decode
 
 WIDTH, HEIGHT, FOCAL_PX = 640, 480, 525.0
 EYE_M = np.array([0.0, -0.9, 1.35])
@@ -60,35 +60,24 @@ def render() -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
 
 
 def main() -> None:
-    """Publish five frames a second, and print the observations and the resulting entities."""
+    """Publish five frames a second, and print new observations and the resulting entities."""
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 20.0
-    planes = {"rgb": render()[0].tobytes(), "depth": render()[1].tobytes()}
-    pose = tuple(map_from_camera().ravel().tolist())
-    lens = (FOCAL_PX, 0.0, WIDTH / 2, 0.0, FOCAL_PX, HEIGHT / 2, 0.0, 0.0, 1.0)
+    rgb, depth_m = render()
+    lens = (FOCAL_PX, FOCAL_PX, WIDTH / 2, HEIGHT / 2)
+    printed: set[str] = set()
     with semmap.connect(agent="own camera") as client:
-        session = client.session
 
         def show(sample: zenoh.Sample) -> None:
             for seen in decode(sample.payload.to_bytes(), OBSERVATIONS.message).observations:
-                print(f"seen: {seen.class_} {[round(x, 2) for x in seen.pose.position_m]}", flush=True)
+                line = f"seen: {seen.class_} {[round(x, 1) for x in seen.pose.position_m]}"
+                if line not in printed:
+                    printed.add(line)
+                    print(line, flush=True)
 
-        session.declare_subscriber(OBSERVATIONS.key, show)
-        publishers = {plane: session.declare_publisher(camera_key("mine", plane)) for plane in planes}
+        client.session.declare_subscriber(OBSERVATIONS.key, show)
         end = time.monotonic() + seconds
         while time.monotonic() < end:
-            stamp_ns = time.time_ns()  # the same for both planes
-            for plane, encoding in (("rgb", "rgb8"), ("depth", "depth32f")):
-                frame = CameraFrame(
-                    camera="mine",
-                    encoding=encoding,
-                    width=WIDTH,
-                    height=HEIGHT,
-                    stamp_ns=stamp_ns,
-                    sim_time_s=0.0,
-                    intrinsics=lens,
-                    map_from_camera=pose,
-                )
-                publishers[plane].put(planes[plane], attachment=encode(frame))
+            client.publish_camera("mine", rgb, depth_m, lens, map_from_camera())
             time.sleep(0.2)
         for entity in client.list():
             print(f"in the map: {entity.class_} {entity.name}", flush=True)

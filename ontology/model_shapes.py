@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import Literal
@@ -104,19 +105,75 @@ class ModelShape(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """Whether it is chosen only by name, not by size."""
 
 
+_own: dict[str, ModelShape] = {}
+_WORLD = "world/"
+_world: dict[str, ModelShape] = {}
+"""The shapes of the bodies of the world file, by `_WORLD` and name."""
+
+
 def own_size_m(model: str) -> Size | None:
     """Return the extent of a model along its own axes [m]; "" stands for the default box.
 
     It is None for an unknown model, such as a user's file that was not added by `add_own`.
     """
-    shape = shapes().get(model)
+    shape = shape_named(model)
     return None if shape is None else shape.size_m
+
+
+def shape_named(model: str) -> ModelShape | None:
+    """Return the shape of a model, or of a body of the world by its `world_model`, at its own size."""
+    return _world.get(model) or shapes().get(model)
+
+
+def model_in_world(name: str, model: str, size_m: Size | None) -> str:
+    """Return the model that stands for the shape of the entity `name`.
+
+    It is its body in the world file if there is one of this size, else `model`. A body that was created again
+    at another size has the shape of the model.
+    """
+    if not _world:
+        return model
+    known = _world.get(own := _WORLD + name)
+    if known is None or (size_m is not None and not _is_alike(size_m, known.size_m)):
+        return model
+    return own
+
+
+def is_of_world(model: str) -> bool:
+    """Return whether a result of `model_in_world` is a body of the world file."""
+    return model in _world
+
+
+def add_world(path: Path) -> None:
+    """Add the shapes of the bodies of the world from a file, if it exists."""
+    if path.is_file():
+        _world.update((_WORLD + name, shape) for name, shape in read_shapes(path).items())
+
+
+def read_shapes(path: Path) -> dict[str, ModelShape]:
+    """Return the shapes in a file, by name."""
+    return msgspec.json.decode(path.read_bytes(), type=dict[str, ModelShape])
+
+
+def added_shapes() -> dict[str, ModelShape]:
+    """Return the shapes that are not of the library, for another process: see `add_shapes`."""
+    return {**_own, **_world}
+
+
+def add_shapes(added: Mapping[str, ModelShape]) -> None:
+    """Add the shapes of another process."""
+    for name, shape in added.items():
+        (_world if name.startswith(_WORLD) else shapes())[name] = shape
+
+
+def _is_alike(one: Size, other: Size) -> bool:
+    return all(abs(a - b) <= 0.001 + 0.01 * b for a, b in zip(one, other, strict=True))
 
 
 @cache
 def shapes() -> dict[str, ModelShape]:
     """Return the shapes of the library's and the user's models by name."""
-    return msgspec.json.decode(MODEL_SHAPES_JSON.read_bytes(), type=dict[str, ModelShape])
+    return read_shapes(MODEL_SHAPES_JSON)
 
 
 def varieties_of(model: str) -> tuple[str, ...]:
@@ -141,12 +198,12 @@ def add_own(path: Path) -> None:
     """
     if not path.is_file():
         return
-    known, own = shapes(), msgspec.json.decode(path.read_bytes(), type=dict[str, ModelShape])
+    known, own = shapes(), read_shapes(path)
     for name, shape in own.items():
         was = known.get(name)
         if was is not None:
             shape = structs.replace(shape, of=was.of, words=was.words, only_named=was.only_named)
-        known[name] = shape
+        known[name] = _own[name] = shape
     for name, shape in known.items():
         if name not in own and not own.keys().isdisjoint(shape.of):
             known[name] = structs.replace(shape, of=tuple(model for model in shape.of if model not in own))

@@ -98,6 +98,16 @@ class CopyQuery(Call[MapCopy], frozen=True, kw_only=True, forbid_unknown_fields=
     content: bool = True
 
 
+class PlacedObject(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """An object or place that is about to be added to the map."""
+
+    name: str
+    model: str
+    pose: Pose
+    size_m: Size | None = None
+    place: bool = False
+
+
 class Room(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A free pose for an object. `note` is about the object that it is placed on or in, or ""."""
 
@@ -109,7 +119,9 @@ class FindRoom(Call[Room], frozen=True, kw_only=True, forbid_unknown_fields=True
     """Request a free pose for an object `name` on, in or next to `target`.
 
     Without an `orientation` it is aligned with the target. `model` and `size_m` replace those of an entity of
-    this name. With `carry`, its contents take up no room. Raises Refused without room, with the reason.
+    this name. With `carry`, its contents take up no room. `others` are objects that are not in the map yet.
+    With `stays`, an object for which the relation holds already keeps its pose. Raises Refused without room,
+    with the reason.
     """
 
     VERB: ClassVar[str] = "find-room"
@@ -121,6 +133,8 @@ class FindRoom(Call[Room], frozen=True, kw_only=True, forbid_unknown_fields=True
     placing: Placing
     target: str
     carry: bool = False
+    others: tuple[PlacedObject, ...] = ()
+    stays: bool = False
 
 
 class StarQuery(Call[tuple[Star, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):

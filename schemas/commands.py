@@ -331,7 +331,8 @@ class Attach(Command[Changed], frozen=True, tag="attach"):
     It is attached at its current pose, or `at` a position in the frame of `to` (whose origin is the bottom
     centre [m]), rotated by `yaw` [rad]. The commit contains the pose and the properties `isGraspedBy` and
     `graspPose`. The command is rejected for places, for fixed, nested and already attached entities, and for
-    an entity that `to` is attached to.
+    an entity that `to` is attached to. It is also rejected for an entity more than 0.3 m away from `to`,
+    without `at` or `force`.
 
     With `carry`, objects on the entity or inside it are attached to it at their current poses, until it is
     detached. Objects in `leave`, and objects that only they support, stay.
@@ -345,6 +346,7 @@ class Attach(Command[Changed], frozen=True, tag="attach"):
     yaw: Angle | None = None
     carry: bool = False
     leave: tuple[Word, ...] = ()
+    force: bool = False
     unchanged: tuple[Word, ...] = ()
     since: Since = 0
     dry_run: bool = False
@@ -609,7 +611,7 @@ class Find(Command[Found], frozen=True, tag="find"):
     """Find the entities that a noun phrase describes: "the red cup on the kitchen table".
 
     `viewer` (a name, or a label or class of only one entity) or `viewpoint` defines left, right and behind.
-    "My" refers to `asker`.
+    "My" refers to `asker`. `answer` answers the clarification question about `text`: "the one on the desk".
     """
 
     ROLES: ClassVar[Roles] = ANYBODY
@@ -618,6 +620,7 @@ class Find(Command[Found], frozen=True, tag="find"):
     viewer: Word | None = None
     viewpoint: ViewPoint | None = None
     asker: Word | None = None
+    answer: Text | None = None
 
 
 class PlanFloor(Command[Plan], frozen=True, tag="floorplan"):

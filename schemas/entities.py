@@ -113,6 +113,21 @@ def free_name(class_name: str, taken: Container[str]) -> str:
     return f"{stem}{number}"
 
 
+def bounds(pose: Pose, size_m: Vector) -> tuple[Vector, Vector]:
+    """Return the lowest and highest corner [m, map frame] of a box around a box with this pose and size."""
+    w, x, y, z = pose.orientation_wxyz
+    rows = (
+        (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
+        (2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
+        (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
+    )
+    half = tuple(length / 2.0 for length in size_m)
+    middle = [at + row[2] * half[2] for at, row in zip(pose.position_m, rows, strict=True)]
+    reach = [sum(abs(of) * length for of, length in zip(row, half, strict=True)) for row in rows]
+    low, high = ([m + sign * r for m, r in zip(middle, reach, strict=True)] for sign in (-1.0, 1.0))
+    return (low[0], low[1], low[2]), (high[0], high[1], high[2])
+
+
 def valid_name(text: str, taken: Container[str] = ()) -> str:
     """Return a name for an object that is called `text` elsewhere, such as `Apple_01.2` for `Apple|+01.2`.
 

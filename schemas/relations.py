@@ -182,6 +182,8 @@ class Described(Entity, frozen=True, kw_only=True, forbid_unknown_fields=True):
     withheld: tuple[str, ...] = ()
     on_nothing: str = ""
     frame: str = ""
+    shape: Literal["", "world", "model", "box"] = ""
+    """Whence its shape is: its body in the world file, its model, or only its size. "" if not requested."""
 
     @classmethod
     def of(
@@ -191,10 +193,14 @@ class Described(Entity, frozen=True, kw_only=True, forbid_unknown_fields=True):
         denied: tuple[Relation, ...] = (),
         withheld: tuple[str, ...] = (),
         on_nothing: str = "",
+        shape: Literal["", "world", "model", "box"] = "",
     ) -> Described:
         """Return an entity with these relations."""
         fields = {name: getattr(entity, name) for name in Entity.__struct_fields__}
-        return cls(**fields, whereabouts=whereabouts, denied=denied, withheld=withheld, on_nothing=on_nothing)
+        return cls(
+            **fields, whereabouts=whereabouts, denied=denied, withheld=withheld, on_nothing=on_nothing,
+            shape=shape,
+        )  # fmt: skip
 
 
 class Where(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

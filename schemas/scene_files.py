@@ -38,6 +38,9 @@ class Described(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fiel
     quaternion wxyz) its orientation. `size` is the extent along its own axes [m]. `ref` is its label, `alt`
     are aliases. `extent` is the area of a place in WKT: `POLYGON ((x y, ...))`. `set` are other properties,
     each written `PROPERTY=VALUE`; an individual in a value must precede it in the file or be in the map.
+
+    Instead of `at`, an object of a map is placed `on`, `in` or `next_to` an entity that precedes it in the
+    file or is in the map, where there is room. If it is there already, it stays where it is.
     """
 
     class_: Text = field(name="class")
@@ -49,6 +52,9 @@ class Described(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fiel
     extent: Annotated[str, Meta(min_length=1, max_length=50_000)] | None = None
     ref: Text | None = None
     alt: tuple[Text, ...] = ()
+    on: Text | None = None
+    in_: Text | None = field(name="in", default=None)
+    next_to: Text | None = None
     affords: tuple[Text, ...] = ()
     """Affordances by their names in the TBox: `containing`, `supporting`, ..."""
     set: tuple[Text, ...] = ()

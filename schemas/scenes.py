@@ -362,6 +362,8 @@ class Scene(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     bodies: tuple[Body, ...]
     left_out: tuple[str, ...] = ()
     """Bodies of the world that are only parts of the others: names, or descriptions of unnamed ones."""
+    unstable: tuple[str, ...] = ()
+    """Bodies whose simulated state was no longer finite, so that they were stopped."""
 
 
 class SceneQuery(Call[Scene], frozen=True, kw_only=True, forbid_unknown_fields=True):

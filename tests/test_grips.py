@@ -46,7 +46,7 @@ def held(system):
     """The same with the cup attached to the tray."""
     with system.client() as client:
         for _ in laid(client, table1=("Table", TABLE), tray1=("Tray", TRAY), cup1=("Cup", (3.0, 0.0, 0.5))):
-            client.attach("cup1", to="tray1")
+            client.attach("cup1", to="tray1", force=True)
             agree(client, "cup1", "tray1")
             yield client
 
@@ -93,7 +93,7 @@ def live_off_m(client):
 
 def test_it_is_taken_carried_and_put(client):
     assert [e.name for e in client.list(on="table1")] == ["cup1"]
-    reply = client.attach("cup1", to="tray1")
+    reply = client.attach("cup1", to="tray1", force=True)
     assert re.match(r"cup1 is attached to tray1, at \(-3, 0, 0\.[78]", reply.text)  # the table is 0.75 m high
     cup = client.get("cup1", where=True)
     assert holder_of(cup) == "tray1"
@@ -151,7 +151,7 @@ def test_what_is_held_is_held_again_after_a_restart(system, client):
 
 
 def test_the_last_word_wins(client):
-    client.attach("cup1", to="tray1")
+    client.attach("cup1", to="tray1", force=True)
     agree(client, "cup1", "tray1")
     client.set("cup1", "isGraspedBy", "table1")
     until(lambda: grip_of(client.get("cup1")) is not None, "the map says where")
@@ -222,7 +222,7 @@ def off_tray_m(client, cup):
 
 def test_what_stands_on_a_tray_is_carried_by_a_robot_and_free_again(porter):
     client = porter
-    dry = client.attach("tray1", to="robot1_gripper", dry_run=True)
+    dry = client.attach("tray1", to="robot1_gripper", dry_run=True, force=True)
     assert dry.notes[-1].startswith("cup1 and cup2 are on or inside tray1 but not attached")
     reply = client.attach("tray1", to="robot1/gripper", at=(0.25, 0.0, 0.0), yaw=0.0, carry=True)
     assert reply.text.endswith("; cup1 and cup2 moved with tray1")

@@ -331,7 +331,7 @@ def test_only_operators_have_things_held_tracked_and_driven(as_, name):
             with pytest.raises(errors.Refused, match="required role: 'operator' or 'admin'"):
                 ask()
     with as_("bob") as bob:
-        assert "milk1 is attached to table1" in bob.attach("milk1", to="table1").text
+        assert "milk1 is attached to table1" in bob.attach("milk1", to="table1", force=True).text
         assert "milk1 is detached from table1" in bob.detach("milk1").text
 
 

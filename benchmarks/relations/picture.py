@@ -237,7 +237,8 @@ def _parts(entity: Entity, solid: Solid, opened: set[str], colour: Colour) -> li
     if not entity.model:
         return [box(solid.size, (0.0, 0.0, solid.size[2] / 2), colour)]
     parts = [part for part in build(entity.model, entity.size_m).parts if part.role is not Role.COLLISION]
-    if entity.name in opened and not any(inner.open for inner in shapes()[entity.model].interiors):
+    interiors = shapes()[entity.model].interiors
+    if entity.name in opened and interiors and not any(inner.open for inner in interiors):
         return _cut_open(entity)
     return [part for part in parts if entity.name not in opened or not _fills(part, entity.model)]
 
@@ -254,13 +255,14 @@ def _fills(part: Part, model: str) -> bool:
 
 def _cut_open(entity: Entity) -> list[Part]:
     """Return the walls and boards of a closed thing without its front."""
-    colliding = [part for part in build(entity.model, entity.size_m).parts if part.role is not Role.VISUAL]
+    parts = build(entity.model, entity.size_m).parts
+    colliding = [part for part in parts if part.role is not Role.VISUAL]
     x = max(float(part.centre[0] + part.reach()[0]) for part in colliding)
     behind = [
         part for part in colliding if part.centre[0] + part.reach()[0] < x - 0.03 or part.reach()[0] > 0.05
     ]
-    seen = [part.colour for part in build(entity.model, entity.size_m).parts if part.role is Role.VISUAL]
-    return [Part(p.shape, p.half, p.centre, seen[0], p.turn) for p in behind]
+    seen = [part.colour for part in parts if part.role is not Role.COLLISION]
+    return [Part(p.shape, p.half, p.centre, seen[0] if seen else p.colour, p.turn) for p in behind]
 
 
 def sheet() -> Image.Image:

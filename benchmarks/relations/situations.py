@@ -348,6 +348,8 @@ SITUATIONS: tuple[Situation, ...] = (
     situation("a stick that leans in a bucket", BUCKET,
               thing("stick1", (-0.05, 0.0, 0.0135), size=(0.02, 0.02, 1.0), turn=about_y(20.0)),
               said="stick1 isInside bucket1"),
+    situation("a stick in a bin", thing("bin1", (0.0, 0.0, 0.0)),
+              thing("stick1", (0.0, 0.05, 0.02), size=(0.08, 0.08, 0.9)), said="stick1 isInside bin1"),
     situation("a stick beside a bucket", BUCKET, thing("stick1", (0.2, 0.0, 0.0), size=(0.02, 0.02, 1.0))),
     situation("a bottle on a tray is not inside it", TABLE, on_table("tray1"), on_table("bottle1", z=0.01),
               said="tray1 isOn table1, bottle1 isOn tray1"),

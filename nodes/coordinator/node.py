@@ -13,6 +13,7 @@ from msgspec import structs
 from semmap.nodes.coordinator.access import admission, authority
 from semmap.nodes.coordinator.access.approvals import Approvals
 from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
+from semmap.nodes.coordinator.commands.entity_changes import require_removable
 from semmap.nodes.coordinator.commands.joint_state import require_not_of_scene
 from semmap.nodes.coordinator.commands.registration import HANDLERS
 from semmap.nodes.coordinator.config import CoordinatorConfig
@@ -286,6 +287,8 @@ class Coordinator:
         self, command: c.Add | c.Update | c.Batch | c.Set | c.Unset | c.Remove | c.Clear
     ) -> Future[Changed]:
         """Change the map, and add a note if the scene or perception will override the change."""
+        if isinstance(command, c.Remove) and self._config.truth != "replayed":
+            require_removable(command.names, self._reconciler.scene.bodies)
         if self._config.truth == "scene":
             changes = command.changes if isinstance(command, c.Batch) else (command,)
             require_not_of_scene(changes, self._reconciler.scene.bodies)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -13,6 +14,8 @@ from semmap.schemas.scenes import Body, Poses, Scene
 
 _STIR = 2e-4
 """A change of a coordinate [m] or quaternion component below this is ignored."""
+_UNIT_TOLERANCE = 1e-3
+_LAST_STAMP_NS = (1 << 63) - 1
 _JOINT_STIR = 1e-3
 """The same for a joint [rad, m]."""
 
@@ -40,8 +43,29 @@ class SceneState:
         """Return whether `poses` refers to the bodies of the last snapshot; if not, a new one is needed."""
         return self.known and (poses.run, poses.version) == (self._run, self._version)
 
+    def find_problem(self, poses: Poses) -> str:
+        """Return why poses that match the snapshot cannot be applied to it, or "" if they can."""
+        rows = np.array(poses.poses, dtype=float)
+        joints = np.array(poses.joints, dtype=float)
+        expected = sum(len(body.joints) for name in poses.names if (body := self.bodies.get(name)))
+        if len(rows) != 7 * len(poses.names):
+            return f"{len(rows)} numbers for the poses of {len(poses.names)} bodies, instead of 7 for each"
+        if len(joints) not in (0, expected):
+            return f"{len(joints)} positions for {expected} joints"
+        if not (np.isfinite(rows).all() and np.isfinite(joints).all() and math.isfinite(poses.sim_time_s)):
+            return "a number is not finite"
+        if not 0 <= poses.stamp_ns <= _LAST_STAMP_NS:
+            return f"{poses.stamp_ns} is not a time in nanoseconds since 1970"
+        lengths = np.linalg.norm(rows.reshape(-1, 7)[:, 3:], axis=1)
+        if (np.abs(lengths - 1.0) > _UNIT_TOLERANCE).any():
+            return "a quaternion is not of unit length"
+        return ""
+
     def follow(self, poses: Poses) -> Iterator[tuple[str, Pose]]:
-        """Apply poses to known bodies, and yield those that moved, also in their joints."""
+        """Apply poses to known bodies, and yield those that moved, also in their joints.
+
+        The poses match the snapshot and have no problem.
+        """
         self.sim_time_s = poses.sim_time_s
         rows = np.array(poses.poses, dtype=float).reshape(-1, 7)
         if poses.names != self._names:

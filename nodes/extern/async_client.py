@@ -93,6 +93,13 @@ class AsyncClient(CommandMethods):
         """Publish the pose of a custom frame, without waiting; see `Client.publish_frame`."""
         self._client.publish_frame(name, parent, at, **pose)
 
+    async def publish_camera(
+        self, name: str, rgb: Any, depth_m: Any, intrinsics: Any, map_from_camera: Any,
+        *, stamp_ns: int = 0,
+    ) -> None:  # fmt: skip
+        """Publish one frame of a depth camera, without waiting; see `Client.publish_camera`."""
+        self._client.publish_camera(name, rgb, depth_m, intrinsics, map_from_camera, stamp_ns=stamp_ns)
+
     async def withdraw_frame(self, name: str) -> None:
         """Remove a published frame."""
         self._client.withdraw_frame(name)

@@ -25,6 +25,7 @@ import msgspec
 
 from semmap.nodes import bus
 from semmap.nodes.extern import backup
+from semmap.nodes.extern.camera_planes import make_planes
 from semmap.nodes.extern.client_commands import CommandMethods
 from semmap.nodes.extern.connection import identity as identify
 from semmap.nodes.extern.connection import namespace as robot
@@ -97,7 +98,7 @@ class Client(CommandMethods):
         self.session = session
         self.identity = identity
         self._liveliness = bus.LivelinessMonitor(session)
-        self._live: dict[str, Any] = {}
+        self._publishers: dict[str, Any] = {}
         """The publishers of live poses and frames, by key."""
         self.prefix = keys.CMD if identity is None else keys.commands_as(identity.name)
         role = "" if identity is None else identity.role
@@ -201,6 +202,33 @@ class Client(CommandMethods):
         pose = {"at": at, "yaw": yaw, "orientation": orientation, "stamp_ns": stamp_ns}
         self._publish(keys.FRAME, _frame_key(name), FramePose, {"parent": parent, "fixed": fixed, **pose})
 
+    def publish_camera(
+        self,
+        name: str,
+        rgb: Any,
+        depth_m: Any,
+        intrinsics: Any,
+        map_from_camera: Any,
+        *,
+        stamp_ns: int = 0,
+    ) -> None:
+        """Publish one frame of a depth camera to perception; the newest frame is used.
+
+        `rgb` has (height, width, 3) 8-bit numbers. `depth_m` has (height, width) floats: metres along the
+        optical axis, 0 or NaN for no measurement. `intrinsics` is (3, 3) or (fx, fy, cx, cy) [pixel].
+        `map_from_camera` is the (4, 4) pose [m] of the optical frame: x right, y down, z into the scene.
+        `stamp_ns` is the time of the measurement; 0 is now.
+
+        There is no reply: what perception sees is published on `semmap/perception/observations` and, with
+        `--truth perceived`, becomes part of the map. Raises BadRequest for invalid arrays, and Refused if the
+        certificate of this client does not permit it.
+        """
+        planes = make_planes(name, rgb, depth_m, intrinsics, map_from_camera, stamp_ns or time.time_ns())
+        self._require_publishing(keys.CAMERA)
+        for plane, pixels, frame in planes:
+            key = keys.camera_key(name, plane)
+            self._publisher(keys.CAMERA, key).put(pixels, attachment=codec.encode(frame))
+
     def withdraw_frame(self, name: str) -> None:
         """Remove a published frame, including a fixed one."""
         self._publish(keys.FRAME, _frame_key(name), None, {})
@@ -217,14 +245,21 @@ class Client(CommandMethods):
                 message.require_pose()
             except errors.BadRequest as error:
                 raise errors.BadRequest(error.text.removeprefix(codec.MALFORMED)) from None
+        self._require_publishing(topic)
+        publisher = self._publisher(topic, key)
+        if message is None:
+            publisher.delete()
+        else:
+            publisher.put(codec.encode(message), encoding=codec.encoding_of(message))
+
+    def _require_publishing(self, topic: keys.Topic) -> None:
         if self.identity is not None and not roles.may_publish(self.identity.role, topic):
             raise errors.Refused(roles.not_publishing(self.identity.role, topic))
-        if key not in self._live:
-            self._live[key] = bus.publisher(self.session, topic, key)
-        if message is None:
-            self._live[key].delete()
-        else:
-            self._live[key].put(codec.encode(message), encoding=codec.encoding_of(message))
+
+    def _publisher(self, topic: keys.Topic, key: str) -> Any:
+        if key not in self._publishers:
+            self._publishers[key] = bus.publisher(self.session, topic, key)
+        return self._publishers[key]
 
     @contextlib.contextmanager
     def watch(

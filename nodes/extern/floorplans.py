@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -113,17 +112,12 @@ def read_plan(path: Path) -> LoadedPlan:
 
 def _png(content: bytes) -> Pixels:
     import numpy as np
-    from PIL import Image
 
     from semmap.nodes.navigation.grid import MOST_CELLS
+    from semmap.nodes.runtime.pictures import open_picture
 
     try:
-        with Image.open(io.BytesIO(content)) as picture:
-            width, height = picture.size
-            if width * height > MOST_CELLS:
-                raise errors.BadFile(
-                    f"the image has {width} x {height} pixels; the maximum is {MOST_CELLS:,} pixels"
-                )
+        with open_picture(content, MOST_CELLS) as picture:
             return np.asarray(picture.convert("L"), dtype=np.uint8)
-    except (OSError, SyntaxError, ValueError) as error:
-        raise errors.BadFile(f"the image is not a readable PNG file: {error}") from None
+    except ValueError as error:
+        raise errors.BadFile(f"the plan cannot be read: {error}") from None

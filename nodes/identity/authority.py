@@ -34,6 +34,7 @@ DAYS: Final = 365
 _AUTHORITY_DAYS: Final = 3650
 _AUTHORITY_NAME: Final = "semmap"
 _AUTHORITY_KEY: Final = "ca.key"
+_FILE_SUFFIXES: Final = (".crt", ".key")
 _NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
 _HOST: Final = re.compile(r"(?=.{1,253}$)[A-Za-z0-9-]{1,63}(\.[A-Za-z0-9-]{1,63})*\.?")
 _EARLY: Final = timedelta(minutes=5)
@@ -96,6 +97,11 @@ def add(folder: Path, name: str, role: Role, days: int = DAYS) -> Member:
         raise errors.BadRequest(
             f"invalid name '{name}'; use up to 64 letters, digits, '_', '.' and '-', beginning with a letter"
             " or a digit"
+        )
+    if Path(name).suffix.lower() in _FILE_SUFFIXES:
+        raise errors.BadRequest(
+            f"invalid name '{name}'; a name does not end in .crt or .key, the suffixes of its files;"
+            f" use: {Path(name).stem}"
         )
     known = {other.lower(): member for other, member in register.members.items()}
     if (member := known.get(name.lower())) is not None:

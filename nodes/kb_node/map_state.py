@@ -21,6 +21,7 @@ from semmap.nodes.kb_node.relations.facts.precompute_messages import PrecomputeR
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.runtime import memory
 from semmap.ontology import vocabulary as v
+from semmap.ontology.model_shapes import added_shapes
 from semmap.schemas import errors
 from semmap.schemas.commits import Commit, Snapshot, Star, Transaction
 from semmap.schemas.entities import ClassInfo, Entity
@@ -231,7 +232,7 @@ class MapState:
             self.derived_facts.computed.facts,
         )
         if coming is not None and len(self) <= len(coming):
-            foreseen = PrecomputeRequest(facts.space.limits, self.placed(), coming)
+            foreseen = PrecomputeRequest(facts.space.limits, self.placed(), coming, added_shapes())
             with suppress(OSError):  # then they are computed in this process
                 facts.set_precomputation(Precomputation(foreseen, self.progress))
 

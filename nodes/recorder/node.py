@@ -160,6 +160,9 @@ class Recorder:
         if not self._scene.matches(poses):
             self._fetch_scene()
             return
+        if problem := self._scene.find_problem(poses):
+            self._node.drop(f"poses dropped: {problem}")
+            return
         self._set_time(poses.stamp_ns)
         jointed = []
         for name, pose in self._scene.follow(poses):

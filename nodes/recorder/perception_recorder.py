@@ -24,6 +24,7 @@ class PerceptionRecorder:
 
     def __init__(self, node: Node, recording: Recording, at: Callable[[int], None]) -> None:
         """Register the subscribers. `at(stamp_ns)` sets the time of the next record."""
+        self._node = node
         self._recording = recording
         self._at = at
         self._seen = Observations(stamp_ns=0, views=(), observations=())
@@ -40,8 +41,13 @@ class PerceptionRecorder:
         self._recording.show(archetypes.BOXES, *archetypes.boxes_of(seen))
 
     def _on_cloud(self, cloud: SegmentedCloud) -> None:
+        try:
+            points = archetypes.points_of(cloud, self._seen)
+        except ValueError as error:
+            self._node.drop(f"cloud dropped: {error}")
+            return
         self._at(cloud.stamp_ns)
-        self._recording.show(archetypes.CLOUD, archetypes.points_of(cloud, self._seen))
+        self._recording.show(archetypes.CLOUD, points)
 
     def _keep(self, frame: CameraFrame, read: Callable[[], bytes]) -> None:
         """Keep the newest image of each camera. Called on a thread of Zenoh."""
@@ -53,7 +59,7 @@ class PerceptionRecorder:
             try:
                 drawn, pose = archetypes.image_of(frame, read()), archetypes.camera_pose(frame)
             except ValueError as error:
-                log.warning("camera %s: cannot record image: %s", camera, error)
+                self._node.drop(f"image of camera {camera} dropped: {error}")
                 continue
             self._at(frame.stamp_ns)
             self._recording.show(archetypes.camera_path(camera), *drawn)

@@ -18,6 +18,7 @@ log = logging.getLogger(__name__)
 
 _PERIOD_S = 1.0
 _ERROR_SHOWN_S = 3600.0
+_MAX_DROPPED = 5
 
 
 class Heartbeat:
@@ -37,6 +38,7 @@ class Heartbeat:
         self._notes: tuple[str, ...] = ()
         self._error_shown_until_s = 0.0
         self._ignored = 0
+        self._dropped: dict[str, None] = {}
         self._health = bus.publisher(session, keys.HEALTH, keys.health_key(name))
 
     def beat(self) -> None:
@@ -55,7 +57,7 @@ class Heartbeat:
             state=self._state,
             detail=self._detail(),
             last_error=self._last_error if now_s < self._error_shown_until_s else "",
-            notes=self._notes,
+            notes=(*self._notes, *self._dropped),
             commit=commit,
             digest=digest,
             ignored=self._ignored,
@@ -84,6 +86,13 @@ class Heartbeat:
     def ignore(self) -> None:
         """Count a malformed publication. Any thread may call this: a lost count does no harm."""
         self._ignored += 1
+
+    def drop(self, text: str) -> None:
+        """Count an invalid message, and add `text` to the notes, once, and for a limited number of texts."""
+        self._ignored += 1
+        if text not in self._dropped and len(self._dropped) < _MAX_DROPPED:
+            log.warning("%s", text)
+            self._dropped[text], self.due_s = None, 0.0
 
     def note(self, notes: tuple[str, ...]) -> None:
         """Set the notes of the node, from now on."""

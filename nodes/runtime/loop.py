@@ -387,6 +387,10 @@ class Node:
         """Set the notes of the node in the heartbeats, from now on."""
         self._heartbeat.note(notes)
 
+    def drop(self, text: str) -> None:
+        """Count a publication as ignored, and show once in the heartbeats why."""
+        self._heartbeat.drop(text)
+
     def report(self, text: str) -> None:
         """Log an error and show it in the heartbeats with the time of day, for an hour."""
         self._heartbeat.report(text)

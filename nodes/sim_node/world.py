@@ -325,6 +325,7 @@ class World:
             world=self.name,
             bodies=self._bodies(self._engine.records),
             left_out=self.left_out,
+            unstable=tuple(sorted(self._engine.unstable)),
         )
 
     def surfaces(self, names: Iterable[str]) -> Surfaces:

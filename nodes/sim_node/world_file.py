@@ -14,12 +14,15 @@ from semmap.nodes.runtime.class_names import ClassNames
 from semmap.nodes.sim_node.body_classes import BodyClasses
 from semmap.nodes.sim_node.config import RobotConfig
 from semmap.nodes.sim_node.models.parts import rotation_matrix
+from semmap.nodes.sim_node.models.write_shapes import as_json
 from semmap.nodes.sim_node.order_validation import ModelSource
 from semmap.nodes.sim_node.physics import base_scene
 from semmap.nodes.sim_node.physics.build import run_in_background
 from semmap.nodes.sim_node.robots.robot import add_robot
 from semmap.nodes.sim_node.vision.view import View, look_at, pinhole
 from semmap.nodes.sim_node.world import World
+from semmap.nodes.sim_node.world_shapes import world_shapes
+from semmap.ontology.model_shapes import read_shapes
 from semmap.schemas import codec, scene_files
 from semmap.schemas.entities import free_name
 from semmap.schemas.errors import BadFile, UnknownClass
@@ -49,6 +52,19 @@ def require_world(path: Path, models: ModelSource, robot: RobotConfig | None = N
         base_scene.read_mjcf(path)
 
 
+def write_world(path: Path, models: ModelSource, target: Path) -> None:
+    """Write the shapes of the bodies of an MJCF scene for the knowledge base, without those of a robot.
+
+    Bodies of earlier worlds remain in the file, for past commits. Bodies of a JSON scene have the shapes of
+    their models. Raises BadFile as `open_world` does.
+    """
+    if is_scene(path):
+        return
+    before = read_shapes(target) if target.is_file() else {}
+    target.parent.mkdir(parents=True, exist_ok=True)
+    target.write_text(as_json({**before, **world_shapes(open_world(path, models))}))
+
+
 def open_world(
     path: Path | None,
     models: ModelSource,
@@ -74,6 +90,12 @@ def open_world(
         how = {"name": path.name, "models": models, "while_waiting": while_waiting, "classes": found}
         return _world(ground, robot, **how)
     scene = scene_files.read(_read(path), path.name)
+    for number, item in enumerate(scene.entities, start=1):
+        if item.on or item.in_ or item.next_to:
+            raise BadFile(
+                f"{path.name}: entity {item.name or number}: on, in and next_to place objects of a map; in a"
+                " world give at"
+            )
     views = (
         None if scene.cameras is None else [(camera.name or "", _view(camera)) for camera in scene.cameras]
     )

@@ -19,7 +19,7 @@ from semmap.nodes.supervisor.orphans import end_when_orphaned
 from semmap.nodes.supervisor.privacy import UMASK
 from semmap.nodes.supervisor.settings import Settings
 from semmap.ontology import EMPTY_WORLD, FLAT_WORLD
-from semmap.ontology.model_shapes import add_own
+from semmap.ontology.model_shapes import add_own, add_world
 from semmap.schemas import codec, errors
 from semmap.schemas.endpoints import WEB_TOKEN_VARIABLE
 from semmap.schemas.keys import ROUTER, WEB
@@ -47,10 +47,11 @@ def seed(settings: Settings) -> None:
 
     if settings.sim and Path(settings.world) not in (FLAT_WORLD, EMPTY_WORLD):
         from semmap.nodes.sim_node.models.sources import Models
-        from semmap.nodes.sim_node.world_file import require_world
+        from semmap.nodes.sim_node.world_file import require_world, write_world
 
         models = Models(Path(settings.models) if settings.models else None, Path(settings.data))
         require_world(Path(settings.world), models, _robot(settings))
+        write_world(Path(settings.world), models, _world_shapes(settings))
     elif settings.sim and settings.robot is not None:
         from semmap.nodes.sim_node.robots.robot import read
 
@@ -101,11 +102,17 @@ def _own_shapes(settings: Settings) -> Path:
     return Path(settings.data) / "model_shapes.json"
 
 
+def _world_shapes(settings: Settings) -> Path:
+    """Return the file with the shapes of the world's bodies. It remains for starts without the simulator."""
+    return Path(settings.data) / "world_shapes.json"
+
+
 def _kb_node(settings: Settings) -> None:
     from semmap.nodes.kb_node.config import KbConfig, Replay
     from semmap.nodes.kb_node.node import run
 
     add_own(_own_shapes(settings))
+    add_world(_world_shapes(settings))
     replay = settings.replay
     run(
         KbConfig(
@@ -123,6 +130,7 @@ def _coordinator(settings: Settings) -> None:
     from semmap.nodes.coordinator.node import run
 
     add_own(_own_shapes(settings))
+    add_world(_world_shapes(settings))
     thresholds = Thresholds(distance_m=settings.threshold_m, angle_rad=settings.angle_threshold_rad)
     live = LiveRules(stale_s=settings.stale_s, journal_every_s=settings.journal_every_s)
     keys = None if settings.secure is None else Path(settings.secure)

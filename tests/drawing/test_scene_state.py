@@ -1,3 +1,4 @@
+import pytest
 from msgspec import structs
 
 from semmap.nodes.drawing.scene_state import SceneState
@@ -52,3 +53,31 @@ def test_a_joint_that_moves_is_told_though_its_body_stands():
     moved = dict(state.follow(structs.replace(still, joints=(0.5,), joint_commits=(1,))))
     assert moved == {"b": pose()}
     assert state.bodies["b"].joints[0].position == 0.5
+
+
+NAN, INF = float("nan"), float("inf")
+
+
+@pytest.mark.parametrize(
+    ("changes", "problem"),
+    [
+        ({}, ""),
+        ({"poses": ()}, "0 numbers for the poses of 2 bodies"),
+        ({"poses": (0.0,) * 13}, "13 numbers for the poses of 2 bodies"),
+        ({"poses": (0.0,) * 21}, "21 numbers"),
+        ({"poses": (NAN, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0) * 2}, "not finite"),
+        ({"poses": (0.0, 0.0, INF, 1.0, 0.0, 0.0, 0.0) * 2}, "not finite"),
+        ({"poses": (0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0) * 2}, "unit length"),
+        ({"poses": (0.0,) * 14}, "unit length"),
+        ({"joints": (1.0, 2.0)}, "2 positions for 0 joints"),
+        ({"sim_time_s": NAN}, "not finite"),
+        ({"stamp_ns": -1}, "not a time"),
+        ({"stamp_ns": 1 << 63}, "not a time"),
+        ({"names": ("a",)}, "14 numbers for the poses of 1 bodies"),
+    ],
+)
+def test_the_problem_of_forged_poses_is_found(changes, problem):
+    forged = structs.replace(poses({"a": pose(), "b": pose(1.0)}), **changes)
+    found = taken().find_problem(forged)
+    assert problem in found
+    assert bool(found) == bool(problem)

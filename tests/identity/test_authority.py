@@ -135,3 +135,13 @@ def test_an_unknown_name_is_reported_with_similar_ones(folder):
 def test_a_folder_without_keys_reports_how_to_create_them(tmp_path):
     with pytest.raises(errors.BadFile, match="semmap keys init"):
         authority.add(tmp_path, "bob", "viewer")
+
+
+@pytest.mark.parametrize("name", ["ann.crt", "ann.key", "ann.KEY", "vera.crt", "ann.crt.key"])
+def test_a_name_does_not_end_like_its_files(folder, name):
+    bare = name.rpartition(".")[0]
+    with pytest.raises(errors.BadRequest, match=rf"does not end in \.crt or \.key, .*; use: {bare}$"):
+        authority.add(folder, name, "operator")
+    assert not list(folder.glob(f"{name}.*"))
+    with pytest.raises(errors.UnknownName, match=f"no certificate was issued to '{name}'"):
+        authority.revoke(folder, name)

@@ -363,7 +363,7 @@ def perform(semantic_map, number, operation):
     before = state(semantic_map)
     try:
         semantic_map.commit(transaction(number, insert, retract))
-    except errors.Refused:
+    except (errors.Refused, errors.BadRequest):  # it contradicts the map, or is a second position
         assert state(semantic_map) == before
 
 

@@ -70,3 +70,20 @@ def test_an_error_is_in_the_next_heartbeats_for_a_while(heard, monkeypatch):
     one.report("oops again")
     one.beat()
     assert not count(beats, 3).last_error
+
+
+def test_dropped_messages_are_counted_and_their_reason_is_noted_once(heard):
+    one, _, beats = heard
+    one.note(("a note",))
+    for _ in range(3):
+        one.drop("poses dropped: a number is not finite")
+    one.beat()
+    last = count(beats, 1)
+    assert last.notes == ("a note", "poses dropped: a number is not finite")
+    assert last.ignored == 3
+    for number in range(100):
+        one.drop(f"reason {number}")
+    one.due_s = 0.0
+    one.beat()
+    last = count(beats, 2)
+    assert (len(last.notes), last.ignored) == (1 + heartbeat._MAX_DROPPED, 103)

@@ -9,6 +9,7 @@ from semmap.nodes.sim_node.models.facets import surface_of
 from semmap.nodes.sim_node.models.library import build as library_model
 from semmap.nodes.sim_node.physics import base_scene, build
 from semmap.nodes.sim_node.physics.base_scene import read_mjcf
+from semmap.nodes.sim_node.placement.obstacles import Obstacles
 from semmap.nodes.sim_node.vision.view import camera_names, overview
 from semmap.nodes.sim_node.world import World
 from semmap.schemas.entities import Pose, angle_rad, distance_m
@@ -660,3 +661,34 @@ def test_bodies_with_other_names_are_moved_attached_and_deleted(odd):
     assert body(odd, "mug_2_2").held_by == "shelf_1"
     odd.delete(["shelf_1"])
     assert bodies(odd).keys() == {"mug_2_2", "mug_2", "desk_caddy"}
+
+
+CHAIN = """<mujoco><option timestep=".02"/><worldbody><geom type="plane" size="0 0 .1"/>
+<body name="cup_1" pos="0 0 .05"><freejoint/><geom type="cylinder" size=".04 .05"/></body>
+<body name="chain_1" pos="1 0 1"><joint name="a" type="hinge" axis="0 1 0" stiffness="1e9" springref="3"/>
+ <geom type="box" size=".1 .02 .02" mass=".01"/>
+ <body name="link_2" pos=".1 0 0"><joint name="b" type="ball"/>
+  <geom type="box" size=".1 .02 .02" mass=".01"/></body>
+</body></worldbody></mujoco>"""
+
+
+def test_a_body_that_is_not_stable_is_reported_once_and_the_others_go_on():
+    world = World(mujoco.MjSpec.from_string(CHAIN))
+    version = world.scene().version
+    world.step(2.0)
+    assert world.scene().unstable == ("chain_1",)
+    assert world.scene().version == version + 1
+    assert body(world, "cup_1").resting
+    assert all(map(math.isfinite, world.poses().poses))
+
+
+def test_hundreds_of_bodies_at_one_spot_are_stacked_without_a_search_of_all_places(monkeypatch):
+    tried = []
+    hits = Obstacles.hits
+    monkeypatch.setattr(Obstacles, "hits", lambda self, *args: tried.append(1) or hits(self, *args))
+    world = World()
+    count = 60
+    world.spawn([order(f"cup{i}", "cup", pose(0.0, 0.0)) for i in range(count)])
+    heights = sorted(there.pose.position_m[2] for there in bodies(world).values())
+    assert np.diff(heights).min() > 0.05
+    assert len(tried) < 20 * count

@@ -25,6 +25,8 @@ def attach(view: MapView, command: Attach) -> KbCoroutine[Changed]:
         view.entity(attachment_rules.resolve_name(command.to, view.entities)),
     )
     attachment_rules.require_attachable(entity, holder, view.entities, view.bodies())
+    if command.at is None and not command.force:
+        attachment_rules.require_in_reach(entity, holder, view.pose_of, view.bodies())
     is_there = holder_of(entity) == holder.name and command.at is None and command.yaw is None
     already = f"{entity.name} is already attached to {holder.name}"
     if is_there and not command.carry:

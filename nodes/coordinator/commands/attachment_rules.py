@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import Final
 
 from semmap.schemas import errors, wording
 from semmap.schemas.attachments import carriers, grip_of, holder_of
-from semmap.schemas.entities import Entity, Pose, compose, orientation_from_yaw, relative
+from semmap.schemas.entities import Entity, Pose, bounds, compose, orientation_from_yaw, relative
 from semmap.schemas.scenes import Body
+
+REACH_M: Final = 0.3
+"""An object farther from its holder is only attached if that is forced."""
 
 PoseLookup = Callable[[str], Pose | None]
 """Returns the current pose of an entity, if it is known."""
@@ -43,6 +48,30 @@ def require_attachable(
         raise errors.Refused(f"{name} is already attached to {by}; first: semmap detach {name}")
     if why := _why_not_movable(held, bodies):
         raise errors.Refused(why)
+
+
+def require_in_reach(held: Entity, holder: Entity, where: PoseLookup, bodies: Mapping[str, Body]) -> None:
+    """Raise Refused if the free distance between two entities is larger than `REACH_M`.
+
+    The distance is that of the boxes around them, map frame; an entity without a size is a point. Nothing is
+    required of an entity without a pose, or that is attached already.
+    """
+    if holder_of(held) == holder.name:
+        return
+    boxes = []
+    for entity in (held, holder):
+        body = bodies.get(entity.name)
+        pose = body.pose if body is not None else where(entity.name)
+        if pose is None:
+            return
+        boxes.append(bounds(pose, body.size_m if body is not None else entity.size_m or (0.0, 0.0, 0.0)))
+    (low, high), (its_low, its_high) = boxes
+    gaps = (max(a - d, c - b, 0.0) for a, b, c, d in zip(low, high, its_low, its_high, strict=True))
+    if (gap_m := math.hypot(*gaps)) > REACH_M:
+        raise errors.Refused(
+            f"{held.name} is {gap_m:.2g} m away from {holder.name}, farther than {REACH_M:g} m;"
+            " move it there first, attach it --at a position, or add --force"
+        )
 
 
 def find_load(

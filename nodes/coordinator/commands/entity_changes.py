@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+
 from semmap.nodes.coordinator.access.authority import is_placing, require_authority
 from semmap.nodes.coordinator.commands import attachment_rules, transactions
 from semmap.nodes.coordinator.commands.commit import commit, make_reply, new_id, reload_map
@@ -34,6 +36,7 @@ from semmap.schemas.commits import Edit, Effects, Transaction
 from semmap.schemas.entities import ClassInfo, Entity, Pose, Value
 from semmap.schemas.replies import Changed
 from semmap.schemas.scene_files import pose_of
+from semmap.schemas.scenes import Body
 
 UNCHANGED = "unchanged: already up to date"
 _TRIES = 4
@@ -247,6 +250,17 @@ def remove(view: MapView, command: Remove) -> KbCoroutine[Changed]:
     require_authority(command, leaving)
     attachment_rules.require_no_attachments(command.names, view.held)
     return (yield from _remove(view, command, f"remove {' '.join(e.name for e in leaving)}", leaving))
+
+
+def require_removable(names: Iterable[str], bodies: Mapping[str, Body]) -> None:
+    """Raise Refused for a robot of the simulator, or a part of one: it would be added again."""
+    for name in names:
+        if (body := bodies.get(name)) is not None and body.robot:
+            whole = f"part of {body.part_of}, a" if body.part_of else "the"
+            raise errors.Refused(
+                f"{name} is {whole} robot of the simulator, so it would be added again;"
+                " to remove it, first restart without --robot: semmap up"
+            )
 
 
 @handles(Clear)

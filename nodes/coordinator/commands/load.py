@@ -17,6 +17,7 @@ from semmap.nodes.coordinator.commands.commit import (
     reload_map,
 )
 from semmap.nodes.coordinator.commands.map_view import MapView
+from semmap.nodes.coordinator.commands.placement import Named, place_described, placing_of
 from semmap.nodes.coordinator.commands.plausibility import require_same_nature
 from semmap.nodes.coordinator.commands.registration import handles
 from semmap.nodes.coordinator.files import huric
@@ -71,22 +72,19 @@ def load(view: MapView, command: Load) -> KbCoroutine[Changed]:
 
 
 def _load_described(view: MapView, command: Load, described: Iterable[Described]) -> KbCoroutine[Changed]:
+    there: Mapping[str, Entity] = {} if command.replace else view.entities
     with memory.uncollected():
         known, skipped, notes = _sort_out(view.classes, described, skip_unknown=command.skip_unknown)
-        there: Mapping[str, Entity] = {} if command.replace else view.entities
-        taken_names, free = set(there), FreeNames()
+        items = _name_all(known, there, command.filename or "the file")
+    if any(placing_of(item) is not None for _, item, _ in items):
+        items, shut = yield from place_described(view, items, there)
+        notes = (*notes, *shut)
+    with memory.uncollected():
         new: list[NewEntity] = []
         edits: list[Edit] = []
-        names: dict[str, Entity | None] = {}
-        for item, found in known:
-            name = item.name or free.name(found.name, taken_names)
-            if name in names:
-                raise errors.NameTaken(
-                    f"the name '{name}' is given twice in {command.filename or 'the file'}"
-                )
-            names[name] = was = there.get(name)
-            if was is None:
-                taken_names.add(name)
+        names = {name: there.get(name) for name, _, _ in items}
+        for name, item, found in items:
+            if (was := names[name]) is None:
                 new.append(transactions.new_entity(name, found, item))
             elif command.add_only:
                 raise errors.NameTaken(
@@ -110,6 +108,21 @@ def _load_described(view: MapView, command: Load, described: Iterable[Described]
         (was, now if now != was else None) for name, was in names.items() for now in (changed.get(name),)
     )
     return _loaded(command, made, tuple(names), skipped, notes, counts)
+
+
+def _name_all(
+    known: Iterable[tuple[Described, ClassInfo]], there: Mapping[str, Entity], file: str
+) -> list[Named]:
+    """Return the entities of a scene with their names. Raises NameTaken if one is given twice."""
+    taken_names, free = set(there), FreeNames()
+    named: dict[str, Named] = {}
+    for item, found in known:
+        name = item.name or free.name(found.name, taken_names)
+        if name in named:
+            raise errors.NameTaken(f"the name '{name}' is given twice in {file}")
+        taken_names.add(name)
+        named[name] = (name, item, found)
+    return list(named.values())
 
 
 def _commit_parts(view: MapView, whole: Transaction) -> KbCoroutine[Effects | None]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 
 from semmap.ontology.model_choice import chosen
 from semmap.ontology.model_shapes import own_size_m
@@ -12,6 +12,8 @@ from semmap.schemas.commands import Attach, Move, Update
 from semmap.schemas.entities import ClassInfo, Entity, Pose, Size
 from semmap.schemas.polygons import extent_of
 
+ALONE_M = 10.0
+"""A new pose is doubtful if it is farther than this from all other objects [m]."""
 FAR_OFF = 10.0
 """A size is doubtful if its longest side differs by this factor from the usual size of its class."""
 
@@ -38,6 +40,15 @@ def find_doubts(
 ) -> tuple[str, ...]:
     """Return what may be wrong with the pose and size of entity `name` of class `found`."""
     return (*_outside(name, found, pose, places), *_odd_size(name, found, size_m))
+
+
+def find_isolation(name: str, pose: Pose, others: Iterable[Pose]) -> tuple[str, ...]:
+    """Return a note if a body is moved far away from all other bodies."""
+    away_m = min((math.dist(pose.position_m, other.position_m) for other in others), default=0.0)
+    if away_m <= ALONE_M:
+        return ()
+    x, y, _ = pose.position_m
+    return (f"{name} at ({x:g}, {y:g}) is {away_m:.3g} m away from the nearest other object",)
 
 
 def _outside(

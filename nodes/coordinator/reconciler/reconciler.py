@@ -284,6 +284,7 @@ class Reconciler:
             *scene_report.entity_problems(entities.values(), self.body_state if need_bodies else None),
             *scene_report.failed_attachments(self._failed_grips, entities),
             *scene_report.fallen_robots(bodies.values()),
+            *scene_report.unstable_bodies(self.scene.unstable),
             *scene_report.perception_conflicts(entities.values()),
             *(f"{name}: {why}" for name, why in sorted(rejected.items()) if name in bodies),
             *(

@@ -25,6 +25,15 @@ def entity_problems(
     )
 
 
+def unstable_bodies(names: Collection[str]) -> list[str]:
+    """Return the bodies whose simulation was not stable."""
+    return [
+        f"{name}: its simulated state was not finite, so it was stopped; use a smaller timestep, a larger"
+        " mass, or softer joints and contacts in its world file or model"
+        for name in names
+    ]
+
+
 def perception_conflicts(entities: Collection[Entity]) -> list[str]:
     """Return the entities that perception contradicts."""
     return sorted(f"{e.name}: perception: {e.conflict}" for e in entities if e.conflict)

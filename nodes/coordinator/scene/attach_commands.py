@@ -52,6 +52,8 @@ class AttachCommands:
         )
         bodies = view.bodies()
         attachment_rules.require_attachable(entity, holder, view.entities, bodies)
+        if command.at is None and not command.force:
+            attachment_rules.require_in_reach(entity, holder, view.pose_of, bodies)
         grip = None
         if command.at is not None or command.yaw is not None:
             is_, by = (bodies[n].pose if n in bodies else view.pose_of(n) for n in (entity.name, holder.name))

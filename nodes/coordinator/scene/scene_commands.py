@@ -11,7 +11,7 @@ from msgspec import structs
 
 from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
 from semmap.nodes.coordinator.commands.placement import at_room, make_request, placing_of
-from semmap.nodes.coordinator.commands.plausibility import require_carry
+from semmap.nodes.coordinator.commands.plausibility import find_isolation, require_carry
 from semmap.nodes.coordinator.config import Truth
 from semmap.nodes.coordinator.reconciler.reconciler import AskSim, Reconciler
 from semmap.nodes.coordinator.reconciler.scene_report import describe_ghost
@@ -72,9 +72,18 @@ class SceneCommands:
         if wanted is None:
             if command.at is None:
                 raise errors.BadRequest("missing position; give one of --at X Y Z, --on, --in and --next-to")
-            return self._reconciler.when_placed(command.name, lambda: self._move_body(command))
+            return self._move_at(command, Pose(position_m=command.at))
         request = make_request(self._dispatcher.map, command, wanted, command.name, None)
         return and_then(self._ask_map(request), lambda room: self._move_to(command, room))
+
+    def _move_at(self, command: c.Move, pose: Pose) -> Future[Moved]:
+        """Move a body to a pose of the command; a note tells if it is far away from all other bodies."""
+        others = (body.pose for name, body in self._reconciler.scene.bodies.items() if name != command.name)
+        doubts = find_isolation(command.name, pose, others)
+        placed = self._reconciler.when_placed(command.name, lambda: self._move_body(command))
+        if not doubts:
+            return placed
+        return then(placed, lambda moved: structs.replace(moved, notes=(*moved.notes, *doubts)))
 
     def _move_to(self, command: c.Move, room: Room) -> Future[Moved]:
         """Move a body to the free pose that was found."""

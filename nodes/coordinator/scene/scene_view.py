@@ -22,6 +22,8 @@ class SceneView:
         self.bodies: dict[str, Body] = {}
         self.left_out: tuple[str, ...] = ()
         """Named bodies of the world that are only parts of others."""
+        self.unstable: tuple[str, ...] = ()
+        """Bodies that were stopped because their simulated state was no longer finite."""
         self.sim_time_s = 0.0
         """Simulated time of the newest poses; it stands still while the simulation is paused."""
         self._run = ""
@@ -34,7 +36,7 @@ class SceneView:
             return
         self.known = True
         self.bodies = {body.name: body for body in scene.bodies}
-        self.left_out, self.sim_time_s = scene.left_out, scene.sim_time_s
+        self.left_out, self.unstable, self.sim_time_s = scene.left_out, scene.unstable, scene.sim_time_s
         self._run, self._version, self._stamp_ns = scene.run, scene.version, scene.stamp_ns
 
     def add(self, bodies: Iterable[Body]) -> None:
@@ -97,7 +99,7 @@ class SceneView:
     def forget(self) -> None:
         """Forget the scene of a simulator that has ended."""
         self.known = False
-        self.bodies, self.left_out, self.sim_time_s = {}, (), 0.0
+        self.bodies, self.left_out, self.unstable, self.sim_time_s = {}, (), (), 0.0
         self._run, self._version, self._stamp_ns = "", -1, 0
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import re
 import struct
 from typing import Any, Final
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from semmap.nodes.extern.ros import images
+from semmap.nodes.runtime.pictures import open_picture
 from semmap.schemas.errors import BadRequest
 
 _HEADER: Final = struct.Struct("<Iff")
@@ -77,8 +77,6 @@ def _apply_scale(depth_m: NDArray[np.float32], scale: float | None) -> NDArray[n
 
 def _opened(data: bytes, format_: str) -> Image.Image:
     try:
-        image = Image.open(io.BytesIO(data))
-        image.load()
-    except (OSError, SyntaxError, Image.DecompressionBombError):
-        raise BadRequest(f"{len(data)} bytes are not a complete image in format {format_!r}") from None
-    return image
+        return open_picture(data)
+    except ValueError as error:
+        raise BadRequest(f"invalid image in format {format_!r} of {len(data)} bytes: {error}") from None

@@ -14,7 +14,8 @@ from semmap.nodes.extern.frame_folders.frames import RecordedFrame, Recording, r
 from semmap.nodes.extern.frame_folders.pairs import pairs
 from semmap.nodes.extern.frame_folders.pinhole import from_pixel_centres, read_pinhole, scale_intrinsics
 from semmap.nodes.extern.frame_folders.poses import Trajectory
-from semmap.nodes.perception_node.input.files.image_files import is_depth, opened
+from semmap.nodes.perception_node.input.files.image_files import is_depth
+from semmap.nodes.runtime.pictures import open_picture
 from semmap.schemas import errors
 from semmap.schemas.errors import BadFile, BadRequest, SemmapError
 
@@ -156,7 +157,7 @@ def _poses(path: Path) -> Trajectory | None:
 
 def _colour(path: Path) -> NDArray[np.uint8]:
     try:
-        with opened(path) as image:
+        with open_picture(path) as image:
             return np.asarray(image.convert("RGB"))
     except OSError as error:
         raise BadFile(f"{path} cannot be read: {error.strerror}") from None
@@ -169,7 +170,7 @@ def _depth_m(path: Path, scale_m: float) -> NDArray[np.float32]:
     try:
         if not is_depth(path):
             raise BadFile(f"{path}: not a depth image with 16 bits in a single channel")
-        with opened(path) as image:
+        with open_picture(path) as image:
             numbers = np.asarray(image, np.float32)
             return numbers if image.mode == "F" else numbers * np.float32(scale_m)
     except OSError as error:

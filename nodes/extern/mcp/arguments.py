@@ -52,6 +52,9 @@ class Find(Paged, frozen=True, kw_only=True):
     asker: (
         Annotated[str, Meta(max_length=1000, description="Speaker: the person that 'my' refers to.")] | None
     ) = None
+    answer: (
+        Annotated[Text, Meta(description="Answer to the clarification question about the text.")] | None
+    ) = None
 
 
 class Get(Paged, frozen=True, kw_only=True):

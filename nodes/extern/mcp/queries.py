@@ -42,7 +42,11 @@ def overview(client: Client, _: a.Overview) -> Answer:
 def find(client: Client, arguments: a.Find) -> Answer:
     """Return the entities that a noun phrase describes."""
     found = client.find(
-        arguments.text, viewer=arguments.viewer, viewpoint=arguments.viewpoint, asker=arguments.asker
+        arguments.text,
+        viewer=arguments.viewer,
+        viewpoint=arguments.viewpoint,
+        asker=arguments.asker,
+        answer=arguments.answer,
     )
     authors = Authors(client.list())
 

@@ -380,6 +380,9 @@ class _Subscriber:
         if not self._scene.matches(poses):
             self._fetch_scene()
             return
+        if problem := self._scene.find_problem(poses):
+            self._node.drop(f"poses dropped: {problem}")
+            return
         moved = dict(self._scene.follow(poses))
         if moved:
             self._updates.moved.update(moved)

@@ -17,6 +17,7 @@ from semmap.nodes.kb_node.relations.facts.contradictions import (
 )
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.facts.rules import COMPUTED
+from semmap.nodes.kb_node.relations.geometry.placed_entity import name_shape_source
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.relation_reports import explain_relation, list_locations, list_relations
 from semmap.nodes.kb_node.relations.selection import resolve_single, select_entities
@@ -102,7 +103,7 @@ class CurrentState:
         left_out = self._map.derived_facts.suppressed_measurements
         locations = (r for r in list_locations(space, entity.name) if _fact(r) not in left_out)
         withheld = tuple(answers.suppressed_facts(self._map, entity))
-        return Described.of(entity, tuple(locations), tuple(wrong), withheld)
+        return Described.of(entity, tuple(locations), tuple(wrong), withheld, shape=name_shape_source(entity))
 
     def find_denied(self) -> tuple[Relation, ...]:
         """Return the asserted locations that contradict the geometry."""
@@ -250,7 +251,8 @@ class PastState:
             return Described.of(entity)
         space = self._space(self._past.entities(query.as_of, None, ()))
         locations = tuple(list_locations(space, entity.name))
-        return Described.of(entity, locations, on_nothing=_on_nothing(space, entity))
+        on_nothing = _on_nothing(space, entity)
+        return Described.of(entity, locations, on_nothing=on_nothing, shape=name_shape_source(entity))
 
     def relations(self, query: Relations) -> tuple[Relation, ...]:
         """Return the relations; see `CurrentState.relations`."""

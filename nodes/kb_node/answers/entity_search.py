@@ -70,7 +70,7 @@ class EntitySearch:
             space, self._view(query, space), self._map.derived_facts.suppressed_measurements
         )
         with space.caching():
-            answer = find(query.text, self.known(), around, asker)
+            answer = find(query.text, self.known(), around, asker, query.answer)
             found = explanation.explain(answer)
         return SearchResult(structs.replace(found, seq=self._map.seq), missing(answer))
 

@@ -7,6 +7,7 @@ from itertools import chain
 from operator import itemgetter
 from typing import NamedTuple
 
+from semmap.nodes.kb_node.documents.inert_statements import SHACL, SWRL, count_inert, inert_note
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.entities.property_values import retype
 from semmap.nodes.kb_node.reasoner import Reasoner
@@ -15,7 +16,8 @@ from semmap.ontology import vocabulary as v
 from semmap.schemas import errors, wording
 from semmap.schemas.explanations import Term, Triple
 
-_VOCABULARIES = (v.RDF, v.RDFS, v.OWL, v.XSD)
+_VOCABULARIES = (v.RDF, v.RDFS, v.OWL, v.XSD, SWRL, SHACL)
+_INERT = (f"<{SWRL}", f"<{SHACL}")
 _TBOX = f"<{v.TBOX}"
 _OF_STARS = (v.COORDINATES, v.THREE_DIM_SIZE, v.PREFERRED_REFERENCE, v.ALTERNATIVE_REFERENCE)
 """Classes of the individuals that describe an entity. semmap writes them with any TBox."""
@@ -76,8 +78,10 @@ def filter_document(
         doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
         kept = _without(removed, [t for t in triples if t not in doubtful])
         by_property = entity_triples.group_by_property(kept)
+    inert = inert_note(count_inert(kept)) if any(c.startswith(_INERT) for c in used) else ""
     notes = (
         *retyped,
+        *filter(None, (inert,)),
         *_unknown_properties(by_property, classes),
         *_own_classes(declared, classes),
         *_incomplete_values(by_property, kept),
@@ -231,7 +235,7 @@ def _display_name(individual: Term) -> str:
 
 
 def is_built_in(term: Term) -> bool:
-    """Return whether a term is part of the OWL vocabularies or an anonymous class."""
+    """Return whether a term is part of the vocabularies of OWL, SWRL or SHACL, or an anonymous class."""
     return term.startswith("_:") or (term.startswith("<") and v.bare(term).startswith(_VOCABULARIES))
 
 

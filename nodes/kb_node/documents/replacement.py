@@ -119,6 +119,9 @@ class _Draft:
     def replace(self, subject: Term) -> None:
         """Find what the document replaces of an individual that both describe."""
         stated, asserted = self._stated[subject], self._reasoner.about(subject)
+        is_copy = all(o in stated.get(p, ()) for p, objects in asserted.items() for o in objects)
+        if is_copy and not self._classes.alignments:
+            return  # the usual case of a file that is loaded again
         for p, new in stated.items():
             old = [o for o in asserted.get(p, ()) if o not in new]
             if not old or p == v.RDF_TYPE:

@@ -13,13 +13,14 @@ from typing import Final, NamedTuple
 from semmap.nodes.geometry.polygons import Point, area, clipped, contains, covers
 from semmap.nodes.kb_node.relations.geometry.forms import Form, form_of
 from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, joint_at
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Shape, Solid, shape_of
 from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.arrangement import measure_next_to
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.ontology.model_shapes import Interior, own_size_m
 from semmap.schemas import errors, wording
-from semmap.schemas.bridge import FindRoom, Room
+from semmap.schemas.bridge import FindRoom, PlacedObject, Room
 from semmap.schemas.entities import Entity, Pose, Quaternion, Size, orientation_from_yaw
 from semmap.schemas.relations import Placing, placing_words
 
@@ -51,18 +52,21 @@ def find_room(space: Space, query: FindRoom, entity: Entity | None, contents: It
     `entity` is the object in the map, if it is there; where it stands, it takes up no room, and neither do
     its `contents`. Raises Refused if there is no room, with the reason.
     """
-    target = space.solids.get(query.target)
-    if target is None:
-        raise errors.Refused(
-            f"{query.target} has no position, so nothing can be placed {placing_words(query.placing)} it;"
-            f" first: semmap update {query.target} --at X Y Z"
-        )
     model, size, joints = _find_shape(query, entity)
     if size is None:
         raise errors.Refused(f"the size of {query.name} is unknown, so no room can be found; give a size")
     wide = (size[0] + 2 * _APART_M, size[1] + 2 * _APART_M, size[2])
-    with space.with_changes((), without=(query.name, *contents)):
+    before = space.solids.get(query.name)
+    with space.with_changes(map(_as_entity, query.others), without=(query.name, *contents)):
+        target = space.solids.get(query.target)
+        if target is None:
+            raise errors.Refused(
+                f"{query.target} has no position, so nothing can be placed {placing_words(query.placing)} it;"
+                f" first: semmap update {query.target} --at X Y Z"
+            )
         search = _Search(space, query.name, target, query.placing)
+        if query.stays and before is not None and entity is not None and entity.pose and search.holds(before):
+            return Room(pose=entity.pose)
         for orientation in _facing(target) if query.orientation is None else (query.orientation,):
             form, box = form_of(model, size, orientation, joints), form_of("", wide, orientation)
             found = search.find(form, box)
@@ -71,6 +75,12 @@ def find_room(space: Space, query: FindRoom, entity: Entity | None, contents: It
                 pose = Pose(position_m=(x, y, z), orientation_wxyz=orientation)
                 return Room(pose=pose, note=search.describe_shut(found))
         raise errors.Refused(search.describe_failure(size))
+
+
+def _as_entity(other: PlacedObject) -> PlacedEntity:
+    return PlacedEntity(
+        name=other.name, iri="", pose=other.pose, size_m=other.size_m, place=other.place, model=other.model
+    )
 
 
 def _find_shape(query: FindRoom, entity: Entity | None) -> Shape:
@@ -113,7 +123,7 @@ class _Search:
                 own, around = (
                     Solid(self._name, (x, y, z + _LIFTED_M), of, False, True) for of in (form, box)
                 )
-                if self._is_free(own, around) and self._holds(solid):
+                if self._is_free(own, around) and self.holds(solid):
                     return solid
         return None
 
@@ -166,8 +176,8 @@ class _Search:
         made = measures.inside(solid, self._target, self._space.limits)
         return made is not None and made.holds
 
-    def _holds(self, solid: Solid) -> bool:
-        """Return whether the relation holds at this position."""
+    def holds(self, solid: Solid) -> bool:
+        """Return whether the relation to the target holds for an object."""
         space, target = self._space, self._target
         if target.is_place:
             made = measures.within(solid, target, space.limits)

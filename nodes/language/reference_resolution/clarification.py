@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from itertools import combinations
+from dataclasses import replace
+from itertools import combinations, islice
 from typing import Final
 
+from semmap.nodes.language.reference_resolution import reading
+from semmap.nodes.language.reference_resolution.description import OneOf
 from semmap.nodes.language.reference_resolution.map_index import Item
+from semmap.nodes.language.reference_resolution.parsing import parses
 from semmap.nodes.language.reference_resolution.resolver import Resolver
 
 _MOST: Final = 5
 """The maximum number of candidates that a question lists."""
+_MOST_PARSES: Final = 8
 _Tail = tuple[str, bool]
 """A distinguishing phrase, and whether it precedes the noun."""
 _Feature = _Tail | None
@@ -21,9 +26,25 @@ def clarifying_question(names: Sequence[str], resolver: Resolver) -> str:
     describing = resolver.index.nouns[resolver.language].describing
     wording = describing.wording
     items = [resolver.index.items[name] for name in names[: _MOST + 1]]
+    for tails in _distinguish(items, resolver):
+        choices = _choices(items, tails, resolver)
+        if all(
+            _denotes(choice, names, resolver) == (item.name,)
+            for choice, item in zip(choices, items, strict=True)
+        ):
+            break
+    if len(choices) > _MOST:
+        choices = [*choices[:_MOST], wording["another"]]
+    listed = ", ".join(choices[:-1]) + wording["either"] + choices[-1]
+    return describing.contract(wording["question"].format(listed))
+
+
+def _choices(items: Sequence[Item], tails: Sequence[_Tail], resolver: Resolver) -> list[str]:
+    """Return the phrases that name the items, such as *the cup on the table* and *the one in the sink*."""
+    describing = resolver.index.nouns[resolver.language].describing
     choices: list[str] = []
     first = ""
-    for item, (tail, is_before) in zip(items, _distinguish(items, resolver), strict=True):
+    for item, (tail, is_before) in zip(items, tails, strict=True):
         noun = resolver.index.label(item.class_name, resolver.language)
         if tail == noun:
             choices.append(describing.with_article(noun))
@@ -31,29 +52,42 @@ def clarifying_question(names: Sequence[str], resolver: Resolver) -> str:
             is_like = noun == first and noun not in describing.pluralia
             form = ("other" if is_like else "first") + ("_before" if is_before else "")
             choices.append(
-                wording[form].format(
+                describing.wording[form].format(
                     noun=noun, the=describing.with_article(noun), that=describing.pronoun_for(noun), tail=tail
                 )
             )
         first = first or noun
-    if len(choices) > _MOST:
-        choices = [*choices[:_MOST], wording["another"]]
-    listed = ", ".join(choices[:-1]) + wording["either"] + choices[-1]
-    return describing.contract(wording["question"].format(listed))
+    return choices
 
 
-def _distinguish(items: Sequence[Item], resolver: Resolver) -> list[_Tail]:
-    """Return a unique phrase for each item: one feature if that is enough, else two, else the name."""
+def _denotes(choice: str, names: Sequence[str], resolver: Resolver) -> Sequence[str]:
+    """Return the candidates that a choice denotes when it is typed back."""
+    nouns = resolver.index.nouns[resolver.language]
+    read = reading.read(nouns.describing.contract(choice), nouns)
+    one_of = OneOf(choice, frozenset(names))
+    for descriptions in islice(parses(read), _MOST_PARSES):
+        if len(descriptions) == 1:
+            described = replace(descriptions[0], restrictions=(*descriptions[0].restrictions, one_of))
+            if found := resolver.resolve(described).names:
+                return found
+    return ()
+
+
+def _distinguish(items: Sequence[Item], resolver: Resolver) -> Iterator[list[_Tail]]:
+    """Yield unique phrases for the items: one feature, two features, and at last the names."""
     features = [[feature(item, resolver) for item in items] for feature in _FEATURES]
     features.append(_across(items, resolver))
     for candidates in features:
         if (apart := _apart(candidates)) is not None:
-            return apart
-    for first, second in combinations(features, 2):
+            yield apart
+    apart_from_kind = [
+        found for feature, found in zip(_FEATURES, features, strict=False) if feature is not _kind
+    ]
+    for first, second in combinations([*apart_from_kind, features[-1]], 2):
         if (apart := _apart([_joined(a, b) for a, b in zip(first, second, strict=True)])) is not None:
-            return apart
+            yield apart
     called = resolver.index.nouns[resolver.language].describing.wording["called"]
-    return [(called.format(item.name), False) for item in items]
+    yield [(called.format(item.name), False) for item in items]
 
 
 def _joined(one: _Feature, other: _Feature) -> _Feature:

@@ -80,6 +80,30 @@ class Owned:
 
 
 @dataclass(frozen=True, slots=True)
+class FromViewer:
+    """Where the object is as seen by the viewer: behind me, near me, on my left."""
+
+    text: str
+    relation: RelationName
+
+
+@dataclass(frozen=True, slots=True)
+class Called:
+    """The object has this label or name, in base form: the cup called red cup."""
+
+    text: str
+    key: str
+
+
+@dataclass(frozen=True, slots=True)
+class OneOf:
+    """The object is one of the candidates of a clarification question."""
+
+    text: str
+    names: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
 class Affords:
     """The object has one of these affordances."""
 
@@ -114,7 +138,23 @@ class AnyOf:
         return " or ".join(dict.fromkeys(restriction.text for restriction in self.restrictions))
 
 
-Restriction = Quality | State | Sized | Related | Has | Of | Among | Owned | Affords | Unknown | Not | AnyOf
+Restriction = (
+    Quality
+    | State
+    | Sized
+    | Related
+    | FromViewer
+    | Called
+    | OneOf
+    | Has
+    | Of
+    | Among
+    | Owned
+    | Affords
+    | Unknown
+    | Not
+    | AnyOf
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,7 @@ from semmap.schemas import errors
 
 _BOUNDS: Final = (
     *("relations", "relative", "where", "be", "have", "lack", "not", "except", "no", "and", "or", "of"),
-    *("possessive", "afford", "from"),
+    *("possessive", "afford", "from", "called", "own", "position"),
 )
 """Kinds of words that end the noun group."""
 _BEFORE_A_NOUN: Final = (
@@ -154,6 +154,9 @@ class NounPhraseReader:
     def _head(self, draft: Draft, first: int, end: int) -> tuple[int, int] | None:
         """Return the span of the head noun: the last or the first one, depending on the language."""
         is_last = self._r.nouns.describing.head_is_last
+        if is_last and end - 1 > first and self._length("one", end - 1) and not self._length("noun", end - 1):
+            draft.head, draft.is_plural = "one", self._words[end - 1] == "ones"  # the orange one
+            return end - 1, end
         spans = [
             (i, i + length)
             for i in range(first, end)

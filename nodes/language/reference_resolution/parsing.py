@@ -11,7 +11,9 @@ from semmap.nodes.language.reference_resolution.description import (
     Affords,
     Among,
     AnyOf,
+    Called,
     Description,
+    FromViewer,
     Has,
     Not,
     Of,
@@ -32,7 +34,18 @@ _BEGINS: Final = (
 )
 """Kinds of words that can begin a noun phrase."""
 _SKIPPED: Final = ("definite", "indefinite", "relative", "be", "to", "possibly")
-_OPENING: Final = ("relations", "relative", "where", "have", "lack", "of", "sides", "not")
+_OPENING: Final = (
+    "relations",
+    "relative",
+    "where",
+    "have",
+    "lack",
+    "of",
+    "sides",
+    "not",
+    "called",
+    "position",
+)
 _MOST_ATTACHMENTS: Final = 6
 """The maximum number of phrases for which other attachments are tried."""
 
@@ -157,8 +170,12 @@ class _Parser(NounPhraseReader):
             if length and length >= self._length("relations", i):
                 negated, i = True, i + length
                 continue
-            before = len(draft.restrictions)
+            before, order = len(draft.restrictions), (draft.axis, draft.order_text, draft.to)
             j = self._one_after(draft, i, depth)
+            if negated and j > i and (draft.axis, draft.order_text, draft.to) != order:  # not at the top
+                first = replace(self._done(draft, j), is_definite=True, is_plural=False, number=None)
+                draft.axis, draft.order_text, draft.to = order
+                draft.restrictions.append(Among(self._text(i, j), first))
             if j == i and negated and not self._ends(i):
                 other, j = self._phrase(i, depth + 1)
                 draft.restrictions.append(Among(self._text(i, j), other))
@@ -190,6 +207,14 @@ class _Parser(NounPhraseReader):
 
     def _one_after(self, draft: Draft, i: int, depth: int) -> int:
         """Read one modifier after the noun. Returns the index of the next word, or i if there is none."""
+        if (length := self._length("called", i)) and i + length < len(self._words):
+            return self._called(draft, i, i + length)
+        if owned := self._owned_by(draft, i, depth):
+            return owned
+        if (length := self._length("position", i)) and (rank := self._sense("numbers", i + length)):
+            draft.place, end = rank[1], i + length + rank[0]  # at position 2 from the left
+            draft.order_text = self._text(i, end)
+            return end
         if (action := self._action(i)) is not None:
             length, affordances = action
             draft.restrictions.append(Affords(self._text(i, i + length), affordances))
@@ -248,6 +273,26 @@ class _Parser(NounPhraseReader):
             draft.restrictions.append(Unknown(self._words[i]))
             return i + 1
         return i
+
+    def _called(self, draft: Draft, i: int, first: int) -> int:
+        """Read a name after *called*: as many words as are a label or name, or else the rest."""
+        describing, end = self._r.nouns.describing, len(self._words)
+        keys = ((j, describing.key(list(self._words[first:j]))) for j in range(end, first, -1))
+        j, key = next((pair for pair in keys if pair[1] in self._r.nouns.exact), (end, ""))
+        draft.restrictions.append(Called(self._text(i, j), key))
+        return j
+
+    def _owned_by(self, draft: Draft, i: int, depth: int) -> int:
+        """Read *that Anna owns*; return the index of the next word, or 0."""
+        if not (length := self._length("relative", i)) or self._ends(i + length):
+            return 0
+        if not any(self._length("own", j) for j in range(i + length + 1, len(self._words))):
+            return 0
+        owner, j = self._phrase(i + length, depth + 1)
+        if not (own := self._length("own", j)):
+            return 0
+        draft.restrictions.append(Owned(self._text(i, j + own), owner))
+        return j + own
 
     def _behind_be(self, i: int) -> int:
         while length := self._length("be", i):
@@ -324,6 +369,9 @@ class _Parser(NounPhraseReader):
         length, name = relation
         j = i + length
         which = self._length("relative", j)
+        if me := self._length("viewer", j):  # behind me
+            draft.restrictions.append(FromViewer(self._text(i, j + me), name))
+            return j + me
         if (
             self._ends(j + self._length("no", j)) and not which
         ):  # the other object was mentioned before: with a glass on it, senza bicchiere accanto

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from semmap.nodes.language.lexicon.describing import LANGUAGES
 from semmap.nodes.language.reference_resolution import reading
-from semmap.nodes.language.reference_resolution.description import Description
+from semmap.nodes.language.reference_resolution.description import Description, OneOf
 from semmap.nodes.language.reference_resolution.map_geometry import MapGeometry
 from semmap.nodes.language.reference_resolution.map_index import MapIndex
 from semmap.nodes.language.reference_resolution.parsing import parses
@@ -32,17 +32,20 @@ class Answer:
     resolver: Resolver
 
 
-def find(text: str, known: MapIndex, around: MapGeometry, asker: str | None = None) -> Answer:
+def find(
+    text: str, known: MapIndex, around: MapGeometry, asker: str | None = None, answer: str | None = None
+) -> Answer:
     """Return the entities that a text describes; *my* refers to the entity named `asker`.
 
-    Raises BadRequest if the text has no words or too many, asks about the past, or uses left and right
-    without a viewer.
+    `answer` answers the clarification question about the text: *the one on the desk*. Raises BadRequest if a
+    text has no words or too many, asks about the past, or uses left and right without a viewer.
     """
-    read = _read(text, known)
+    question = None if answer is None else find(text, known, around, asker)
+    read = _read(text if answer is None else answer, known)
     resolver = Resolver(known, around, read.nouns.describing.language, asker)
     best: tuple[int, Answer] | None = None
     for _, descriptions in zip(range(_MOST_PARSES), parses(read), strict=False):
-        made = _resolve_all(descriptions, read, resolver)
+        made = _resolve_all(descriptions, read, resolver, question)
         rank = _RANKS[made.outcome]
         if best is None or rank < best[0]:
             best = rank, made
@@ -81,10 +84,19 @@ def _cost(read: Reading) -> float:
     return read.cost
 
 
-def _resolve_all(descriptions: tuple[Description, ...], read: Reading, resolver: Resolver) -> Answer:
-    """Resolve a list of descriptions; each may refer to the previous one by *it* or *one*."""
+def _resolve_all(
+    descriptions: tuple[Description, ...], read: Reading, resolver: Resolver, question: Answer | None = None
+) -> Answer:
+    """Resolve a list of descriptions; each may refer to the previous one by *it* or *one*.
+
+    The descriptions may answer a `question`: then they denote some of its candidates.
+    """
     parts: list[Resolved] = []
     scope = Scope()
+    if question is not None and question.names:
+        scope = Scope(question.names, question.parts[0].description)
+        one_of = OneOf(" or ".join(question.names), frozenset(question.names))
+        descriptions = tuple(replace(d, restrictions=(*d.restrictions, one_of)) for d in descriptions)
     for description in descriptions:
         found = resolver.resolve(description, scope)
         parts.append(found)

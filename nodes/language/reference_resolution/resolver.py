@@ -13,10 +13,13 @@ from semmap.nodes.language.reference_resolution.description import (
     Affords,
     Among,
     AnyOf,
+    Called,
     Description,
+    FromViewer,
     Has,
     Not,
     Of,
+    OneOf,
     Order,
     Owned,
     Quality,
@@ -33,6 +36,9 @@ _ALIKE: Final = 1.25
 """The smallest ratio of sizes at which one object counts as big and another as small."""
 _IN_VIEW_RAD: Final = math.radians(60.0)
 """Objects further to the side are not counted from the left, if enough are in front of the viewer."""
+_NEAR_M: Final = 2.0
+"""Objects up to this distance from the viewer are near; people call within reach *next to me*."""
+_BESIDE_M: Final = 1.0
 _TIE_M: Final = 0.015
 """Distances and heights that differ by less count as equal."""
 _INTO: Final = ("connects", "separates")
@@ -42,6 +48,9 @@ _COST: Final = {
     Quality: 1,
     State: 1,
     Owned: 1,
+    Called: 1,
+    OneOf: 0,
+    FromViewer: 2,
     Affords: 1,
     Sized: 2,
     Of: 3,
@@ -157,6 +166,12 @@ class Resolver:
                 return not values.isdisjoint(item.all_values)
             case State(_, property_name, value):
                 return self._is_in_state(item, property_name, value)
+            case Called(_, key):
+                return name in self.index.nouns[self.language].exact.get(key, ())
+            case OneOf(_, names):
+                return name in names
+            case FromViewer(_, relation):
+                return self._is_from_viewer(name, relation)
             case Affords(_, affordances):
                 return not affordances.isdisjoint(self.index.affords(item))
             case Owned(_, by):
@@ -204,8 +219,26 @@ class Resolver:
         owners = item.values.get("isOwnedBy", frozenset())
         if by is not None:
             whole = self.resolve(by, scope)
-            return not owners.isdisjoint(whole.names) or self._is_of(item, whole)
+            own = item.name in whole.names  # Anna is not one of Anna's things
+            return not own and (not owners.isdisjoint(whole.names) or self._is_of(item, whole))
         return bool(owners) if self.asker is None else self.asker in owners
+
+    def _is_from_viewer(self, name: str, relation: str) -> bool:
+        """Return whether an entity is beside, before or behind the viewer. Raises BadRequest without one."""
+        bearing = self.geometry.bearing(name)
+        away = self.geometry.distance_from_viewer(name)
+        if not math.isfinite(away):
+            return False
+        match relation:
+            case "isBehind":
+                return abs(bearing) > math.pi / 2
+            case "isInFrontOf":
+                return abs(bearing) <= _IN_VIEW_RAD
+            case "isLeftOf":
+                return 0 < bearing < math.pi
+            case "isRightOf":
+                return -math.pi < bearing < 0
+        return away <= (_BESIDE_M if relation == "isNextTo" else _NEAR_M)
 
     def _is_related(self, name: str, relation: str, others: Sequence[Resolved]) -> bool:
         found = [tuple(n for n in other.names if n != name) for other in others]

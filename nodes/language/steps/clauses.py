@@ -330,7 +330,7 @@ class ClauseReader:
         )
 
     def _states_place(self, i: int) -> bool:
-        """Return whether a statement about a person begins at `i`: somebody in the kitchen is waving."""
+        """Return whether a statement about a person begins at `i`, as in "someone is waving"."""
         if i >= len(self._words) or not (
             self._g.match("determiner", self._words, i) or self._words[i].startswith(("some", "any", "every"))
         ):
@@ -943,7 +943,7 @@ class ClauseReader:
         return j
 
     def _addressed(self, clause: Clause, i: int) -> int:
-        """Read to whom something is told, after it; then the rest of the clause."""
+        """Read the recipient of a message, after the message; then the rest of the clause."""
         words = self._words
         if i < len(words) and words[i] in ("to", "for") and not self._ends_clause(i):
             phrase = self._np.read(i + 1)
@@ -1110,7 +1110,7 @@ class ClauseReader:
         return self._addressed(clause, max(end, i + 1))
 
     def _predicate(self, phrase: NounPhrase) -> NounPhrase:
-        """Add what is said of the counted things: people in the office ARE pointing to the right."""
+        """Add the predicate of the counted things: people in the office ARE pointing to the right."""
         g, words = self._g, self._words
         while phrase.end < len(words):
             i = phrase.end

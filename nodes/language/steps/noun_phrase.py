@@ -1,4 +1,4 @@
-"""Noun phrases of commands: what is said of a thing or person, in the order of the words."""
+"""Noun phrases of commands: the attributes of a thing or person, in the order of the words."""
 
 from __future__ import annotations
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
 import rerun.blueprint as rrb
 
+from semmap.nodes.geometry.outliers import find_near
 from semmap.nodes.recorder.drawing.perception_archetypes import BOXES, camera_path
 from semmap.schemas.entities import Pose, Vector
 
@@ -28,11 +30,12 @@ class Bounds:
 
 
 def bounds_of(poses: Iterable[Pose]) -> Bounds:
-    """Return bounds around `poses`, or of ten metres around the origin if there are none."""
-    points = [pose.position_m for pose in poses]
-    if not points:
+    """Return bounds around `poses` but outliers, or of ten metres around the origin if there are none."""
+    points = np.array([pose.position_m for pose in poses]).reshape(-1, 3)
+    if not len(points):
         return Bounds()
-    (x0, x1), (y0, y1), (z0, z1) = ((min(axis), max(axis)) for axis in zip(*points, strict=True))
+    near = points[find_near(points)]
+    (x0, y0, z0), (x1, y1, z1) = near.min(axis=0).tolist(), near.max(axis=0).tolist()
     middle = ((x0 + x1) / 2.0, (y0 + y1) / 2.0, (z0 + z1) / 2.0)
     return Bounds(middle, max(x1 - x0, y1 - y0, _LEAST_EXTENT_M))
 

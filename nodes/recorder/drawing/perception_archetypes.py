@@ -51,6 +51,9 @@ def boxes_of(seen: Observations) -> tuple[rr.AsComponents, ...]:
 
 def points_of(cloud: SegmentedCloud, seen: Observations) -> rr.Points3D:
     """Return the points of a frame, coloured by class. Raises ValueError for an invalid cloud."""
+    count = len(cloud.positions) // 12
+    if (len(cloud.positions), len(cloud.colors), len(cloud.labels)) != (12 * count, 3 * count, 2 * count):
+        raise ValueError("its positions, colours and labels are not of the same number of points")
     labels = np.frombuffer(cloud.labels, "<u2")
     colors = np.frombuffer(cloud.colors, np.uint8).reshape(-1, 3).copy()
     palette = np.array([GREY, *(colour_of(thing.class_) for thing in seen.observations)], np.uint8)

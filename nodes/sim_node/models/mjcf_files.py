@@ -51,10 +51,12 @@ def read_mjcf(path: Path) -> MjcfModel:
     model = spec.compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    geoms = [(geom, shape) for geom in range(model.ngeom) if (shape := _shape(model, geom)) is not None]
+    geoms = [
+        (geom, shape) for geom in range(model.ngeom) if (shape := shape_of_geom(model, geom)) is not None
+    ]
     of_body, stiff = _joints(model, data, {int(model.geom_bodyid[geom]) for geom, _ in geoms}, ends)
     parts = [
-        replace(_part(model, data, geom, shape), joint=of_body[int(model.geom_bodyid[geom])])
+        replace(part_of_geom(model, data, geom, shape), joint=of_body[int(model.geom_bodyid[geom])])
         for geom, shape in geoms
     ]
     if model.nbody == 1 or not parts:  # geoms without a body have no mass
@@ -153,14 +155,15 @@ def _joint(model: mujoco.MjModel, data: mujoco.MjData, number: int, name: str, e
 # geoms
 
 
-def _shape(model: mujoco.MjModel, geom: int) -> Shape | None:
+def shape_of_geom(model: mujoco.MjModel, geom: int) -> Shape | None:
     """Return the shape of a geom; None for planes and height fields, and for static geoms."""
     if model.geom_bodyid[geom] == 0 and model.nbody > 1:
         return None
     return _SHAPES.get(int(model.geom_type[geom]))
 
 
-def _part(model: mujoco.MjModel, data: mujoco.MjData, geom: int, shape: Shape) -> Part:
+def part_of_geom(model: mujoco.MjModel, data: mujoco.MjData, geom: int, shape: Shape) -> Part:
+    """Return a geom as a part, in the frame of the poses in `data`."""
     rgba = model.mat_rgba[model.geom_matid[geom]] if model.geom_matid[geom] >= 0 else model.geom_rgba[geom]
     colour: Colour = _vec3(rgba[:3])
     role = Role.BOTH if model.geom_contype[geom] | model.geom_conaffinity[geom] else Role.VISUAL

@@ -77,6 +77,8 @@ def _read_meshes(path: Path) -> MjcfModel:
     """Read a mesh file."""
     import trimesh  # slow to import, so only if needed
 
+    from semmap.nodes.runtime import pictures  # noqa: F401  limits the size of textures
+
     scene = trimesh.load_scene(path)
     up = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]]) if path.suffix == ".glb" else np.eye(3)  # glTF: y up
     parts = []

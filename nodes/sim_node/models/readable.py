@@ -9,6 +9,7 @@ import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from semmap.nodes.runtime.pictures import require_small_png
 from semmap.nodes.sim_node.models.library import ModelError
 from semmap.schemas.nesting import NotWellFormed, require_shallow_xml
 
@@ -54,8 +55,18 @@ def require_references(path: Path, roots: Sequence[Path]) -> None:
             for name in _values(element, ("file", *(k for k in element.attrib if k.startswith("file")))):
                 for there in (folder / name for folder in folders):
                     require_readable(there, roots)
+                    _require_small(there)
                     if element.tag == "include" and there.is_file():
                         files.append(there)
+
+
+def _require_small(path: Path) -> None:
+    """Raise ModelError for a texture that is too large to decode, OSError."""
+    try:
+        if path.is_file():
+            require_small_png(path)
+    except ValueError as error:
+        raise ModelError(f"cannot use texture {path}: {error}") from None
 
 
 def _values(element: ElementTree.Element, names: Sequence[str]) -> Iterator[str]:

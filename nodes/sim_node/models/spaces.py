@@ -57,6 +57,8 @@ def shape_of(model: Model) -> ModelShape:
     def hollows(joints: Collection[str | None], least: float = LEAST_VOLUME) -> list[Interior]:
         """Return the interiors between the parts of these joints."""
         some = [(part.role, cut) for part, cut in walls if (part.joint and part.joint.name) in joints]
+        if len(some) < 2:
+            return []  # one part is convex
         seen, colliding = (
             [cut for role, cut in some if role is not out] for out in (Role.COLLISION, Role.VISUAL)
         )

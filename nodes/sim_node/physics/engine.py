@@ -22,6 +22,10 @@ from semmap.nodes.sim_node.vision.view import View
 from semmap.schemas.entities import Pose, angle_rad, compose, distance_m
 
 _STEPS_A_CHECK = 25
+_MOST: Final = 1e10
+"""A larger acceleration is not simulated by MuJoCo."""
+_HOLDING: Final = 1e12
+"""An inertia [kg, kg m²] that no force moves."""
 _MOVED: Final = 1e-6
 """A static body farther from its pose than this [m, rad] is compiled there."""
 
@@ -53,6 +57,8 @@ class Engine:
         self.records = base_scene.bodies_of(ground, world, classes)
         self.left_out = base_scene.left_out(world.model, {record.body for record in self.records.values()})
         """Bodies of the world file that are only parts of others, by name or by their parent."""
+        self.unstable: set[str] = set()
+        """Bodies whose state was no longer finite, so that they were stopped."""
         self.revision = 0
         self.compiling = False
         self.model: mujoco.MjModel
@@ -329,7 +335,7 @@ class Engine:
             if self.asleep:
                 self.data.time = end
             else:
-                before, most = self.data.qpos.copy(), _STEPS_A_CHECK
+                before, most = (self.data.qpos.copy(), self.data.qvel.copy()), _STEPS_A_CHECK
                 if self._drives:
                     arrived = self._drives.push(self.model, self.data, self.index)
                     self._joint_rest.arrive(arrived, self.positions(), self.data.time)
@@ -339,7 +345,7 @@ class Engine:
                     most = STEPS_A_PUSH
                 mujoco.mj_step(self.model, self.data, nstep=min(left, most))
                 if not np.isfinite(self.data.qpos).all():
-                    self._stop_diverged(before)
+                    self._stop_diverged(before, min(left, most))
             asleep = sleep.sleeping(self.data, self.index.tree)
             self.resting = self._rest.update(self.poses(), self.data.time, asleep)
             if len(self.index.joint):
@@ -378,11 +384,32 @@ class Engine:
         self._rest.disturb(taken, self.data.time)
         self.resting[taken] = tree[taken] < 0
 
-    def _stop_diverged(self, before: Floats) -> None:
-        """Stop a body whose state is no longer finite, at its previous position."""
-        bad = ~np.isfinite(self.data.qpos)
-        self.data.qpos[bad] = before[bad]
-        self.data.qvel[~np.isfinite(self.data.qvel)] = 0.0
+    def _stop_diverged(self, before: tuple[Floats, Floats], steps: int) -> None:
+        """Return to the state before these steps, and hold the bodies whose state became infinite there.
+
+        They are found by single steps, because their state soon spreads to all others. A very large inertia
+        holds them until the model is recompiled.
+        """
+        data = self.data
+        self._set_state(before)
+        bad = np.zeros(self.model.nv, dtype=bool)
+        for _ in range(steps):
+            mujoco.mj_step(self.model, data)
+            bad = ~(np.abs(data.qacc) < _MOST) | ~np.isfinite(data.qvel)
+            if bad.any():
+                break
+        trees = np.unique(self.model.dof_treeid[bad])
+        self._set_state(before)
+        held = np.isin(self.model.dof_treeid, trees)
+        data.qvel[held], self.model.dof_armature[held] = 0.0, _HOLDING
+        mujoco.mj_kinematics(self.model, data)
+        root = self.model.tree_bodyadr[trees]
+        names = dict(zip(self.index.body.tolist(), self.index.names, strict=True))
+        roots = self.model.body_rootid[root].tolist()
+        self.unstable.update(names[body] for body in (*root.tolist(), *roots) if body in names)
+
+    def _set_state(self, state: tuple[Floats, Floats]) -> None:
+        self.data.qpos[:], self.data.qvel[:] = state
         self.data.qacc_warmstart[:] = 0.0
 
 

@@ -13,6 +13,9 @@ from dataclasses import dataclass
 
 from semmap.nodes.sim_node.placement.obstacles import CLEARANCE_M, GROUND, Obstacles
 
+_MOST_TRIED = 12
+"""Of more surfaces, the highest is tried next; otherwise hundreds of bodies at one spot take minutes."""
+
 
 @dataclass(frozen=True)
 class Placed:
@@ -73,11 +76,10 @@ def _lift(obstacles: Obstacles, row: int, onto: list[int]) -> float | None:
     Returns the rise [m], or None if there is no such surface.
     """
     start = float(obstacles.body_low[row, 2])
-    reached = not onto
-    for top, owner in obstacles.surfaces(row):
-        reached = reached or owner in onto
-        if not reached:
-            continue
+    surfaces = obstacles.surfaces(row)
+    first = next((at for at, (_, owner) in enumerate(surfaces) if not onto or owner in onto), len(surfaces))
+    above = surfaces[first:]
+    for top, _ in above if len(above) <= _MOST_TRIED else (*above[:_MOST_TRIED], above[-1]):
         obstacles.raise_(row, top + CLEARANCE_M - float(obstacles.body_low[row, 2]))
         if not obstacles.hits(row, CLEARANCE_M / 2):
             return float(obstacles.body_low[row, 2]) - start

@@ -80,8 +80,9 @@ class Settling:
 
     def step(self, duration_s: float) -> None:
         """Advance the time; ghosts near moved bodies are checked again when all bodies rest."""
-        engine, rested = self._engine, self._engine.resting
+        engine, rested, unstable = self._engine, self._engine.resting, len(self._engine.unstable)
         engine.step(duration_s)
+        self.version += len(engine.unstable) > unstable
         if not engine.index.ghost.any():
             return
         woken = np.flatnonzero(rested & ~engine.resting)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from semmap.nodes.geometry.outliers import find_near
 from semmap.nodes.sim_node.bodies import Floats, pose_of
 from semmap.schemas.entities import Pose
 from semmap.schemas.errors import BadRequest
@@ -18,8 +19,6 @@ from semmap.schemas.errors import BadRequest
 OPTICAL = np.diag([1.0, -1.0, -1.0])  # MuJoCo's cameras look along -z with y up
 
 _UPRIGHT = 1e-6
-_FAR, _FAR_M = 4.0, 3.0
-"""An outlier is this many times farther out than the 80 % quantile, plus this distance [m]."""
 
 
 @dataclass(frozen=True)
@@ -80,9 +79,7 @@ def bulk(low_m: Floats, high_m: Floats) -> tuple[Floats, Floats]:
     """Return lowest and highest corner, each (3,) [m], of the box around all boxes (N, 3) but outliers."""
     if not len(low_m):
         return np.array([-1.0, -1.0, 0.0]), np.array([1.0, 1.0, 1.0])
-    middle = (low_m + high_m) / 2.0
-    apart = np.linalg.norm(middle - np.median(middle, axis=0), axis=1)
-    near = apart <= _FAR * np.quantile(apart, 0.8, method="lower") + _FAR_M
+    near = find_near((low_m + high_m) / 2.0)
     return low_m[near].min(axis=0), high_m[near].max(axis=0)
 
 

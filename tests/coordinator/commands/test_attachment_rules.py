@@ -245,3 +245,39 @@ def test_an_entity_with_attached_objects_is_removed_only_with_them():
         errors.Refused, match=r"^cup1 and fork1 are attached to hand1; first: semmap detach cup1$"
     ):
         attachment_rules.require_no_attachments(("hand1",), held)
+
+
+def at(x, y=0.0, z=0.0):
+    return Pose(position_m=(x, y, z))
+
+
+@pytest.mark.parametrize(
+    ("cup", "hand", "away"),
+    [
+        (at(0.0), at(0.7), ""),  # half a metre of each is between their middles
+        (at(0.0), at(0.9), "0.4"),
+        (at(0.0), at(0.0, 0.0, 0.9), "0.4"),
+        (at(0.0), at(4.5), "4"),
+        (Pose(position_m=(0.0, 0.0, 0.0), orientation_wxyz=orientation_from_yaw(math.pi / 4)), at(0.9), ""),
+        (None, at(9.0), ""),
+    ],
+)
+def test_what_is_out_of_reach_is_not_attached(cup, hand, away):
+    poses = {"cup1": cup, "hand1": hand}
+    held, holder = (structs.replace(one, size_m=(0.5, 0.5, 0.5)) for one in (CUP, HAND))
+    if not away:
+        attachment_rules.require_in_reach(held, holder, poses.get, {})
+        return
+    with pytest.raises(errors.Refused) as told:
+        attachment_rules.require_in_reach(held, holder, poses.get, {})
+    assert told.value.text == (
+        f"cup1 is {away} m away from hand1, farther than 0.3 m;"
+        " move it there first, attach it --at a position, or add --force"
+    )
+    attachment_rules.require_in_reach(thing("cup1", held_by="hand1"), holder, poses.get, {})
+
+
+def test_the_reach_is_that_of_the_bodies_in_the_scene():
+    bodies = {name: body(name, at(x)) for name, x in (("cup1", 0.0), ("hand1", 5.0))}
+    with pytest.raises(errors.Refused, match="m away from hand1"):
+        attachment_rules.require_in_reach(CUP, HAND, lambda name: HERE, bodies)

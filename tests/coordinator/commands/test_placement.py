@@ -1,5 +1,6 @@
 """`on`, `in` and `next_to` of commands."""
 
+import json
 import math
 from itertools import combinations
 
@@ -88,3 +89,59 @@ def test_a_move_is_placed_with_its_contents(dispatcher):
     assert (request.target, request.placing, request.carry) == ("table1", "on", True)
     found = Pose(position_m=(1.0, 2.0, 3.0), orientation_wxyz=orientation_from_yaw(0.0))
     assert at_room(command, Room(pose=found)) == c.Move(name="toy1", at=(1.0, 2.0, 3.0), carry=True)
+
+
+def scene(*entities):
+    return c.Load(content=json.dumps({"entities": entities}).encode(), filename="room.json")
+
+
+def toy(name, **fields):
+    return {"class": "Chair", "name": name, "size": SMALL, **fields}
+
+
+BENCH = {
+    "class": "Living_Room_Table",
+    "name": "table1",
+    "at": [1, 1, 0],
+    "yaw": "90deg",
+    "size": [1.2, 0.8, 0.7],
+}
+
+
+def test_a_scene_places_objects_on_those_before_them(dispatcher):
+    dispatcher.change(
+        scene(BENCH, toy("toy1", on="table1"), toy("toy2", on="table1"), toy("toy3", next_to="toy1"))
+    )
+    toys = [dispatcher.map.entity(f"toy{n}").pose.position_m for n in (1, 2, 3)]
+    assert [z for _, _, z in toys] == pytest.approx([0.7] * 3)
+    assert min(math.dist(one, other) for one, other in combinations(toys, 2)) > 0.1
+
+
+def test_a_scene_that_is_loaded_again_leaves_placed_objects_where_they_are(dispatcher):
+    file = scene(BENCH, toy("toy1", on="table1"), toy("toy2", on="table1"))
+    dispatcher.change(file)
+    before = dispatcher.map.seq
+    assert dispatcher.change(file).commit is None
+    dispatcher.change(c.Update(name="toy2", at=(5.0, 5.0, 0.0)))
+    dispatcher.change(file)
+    assert dispatcher.map.entity("toy2").pose.position_m[2] == pytest.approx(0.7)
+    assert dispatcher.map.seq == before + 2
+
+
+@pytest.mark.parametrize(
+    ("entities", "reason"),
+    [
+        (
+            (toy("toy1", on="table1"), BENCH),
+            "toy1: no entity before it in the file or in the map is named 'table1'",
+        ),
+        ((BENCH, toy("toy1", on="table1", at=[0, 0, 0])), "give only one of on and at"),
+        ((BENCH, toy("toy1", in_="table1")), "there is no field 'in_'; did you mean in"),
+        ((BENCH, {**toy("toy1", **{"in": "table1"})}), "table1 has no interior"),
+    ],
+)
+def test_a_scene_with_a_placement_that_is_not_possible_adds_nothing(dispatcher, entities, reason):
+    with pytest.raises(errors.SemmapError) as error:
+        dispatcher.change(scene(*entities))
+    assert reason in error.value.text
+    assert not dispatcher.map.entities

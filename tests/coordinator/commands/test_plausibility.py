@@ -2,7 +2,11 @@
 
 import pytest
 
-from semmap.nodes.coordinator.commands.plausibility import find_doubts, require_same_nature
+from semmap.nodes.coordinator.commands.plausibility import (
+    find_doubts,
+    find_isolation,
+    require_same_nature,
+)
 from semmap.schemas import errors
 from semmap.schemas.entities import ClassInfo, Entity, Pose, Provenance, orientation_from_yaw
 
@@ -73,3 +77,20 @@ def test_a_fridge_becomes_a_room_only_if_forced():
     require_same_nature(fridge, class_info("Hall", place=True), force=True)
     require_same_nature(fridge, class_info("Freezer"), force=False)
     require_same_nature(room, None, force=False)
+
+
+@pytest.mark.parametrize(
+    ("at", "others", "note"),
+    [
+        ((5.0, 0.0, 0.0), [(0.0, 0.0, 0.0)], ()),
+        (
+            (900.0, 2.0, 0.0),
+            [(0.0, 0.0, 0.0), (1.0, 2.0, 0.0)],
+            ("cup1 at (900, 2) is 899 m away from the nearest other object",),
+        ),
+        ((900.0, 2.0, 0.0), [], ()),
+    ],
+)
+def test_a_body_moved_far_away_from_all_others_is_noted(at, others, note):
+    poses = [Pose(position_m=other) for other in others]
+    assert find_isolation("cup1", Pose(position_m=at), poses) == note

@@ -704,3 +704,17 @@ def test_map_and_scene_do_not_agree_by_a_commit_that_the_knowledge_base_has_not_
     assert reconciler.agreement().holds
     dispatcher.map.take(Effects(seq=dispatcher.map.seq + 1, id="forged", digest="00"))
     assert reconciler.agreement().holds is False
+
+
+def test_bodies_that_are_not_stable_are_problems(dispatcher):
+    reconciler = Reconciler(
+        CoordinatorConfig("map"), dispatcher, immediate(dispatcher), lambda call: Future(), lambda text: None
+    )
+    scene = Scene(run="r", version=1, stamp_ns=1, sim_time_s=0.0, world="w", bodies=(), unstable=("chain_1",))
+    reconciler.scene.take(scene)
+    assert reconciler.problems() == [
+        "chain_1: its simulated state was not finite, so it was stopped; use a smaller timestep, a larger"
+        " mass, or softer joints and contacts in its world file or model"
+    ]
+    reconciler.lose_scene()
+    assert reconciler.problems() == []

@@ -4,15 +4,21 @@ import pytest
 
 from semmap.nodes.kb_node.answers.command_parser import CommandParser
 from semmap.nodes.kb_node.answers.entity_search import EntitySearch
-from semmap.ontology import entity_triples
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.ontology import FLAT_TTL, entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas.commands import Understand
 from semmap.schemas.commits import Transaction
 from semmap.schemas.entities import Pose
+from tests.kb_node import home
 
 
-@pytest.fixture
-def read(flat):
+@pytest.fixture(scope="module")
+def read(tmp_path_factory):
+    flat = SemanticMap(home.new_household_journal(tmp_path_factory.mktemp("flat")))
+    abox = rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f")
+    flat.commit(Transaction(id="flat", source="file", insert=tuple(abox)))
     x, y, _ = flat.entity("table1").pose.position_m
     _, _, top = flat.entity("bowl1").pose.position_m
     kitchen = flat.entity("kitchen1").pose.position_m
@@ -27,7 +33,8 @@ def read(flat):
     )  # fmt: skip
     flat.commit(Transaction(id="more", source="operator", insert=tuple(triples)))
     parser = CommandParser(flat, EntitySearch(flat))
-    return lambda text: parser.parse(Understand(text=text))
+    yield lambda text: parser.parse(Understand(text=text))
+    home.close(flat)
 
 
 def texts(understood):

@@ -19,6 +19,34 @@ from tests.kb_node.reasoner.graphs import household
 from tests.kb_node.relations.entities import ROOM, TABLE
 
 
+def options(question, either):
+    """Return the options of a clarification question."""
+    first, last = question.split(": ", 1)[1].rstrip("?").rsplit(either, 1)
+    return [*first.split(", "), last]
+
+
+@pytest.mark.parametrize(
+    ("text", "either"),
+    [
+        ("the book", " or "),
+        ("il libro", " o "),
+        ("the sink", " or "),
+        ("the window", " or "),
+        ("the fixture", " or "),
+        ("the plate", " or "),
+        ("il piatto", " o "),
+    ],
+)
+def test_every_option_of_a_question_can_be_typed_back(flat, text, either):
+    search = EntitySearch(flat)
+    asked = search.find(Find(text=text)).found
+    pairs = list(zip(options(asked.question, either), asked.candidates, strict=False))
+    assert len(pairs) > 1
+    for option, candidate in pairs:
+        answered = search.find(Find(text=text, answer=option)).found
+        assert (answered.outcome, names(answered)) == ("one", {candidate.entity}), option
+
+
 def names(found):
     return {candidate.entity for candidate in found.candidates}
 

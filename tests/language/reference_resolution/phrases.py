@@ -1,4 +1,3 @@
-# ruff: noqa: E501
 """Phrases in the small kitchen with their results, for the viewer anna."""
 
 PHRASES = [
@@ -46,7 +45,7 @@ PHRASES = [
         "the two biggest cups",
         "ambiguous",
         "cup1 cup2 cup3",
-        "Which one: the cup at position 2 from the left, the one at position 1 from the left or the one at position 3 from the left?",
+        "Which one: the cup called cup1, the one called cup2 or the one called cup3?",
         "called cup; biggest; of 0.10 x 0.10 x 0.10 m",
     ),
     (
@@ -124,14 +123,14 @@ PHRASES = [
         "the cup and the wine",
         "ambiguous",
         "cup1 cup2 cup3",
-        "Which one: the cup at position 2 from the left, the one at position 1 from the left or the one at position 3 from the left?",
+        "Which one: the cup called cup1, the one called cup2 or the one called cup3?",
         "called cup",
     ),
     (
         "the cup or the wine",
         "ambiguous",
         "cup1 cup2 cup3 wine1",
-        "Which one: the cup at position 2 from the left, the one at position 1 from the left, the one at position 3 from the left or the wine at position 4 from the left?",
+        "Which one: the cup called cup1, the one called cup2, the one called cup3 or the wine called wine1?",
         "called cup",
     ),
     ("the blue cup and anna's glasses", "several", "cup2 glasses1", "2 things match", "called cup; blue"),
@@ -207,7 +206,7 @@ PHRASES = [
         "la tazza rossa o blu",
         "ambiguous",
         "cup1 cup2 cup3",
-        "Quale: la tazza in posizione 2 da sinistra, quella in posizione 1 da sinistra o quella in posizione 3 da sinistra?",
+        "Quale: la tazza di nome cup1, quella di nome cup2 o quella di nome cup3?",
         "a cup; rossa or blu",
     ),
     ("le cose sul tavolo", "several", "cup1 cup2", "2 things match", "on table1"),
@@ -215,7 +214,7 @@ PHRASES = [
         "la tazza senza vino",
         "ambiguous",
         "cup1 cup2 cup3",
-        "Quale: la tazza in posizione 2 da sinistra, quella in posizione 1 da sinistra o quella in posizione 3 da sinistra?",
+        "Quale: la tazza di nome cup1, quella di nome cup2 o quella di nome cup3?",
         "a cup; senza vino",
     ),
     ("il tavolo con due tazze", "one", "table1", "table1 matches", "a table; con due tazze"),
@@ -279,7 +278,7 @@ PHRASES = [
         "the first two cups from the left",
         "ambiguous",
         "cup1 cup2 cup3",
-        "Which one: the cup at position 2 from the left, the one at position 1 from the left or the one at position 3 from the left?",
+        "Which one: the cup called cup1, the one called cup2 or the one called cup3?",
         "called cup; first from the left",
     ),
     (
@@ -294,7 +293,7 @@ PHRASES = [
         "both cups",
         "ambiguous",
         "cup1 cup2 cup3",
-        "Which one: the cup at position 2 from the left, the one at position 1 from the left or the one at position 3 from the left?",
+        "Which one: the cup called cup1, the one called cup2 or the one called cup3?",
         "called cup",
     ),
     (
@@ -320,7 +319,7 @@ PHRASES = [
         "kitchen cup",
         "ambiguous",
         "cup1 cup2 cup3",
-        "Which one: the cup at position 2 from the left, the one at position 1 from the left or the one at position 3 from the left?",
+        "Which one: the cup called cup1, the one called cup2 or the one called cup3?",
         "called cup; kitchen",
     ),
     ("the tall cup", "one", "cup3", "cup3 matches", "a cup; tall"),

@@ -99,6 +99,45 @@ def test_what_nothing_fits(text):
     assert found(text) == ("none", set())
 
 
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("the cup that is not nearest to the sink", {"cup1", "cup2"}),
+        ("the cups that are not on the left", {"cup1", "cup3"}),
+        ("the glasses in front of me", {"glasses1"}),
+        ("the cup behind me", set()),
+        ("Anna's things", {"cup3", "glasses1"}),
+        ("the cup that belongs to Anna", {"cup3"}),
+        ("the cup that Anna owns", {"cup3"}),
+        ("the blue one", {"cup2"}),
+        ("the cup called favourite mug", {"cup3"}),
+        ("the one called cup2", {"cup2"}),
+        ("la tazza di nome cup2", {"cup2"}),
+        ("the cup called teacup", set()),
+    ],
+)
+def test_negated_places_the_viewer_owners_and_labels_restrict(text, names):
+    assert found(text, has_viewer=True)[1] == names
+
+
+def test_behind_me_needs_a_viewer():
+    with pytest.raises(errors.BadRequest, match="viewer"):
+        found("the cup behind me")
+
+
+@pytest.mark.parametrize(
+    ("text", "answer", "name"),
+    [
+        ("the red cup", "the one in the sink", "cup3"),
+        ("the red cup", "the cup on the table", "cup1"),
+        ("la tazza rossa", "quella nel lavandino", "cup3"),
+        ("the cup", "the blue one", "cup2"),
+    ],
+)
+def test_an_answer_selects_a_candidate_of_the_question(text, answer, name):
+    assert find(text, known(), Written(), answer=answer).names == (name,)
+
+
 def test_mine_is_the_askers():
     assert found("my cup", asker="anna") == ("one", {"cup3"})
     assert found("la mia tazza", asker="anna") == ("one", {"cup3"})

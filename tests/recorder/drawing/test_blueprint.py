@@ -22,6 +22,8 @@ def test_the_eye_looks_at_the_middle_of_what_there_is_from_near_enough():
     wide = bounds_of([pose(-4.0, 1.0, 0.0), pose(8.0, 3.0, 1.0)])
     assert wide.centre_m == pytest.approx((2.0, 2.0, 0.5))
     assert wide.extent_m == pytest.approx(12.0)
+    rooms = [pose(x, y, 0.0) for x in (0.0, 4.0, 8.0) for y in (0.0, 3.0)]
+    assert bounds_of([*rooms, pose(2000.0, 0.0, 0.0)]) == bounds_of(rooms)
 
 
 def test_each_camera_has_its_picture_with_the_boxes_seen_but_not_too_many():

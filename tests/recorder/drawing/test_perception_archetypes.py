@@ -91,3 +91,14 @@ def test_a_picture_is_recorded_small_with_its_camera(tmp_path):
 def test_pixels_that_are_not_the_frames_are_refused():
     with pytest.raises(ValueError, match="not enough"):
         archetypes.image_of(FRAME, b"too few")
+
+
+@pytest.mark.parametrize(
+    ("positions", "colors", "labels"), [(12, 3, 4), (24, 3, 2), (13, 3, 2), (12, 6, 2), (0, 3, 2)]
+)
+def test_a_cloud_of_wrong_sizes_is_invalid(positions, colors, labels):
+    cloud = SegmentedCloud(
+        stamp_ns=START_NS, positions=bytes(positions), colors=bytes(colors), labels=bytes(labels)
+    )
+    with pytest.raises(ValueError, match="same number of points"):
+        archetypes.points_of(cloud, SEEN)

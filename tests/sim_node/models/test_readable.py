@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import struct
 
 import pytest
 
@@ -92,3 +93,12 @@ def test_a_model_that_is_nested_too_deeply_is_rejected(folders, models, inside):
     (folders / "models" / "deep.xml").write_text(head + BOX.format(inside))
     with pytest.raises(ModelError, match="nested deeper than 200 levels"):
         models("deep.xml", None)
+
+
+def test_a_texture_is_not_decoded_if_it_is_too_large(folders, models):
+    texture = '<asset><texture name="t" type="2d" file="t.png"/></asset>'
+    (folders / "models" / "painted.xml").write_text(BOX.format(texture))
+    head = b"\x89PNG\r\n\x1a\n" + struct.pack(">I4sII", 13, b"IHDR", 30_000, 30_000)
+    (folders / "models" / "t.png").write_bytes(head)
+    with pytest.raises(ModelError, match=r"cannot use texture .*t\.png: the image has 30000 x 30000 pixels"):
+        models("painted.xml", None)

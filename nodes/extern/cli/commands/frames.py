@@ -13,7 +13,7 @@ import click
 
 from semmap.nodes.extern.cli import output
 from semmap.nodes.extern.cli.command import command
-from semmap.nodes.extern.cli.common import drop_unset, print_error, print_json, with_client
+from semmap.nodes.extern.cli.common import drop_unset, print_error, print_json, print_lines, with_client
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.shell_completion import entity_names
 from semmap.nodes.runtime import extras
@@ -57,9 +57,9 @@ def _or_folders(function: Callable[..., None]) -> Callable[..., None]:
     def chosen(name: str | None, folder: Path | None, format: str | None, **arguments: Any) -> None:
         options = {option: arguments.pop(option) for option in _OPTIONS}
         if folder is not None and name is not None:
-            if format is not None:
-                raise errors.BadRequest("--format applies to the frame tree only; remove it for a recording")
-            _folders(Path(name), folder, **options)
+            if format == "tree":
+                raise errors.BadRequest("--format tree applies to the frame tree only, not to a recording")
+            _folders(Path(name), folder, as_json=format == "json", **options)
             return
         if passed := list(drop_unset(options)):
             option = passed[0].replace("_", "-")
@@ -102,6 +102,7 @@ def _folders(
     path: Path,
     folder: Path,
     *,
+    as_json: bool,
     every: float | None,
     within: float | None,
     rgb_topic: str | None,
@@ -135,10 +136,10 @@ def _folders(
             f"{path} is not a recording; supported: {', '.join(_SUFFIXES)} and folders in the TUM format"
         )
     make(folder)
-    _write(found, path, folder)
+    _write(found, path, folder, as_json=as_json)
 
 
-def _write(found: Recording, path: Path, folder: Path) -> None:
+def _write(found: Recording, path: Path, folder: Path, *, as_json: bool) -> None:
     from semmap.nodes.extern.frame_folders.frames import write
 
     began_s = printed_s = time.monotonic()
@@ -158,10 +159,15 @@ def _write(found: Recording, path: Path, folder: Path) -> None:
     written = found.count - len(bad)
     if not written:
         raise errors.BadFile(f"{path}: no usable frames; first error: {bad[0].text}")
-    for note in found.notes:
-        print_escaped(note)
-    if 0 < posed < written:
-        print_escaped(f"{counted(written - posed, 'frame')} without a camera pose (no pose at that time)")
-    print_escaped(f"{counted(written, 'frame')} of {path} in {folder} ({time.monotonic() - began_s:.1f} s)")
+    if as_json:
+        counts = {"frames": written, "with_pose": posed, "skipped": len(bad)}
+        print_json({"folder": str(folder), **counts, "notes": found.notes})
+    else:
+        print_lines(found.notes)
+        if 0 < posed < written:
+            print_lines([f"{counted(written - posed, 'frame')} without a camera pose (no pose at that time)"])
+        print_escaped(
+            f"{counted(written, 'frame')} of {path} in {folder} ({time.monotonic() - began_s:.1f} s)"
+        )
     if bad:
         print_error(f"{counted(len(bad), 'frame')} skipped; first error: {bad[0].text}")

@@ -11,7 +11,7 @@ import click
 
 from semmap.nodes.extern.cli.angles import from_pose
 from semmap.nodes.extern.cli.command import command
-from semmap.nodes.extern.cli.common import print_error, print_json, print_lines, with_client
+from semmap.nodes.extern.cli.common import print_json, print_lines, with_client
 from semmap.nodes.extern.cli.output import lines, lu4r
 from semmap.nodes.extern.cli.shell_completion import entity_names
 from semmap.schemas import errors
@@ -59,6 +59,7 @@ def tell(client: Client, name: str | None, words: int, format: str) -> None:
 )
 @from_pose
 @click.option("--for", "asker", metavar="NAME", help="Speaker: the person that 'my' refers to.")
+@click.option("--answer", metavar="TEXT", help="Answer to the clarification question: 'the one on the desk'.")
 @click.option("--format", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @with_client
 def find(client: Client, text: str, format: str, **fields: Any) -> None:
@@ -96,20 +97,13 @@ def understand(client: Client, text: str, format: str, language: Language | None
     if no frame is recognized.
     """
     found = client.understand(text, language=language)
-    if format == "json":
-        print_json(found)
-    elif format == "lu4r":
-        print_json(lu4r.document(found))
-    else:
-        done = found.steps or found.frames
-        print_lines(
-            [action.text for action in done] + [text for text in (found.answer, found.question) if text]
-        )
-    for doubt in found.doubts:
-        print_error(doubt)
-    if found.unknown:
-        print_error(f"unknown {'verbs' if len(found.unknown) > 1 else 'verb'}: {', '.join(found.unknown)}")
-    if not (found.frames or found.steps):
-        if not found.unknown:
-            print_error(_WHY[found.mood].format(text=text))
-        sys.exit(errors.Refused.exit_status)
+    done = found.steps or found.frames
+    if format != "text":
+        print_json(found if format == "json" else lu4r.document(found))
+        sys.exit(0 if done else errors.Refused.exit_status)
+    unknown = f"unknown {'verbs' if len(found.unknown) > 1 else 'verb'}: {', '.join(found.unknown)}"
+    doubts = (*found.doubts, *((unknown,) if found.unknown else ()))
+    if not done:
+        raise errors.Refused("; ".join(doubts) if found.unknown else _WHY[found.mood].format(text=text))
+    print_lines([action.text for action in done] + [text for text in (found.answer, found.question) if text])
+    print_lines(f"note: {doubt}" for doubt in doubts)

@@ -28,8 +28,13 @@ def print_entities(
     shown = output.show.sort_entities(found, sort)[:limit]
     if shown:
         output.show.console().print(output.show.entity_table(shown, columns))
-    is_part = len(shown) < len(found)
-    print_count(f"{len(shown)} of {len(found)} entities" if is_part else output.show.entity_line(shown))
+    print_count(_count(shown, found))
+
+
+def _count(shown: Sequence[Entity], found: Sequence[Entity]) -> str:
+    if len(shown) < len(found):
+        return f"{len(shown)} of {len(found)} entities"
+    return output.show.entity_line(shown)
 
 
 def entities(
@@ -45,7 +50,10 @@ def entities(
     """Print the output of `semmap list --robots`."""
 
     def show(found: Sequence[Entity]) -> None:
-        print_entities(found, sort, limit, columns)
+        shown = output.show.sort_entities(found, sort)[:limit]
+        if shown:
+            output.show.console().print(output.show.entity_table(shown, columns))
+        print_escaped(_count(shown, found))
 
     _require(format, ("table", "json"))
     _require_own(where.pop("frame"))

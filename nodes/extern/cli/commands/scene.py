@@ -65,6 +65,7 @@ def move(client: Client, wait: bool, **fields: Any) -> None:
 )
 @yaw_option
 @carry_options
+@click.option("--force", is_flag=True, help="Attach an entity that is more than 0.3 m away.")
 @click.option("--dry-run", is_flag=True, help="Report what would change, without changing anything.")
 @json_option
 @with_client

@@ -130,7 +130,7 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
             else {}
         ),
         **({"perception": e.conflict} if e.conflict else {}),
-        "model": "-" if e.place else _model(e),
+        **({"shape": "world"} if e.shape == "world" else {"model": "-" if e.place else _model(e)}),
         "last change": provenance_text(e.provenance),
         "pose set": provenance_text(e.pose_provenance),
         "class and size set": provenance_text(e.shape_provenance),

@@ -27,6 +27,8 @@ def report(found: TBoxReport) -> Iterator[str]:
         yield _line("missing", f"{iri} (add --import {iri}=FILE)")
     for kind, count in found.outside_rl.items():
         yield _line("ignored", f"{count} x {kind} (outside OWL 2 RL)")
+    for kind, count in found.inert.items():
+        yield _line("ignored", f"{count} x {kind} (stored, but not evaluated)")
     yield from _names(found)
     yield from _verdict(found)
     if (quick := found.quickness) is not None:

@@ -13,6 +13,7 @@ from msgspec import Struct
 from numpy.typing import NDArray
 
 from semmap.nodes.extern.web.scene.picking import corners_of
+from semmap.nodes.geometry.outliers import find_near
 from semmap.schemas.entities import Entity, Vector
 from semmap.schemas.relations import ViewPoint
 
@@ -23,7 +24,6 @@ FOV_RAD: Final = math.radians(40.0)
 _TILT_RAD: Final = math.radians(52.0)
 _MARGIN: Final = 1.06
 _FARTHEST_M: Final = 200.0
-_FAR_M: Final = 100.0
 _UNKNOWN_SIZE_M: Final = (0.1, 0.1, 0.1)
 _LABEL_PX: Final = 17.0
 _LETTER_PX: Final = 7.0
@@ -77,15 +77,14 @@ class View(Struct, frozen=True):
 
 def extent(entities: Iterable[Entity]) -> Floats:
     """Return the corners (N, 3) [m] of all entities with a pose, without distant outliers."""
-    points = [
-        corners_of(entity.pose, entity.size_m or _UNKNOWN_SIZE_M)
-        for entity in entities
-        if entity.pose is not None
-    ]
-    if not points:
-        return np.empty((0, 3))
-    found = np.concatenate(points)
-    return np.asarray(found[np.abs(found - np.median(found, axis=0)).max(axis=1) < _FAR_M])
+    points = np.array(
+        [
+            corners_of(entity.pose, entity.size_m or _UNKNOWN_SIZE_M)
+            for entity in entities
+            if entity.pose is not None
+        ]
+    ).reshape(-1, 8, 3)
+    return np.asarray(points[find_near(points.mean(axis=1))].reshape(-1, 3))
 
 
 def first_view(points: Floats, aspect: float) -> tuple[Vector, Vector]:

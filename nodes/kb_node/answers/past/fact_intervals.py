@@ -23,7 +23,7 @@ from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
-from semmap.ontology.model_shapes import own_size_m
+from semmap.ontology.model_shapes import model_in_world, own_size_m
 from semmap.schemas.attachments import IS_GRASPED_BY
 from semmap.schemas.entities import Entity, Pose, Size, Stated
 from semmap.schemas.polygons import EXTENT
@@ -47,6 +47,7 @@ class _PlacedEntity(Struct, frozen=True):
     @property
     def placed(self) -> PlacedEntity:
         stated = self.properties.get(EXTENT) if self.place else None
+        model = self.model if self.place else model_in_world(self.name, self.model, self.size_m)
         held_by = self.properties.get(IS_GRASPED_BY)
         return PlacedEntity(
             name=self.name,
@@ -54,10 +55,10 @@ class _PlacedEntity(Struct, frozen=True):
             pose=self.pose,
             size_m=self.size_m,
             place=self.place,
-            model=self.model,
+            model=model,
             extent=stated if isinstance(stated, str) else "",
             held_by=held_by if isinstance(held_by, str) else "",
-            joints=positions_of(self.model, self.size_m or own_size_m(self.model), self.properties),
+            joints=positions_of(model, self.size_m or own_size_m(model), self.properties),
             fixed=self.fixed,
         )
 

@@ -11,6 +11,7 @@ from statistics import median
 
 from semmap.nodes.kb_node.documents import ontology_files
 from semmap.nodes.kb_node.documents.abox_document import is_built_in
+from semmap.nodes.kb_node.documents.inert_statements import count_inert
 from semmap.nodes.kb_node.documents.ontology_files import VERSION, Gathered
 from semmap.nodes.kb_node.documents.tbox import tbox_declarations
 from semmap.nodes.kb_node.entities.class_table import ClassTable
@@ -102,6 +103,7 @@ def _report(
         annotation_properties=len(_of(triples, v.OWL_ANNOTATION_PROPERTY)),
         individuals=len(_individuals(triples)),
         outside_rl=dict(sorted(kinds.items(), key=lambda kind: (-kind[1], kind[0]))),
+        inert=dict(sorted(count_inert(triples).items())),
         inconsistent=inconsistent,
         unsatisfiable=unsatisfiable,
         untried=untried,

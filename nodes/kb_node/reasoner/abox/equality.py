@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from semmap.nodes.kb_node.reasoner.abox.abox import ABox, Equals
 from semmap.nodes.kb_node.reasoner.explain.reasons import Claim, Clash, Edge, Member, Same, member
 from semmap.nodes.kb_node.reasoner.tbox.axioms import ANY, Key, Limit, NotCompilable, Role
-from semmap.nodes.kb_node.reasoner.terms import is_literal
+from semmap.nodes.kb_node.reasoner.terms import is_literal, is_reserved
 
 
 class Equality:
@@ -68,7 +68,7 @@ class Equality:
                 raise Clash(*claims, *self._different(one, other))
         elif self._abox.is_literal(one) or self._abox.is_literal(other):
             raise NotCompilable(f"an individual is the same as a value: {terms[one]} and {terms[other]}")
-        elif self._abox.schema.is_used(terms[one]) or self._abox.schema.is_used(terms[other]):
+        elif any(self._abox.schema.is_used(term) or is_reserved(term) for term in (terms[one], terms[other])):
             raise NotCompilable(
                 f"a class or property is the same as another: {terms[one]} and {terms[other]}"
             )

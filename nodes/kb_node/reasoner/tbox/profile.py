@@ -65,6 +65,8 @@ def _axiom(facts: Facts, s: Term, p: Term, o: Term) -> Iterator[str]:
         else:
             yield from _above(facts, o, _SUPERCLASS)
     elif p == iri("owl:hasKey"):
+        if not _members(facts, o):
+            yield "key without properties"
         yield from _below(facts, s, _SUBCLASS)
     elif p == iri("owl:propertyChainAxiom"):
         if len(_members(facts, o)) < 2:

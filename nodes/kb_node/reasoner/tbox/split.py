@@ -6,6 +6,7 @@ triples with the reserved vocabulary (annotated axioms, headers, reification) ar
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from functools import lru_cache
 from typing import Final
 
@@ -16,9 +17,11 @@ from semmap.nodes.kb_node.reasoner.rules.rule_table import ANNOTATIONS
 from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from semmap.nodes.kb_node.reasoner.terms import (
     DIFFERENT_FROM,
+    FIRST,
     NIL,
     NOTHING,
     PREFIXES,
+    REST,
     SAME_AS,
     THING,
     TYPE,
@@ -92,6 +95,23 @@ def is_inert(triple: Triple) -> bool:
     if p == TYPE:
         return False
     return o in UNIVERSAL or s in METACLASSES or o in METACLASSES
+
+
+def check_all_compilable(schema: Collection[Triple]) -> None:
+    """Raise NotCompilable for a schema that redefines the vocabulary.
+
+    Members of a list that no axiom refers to, such as `sh:ignoredProperties ( rdf:type )`, may be of the
+    vocabulary.
+    """
+    rest = {s: o for s, p, o in schema if p == REST}
+    used: set[Term] = set()
+    for head in (o for _, p, o in schema if p not in (FIRST, REST) and o in rest):
+        while head in rest and head not in used:
+            used.add(head)
+            head = rest[head]
+    for triple in schema:
+        if triple[1] != FIRST or triple[0] in used:
+            check_compilable(triple)
 
 
 def check_compilable(triple: Triple) -> None:

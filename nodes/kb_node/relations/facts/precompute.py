@@ -14,6 +14,7 @@ from semmap.nodes.kb_node.relations.facts.precompute_messages import (
     PrecomputeResult,
     compute_digest,
 )
+from semmap.ontology.model_shapes import add_shapes
 from semmap.schemas import codec
 
 
@@ -32,6 +33,7 @@ def main() -> None:
     """Answer the request on stdin."""
     gc.disable()  # almost all objects live until the end
     request: PrecomputeRequest = codec.decode(sys.stdin.buffer.read(), PrecomputeRequest)
+    add_shapes(request.shapes)
     try:
         found = compute_facts(request)
     except (ValueError, IndexError) as error:

@@ -14,6 +14,7 @@ from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.ontology import vocabulary as v
 from semmap.ontology.model_choice import chosen
+from semmap.ontology.model_shapes import ModelShape, model_in_world
 from semmap.schemas import codec
 from semmap.schemas.entities import IDENTITY, Entity, Pose
 from semmap.schemas.explanations import Term
@@ -63,7 +64,7 @@ class ExpectedEntities(Struct, frozen=True, array_like=True):
                 pose=Pose(position_m=position_m, orientation_wxyz=turn or IDENTITY),
                 size_m=size_m,
                 place=place,
-                model=chosen(model, name, size_m),
+                model=model if place else model_in_world(name, chosen(model, name, size_m), size_m),
                 fixed=fixed,
             )
 
@@ -74,6 +75,8 @@ class PrecomputeRequest(Struct, frozen=True, array_like=True):
     limits: Thresholds
     there: tuple[PlacedEntity, ...]
     coming: ExpectedEntities
+    shapes: dict[str, ModelShape] = {}
+    """The shapes that are not of the library."""
 
 
 class PrecomputeResult(Struct, frozen=True, array_like=True):

@@ -11,7 +11,7 @@ import numpy as np
 from msgspec import structs
 from numpy.typing import NDArray
 
-from semmap.ontology.model_shapes import ConvexPart, Interior, LeafShape, ModelShape, Surface, shapes
+from semmap.ontology.model_shapes import ConvexPart, Interior, LeafShape, ModelShape, Surface, shape_named
 from semmap.schemas.entities import Size, Vector
 
 
@@ -70,8 +70,8 @@ def _fit_leaf(leaf: LeafShape, factors: Vector) -> LeafShape:
 
 
 def model_shape(model: str) -> ModelShape | None:
-    """Return the shape of a model at its own size, or None without a model."""
-    return shapes().get(model) if model else None
+    """Return the shape of a model, or of a body of the world, at its own size; None without a model."""
+    return shape_named(model) if model else None
 
 
 def box(size: Size) -> ModelShape:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from msgspec import Struct
 
 from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions, positions_of
-from semmap.ontology.model_shapes import own_size_m
+from semmap.ontology.model_shapes import is_of_world, model_in_world, own_size_m
 from semmap.schemas.attachments import holder_of
 from semmap.schemas.entities import Entity, Pose, Size
 from semmap.schemas.polygons import EXTENT
@@ -38,12 +40,29 @@ class PlacedEntity(Struct, frozen=True, kw_only=True, array_like=True):
             pose=entity.pose,
             size_m=entity.size_m,
             place=entity.place,
-            model=entity.model,
+            model=model_of(entity),
             extent=extent_in(entity),
             held_by=holder_in(entity),
             joints=joints_in(entity),
             fixed=entity.fixed,
         )
+
+
+def model_of(entity: Entity | PlacedEntity) -> str:
+    """Return the model of an entity's shape: its body in the world file, or that of its class."""
+    if isinstance(entity, PlacedEntity) or entity.place:
+        return entity.model
+    return model_in_world(entity.name, entity.model, entity.size_m)
+
+
+def name_shape_source(entity: Entity) -> Literal["", "world", "model", "box"]:
+    """Return whence the shape of an entity is: the world file, its model, or its size. "" for a place."""
+    if entity.place:
+        return ""
+    model = model_of(entity)
+    if is_of_world(model):
+        return "world"
+    return "model" if model and own_size_m(model) is not None else "box"
 
 
 def holder_in(entity: Entity | PlacedEntity) -> str:
@@ -59,7 +78,8 @@ def joints_in(entity: Entity | PlacedEntity) -> Positions:
         return entity.joints
     if not entity.properties:
         return AS_DRAWN
-    return positions_of(entity.model, entity.size_m or own_size_m(entity.model), entity.properties)
+    model = model_of(entity)
+    return positions_of(model, entity.size_m or own_size_m(model), entity.properties)
 
 
 def extent_in(entity: Entity | PlacedEntity) -> str:

@@ -11,7 +11,7 @@ from semmap.nodes.kb_node.relations.geometry.convex import Convex, translate
 from semmap.nodes.kb_node.relations.geometry.forms import Bounds, Form, Matrix, form_of, region_form
 from semmap.nodes.kb_node.relations.geometry.lazy_property import lazy_property
 from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions
-from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity, extent_in, joints_in
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity, extent_in, joints_in, model_of
 from semmap.ontology.model_shapes import Interior, own_size_m
 from semmap.schemas.entities import Entity, Pose, Size, Vector
 
@@ -261,10 +261,11 @@ def shape_of(entity: Entity | PlacedEntity) -> Shape:
     size = entity.size_m
     if entity.place:
         return None, size, AS_DRAWN
-    if size is None and entity.model:
-        size = own_size_m(entity.model)
+    model = model_of(entity)
+    if size is None and model:
+        size = own_size_m(model)
     if size is None:
         return None, None, AS_DRAWN
     if isinstance(entity, Entity) and not entity.properties:
-        return entity.model, size, AS_DRAWN
-    return entity.model, size, joints_in(entity)
+        return model, size, AS_DRAWN
+    return model, size, joints_in(entity)

@@ -214,7 +214,7 @@ def over(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
 def inside(inner: Solid, outer: Solid, limits: Thresholds) -> Measure | None:
     """Return the share of a volume within a hollow of the other solid.
 
-    If the object sticks out of an open hollow in which it stands, such as an umbrella, it is the share of its
+    If the object sticks out of a hollow in which it stands, such as an umbrella, it is the share of its
     base. None without a hollow, or if that is smaller.
     """
     if not outer.hollows or inner is outer or inner.is_place or not inner.is_measured:
@@ -253,9 +253,9 @@ def _compute_share_in(inner: Solid, outer: Solid, hollow: Interior) -> float:
 
 
 def is_holder(hollow: Interior) -> bool:
-    """Return whether a hollow is open and deeper than a tray, so that objects may stick out of it."""
+    """Return whether a hollow is deeper than that of a tray, so that objects may stick out of it."""
     (x0, y0, z0), (x1, y1, z1) = hollow.low, hollow.high
-    return hollow.open and z1 - z0 >= _HOLDER_DEPTH * min(x1 - x0, y1 - y0)
+    return z1 - z0 >= _HOLDER_DEPTH * min(x1 - x0, y1 - y0)
 
 
 def _compute_base_share_in(inner: Solid, outer: Solid, hollow: Interior, limits: Thresholds) -> float:

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud, Floats
 from semmap.nodes.perception_node.input.files import units
-from semmap.nodes.perception_node.input.files.image_files import opened, pose_of
+from semmap.nodes.perception_node.input.files.image_files import pose_of
 from semmap.nodes.perception_node.input.projection import cloud_of, fits, thinned, thinning
+from semmap.nodes.runtime.pictures import open_picture
 from semmap.schemas import codec
 from semmap.schemas.errors import BadFile
 from semmap.schemas.wording import few, sentence
@@ -82,10 +83,10 @@ def read_frame(folder: Path) -> FileFrame:
     try:
         camera = _camera(folder / CAMERA)
         of = COLOUR
-        with opened(folder / COLOUR) as image:
+        with open_picture(folder / COLOUR) as image:
             rgb = np.asarray(image.convert("RGB"))
         of = DEPTH
-        with opened(folder / DEPTH) as image:
+        with open_picture(folder / DEPTH) as image:
             numbers = np.asarray(image) if image.mode in ("I;16", "I;16B", "I;16L", "I") else None
             is_float = image.mode == "F"
         if is_float:

@@ -9,16 +9,15 @@ import msgspec
 import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
-from PIL import Image
 
 from semmap.nodes.perception_node.input.cloud import Cloud, Transform
 from semmap.nodes.perception_node.input.files import units
 from semmap.nodes.perception_node.input.projection import cloud_of, fits, is_pose
+from semmap.nodes.runtime.pictures import open_picture
 from semmap.schemas import codec
 from semmap.schemas.wording import sentence
 
 _DEPTH_MODES = ("I;16", "I;16B", "I", "F")
-_MOST_PIXELS = 50_000_000
 _MM_M = 0.001
 
 
@@ -72,7 +71,7 @@ def pose_of(numbers: tuple[Any, ...] | None) -> Transform | None:
 
 def is_depth(path: Path) -> bool:
     """Return whether an image is of depth: 16 bits or more in one channel. Raises ValueError, OSError."""
-    with opened(path) as image:
+    with open_picture(path) as image:
         return image.mode in _DEPTH_MODES
 
 
@@ -81,7 +80,7 @@ def read_pictures(depth: Path, color: Path | None, camera: PinholeCamera) -> Clo
     depth_m = _depth_m(depth, camera)
     colors = None
     if color is not None:
-        with opened(color) as image:
+        with open_picture(color) as image:
             colors = np.asarray(image.convert("RGB"))
         if colors.shape[:2] != depth_m.shape:
             (h, w), (height, width) = colors.shape[:2], depth_m.shape
@@ -100,7 +99,7 @@ def read_pictures(depth: Path, color: Path | None, camera: PinholeCamera) -> Clo
 
 def _depth_m(path: Path, camera: PinholeCamera) -> NDArray[np.float32]:
     """Return depth (H, W) [m]. Raises ValueError for values that seem to be in another unit, and OSError."""
-    with opened(path) as image:
+    with open_picture(path) as image:
         numbers, is_float = np.asarray(image, dtype=np.float32), image.mode == "F"
     if camera.depth_scale is not None:
         return np.asarray(numbers * np.float32(camera.depth_scale), np.float32)
@@ -108,23 +107,3 @@ def _depth_m(path: Path, camera: PinholeCamera) -> NDArray[np.float32]:
     if (doubt := units.doubt(numbers, scale_m)) is not None:
         raise ValueError(f'{doubt}; set "depth_scale": {doubt.scale_m:g} in the intrinsics')
     return np.asarray(numbers * np.float32(scale_m), np.float32)
-
-
-def opened(path: Path) -> Image.Image:
-    """Open and load an image. Raises ValueError if it is invalid or too big, and OSError."""
-    try:
-        image = Image.open(path)
-        try:
-            if image.width * image.height > _MOST_PIXELS:
-                raise ValueError(f"an image of {image.width} x {image.height} pixels is too big")
-            image.load()
-        except BaseException:
-            image.close()
-            raise
-    except (SyntaxError, Image.DecompressionBombError) as error:
-        raise ValueError(f"not an image: {error}") from None
-    except OSError as error:
-        if error.errno is not None:
-            raise
-        raise ValueError("not an image, or a truncated one") from None
-    return image

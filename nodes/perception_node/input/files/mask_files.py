@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 from typing import Any
 
 import msgspec
 import numpy as np
 
-from semmap.nodes.perception_node.input.files.image_files import opened
 from semmap.nodes.perception_node.input.files.mask_polygons import counts_of
 from semmap.nodes.perception_node.input.masks import Masks, masks_from_numbers, masks_from_runs
+from semmap.nodes.runtime.pictures import open_picture
 from semmap.schemas.errors import BadFile
 from semmap.schemas.perception import MaskRun
 from semmap.schemas.wording import sentence
@@ -26,10 +25,10 @@ def read_masks(path: Path, height: int, width: int) -> Masks:
             case ".json":
                 return masks_from_runs(_runs(path.read_bytes(), height, width), height, width)
             case ".png":
-                with opened(path) as image:
+                with open_picture(path) as image:
                     numbers = np.asarray(image)
             case ".npy":
-                numbers = np.lib.format.read_array(io.BytesIO(path.read_bytes()), allow_pickle=False)
+                numbers = np.lib.format.open_memmap(path, mode="r")  # its header may claim any size
             case other:
                 raise ValueError(f"masks are .json, .png or .npy files, not '{other}'")
         if numbers.shape != (height, width) or numbers.dtype.kind not in "iu":

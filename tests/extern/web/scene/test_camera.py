@@ -47,6 +47,7 @@ def test_distant_outliers_are_ignored():
     near = [entity(f"chair{i}", at=pose(i, 0.0)) for i in range(5)]
     points = extent([*near, entity("lost", at=pose(5000.0, 0.0))])
     assert points[:, 0].max() < 10.0
+    assert extent([*near, entity("away", at=pose(60.0, 0.0))])[:, 0].max() < 10.0
 
 
 @pytest.mark.parametrize(("target", "yaw_rad"), [((1, 0, 0), 0.0), ((0, 1, 0), 1.5708), ((-1, 0, 0), 3.1416)])

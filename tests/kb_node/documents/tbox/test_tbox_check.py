@@ -2,6 +2,7 @@ from pathlib import Path
 
 import pytest
 
+from semmap.nodes.extern.cli.output import show_tbox
 from semmap.nodes.kb_node.documents.tbox.tbox_check import check
 from semmap.ontology import HOUSEHOLD_TTL
 from semmap.schemas import errors
@@ -42,6 +43,15 @@ def test_the_contents_of_an_ontology_are_reported(report, tmp_path):
     assert found.outside_rl == {"existential restriction as a superclass": 1}
     assert found.ambiguous == {"Cup": {"more:Cup": "http://o.org/more#Cup", "o:Cup": "http://o.org/o#Cup"}}
     assert (found.inconsistent, found.unsatisfiable, found.untried) == ("", (), 0)
+
+
+def test_rules_and_shapes_are_counted(report):
+    found = report(
+        "[] a <http://www.w3.org/2003/11/swrl#Imp> . :s a <http://www.w3.org/ns/shacl#NodeShape> ."
+    )
+    assert found.inert == {"SHACL shape": 1, "SWRL rule": 1}
+    lines = [" ".join(line.split()) for line in show_tbox.report(found)]
+    assert "ignored 1 x SWRL rule (stored, but not evaluated)" in lines
 
 
 def test_a_class_with_impossible_members_is_unsatisfiable(report):

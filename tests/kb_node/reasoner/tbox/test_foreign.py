@@ -54,11 +54,20 @@ HARMLESS = {
     "a chain of one": ":over owl:propertyChainAxiom ( :in ) .",
     "a broken list": ":Broken owl:unionOf :nowhere . :Broken owl:intersectionOf [ rdf:first :Cup ] .",
     "a disjoint union": ":Vessel owl:disjointUnionOf ( :Cup :Pot ) .",
+    "lists with words of the vocabulary": "[] :ignored ( rdf:type owl:Class ) ; :among ( [ :path rdf:type ] ) .",
     "a deprecated class": ":Old a owl:DeprecatedClass , owl:Class ; owl:deprecated true .",
 }
 INSTEAD = {
     "classes that are the same": (":Cup owl:sameAs :Becher .", "classes or properties are compared"),
     "types by another name": (":isA rdfs:subPropertyOf rdf:type .", "vocabulary"),
+    "a chain of types": (
+        ":isA owl:propertyChainAxiom :l . :l rdf:first :in ; rdf:rest :m . :m rdf:first rdf:type ; rdf:rest rdf:nil .",
+        "vocabulary",
+    ),
+    "an individual that is a word of the vocabulary": (
+        ":x :one :y , rdf:type . :one a owl:FunctionalProperty .",
+        "the same as another",
+    ),
     "an individual that is a value": (
         ":x :one :y , 1 . :one a owl:FunctionalProperty .",
         "the same as a value",
@@ -150,6 +159,7 @@ OUTSIDE = {
     "[ owl:intersectionOf ( :B [ owl:onProperty :p ; owl:someValuesFrom :C ] ) ] .",
     "union in an equivalence": ":A owl:unionOf ( :B :C ) .",
     "disjoint union": ":A owl:disjointUnionOf ( :X :Y ) .",
+    "key without properties": ":A owl:hasKey () .",
     "reflexive property": ":p a owl:ReflexiveProperty .",
     "datatype ENTITY": ":d rdfs:range xsd:ENTITY .",
     "class of the vocabulary as a class": ":A rdfs:subClassOf rdfs:Class .",

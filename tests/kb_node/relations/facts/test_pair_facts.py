@@ -5,18 +5,18 @@ import random
 import pytest
 from msgspec import structs
 
+from benchmarks.relations.situations import about_y
 from semmap.nodes.kb_node.relations.facts.pair_facts import PairFacts, measure_pair
 from semmap.nodes.kb_node.relations.facts.pair_properties import PairProperties
 from semmap.nodes.kb_node.relations.measuring import crowds
 from semmap.nodes.kb_node.relations.measuring.crowds import MOST
-from semmap.nodes.kb_node.relations.measuring.relation_table import MIRRORED
+from semmap.nodes.kb_node.relations.measuring.relation_table import MIRRORED, PAIR_RELATIONS
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.ontology import vocabulary as v
-from semmap.schemas.entities import Pose
 from tests.depth import tries
 from tests.kb_node.relations.entities import ROOM, TABLE, TOP, thing
 
-EVERY = frozenset(MIRRORED)
+EVERY = frozenset(PAIR_RELATIONS)
 SUB, INVERSE = v.iri(v.RDFS + "subPropertyOf"), v.iri(v.OWL + "inverseOf")
 
 
@@ -24,6 +24,11 @@ def some_things(dice):
     made = [ROOM, TABLE, thing("table2", (1.7, 0.2, 0.0)), thing("shelf1", (-2.0, 0.0, 0.0), "bookshelf")]
     made += [thing(f"chair{k}", (dice.uniform(-2, 2), dice.uniform(-2, 2), 0.0)) for k in range(3)]
     made += [thing("board1", (0.8, 1.5, 0.0), "box", size=(2.2, 0.3, 0.1))]
+    made += [
+        thing(f"plank{k}", (0.3 * k - 1.0, 1.3, 0.001), "", size=(0.02, 0.2, 0.9), turn=about_y(-15.0))
+        for k in range(3)
+    ]
+    made += [thing(f"post{k}", (0.3 * k - 1.25, 1.3, 0.0), "", size=(0.04, 0.3, 1.0)) for k in range(3)]
     return made + [
         thing(f"cup{k}", (dice.uniform(-0.5, 0.5), dice.uniform(-0.3, 0.3), TOP)) for k in range(6)
     ]
@@ -31,7 +36,13 @@ def some_things(dice):
 
 def facts(pairs, there):
     names = [entity.name for entity in there]
-    return {(a, r, b) for a in names for b in names if a < b for r in MIRRORED if pairs.holds(a, r, b)}
+    return {
+        (a, r, b)
+        for a in names
+        for b in names
+        for r in PAIR_RELATIONS
+        if (a < b or r not in MIRRORED) and pairs.holds(a, r, b)
+    }
 
 
 def rebuilt(there, whole=EVERY, some=()):
@@ -42,7 +53,14 @@ def rebuilt(there, whole=EVERY, some=()):
 
 @pytest.mark.parametrize("seed", range(tries(6)))
 @pytest.mark.parametrize(
-    ("whole", "some"), [(EVERY, ()), (("isNextTo",), ()), ((), ("table1", "cup3")), (("isNear",), ("cup1",))]
+    ("whole", "some"),
+    [
+        (EVERY, ()),
+        (("isNextTo",), ()),
+        (("isLeaningAgainst",), ()),
+        ((), ("table1", "cup3")),
+        (("isNear",), ("cup1",)),
+    ],
 )
 def test_stored_pairs_equal_a_full_search(seed, whole, some):
     dice = random.Random(seed)
@@ -59,7 +77,8 @@ def test_stored_pairs_equal_a_full_search(seed, whole, some):
         else:
             x, y, z = dice.choice(spots)
             at = (x + dice.choice([0.0, 0.1, 0.4]), y, z)
-            there[name] = structs.replace(there[name], pose=Pose(position_m=at))
+            pose = structs.replace(there[name].pose, position_m=at)
+            there[name] = structs.replace(there[name], pose=pose)
             changed = pairs.update([there[name]])
         now = rebuilt(there.values(), whole, some)
         assert facts(pairs, there.values()) == now

@@ -9,7 +9,6 @@ from PIL import Image
 from semmap.nodes.perception_node.input.files.image_files import (
     PinholeCamera,
     is_depth,
-    opened,
     pose_of,
     read_camera,
     read_pictures,
@@ -112,22 +111,3 @@ def test_depth_is_a_single_channel_of_16_bits_or_more(tmp_path):
     assert is_depth(depth(tmp_path))
     assert is_depth(depth(tmp_path, 1.5, np.float32, "depth.tiff"))
     assert not is_depth(color(tmp_path))
-
-
-def test_what_is_no_picture_or_a_truncated_or_huge_one_is_told(tmp_path, monkeypatch):
-    whole = color(tmp_path)
-    assert opened(whole).size == (WIDTH, HEIGHT)
-    cut = tmp_path / "cut.png"
-    cut.write_bytes(whole.read_bytes()[:60])
-    text = tmp_path / "text.png"
-    text.write_text("nothing to see")
-    for path in (cut, text):
-        with pytest.raises(ValueError, match="not an image"):
-            opened(path)
-    with pytest.raises(FileNotFoundError):
-        opened(tmp_path / "nothing.png")
-    monkeypatch.setattr(
-        "semmap.nodes.perception_node.input.files.image_files._MOST_PIXELS", WIDTH * HEIGHT - 1
-    )
-    with pytest.raises(ValueError, match="an image of 40 x 30 pixels is too big"):
-        opened(whole)

@@ -95,3 +95,26 @@ def test_images_of_another_size_or_of_no_numbers(tmp_path):
         read_masks(tmp_path / "b.npy", 2, 3)
     with pytest.raises(BadFile, match="cannot be read"):
         read_masks(tmp_path / "missing.png", 2, 3)
+
+
+def test_an_array_is_only_read_as_far_as_its_file_goes(tmp_path):
+    """A header may claim any size, and an array of objects is a program."""
+    path = tmp_path / "masks.npy"
+    with path.open("wb") as file:
+        header = {"descr": "<i8", "fortran_order": False, "shape": (10**6, 10**6)}
+        np.lib.format.write_array_header_1_0(file, header)
+    with pytest.raises(BadFile, match=r"masks\.npy: "):
+        read_masks(path, 10**6, 10**6)
+    np.save(path, np.array([[print, 1]], dtype=object), allow_pickle=True)
+    with pytest.raises(BadFile, match=r"masks\.npy: .*objects"):
+        read_masks(path, 1, 2)
+    for content in (
+        b"",
+        b"\x93NUMPY",
+        b"\x93NUMPY\x01\x00\xff\xff",
+        b"\x93NUMPY\x09\x00v\x00{",
+        b"PK\x03\x04",
+    ):
+        path.write_bytes(content)
+        with pytest.raises(BadFile, match=r"masks\.npy: "):
+            read_masks(path, 1, 2)

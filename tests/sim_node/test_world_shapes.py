@@ -1,0 +1,133 @@
+"""The bodies of a world file have shapes of their own, and relations are about these."""
+
+import mujoco
+import pytest
+
+from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.kb_node.relations.facts.precompute import compute_facts
+from semmap.nodes.kb_node.relations.facts.precompute_messages import ExpectedEntities, PrecomputeRequest
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity, name_shape_source
+from semmap.nodes.sim_node.models.sources import Models
+from semmap.nodes.sim_node.world import World
+from semmap.nodes.sim_node.world_file import write_world
+from semmap.nodes.sim_node.world_shapes import world_shapes
+from semmap.ontology import model_shapes
+from semmap.schemas import codec
+from tests.kb_node.relations.entities import thing
+
+WORLD = """<mujoco><worldbody>
+  <geom type="plane" size="5 5 .1"/>
+  <body name="bookshelf1" pos="0 0 0" euler="0 0 90">
+    <geom type="box" size=".15 .4 .01" pos="0 0 .4"/><geom type="box" size=".15 .4 .01" pos="0 0 .8"/>
+    <geom type="box" size=".15 .01 .7" pos="0 -.4 .7"/><geom type="box" size=".15 .01 .7" pos="0 .4 .7"/>
+  </body>
+  <body name="cup1" pos=".2 0 .46"><freejoint/><geom type="cylinder" size=".04 .05"/></body>
+  <body name="oven1" pos="0 2 0">
+    <geom type="box" size=".3 .3 .45" pos="0 0 .45"/><geom type="box" size=".3 .02 .45" pos="0 .28 1.35"/>
+    <geom type="box" size=".3 .3 .05" pos="0 0 1.75"/>
+  </body>
+  <body name="pot1" pos="0 1.9 .96"><freejoint/><geom type="cylinder" size=".1 .06"/></body>
+  <body name="chair1" pos="2 2 0">
+    <geom type="box" size=".2 .2 .15" pos="0 0 .15"/><geom type="box" size=".02 .2 .4" pos="-.18 0 .7"/>
+  </body>
+  <body name="cushion1" pos="2.03 2 .33"><freejoint/><geom type="box" size=".12 .12 .03"/></body>
+  <body name="box1" pos="4 0 0">
+    <geom type="box" size=".2 .2 .01" pos="0 0 .01"/>
+    <geom type="box" size=".01 .2 .2" pos=".19 0 .2"/><geom type="box" size=".01 .2 .2" pos="-.19 0 .2"/>
+    <geom type="box" size=".2 .01 .2" pos="0 .19 .2"/><geom type="box" size=".2 .01 .2" pos="0 -.19 .2"/>
+    <body name="flap" pos="-.2 0 .41">
+      <joint name="lid" type="hinge" axis="0 -1 0" range="0 100"/>
+      <geom type="box" size=".2 .2 .01" pos=".2 0 0"/>
+    </body>
+  </body>
+  <body name="apple1" pos="4 0 .06"><freejoint/><geom type="sphere" size=".04"/></body>
+  <body name="marker1" pos="1 1 0"><geom type="box" size=".1 .1 .1" contype="0" conaffinity="0"/></body>
+</worldbody></mujoco>"""
+
+
+@pytest.fixture(scope="module")
+def world():
+    return World(mujoco.MjSpec.from_string(WORLD))
+
+
+@pytest.fixture(scope="module")
+def shapes(world):
+    return world_shapes(world)
+
+
+@pytest.fixture
+def known(world, shapes, monkeypatch):
+    """Return the entities of the world, whose shapes are known."""
+    monkeypatch.setattr(model_shapes, "_world", {})
+    model_shapes.add_shapes({f"world/{name}": shape for name, shape in shapes.items()})
+    return entities(world)
+
+
+def entities(world):
+    return [
+        thing(b.name, b.pose.position_m, turn=b.pose.orientation_wxyz, size=b.size_m)
+        for b in world.scene().bodies
+    ]
+
+
+def computed(things):
+    facts = Facts()
+    facts.update(things)
+    return set(facts)
+
+
+EXPECTED = {
+    ("cup1", "isOn", "bookshelf1"),
+    ("pot1", "isOn", "oven1"),
+    ("cushion1", "isOn", "chair1"),
+    ("apple1", "isInside", "box1"),
+}
+
+
+def test_relations_are_about_the_bodies_of_the_world(known):
+    assert computed(known) == EXPECTED
+
+
+def test_without_them_they_are_about_the_models_of_their_classes(world, monkeypatch):
+    monkeypatch.setattr(model_shapes, "_world", {})
+    assert ("pot1", "isInside", "oven1") in computed(entities(world))
+
+
+def test_the_process_that_precomputes_facts_has_them_too(known):
+    placed = tuple(map(PlacedEntity.of, known))
+    request = PrecomputeRequest(
+        Facts().space.limits, placed, ExpectedEntities([], []), model_shapes.added_shapes()
+    )
+    sent = codec.decode(codec.encode(request), PrecomputeRequest)
+    assert sent.shapes.keys() >= {"world/oven1"}
+    assert ("isOn", "oven1") in compute_facts(sent).facts[0]["pot1"]
+
+
+def test_a_joint_moves_the_parts_below_it(shapes):
+    (lid,) = shapes["box1"].leaves
+    assert (lid.name, lid.kind) == ("lid", "hinge")
+    assert lid.anchor == pytest.approx((-0.2, 0.0, 0.41))
+    assert len(lid.parts) == 1
+    (room,) = shapes["box1"].interiors
+    assert room.behind == ("lid",)
+
+
+def test_get_names_the_source_of_a_shape(known):
+    sources = {entity.name: name_shape_source(entity) for entity in known}
+    assert sources["oven1"] == "world"
+    assert sources["marker1"] == "box"  # nothing of it collides
+    grown = thing("oven1", (0.0, 2.0, 0.0), size=(0.9, 0.9, 0.9))
+    assert name_shape_source(grown) == "model"
+
+
+def test_bodies_of_earlier_worlds_remain_in_the_file(tmp_path, monkeypatch):
+    monkeypatch.setattr(model_shapes, "_world", {})
+    target = tmp_path / "data" / "world_shapes.json"
+    for name in ("cup1", "mug2"):
+        path = tmp_path / "world.xml"
+        path.write_text(
+            f'<mujoco><worldbody><body name="{name}"><geom size=".1"/></body></worldbody></mujoco>'
+        )
+        write_world(path, Models(), target)
+    model_shapes.add_world(target)
+    assert model_shapes.added_shapes().keys() >= {"world/cup1", "world/mug2"}
