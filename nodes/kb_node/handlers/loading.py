@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import uuid
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from functools import partial
 from typing import Final, TypeVar
 
@@ -13,8 +13,9 @@ from semmap.nodes.kb_node.answers import dry_runs
 from semmap.nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf
 from semmap.nodes.kb_node.documents.isolated_parser import IsolatedParser
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
-from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, ReportProgress, effects
+from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, Report, ReportProgress, effects
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.storage.journal import Journal
@@ -25,11 +26,17 @@ from semmap.schemas.bridge import LoadDocument, Loaded, LoadTBox
 from semmap.schemas.calls import Handler, by_verb
 from semmap.schemas.commits import Commit, Effects, Transaction
 from semmap.schemas.entities import Entity
+from semmap.schemas.explanations import Triple
 from semmap.schemas.packing import unpacked
 
 _MOST_READ: Final = 8
 """Documents that are read in the other process, or wait for it."""
 _AGAIN_S: Final = 5.0
+_MANY_AXIOMS: Final = 1000
+"""Triples of a map document with axioms that are applied without a trial."""
+_AXIOMS_S: Final = 30.0
+"""Time limit of the trial, during which the node serves no other requests."""
+_BEAT_S: Final = 0.2
 _Progress = Callable[[int], None]
 T = TypeVar("T")
 
@@ -115,10 +122,31 @@ class LoadHandlers:
             if self._map.seq == before:
                 self._sparql.discard_prepared()
 
+    def _require_quick_axioms(self, triples: Iterable[Triple], filename: str, report: Report) -> None:
+        """Try very many axioms of a map document in another process. Raises BadFile if that takes long.
+
+        The map must then be computed again with them, on the thread of the node.
+        """
+        axioms = {triple for triple in triples if is_schema(triple)}.difference(self._map.tbox)
+        if len(axioms) <= _MANY_AXIOMS:
+            return
+        try:
+            with IsolatedParser(wall_s=_AXIOMS_S) as trial, ThreadPoolExecutor(1) as thread:
+                trying = thread.submit(trial.close_tbox, [*self._map.tbox, *axioms], filename)
+                while not wait([trying], _BEAT_S).done:
+                    report(f"{len(axioms):,} axioms to try")
+                trying.result()
+        except errors.BadFile:
+            raise errors.BadFile(
+                f"{filename or 'the file'}: its {len(axioms):,} axioms take too long to apply with a map;"
+                " to load them into the TBox use --tbox --extend"
+            ) from None
+
     def _commit_document(self, load: LoadDocument, read: Callable[[_Progress], rdf.Document]) -> Loaded:
         with self._report_progress(f"loading {load.filename or 'a file'}") as report:
             triples = read(lambda count: report(f"{count:,} triples read")).triples
             report(f"{len(triples):,} triples to check and write")
+            self._require_quick_axioms(triples, load.filename, report)
             transaction, filtered, replaced = document_change.make_document_transaction(
                 self._map, load, triples
             )

@@ -2,11 +2,15 @@
 
 from contextlib import nullcontext
 
+import pytest
+
 from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.handlers import loading as handlers_loading
 from semmap.nodes.kb_node.handlers.changes import ChangeHandlers
 from semmap.nodes.kb_node.handlers.loading import LoadHandlers
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from semmap.schemas.bridge import LoadDocument
 from semmap.schemas.entities import Pose
 
@@ -59,3 +63,19 @@ def test_a_load_counts_described_entities_and_not_those_with_changed_inferences(
     }  # it is a Filled_Thing now
     assert loaded.names == ("apple9",)
     assert said[-1] == f"loading apple.nt: {len(star)} triples to check and write"
+
+
+@pytest.mark.process
+def test_axioms_that_take_long_are_rejected_with_a_map(flat, monkeypatch):
+    """Every pair of restrictions of a property is compared."""
+    monkeypatch.setattr(handlers_loading, "_AXIOMS_S", 1.0)
+    some = "<http://o#A{}> rdfs:subClassOf [ a owl:Restriction ; owl:onProperty <http://o#p> ; {} ] ."
+    axioms = "\n".join(some.format(n, f"owl:someValuesFrom <http://o#A{n + 1}>") for n in range(2000))
+    head = f"@prefix owl: <{v.OWL}> . @prefix rdfs: <{v.RDFS}> .\n"
+    content = (head + axioms).encode()
+    load = LoadDocument(
+        id="1", source="file", content=content, filename="f.ttl", replace=False, skip_unknown=False
+    )
+    with pytest.raises(errors.BadFile, match=r"f\.ttl: its 8,000 axioms take too long .* --tbox --extend"):
+        loading(flat, []).on_load(load)
+    assert flat.seq == 1
