@@ -262,7 +262,8 @@ def _compute_base_share_in(inner: Solid, outer: Solid, hollow: Interior, limits:
     """Return the share of a base that stands in the lower half of a holder; of a leaning one, its foot."""
     (x0, y0, z0), (x1, y1, z1) = hollow.low, hollow.high
     above = inner.bottom - outer.position[2]
-    if not (is_holder(hollow) and max(FLOOR_M, z0 - limits.gap_m) < above <= (z0 + z1) / 2):
+    sticks_out = inner.top > outer.position[2] + z1
+    if not (sticks_out and is_holder(hollow) and max(FLOOR_M, z0 - limits.gap_m) < above <= (z0 + z1) / 2):
         return 0.0
     walls = [outer.to_map((x, y, 0.0))[:2] for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
     if not inner.is_upright:
