@@ -161,7 +161,7 @@ def test_entities_are_published_under_each_class_and_deleted_at_their_end(sessio
     commit = ask(session, "commit", transaction("pub1", chair("pub")))
     seen = dict(until(entities, 4))
     assert seen.keys() == {keys.entity_key(c, "pub") for c in ("Chair", "Seat", "Object", "Physical_Thing")}
-    assert list(seen.values()) == [Described.of(entity) for entity in commit.changed] * 4
+    assert list(seen.values()) == [Described.of(entity, shape="model") for entity in commit.changed] * 4
     iri = v.entity_iri("pub")
     door = transaction("pub2", [(iri, v.RDF_TYPE, v.dm("Door"))], [(iri, v.RDF_TYPE, v.dm("Chair"))])
     ask(session, "commit", door)

@@ -215,12 +215,15 @@ class Reconciler:
         return then(reply, lambda moved: self.scene.add(moved.bodies))
 
     def when_placed(self, name: str, execute: Callable[[], Future[T]]) -> Future[T]:
-        """Return the result of `execute()`, called once body and joints have the orders of the map."""
+        """Return the result of `execute()`, called once the body is there as the map orders it."""
         return self._waiting.run(name, execute)
 
     def _is_to_be_placed(self, name: str) -> bool:
         if not self.scene.known:
             return False
+        entity = self._dispatcher.map.entities.get(name)
+        if entity is not None and self.body_state(entity).status == "pending":
+            return True
         wanted = self.wanted((name,))
         return bool(wanted.place or wanted.joints)
 

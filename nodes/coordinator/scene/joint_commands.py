@@ -42,6 +42,8 @@ class JointCommands:
                     f"no simulator is running; to change only the map: semmap set {entity.name} isOpen"
                     f" {_is_open(command)}"
                 )
+            if state.status == "pending":
+                return self._reconciler.when_placed(entity.name, lambda: self.move(command))
             raise errors.Refused(
                 f"{entity.name} has no body to {command.VERB}: {state.detail or state.status}"
             )

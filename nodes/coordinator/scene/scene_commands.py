@@ -64,10 +64,10 @@ class SceneCommands:
         require_carry(command)
         if self._truth == "replayed":
             raise errors.Refused("this scene is a replay of the past; nothing in it can be moved")
-        body = self._reconciler.scene.bodies.get(command.name)
-        if body is None:
+        if command.name not in self._reconciler.scene.bodies:
             state = self._reconciler.body_state(self._dispatcher.map.entity(command.name))
-            raise errors.Refused(f"{command.name} has no body to move: {state.detail or state.status}")
+            if state.status != "pending":
+                raise errors.Refused(f"{command.name} has no body to move: {state.detail or state.status}")
         wanted = placing_of(command)
         if wanted is None:
             if command.at is None:
@@ -95,7 +95,10 @@ class SceneCommands:
     def _move_body(self, command: c.Move) -> Future[Moved]:
         body = self._reconciler.scene.bodies.get(command.name)
         if body is None:
-            raise errors.Refused(f"{command.name} lost its body before it could be moved")
+            entity = self._dispatcher.map.entities.get(command.name)
+            state = None if entity is None else self._reconciler.body_state(entity)
+            reason = "it was removed" if state is None else state.detail or state.status
+            raise errors.Refused(f"{command.name} has no body to move: {reason}")
         if not command.carry:
             return self._place(command, body, ())
         future: Future[Moved] = SingleThreadFuture()

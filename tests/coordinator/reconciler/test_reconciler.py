@@ -134,6 +134,35 @@ def test_a_manual_move_waits_until_the_map_s_order_is_executed(dispatcher):
     assert (done, first.result()) == (["chair2", "chair1"], "chair1")
 
 
+@pytest.mark.parametrize("failed", [{}, {"chair1": "its model file is broken"}])
+def test_a_manual_move_of_a_new_entity_waits_until_its_body_is_there_or_has_failed(dispatcher, failed):
+    asked = []
+    reconciler = Reconciler(
+        CoordinatorConfig("map"),
+        dispatcher,
+        immediate(dispatcher),
+        lambda call: asked.append(Future()) or asked[-1],
+        lambda text: None,
+    )
+    reconciler.scene.known = True
+    dispatcher.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
+
+    def execute():
+        future = Future()
+        future.set_result("chair1" in reconciler.scene.bodies)
+        return future
+
+    waiting = reconciler.when_placed("chair1", execute)
+    reconciler.reconcile()
+    assert not waiting.done()
+    body = standing(body_order(dispatcher.map.entity("chair1"), dispatcher.map.entity("chair1").pose))
+    bodies = () if failed else (body,)
+    asked[0].set_result(Spawned(bodies=bodies, failed=failed))
+    asked[1].set_result(Scene(run="r", version=1, stamp_ns=1, sim_time_s=0.0, world="w", bodies=bodies))
+    reconciler.reconcile()
+    assert waiting.result(timeout=0) is not bool(failed)
+
+
 def test_a_waiting_manual_move_is_tried_when_the_simulator_is_gone(dispatcher):
     reconciler = Reconciler(
         CoordinatorConfig("map"), dispatcher, immediate(dispatcher), lambda call: Future(), print

@@ -8,7 +8,6 @@ from typing import Final
 from semmap.nodes.kb_node.reasoner.data_ranges import read_range
 from semmap.nodes.kb_node.reasoner.explain.words import VerbPhrase, Words, article, is_uncountable
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
-from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.reasoner.terms import (
     FIRST,
     NIL,
@@ -36,6 +35,8 @@ class AxiomVerbalizer:
         self._values: dict[tuple[Term, Term], Term] = {}
         for s, p, o in triples:
             self._values.setdefault((s, p), o)
+        from semmap.nodes.kb_node.reasoner.rules.facts import Facts  # importing words does not load the rules
+
         self._facts = Facts(dict.fromkeys(triples))
         mentions = [triple for triple in triples if triple[1] not in (FIRST, REST)]
         self._mentioned = {term for s, _, o in mentions for term in (s, o)}

@@ -4,6 +4,8 @@ import pytest
 
 from semmap.nodes.extern.cli.app import execute
 
+pytestmark = pytest.mark.process  # files other than Turtle are parsed in a process
+
 SOUND = "Ontology(<http://o.org/o> <http://o.org/o/1> Import(<http://o.org/m>) Declaration(Class(<http://o.org/o#A>)))"
 UNSOUND = SOUND[:-1] + " SubClassOf(<http://o.org/o#A> owl:Nothing))"
 
