@@ -335,6 +335,7 @@ class _Foreground:
         if self._settings.web:
             lines["page"] = f"http://127.0.0.1:{self._settings.web_port}/?token={self._web_token}"
         lines |= {"try": f"semmap list{connect}", "stop": "Ctrl-C"}
+        self._say(f"{'system':<{_COLUMN}} ready in {time.monotonic() - self._begun_s:.0f} s")
         self._say("")
         for what, value in lines.items():
             self._say(f"{what:<{_COLUMN}} {value}")

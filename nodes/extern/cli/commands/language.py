@@ -13,6 +13,7 @@ from semmap.nodes.extern.cli.angles import from_pose
 from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import print_json, print_lines, with_client
 from semmap.nodes.extern.cli.output import lines, lu4r
+from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.shell_completion import entity_names
 from semmap.schemas import errors
 
@@ -65,14 +66,16 @@ def tell(client: Client, name: str | None, words: int, format: str) -> None:
 def find(client: Client, text: str, format: str, **fields: Any) -> None:
     """Find the entities that a noun phrase describes.
 
-    The phrase is English or Italian. If several entities match, a clarification question is printed. The exit
-    status is 1 if none matches.
+    The phrase is English or Italian. If several entities match, a clarification question is printed. If none
+    matches, the nearest ones are printed to stderr, and the exit status is 1.
     """
     found = client.find(text=text, **fields)
     if format == "json":
         print_json(found)
     else:
-        print_lines(list(lines.format_matches(found)))
+        out = sys.stderr if found.outcome == "none" else None
+        for line in lines.format_matches(found):
+            print_escaped(line, file=out)
     if found.outcome == "none":
         sys.exit(errors.Refused.exit_status)
 
