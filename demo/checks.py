@@ -24,7 +24,7 @@ def check_export(t: Tour) -> None:
     from demo.tour import EXPORT
 
     before = _said(t)
-    t.do("load", str(EXPORT), "--replace", holds="adds nothing to the map")
+    t.do("load", str(EXPORT), "--replace", holds="changes nothing in the map")
     t.do("clear")
     t.do("load", str(EXPORT), holds=f"loaded {len(before)} entities")
     if _said(t) != before:

@@ -26,17 +26,33 @@ def clarifying_question(names: Sequence[str], resolver: Resolver) -> str:
     describing = resolver.index.nouns[resolver.language].describing
     wording = describing.wording
     items = [resolver.index.items[name] for name in names[: _MOST + 1]]
-    for tails in _distinguish(items, resolver):
-        choices = _choices(items, tails, resolver)
-        if all(
-            _denotes(choice, names, resolver) == (item.name,)
-            for choice, item in zip(choices, items, strict=True)
-        ):
-            break
+    choices = _choices(items, _best_tails(items, names, resolver), resolver)
     if len(choices) > _MOST:
         choices = [*choices[:_MOST], wording["another"]]
     listed = ", ".join(choices[:-1]) + wording["either"] + choices[-1]
     return describing.contract(wording["question"].format(listed))
+
+
+def _best_tails(items: Sequence[Item], names: Sequence[str], resolver: Resolver) -> list[_Tail]:
+    """Return phrases that denote the items when they are typed back.
+
+    If there are none for all items, those of one feature that denote most of them are used, and the names of
+    the others.
+    """
+    best: list[_Tail] = []
+    denoted = [False] * len(items)
+    for tails, features in _distinguish(items, resolver):
+        choices = _choices(items, tails, resolver)
+        found = [
+            _denotes(choice, names, resolver) == (i.name,) for choice, i in zip(choices, items, strict=True)
+        ]
+        if features and all(found):
+            return tails
+        if features == 1 and sum(found) > max(len(items) / 2, sum(denoted)):
+            best, denoted = tails, found
+    return [
+        tail if is_clear else name for tail, name, is_clear in zip(best or tails, tails, denoted, strict=True)
+    ]
 
 
 def _choices(items: Sequence[Item], tails: Sequence[_Tail], resolver: Resolver) -> list[str]:
@@ -73,21 +89,21 @@ def _denotes(choice: str, names: Sequence[str], resolver: Resolver) -> Sequence[
     return ()
 
 
-def _distinguish(items: Sequence[Item], resolver: Resolver) -> Iterator[list[_Tail]]:
-    """Yield unique phrases for the items: one feature, two features, and at last the names."""
+def _distinguish(items: Sequence[Item], resolver: Resolver) -> Iterator[tuple[list[_Tail], int]]:
+    """Yield unique phrases for the items, and of how many features: one, two, and at last the names (0)."""
     features = [[feature(item, resolver) for item in items] for feature in _FEATURES]
     features.append(_across(items, resolver))
     for candidates in features:
         if (apart := _apart(candidates)) is not None:
-            yield apart
+            yield apart, 1
     apart_from_kind = [
         found for feature, found in zip(_FEATURES, features, strict=False) if feature is not _kind
     ]
     for first, second in combinations([*apart_from_kind, features[-1]], 2):
         if (apart := _apart([_joined(a, b) for a, b in zip(first, second, strict=True)])) is not None:
-            yield apart
+            yield apart, 2
     called = resolver.index.nouns[resolver.language].describing.wording["called"]
-    yield [(called.format(item.name), False) for item in items]
+    yield [(called.format(item.name), False) for item in items], 0
 
 
 def _joined(one: _Feature, other: _Feature) -> _Feature:

@@ -47,6 +47,11 @@ def test_every_option_of_a_question_can_be_typed_back(flat, text, either):
         assert (answered.outcome, names(answered)) == ("one", {candidate.entity}), option
 
 
+def test_only_options_without_a_clear_description_are_names(flat):
+    question = EntitySearch(flat).find(Find(text="the book")).found.question
+    assert question == "Which one: the book on the desk, the one called book2 or the one on the book?"
+
+
 def names(found):
     return {candidate.entity for candidate in found.candidates}
 
