@@ -538,8 +538,8 @@ class Infer(Command[Inferred], frozen=True, tag="infer"):
 class Explain(Command[Explanation], frozen=True, tag="explain"):
     """Explain why a triple holds, or with `negated` why it cannot hold.
 
-    `name`, `predicate` and `value` are local names, IRIs in <> or literals. Triples that no rule derives are
-    decided by refutation: two individuals are different if identity would be a contradiction.
+    `name`, `predicate` and `value` are local names, labels, IRIs in <> or literals. Triples that no rule
+    derives are decided by refutation: two individuals are different if identity would be a contradiction.
     """
 
     ROLES: ClassVar[Roles] = ANYBODY

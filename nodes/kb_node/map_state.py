@@ -19,6 +19,7 @@ from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.kb_node.relations.facts.precomputation import Precomputation
 from semmap.nodes.kb_node.relations.facts.precompute_messages import PrecomputeRequest
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
+from semmap.nodes.kb_node.relations.selection import resolve_single
 from semmap.nodes.runtime import memory
 from semmap.ontology import vocabulary as v
 from semmap.ontology.model_shapes import added_shapes
@@ -76,6 +77,15 @@ class MapState:
         if name in self.by_name:
             return self.by_name[name]
         raise errors.UnknownName(f"no entity is named '{name}'{errors.did_you_mean(name, self.by_name)}")
+
+    def resolve(self, word: str) -> Entity:
+        """Return the entity of that name, or the only one with that label or class.
+
+        Raises UnknownName; BadRequest if the word refers to several.
+        """
+        if word in self.by_name:
+            return self.by_name[word]
+        return self.by_name[resolve_single(tuple(self.entities()), word)]
 
     def find(self, name: str) -> Entity | None:
         """Return the entity of that name, or None."""

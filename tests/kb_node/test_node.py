@@ -233,7 +233,7 @@ def test_two_clients_see_one_map(bench, session):
                 transaction("again", add=[NewEntity(name="two", class_iri=v.bare(v.dm("Chair")))]),
             )
         ask(other, "commit", transaction("gone", retract=chair("two")))
-    with pytest.raises(errors.UnknownName, match="no entity is named 'two'"):
+    with pytest.raises(errors.UnknownName, match="label or class 'two'"):
         ask(session, "get", Get(name="two"))
 
 
@@ -337,7 +337,7 @@ def test_compressed_documents_are_loaded(session):
             errors.BadRequest,
             "not a valid N-Triples statement: a b c",
         ),
-        ("get", codec.encode({"name": "ghost9"}), errors.UnknownName, "no entity is named 'ghost9'"),
+        ("get", codec.encode({"name": "ghost9"}), errors.UnknownName, "label or class 'ghost9'"),
     ],
 )
 def test_an_invalid_request_is_answered_with_an_error(session, verb, payload, error, text):

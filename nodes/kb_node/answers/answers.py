@@ -39,11 +39,16 @@ def find_entities(semantic_map: SemanticMap, class_name: str | None) -> tuple[En
 
 
 def infer(semantic_map: SemanticMap, name: str) -> Inferred:
-    """Return the inferred facts about an entity, including those measured on demand. Raises UnknownName."""
+    """Return the inferred facts about an entity, including those measured on demand.
+
+    Raises UnknownName; BadRequest for an ambiguous word.
+    """
+    entity = semantic_map.resolve(name)
+    name = entity.name
     measured = set(
         pair_measurer(semantic_map.tbox, semantic_map.entities())(semantic_map.places.space(), name)
     )
-    subject = v.iri(semantic_map.entity(name).iri)
+    subject = v.iri(entity.iri)
     further = sorted(t for t in measured if t[0] == subject and not semantic_map.reasoner.holds(t))
     return _to_reply(chain(semantic_map.inferred(name), further), semantic_map.classes.qualified_names)
 

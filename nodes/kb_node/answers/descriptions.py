@@ -9,7 +9,6 @@ from semmap.nodes.kb_node.answers import answers
 from semmap.nodes.kb_node.answers.entity_queries import CurrentState
 from semmap.nodes.kb_node.answers.inventories import LARGEST, Inventories
 from semmap.nodes.kb_node.answers.sightings import Sightings
-from semmap.nodes.kb_node.relations.selection import resolve_single
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.language import nouns
 from semmap.nodes.language.generation import summary
@@ -37,9 +36,7 @@ class Descriptions:
 
         Raises UnknownName; BadRequest for an ambiguous word.
         """
-        name = query.name
-        if name is not None and self._map.find(name) is None:
-            name = resolve_single(tuple(self._map.entities()), name)
+        name = None if query.name is None else self._map.resolve(query.name).name
         description = self._describe(name, query.words)
         words = description.text.split()  # quoted labels may contain line breaks
         if len(words) > query.words:  # class labels may be that long

@@ -20,7 +20,7 @@ from semmap.nodes.kb_node.relations.facts.rules import COMPUTED
 from semmap.nodes.kb_node.relations.geometry.placed_entity import name_shape_source
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.relation_reports import explain_relation, list_locations, list_relations
-from semmap.nodes.kb_node.relations.selection import resolve_single, select_entities
+from semmap.nodes.kb_node.relations.selection import find_single, resolve_single, select_entities
 from semmap.nodes.kb_node.relations.support import describe_unsupported
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.history import HistoryReader
@@ -30,6 +30,7 @@ from semmap.schemas.bridge import Entities
 from semmap.schemas.commands import Explain, Get, Relations
 from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Explanation, Term, Triple
+from semmap.schemas.moments import When
 from semmap.schemas.relations import PHRASES, Described, Relation, RelationName
 
 _MEASURED: Final[dict[Term, tuple[RelationName, bool]]] = {
@@ -84,9 +85,9 @@ class CurrentState:
     def entity(self, query: Get) -> Described:
         """Return one entity, with its location and wrong assertions about it if `where`.
 
-        Raises UnknownName.
+        Raises UnknownName; BadRequest for an ambiguous word.
         """
-        entity = self._map.entity(query.name)
+        entity = self._map.resolve(query.name)
         if not query.where:
             return Described.of(entity)
         found = self._with_where(entity)
@@ -123,7 +124,7 @@ class CurrentState:
     def explain_measured(self, query: Explain) -> Explanation | None:
         """Return the measurement of a relation without a property in the TBox, or None.
 
-        Raises Refused if it does not hold, UnknownName.
+        Raises Refused if it does not hold, UnknownName; BadRequest for an ambiguous word.
         """
         relation = next((name for name in PHRASES if name == query.predicate), None)
         if relation is None or self._map.classes.property_names.find(relation) is not None:
@@ -131,7 +132,7 @@ class CurrentState:
         if query.negated:
             raise errors.BadRequest(f"the TBox has no property '{relation}', so nothing can exclude it")
         space = self._map.places.space()
-        ends = [self._map.entity(word).name for word in (query.name, query.value)]
+        ends = [self._map.resolve(word).name for word in (query.name, query.value)]
         for name in ends:
             if name not in space.solids:
                 raise errors.Refused(f"{name} has no position, so it has no spatial relations")
@@ -246,7 +247,7 @@ class PastState:
         """Return one entity; see `CurrentState.entity`. Wrong assertions are not reported."""
         if query.as_of is None:
             raise errors.InternalError("the query has no time")
-        entity = self._past.entity(query.name, query.as_of)
+        entity = self._entity(query.name, query.as_of)
         if not query.where:
             return Described.of(entity)
         space = self._space(self._past.entities(query.as_of, None, ()))
@@ -263,6 +264,15 @@ class PastState:
         named = _named(query, entities.get, lambda: everyone)
         is_fixed = named.name in entities and entities[named.name].fixed
         return tuple(list_relations(self._space(everyone), named, is_fixed=is_fixed))
+
+    def _entity(self, word: str, when: When) -> Entity:
+        try:
+            return self._past.entity(word, when)
+        except errors.UnknownName:
+            name = find_single(self._past.entities(when, None, ()), word)
+            if name is None:
+                raise
+        return self._past.entity(name, when)
 
     def _space(self, entities: Iterable[Entity]) -> Space:
         return Space(entities, self._map.classes.limits)

@@ -17,7 +17,7 @@ from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.relations.measuring.viewing import View
 from semmap.nodes.kb_node.relations.relation_cache import RelationCache
-from semmap.nodes.kb_node.relations.selection import is_in, is_on, resolve_single
+from semmap.nodes.kb_node.relations.selection import is_in, is_on
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
@@ -143,7 +143,7 @@ class EntitySearch:
         return View.of(viewer)
 
     def _named(self, word: str) -> str:
-        return word if self._map.find(word) is not None else resolve_single(tuple(self._map.entities()), word)
+        return self._map.resolve(word).name
 
 
 def item(entity: Entity) -> Item:

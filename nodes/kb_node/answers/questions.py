@@ -48,16 +48,16 @@ class StatementQuestion(NamedTuple):
 
 def parse_explain(semantic_map: SemanticMap, question: Explain) -> StatementQuestion:
     """Return the statement that `explain` is about. Raises UnknownName, UnknownClass, BadRequest."""
-    subject = term_resolution.resolve_individual(semantic_map, question.name)
     predicate = term_resolution.resolve_property(semantic_map, question.predicate)
+    subject = term_resolution.resolve_end(semantic_map, predicate, question.name)
     values = term_resolution.resolve_values(semantic_map, subject, predicate, question.value)
     return StatementQuestion(tuple((subject, predicate, value) for value in values), question.negated)
 
 
 def parse_could(semantic_map: SemanticMap, question: Could) -> StatementQuestion:
     """Return the statement that `could` is about. Raises UnknownName, UnknownClass, BadRequest."""
-    subject = term_resolution.resolve_individual(semantic_map, question.name)
     predicate = term_resolution.resolve_property(semantic_map, question.predicate)
+    subject = term_resolution.resolve_end(semantic_map, predicate, question.name)
     return StatementQuestion(
         ((subject, predicate, term_resolution.resolve_value(semantic_map, predicate, question.value)),)
     )

@@ -52,7 +52,7 @@ class RoutePlanning:
 
         def way() -> Way:
             present = entities()
-            ends = [parse_position(word) or _named(present, word) for word in (query.from_, query.to)]
+            ends = [parse_position(word) or resolve_single(present, word) for word in (query.from_, query.to)]
             return find_path(plan_of(present, query.walls), ends[0], ends[1], query.radius, query.heights)
 
         return self._run_in_thread(way)
@@ -63,11 +63,6 @@ class RoutePlanning:
             return lambda: self._past.entities(as_of, None, ())
         now = tuple(self._map.entities())
         return lambda: now
-
-
-def _named(present: Sequence[Entity], word: str) -> str:
-    """Return the name that a word means. Raises UnknownName; BadRequest for an ambiguous word."""
-    return word if any(entity.name == word for entity in present) else resolve_single(present, word)
 
 
 def plan_of(entities: Iterable[Entity], walls: tuple[Outline, ...] | None) -> Plan:

@@ -63,7 +63,8 @@ def parse_term(semantic_map: SemanticMap, word: str) -> Term | None:
 def resolve_individual(semantic_map: SemanticMap, word: str) -> Term:
     """Return an entity, another individual or a class that the map or its TBox names.
 
-    Raises UnknownName; BadRequest for an ambiguous name.
+    An entity may be given by a label or class that no other has. Raises UnknownName; BadRequest for an
+    ambiguous word.
     """
     if (entity := semantic_map.find(composed(word))) is not None:
         return v.iri(entity.iri)
@@ -82,7 +83,19 @@ def resolve_individual(semantic_map: SemanticMap, word: str) -> Term:
             raise errors.BadRequest(f"'{word}' is ambiguous: {errors.enumerated(names)}; say which")
         if there:
             return there.pop()
-    return v.iri(semantic_map.entity(word).iri)
+    return v.iri(semantic_map.resolve(composed(word)).iri)
+
+
+def resolve_end(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
+    """Return the individual or class that is the subject or object of a statement.
+
+    The name of a class means its only entity if the statement relates individuals. Raises UnknownName;
+    BadRequest for an ambiguous word.
+    """
+    may_be_class = predicate in RELATIONS.values() or _is_data(semantic_map.reasoner, predicate)
+    if word in semantic_map.classes.iris and not may_be_class:
+        return v.iri(semantic_map.resolve(composed(word)).iri)
+    return resolve_individual(semantic_map, word)
 
 
 def resolve_property(semantic_map: SemanticMap, word: str) -> Term:
@@ -115,7 +128,7 @@ def resolve_values(semantic_map: SemanticMap, subject: Term, predicate: Term, wo
         *semantic_map.reasoner.inferred(subject, predicate),
     )
     named = [o for _, _, o in held if (v.lexical(o) if o.startswith('"') else v.entity_name(o)) == word]
-    return named or [_resolve_absent_value(semantic_map, predicate, word)]
+    return named or [resolve_value(semantic_map, predicate, word)]
 
 
 def resolve_value(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
@@ -126,17 +139,7 @@ def resolve_value(semantic_map: SemanticMap, predicate: Term, word: str) -> Term
         return found
     if _is_data(semantic_map.reasoner, predicate):
         return _literal(semantic_map, predicate, word)
-    return resolve_individual(semantic_map, word)
-
-
-def _resolve_absent_value(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:
-    """Return a value that the subject does not have: an individual if there is one of that name."""
-    if _is_data(semantic_map.reasoner, predicate):
-        return _literal(semantic_map, predicate, word)
-    try:
-        return resolve_individual(semantic_map, word)
-    except errors.UnknownName:
-        return v.entity_iri(word)
+    return resolve_end(semantic_map, predicate, word)
 
 
 def _is_data(reasoner: Reasoner, predicate: Term) -> bool:

@@ -292,18 +292,27 @@ class QueryHandlers:
 
     def on_history(self, query: History) -> Future[tuple[LoggedCommit, ...]]:
         """Return commits of the history."""
+        if query.name is not None:
+            query = structs.replace(query, name=self._resolve_past(query.name))
         return self._aside.submit(self._past.history, query)
 
     def on_last_seen(self, query: LastSeen) -> Sighting | Future[Sighting]:
         """Return where an entity was last seen, or where it is."""
-        entity = self._map.find(query.name)
+        name = self._resolve_past(query.name)
+        entity = self._map.find(name)
         if entity is not None and not self.sightings.is_missing(entity):
             found = self.sightings.describe_present(entity)
             closed = find_closed_container(self._map, entity)
             if closed is None:
                 return found
             return structs.replace(found, text=f"{found.text}; {describe_closed(closed)}")
-        return self._aside.submit(self.sightings.describe_removed, query.name, entity)
+        return self._aside.submit(self.sightings.describe_removed, name, entity)
+
+    def _resolve_past(self, word: str) -> str:
+        """Return the name, present or former, that a word means. Raises UnknownName, BadRequest."""
+        if self._map.find(word) is not None:
+            return word
+        return self._past.resolve(word, tuple(self._map.entities()))
 
     def _seen(self, name: str) -> str:
         """Return when an entity of the map was last seen or placed, in words."""

@@ -170,9 +170,9 @@ def resolve_word(candidates: Sequence[Entity], word: str) -> frozenset[str]:
     A class in its exact spelling (`Table`) takes precedence over a label (`table`). A leading article is
     ignored unless it is part of a label.
     """
-    if not any(word == e.name for e in candidates) and (
-        names := [e.name for e in candidates if word in e.types]
-    ):
+    if any(word == e.name for e in candidates):
+        return frozenset((word,))
+    if names := [e.name for e in candidates if word in e.types]:
         return frozenset(names)
     folded = word.casefold().replace("_", " ")
     for words_of in (
@@ -201,6 +201,14 @@ def resolve_single(candidates: Sequence[Entity], word: str) -> str:
     if len(names) > 1:
         raise errors.BadRequest(f"'{word}' is ambiguous: {wording.few(names, 5)}; name one of them")
     return names[0]
+
+
+def find_single(candidates: Sequence[Entity], word: str) -> str | None:
+    """Return the one entity that a word refers to, or None for no entity. Raises BadRequest for several."""
+    try:
+        return resolve_single(candidates, word)
+    except errors.UnknownName:
+        return None
 
 
 def is_on(space: Space, solid: Solid, carriers: Set[str], left_out: Set[Fact]) -> bool:

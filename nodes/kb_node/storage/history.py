@@ -17,6 +17,7 @@ from semmap.nodes.kb_node.documents.tbox import tbox_validation
 from semmap.nodes.kb_node.entities import entity_reading
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.relations.selection import find_single
 from semmap.nodes.kb_node.storage.changelog import Changelog
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.ontology.entity_triples import find_earlier_names
@@ -197,7 +198,17 @@ class HistoryReader:
 
     def knows(self, name: str) -> bool:
         """Return whether an entity ever had this name, within the stored history."""
-        return name in self.initial_entities() or bool(self._journal.touching(name))
+        return bool(self._journal.touching(name)) or name in self.initial_entities()
+
+    def resolve(self, word: str, present: Sequence[Entity]) -> str:
+        """Return the present or former name that a word is, else the one entity in `present` that it means.
+
+        Raises UnknownName; BadRequest for a label or class that several have.
+        """
+        if not self.knows(word) and (name := find_single(present, word)) is not None:
+            return name
+        self._require_known(word)
+        return word
 
     def _require_known(self, name: str) -> None:
         if not self.knows(name):

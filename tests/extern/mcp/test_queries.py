@@ -40,7 +40,7 @@ def test_over_stdio_an_agent_finds_its_way_from_the_overview_to_a_thing(flat, cl
             assert inside["total"] == len(inside["entities"]) > 0
             found = await agent("get", name=inside["entities"][0]["name"])
             assert kitchen["name"] in json.dumps(found["facts"])
-            assert "no entity is named 'ghost'" in await agent.refused("get", name="ghost")
+            assert "label or class 'ghost'" in await agent.refused("get", name="ghost")
 
     run(session())
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from semmap.nodes.kb_node.answers import entity_queries, questions
+from semmap.nodes.kb_node.answers import answers, entity_queries, questions
 from semmap.nodes.kb_node.answers.past import fact_intervals
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.semantic_map import SemanticMap
@@ -62,6 +62,44 @@ def refused(semantic_map, name, predicate, value):
     with pytest.raises(errors.Refused) as caught:
         explain_relation(semantic_map, name, predicate, value)
     return str(caught.value)
+
+
+@pytest.mark.parametrize("word", ["laptop1", "laptop", "Laptop", "the laptop"])
+def test_one_rule_of_names_holds_in_every_query(flat, word):
+    now = entity_queries.CurrentState(flat)
+    then = entity_queries.PastState(flat, HistoryReader(flat._journal))
+    assert now.entity(Get(name=word)).name == then.entity(Get(name=word, as_of=1)).name == "laptop1"
+    assert answers.infer(flat, word) == answers.infer(flat, "laptop1")
+    text = explain_relation(flat, "laptop1", "isOn", "desk1").text
+    assert explain_relation(flat, word, "isOn", "desk1").text == text
+    assert explain_relation(flat, word, "isOn", "Desk").text == text
+    assert explain_relation(flat, word, "isOn", "the desk").text == text
+    assert explain_relation(flat, "desk", "supports", word).text.endswith(text)
+
+
+@pytest.mark.parametrize("word", ["chair", "Chair", "a chair"])
+def test_a_word_for_several_is_rejected_with_at_most_five(flat, word):
+    now, past = entity_queries.CurrentState(flat), HistoryReader(flat._journal)
+    for ask in (
+        lambda: now.entity(Get(name=word)),
+        lambda: entity_queries.PastState(flat, past).entity(Get(name=word, as_of=1)),
+        lambda: answers.infer(flat, word),
+        lambda: explain_relation(flat, "cup1", "isNear", word),
+        lambda: explain_relation(flat, word, "isLocatedIn", "kitchen1"),
+        lambda: past.resolve(word, past.entities(1)),
+    ):
+        with pytest.raises(errors.BadRequest, match=r"is ambiguous: .*chair1, chair2, chair3.*; name one"):
+            ask()
+
+
+def test_a_statement_about_an_unknown_entity_is_rejected_as_such(flat):
+    with pytest.raises(errors.UnknownName, match="label or class 'tabel1'; did you mean table1"):
+        explain_relation(flat, "cup1", "isOn", "tabel1")
+
+
+def test_a_name_precedes_labels_and_classes_of_others(flat):
+    assert flat.resolve("table1").name == "table1"
+    assert explain_relation(flat, "Chair", "subClassOf", "Object").text.startswith("every chair")
 
 
 def test_list_with_on_agrees_with_a_property_path_in_sparql(flat):

@@ -64,7 +64,7 @@ def test_explain_returns_the_supporting_facts(furnished, name, predicate, value,
 @pytest.mark.parametrize(
     ("name", "predicate", "value", "error", "text"),
     [
-        ("sofa1", "a", "Chair", errors.UnknownName, "no entity is named 'sofa1'"),
+        ("sofa1", "a", "Chair", errors.UnknownName, "label or class 'sofa1'"),
         ("chair1", "a", "Chiar", errors.UnknownClass, "unknown class 'Chiar'; did you mean Chair"),
         ("chair1", "isLocatedAt", "kitchen1", errors.BadRequest, "'isLocatedAt'; did you mean isLocatedIn"),
         (
@@ -197,7 +197,7 @@ def test_possible_and_impossible_statements(furnished, question, possible, text)
     ("question", "error", "text"),
     [
         (("sofa1", "type", "Chair"), errors.UnknownName, "'sofa1'"),
-        (("chair1", "isLocatedIn", "sofa1"), errors.UnknownName, "no entity is named 'sofa1'"),
+        (("chair1", "isLocatedIn", "sofa1"), errors.UnknownName, "label or class 'sofa1'"),
         (("chair1", "isLocatedAt", "kitchen1"), errors.BadRequest, "did you mean isLocatedIn"),
         (("chair1", "same", "kitchen1"), errors.BadRequest, "use type or a property of the TBox"),
         (("chair1", "type", "Chiar"), errors.UnknownClass, "did you mean Chair"),

@@ -157,6 +157,15 @@ def test_history_of_an_unknown_name_is_rejected(seen):
         past.history(History(name="chair3"))
 
 
+def test_a_word_is_a_name_of_any_time_or_means_one_present_entity(seen):
+    past, _ = seen
+    present = past.entities(past.last)
+    assert [past.resolve(name, present) for name in ("chair1", "chair2")] == ["chair1", "chair2"]
+    assert past.resolve("Door", present) == past.resolve("the door", present) == "sink"
+    with pytest.raises(errors.UnknownName, match=r"no entity was ever named 'chair3'; did you mean chair"):
+        past.resolve("chair3", present)
+
+
 def test_last_seen_is_the_last_commit_that_touched_the_pose(seen):
     past, _ = seen
     chair1, chair2, sink = map(past.last_seen, ("chair1", "chair2", "sink"))

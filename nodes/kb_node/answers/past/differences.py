@@ -14,7 +14,7 @@ from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
-from semmap.nodes.kb_node.relations.selection import is_in, is_on, resolve_single
+from semmap.nodes.kb_node.relations.selection import is_in, is_on
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.schemas import errors, wording
@@ -83,8 +83,9 @@ def _facts(entities: Iterable[Entity], limits: Thresholds) -> set[Fact]:
 
 def find_spells(journal: Journal, past: HistoryReader, query: WasWhen, limits: Thresholds) -> Spells:
     """Return when the relation held. Raises UnknownName; BadRequest for an ambiguous word."""
-    entities = {entity.name: entity for entity in past.entities(past.last)} if past.last else {}
-    one, other = (_name(word, entities, past) for word in (query.name, query.other))
+    present = past.entities(past.last) if past.last else ()
+    entities = {entity.name: entity for entity in present}
+    one, other = (past.resolve(word, present) for word in (query.name, query.other))
     text, intervals = _find_spells(one, query.relation, other, journal, past, limits)
     if not intervals and (bearer := _find_support(one, query.relation, other, entities, limits)) is not None:
         relation, below = bearer
@@ -144,13 +145,6 @@ def _find_support(
         if holds(space, bearer, {other}, frozenset()):
             return how, bearer.name
     return None
-
-
-def _name(word: str, entities: Mapping[str, Entity], past: HistoryReader) -> str:
-    """Return the entity that a word names: by its present or former name, by label or by class."""
-    if word in entities or past.knows(word):
-        return word
-    return resolve_single(tuple(entities.values()), word)
 
 
 def _describe(name: str, where: str, intervals: Sequence[Spell], now_ns: int) -> str:

@@ -132,7 +132,7 @@ def test_bad_requests_get_one_line(system, words, status, text):
 def test_undo(system):
     system.cli("add", "Chair", "chair7", "--at", "5", "5", "0")
     assert "undid commit" in system.cli("undo")
-    assert "no entity is named 'chair7'" in system.cli("get", "chair7", status=1)
+    assert "label or class 'chair7'" in system.cli("get", "chair7", status=1)
     commits = json.loads(system.cli("history", "--limit", "2", "--format", "json"))
     assert commits[1]["undoes"] == [commits[0]["seq"]]
     system.cli("undo", str(commits[1]["seq"]))

@@ -58,6 +58,14 @@ def test_every_diff_leads_from_one_map_to_the_other(told):
             assert names == {e.name for e in told.list(as_of=str(last))}
 
 
+@pytest.mark.parametrize("word", ["your cup", "Cup", "the cup"])
+def test_the_past_of_an_entity_is_found_by_its_label_or_class(told, word):
+    assert told.when(word, "isOn", "Table").spells == told.when("cup1", "isOn", "table1").spells
+    assert told.last_seen(word).name == "cup1"
+    assert told.history(word) == told.history("cup1")
+    assert told.last_seen("table2").removed is not None
+
+
 def test_times_of_a_relation_are_reported(told):
     found = told.when("cup1", "isOn", "table1")
     assert [(spell.since, spell.until) for spell in found.spells] == [(5, 6), (7, None)]
