@@ -39,3 +39,5 @@ class Explanation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True,
     `conclusion` is then the consequence of the refutation, or None if it is not a single triple. Premises can
     also be this triple.
     """
+    computed: tuple[Triple, ...] = ()
+    """The facts of the proof that are computed from poses: triples of `support`, or the conclusion itself."""

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from semmap.nodes.kb_node.reasoner import Inconsistent
 from semmap.nodes.kb_node.reasoner import explanations as reasoner
 from semmap.schemas import errors
-from semmap.schemas.explanations import Explanation, Step
+from semmap.schemas.explanations import Explanation, Step, Triple
 
 
-def to_message(found: reasoner.Explanation) -> Explanation:
-    """Return an explanation as a wire message."""
+def to_message(found: reasoner.Explanation, computed: Iterable[Triple] = ()) -> Explanation:
+    """Return an explanation as a wire message. `computed` are its facts that are computed from poses."""
     return Explanation(
         conclusion=found.conclusion,
         support=found.support,
@@ -18,6 +20,7 @@ def to_message(found: reasoner.Explanation) -> Explanation:
         ),
         text=found.text,
         supposed=found.supposed,
+        computed=tuple(computed),
     )
 
 

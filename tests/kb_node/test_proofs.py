@@ -26,8 +26,10 @@ def crossed(message):
     ("ours", "theirs"), [(explanations.Step, wire.Step), (explanations.Explanation, wire.Explanation)]
 )
 def test_both_classes_have_the_same_fields(ours, theirs):
-    assert ours.__struct_fields__ == theirs.__struct_fields__
-    assert ours.__struct_defaults__ == theirs.__struct_defaults__
+    only_of_the_message = [field for field in theirs.__struct_fields__ if field not in ours.__struct_fields__]
+    assert only_of_the_message == (["computed"] if theirs is wire.Explanation else [])
+    assert ours.__struct_fields__ == theirs.__struct_fields__[: len(ours.__struct_fields__)]
+    assert ours.__struct_defaults__ == theirs.__struct_defaults__[: len(ours.__struct_defaults__)]
 
 
 def test_a_proof_is_complete_after_encoding(reasoner):

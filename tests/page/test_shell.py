@@ -7,6 +7,7 @@ import uuid
 import pytest
 
 from semmap.commands import Add, Remove
+from semmap.nodes.extern.web.scene.tab import SWITCHES
 from tests.conftest import running, until
 from tests.page.conftest import serving
 from tests.page.waiting import commit_of, has_commit, settle
@@ -21,6 +22,9 @@ def test_the_page_opens_with_the_map_and_without_the_token(tab, web, system):
     with system.client() as client:
         until(lambda: commit_of(tab) == client.status().commit, "the page is at the newest commit")
     assert "scene" in tab.locator("iframe").get_attribute("title").lower()
+    toolbar = tab.get_by_role("toolbar", name="Scene")
+    for label in (*SWITCHES.values(), "Show all"):
+        toolbar.get_by_role("button", name=label, exact=True).wait_for()
 
 
 def test_two_tabs_show_a_change_by_another_client(open_tab, web, system):

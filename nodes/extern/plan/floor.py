@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 from semmap.nodes.geometry.polygons import Point, Polygon, area, clipped, hull
+from semmap.ontology.model_shapes import own_size_m
 from semmap.schemas.entities import Entity, Pose, Quaternion, Size
 from semmap.schemas.polygons import Polygon as Outline
 from semmap.schemas.polygons import extent_of
@@ -79,30 +80,35 @@ def floor_of(
     entities: Iterable[Entity],
     poses: Mapping[str, Pose] | None = None,
     outlines: Mapping[str, Polygon] | None = None,
+    body_sizes_m: Mapping[str, Size] | None = None,
 ) -> Floor:
     """Return the plan of these entities, at `poses` or else at their poses in the map.
 
-    The outline of a place is its extent, or the one in `outlines` (map frame [m], counterclockwise).
+    The outline of a place is its extent, or the one in `outlines` (map frame [m], counterclockwise). An
+    object without an asserted size has that of its body, in `body_sizes_m`, or else that of its model.
     """
-    poses, outlines = poses or {}, outlines or {}
+    poses, outlines, body_sizes_m = poses or {}, outlines or {}, body_sizes_m or {}
     places: list[Area] = []
     pieces: list[Piece] = []
     unplaced = 0
     for entity in sorted(entities, key=lambda e: e.name):
         pose = poses.get(entity.name, entity.pose)
+        size_m = entity.size_m
+        if size_m is None and entity.model and not entity.place:
+            size_m = body_sizes_m.get(entity.name) or own_size_m(entity.model)
         if entity.place and entity.name in outlines:
             outline = tuple(outlines[entity.name])
         elif (extent := extent_of(entity)) is not None:
             outline = extent.outer
-        elif pose is not None and entity.size_m is not None:
-            outline = footprint(pose, entity.size_m)
+        elif pose is not None and size_m is not None:
+            outline = footprint(pose, size_m)
         else:
             unplaced += 1
             continue
         if entity.place:
             places.append(Area(entity.name, entity.preferred_reference or entity.name, outline))
-        elif pose is not None and entity.size_m is not None:
-            top_m = pose.position_m[2] + entity.size_m[2]
+        elif pose is not None and size_m is not None:
+            top_m = pose.position_m[2] + size_m[2]
             is_open = entity.properties.get("isOpen") is True
             pieces.append(Piece(entity.name, _kind(entity, pose, outline), outline, top_m, is_open))
     rooms, zones = _rooms_and_zones(places)

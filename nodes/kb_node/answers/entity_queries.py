@@ -214,9 +214,8 @@ class CurrentState:
 
     def _explain_relation(self, measured: Relation) -> Explanation:
         subject, object_ = (v.iri(self._map.entity(name).iri) for name in (measured.subject, measured.object))
-        return Explanation(
-            conclusion=(subject, v.dm(measured.relation), object_), support=(), steps=(), text=measured.text
-        )
+        fact = (subject, v.dm(measured.relation), object_)
+        return Explanation(conclusion=fact, support=(), steps=(), text=measured.text, computed=(fact,))
 
     def _describe_fact(self, fact: Triple) -> tuple[Fact, str]:
         """Return a computed fact with its measurement."""

@@ -82,7 +82,7 @@ def copy_reasoner(held: GivenFacts, names: Mapping[Term, str]) -> Reasoner:
 def _to_message(reasoner: Reasoner, found: reasons.Explanation) -> Explanation:
     """Return an explanation as a wire message; computed facts are described as measured."""
     computed = [fact for fact in found.support if reasoner.is_computed(fact)]
-    message = proofs.to_message(found)
+    message = proofs.to_message(found, computed)
     if not computed:
         return message
     return structs.replace(message, text=mark_measured(message.text, computed, reasoner.words))

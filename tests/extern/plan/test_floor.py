@@ -4,6 +4,7 @@ import pytest
 from msgspec import structs
 
 from semmap.nodes.extern.plan.floor import floor_of, footprint
+from semmap.ontology.model_shapes import own_size_m
 from semmap.schemas.entities import Pose, orientation_from_yaw
 from tests.extern.plan.things import place, thing
 
@@ -82,6 +83,19 @@ def test_what_has_no_position_or_size_is_counted():
     unknown = structs.replace(thing("blob"), size_m=None)
     floor = floor_of([nowhere, unknown])
     assert (floor.pieces, floor.unplaced) == ((), 2)
+
+
+def test_an_object_without_a_size_has_that_of_its_body_or_model():
+    cup = structs.replace(thing("cup1"), size_m=None, model="cup")
+    (by_body,) = floor_of([cup], body_sizes_m={"cup1": (0.3, 0.2, 0.1)}).pieces
+    assert corners(by_body.outline)[0] == (-0.15, -0.1)
+    assert by_body.top_m == 0.1
+    (by_model,) = floor_of([cup]).pieces
+    x, y, z = own_size_m("cup")
+    assert corners(by_model.outline)[0] == (round(-x / 2, 6), round(-y / 2, 6))
+    assert by_model.top_m == z
+    default_box = floor_of([structs.replace(cup, model="")], body_sizes_m={"cup1": (0.2, 0.2, 0.2)})
+    assert (default_box.pieces, default_box.unplaced) == ((), 1)
 
 
 def test_the_bounds_of_nothing_are_a_square_metre():

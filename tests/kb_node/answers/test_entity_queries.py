@@ -191,6 +191,20 @@ def test_each_relation_is_explained_by_a_measurement(flat, relation):
     assert not any("nothing excludes" in answer for answer in answers)
 
 
+def test_explanations_mark_the_facts_that_are_computed(flat):
+    located = explain_relation(flat, "book3", "isLocatedIn", "studio1")
+    assert located.computed == (located.conclusion,)
+    inferred = explain_relation(flat, "book3", "isLocatedIn", "flat1")
+    assert inferred.steps
+    assert inferred.computed == (located.conclusion,)
+    found = entity_queries.CurrentState(flat).relations(Relations(name="bowl1"))
+    other = next(r for r in found if r.relation == "isNear" and r.holds)
+    near = explain_relation(flat, other.subject, "isNear", other.object)
+    assert near.computed == (near.conclusion,)
+    asserted = explain_relation(flat, "kitchen1", "isLocatedIn", "flat1")
+    assert asserted.computed == ()
+
+
 def test_a_denied_assertion_is_reported_as_such(flat):
     said = (v.iri(flat.entity("milk1").iri), v.dm("isOn"), v.iri(flat.entity("table1").iri))
     assert "asserted" not in refused(flat, "milk1", "isOn", "table1")

@@ -67,9 +67,11 @@ class _Plan:
             self._title.value or "Plan",
         )
         commit, stamp_ns = state.commit, _stamp_ns(self._page)
+        scene = self._page.live.scene if self._page.moment.is_now else None
+        bodies = () if scene is None else scene.bodies
 
         def drawn() -> tuple[Floor, Drawing]:
-            floor = floor_of(entities, poses)
+            floor = floor_of(entities, poses, body_sizes_m={body.name: body.size_m for body in bodies})
             return floor, draw(floor, title=title, commit=commit, stamp_ns=stamp_ns)
 
         self._floor, drawing = await asyncio.to_thread(drawn)

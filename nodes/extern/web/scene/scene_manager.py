@@ -120,12 +120,15 @@ def scene(page: Page, tab: TabScene) -> None:
 
 
 def _switch(tab: TabScene, name: Switch) -> None:
-    button = ui.button(icon=_ICONS[name]).tooltip(SWITCHES[name])
+    label = SWITCHES[name]
+    button = ui.button(icon=_ICONS[name]).tooltip(label)
 
     def show() -> None:
         is_on = name in tab.on
         colour = "primary" if is_on else "grey-6"
-        button.props(f'flat dense round color={colour} aria-pressed={str(is_on).lower()} aria-label="{name}"')
+        button.props(
+            f'flat dense round color={colour} aria-pressed={str(is_on).lower()} aria-label="{label}"'
+        )
 
     def toggle() -> None:
         tab.switch(name, on=name not in tab.on)

@@ -57,7 +57,10 @@ def _label(labels: dict[Term, str], iri: str, known: Mapping[str, str]) -> None:
 
 
 def proof_lines(explanation: Explanation, words: Words) -> list[Line]:
-    """Return the proof, from its conclusion down to asserted and computed facts and axioms."""
+    """Return the proof, from its conclusion down to asserted and computed facts and axioms.
+
+    An explanation that only has a text has no lines.
+    """
     return list(_Proof(explanation, words).lines())
 
 
@@ -83,6 +86,8 @@ class _Proof:
             if e.conclusion not in self._by and e.conclusion not in e.support:  # found by another search
                 for triple in e.support:
                     yield from self._lines_of(triple, 1)
+            return
+        if not e.support and not e.steps:  # a measurement that is not about a single triple: its text is all
             return
         last = next((step for step in reversed(e.steps) if step.conclusion is None), None)
         premises = e.support if last is None else last.premises
@@ -119,24 +124,11 @@ class _Proof:
     def _basis_of(self, triple: Triple, clause: Clause) -> Basis:
         if triple == self._explanation.supposed:
             return "assumption"
+        if triple in self._explanation.computed:
+            return "computed"
         if triple not in self._explanation.support:
             return "axiom" if clause.is_axiom and triple != self._explanation.conclusion else "inferred"
-        if clause.is_axiom:
-            return "axiom"
-        return "computed" if self._is_measured(triple, clause) else "asserted"
-
-    def _is_measured(self, triple: Triple, clause: Clause) -> bool:
-        """Return whether the text of the explanation marks the fact as measured.
-
-        Its subject may be "it" there.
-        """
-        text, name = self._explanation.text, v.entity_name(triple[0])
-        of_it = f"it{clause.text.removeprefix(name)}"
-        if f"{clause.text} (asserted)" in text or f"{of_it} (asserted)" in text:
-            return False
-        if f"{clause.text} (measured)" in text or f"{of_it} (measured)" in text:
-            return True
-        return triple == self._explanation.conclusion and text.startswith(f"{clause.text}:")
+        return "axiom" if clause.is_axiom else "asserted"
 
     def _facts_first(self, triples: Iterable[Triple]) -> list[Triple]:
         worded = [triple for triple in dict.fromkeys(triples) if triple in self._clauses]

@@ -60,13 +60,19 @@ def test_contradictions_show_both_facts(reasoner):
     assert (1, "beer1 is a Drink", "inferred") in told
 
 
-def test_computed_facts_are_marked_as_such():
+@pytest.mark.parametrize("text", ["milk1 is on counter1: level", "milk1 is located there", ""])
+def test_the_message_marks_computed_facts_and_its_text_does_not_matter(text):
     on = fact("milk1", "isOn", "counter1")
-    text = "milk1 is on counter1: its bottom is level with a surface of counter1"
-    explanation = Explanation(conclusion=on, support=(on,), steps=(), text=text)
-    assert shown(explanation) == [(0, "milk1 is on counter1", "computed")]
-    asserted = Explanation(conclusion=on, support=(on,), steps=(), text="milk1 is on counter1 (asserted).")
+    asserted = Explanation(conclusion=on, support=(on,), steps=(), text=text)
     assert shown(asserted) == [(0, "milk1 is on counter1", "asserted")]
+    computed = Explanation(conclusion=on, support=(on,), steps=(), text=text, computed=(on,))
+    assert shown(computed) == [(0, "milk1 is on counter1", "computed")]
+    measured_now = Explanation(conclusion=on, support=(), steps=(), text=text, computed=(on,))
+    assert shown(measured_now) == [(0, "milk1 is on counter1", "computed")]
+
+
+def test_a_measurement_without_triples_is_its_text_only():
+    assert shown(Explanation(conclusion=None, support=(), steps=(), text="cup1 leans against wall1")) == []
 
 
 def test_proofs_without_steps_show_their_support():
