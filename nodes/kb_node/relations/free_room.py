@@ -11,7 +11,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Final, NamedTuple
 
 from semmap.nodes.geometry.polygons import Point, area, clipped, contains, covers
-from semmap.nodes.kb_node.relations.geometry.convex import contact, make_convex
 from semmap.nodes.kb_node.relations.geometry.forms import Form, form_of
 from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, joint_at
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
@@ -38,8 +37,6 @@ _BASE_SHARE: Final = 0.95
 """Share of the base that must be over the surface."""
 _UNBOUNDED_M: Final = 2.0
 """How far from an object on open ground a place next to it is searched."""
-_POINT: Final = ((1e-4, 0.0, 0.0), (0.0, 1e-4, 0.0), (0.0, 0.0, 1e-4))
-"""The half axes of a tiny box, which tests whether a part is at a position [m]."""
 
 
 class _Level(NamedTuple):
@@ -141,8 +138,7 @@ class _Search:
             yield from sorted(levels, key=lambda level: (-round(area(level.outline), 2), -level.height))
         elif self._placing == "in":
             for hollow in target.hollows if target.is_upright else ():
-                if not _is_filled(target, hollow):
-                    yield from _levels_in(target, hollow)
+                yield from _levels_in(target, hollow)
         else:
             yield from self._levels_beside()
 
@@ -204,11 +200,6 @@ class _Search:
             return f"the size of {name} is unknown; set it with: semmap update {name} --size X Y Z"
         if not self._target.is_upright:
             return f"{name} is tilted, so nothing can be placed {placing_words(self._placing)} it"
-        if self._placing == "in" and self._target.hollows:
-            return (
-                f"{name} is solid in the simulator, so nothing can be placed in it;"
-                f" state it with: semmap set {self._name} isInside {name}"
-            )
         return f"{name} has no {'interior' if self._placing == 'in' else 'level surface'}"
 
     def describe_failure(self, size: Size) -> str:
@@ -238,14 +229,6 @@ def _facing(target: Solid) -> tuple[Quaternion, Quaternion]:
     (a, _, _), (d, _, _), _ = target.rotation
     yaw = 0.0 if target.is_place else math.atan2(d, a)
     return orientation_from_yaw(yaw), orientation_from_yaw(yaw + math.pi / 2)
-
-
-def _is_filled(target: Solid, hollow: Interior) -> bool:
-    """Return whether one colliding part fills a hollow from floor to top, such as that of a pot."""
-    (x0, y0, z0), (x1, y1, z1) = hollow.low, hollow.high
-    heights = (0.9 * z0 + 0.1 * z1, 0.1 * z0 + 0.9 * z1)
-    ends = [make_convex(target.to_map(((x0 + x1) / 2, (y0 + y1) / 2, z)), _POINT, ()) for z in heights]
-    return any(all(contact(end, part).distance < 0.0 for end in ends) for part in target.parts)
 
 
 def _levels_in(outer: Solid, hollow: Interior) -> Iterator[_Level]:

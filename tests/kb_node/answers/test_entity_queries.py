@@ -149,8 +149,8 @@ def test_a_relation_may_start_when_an_object_in_between_is_removed(own):
         iri = v.bare(v.dm(class_))
         return NewEntity(name=name, class_iri=iri, size=size, pose=Pose(position_m=at))
 
-    change(add=(new("Book", "book9", (0.2, 0.2, 0.02), 7.6, 0.3, 0.9),))
-    change(add=(new("Cup", "cup9", (0.08, 0.08, 0.1), 7.6, 0.3, 0.92),))
+    change(add=(new("Book", "book9", (0.2, 0.2, 0.02), 8.2, 0.3, 0.9),))
+    change(add=(new("Cup", "cup9", (0.08, 0.08, 0.1), 8.2, 0.3, 0.92),))
     assert explain_relation(own, "cup9", "isOn", "book9").text.endswith("(since commit 3)")
     change(remove=("book9",))
     assert explain_relation(own, "cup9", "isOn", "counter1").text.endswith("(since commit 4)")
@@ -162,7 +162,7 @@ def test_a_chain_starts_with_the_latest_of_its_steps(tmp_path):
     for seq, (class_, name, size, z) in enumerate(
         (("Book", "book9", (0.2, 0.2, 0.02), 0.9), ("Cup", "cup9", (0.08, 0.08, 0.1), 0.92)), start=2
     ):
-        iri, pose = v.bare(v.dm(class_)), Pose(position_m=(7.6, 0.3, z))
+        iri, pose = v.bare(v.dm(class_)), Pose(position_m=(8.2, 0.3, z))
         new = NewEntity(name=name, class_iri=iri, size=size, pose=pose)
         own.commit(Transaction(id=f"c{seq}", source="operator", add=(new,)))
     text = explain_relation(own, "cup9", "restsOver", "counter1").text

@@ -24,7 +24,6 @@ from semmap.nodes.sim_node.models.parts import (
     pill,
     rod,
     visual,
-    with_cavity,
 )
 
 
@@ -93,7 +92,7 @@ def flat_bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
         max(sides * along[1], y - 2 * rounded * along[1]),
     )
     return [
-        with_cavity(slab(*middle, 0.0, body, colour), is_open=False),
+        slab(*middle, 0.0, body, colour),
         *(part for end in ends for part in end),
         *visual(ball((0.9 * x, 0.9 * y, 0.34 * z), (0.0, 0.0, 0.70 * z), colour)),
         column(cap, body, z, shade(colour, 0.5)),
@@ -106,7 +105,7 @@ def spray_bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
     neck, dark = 0.35 * radius, shade(colour, 0.4)
     return shifted(
         [
-            with_cavity(column(radius, 0.0, 0.55 * z, colour), is_open=False),
+            column(radius, 0.0, 0.55 * z, colour),
             *turned([(radius, 0.55 * z), (neck, 0.78 * z)], colour, steps=6),
             *collision(column(neck, 0.55 * z, 0.8 * z, colour)),
             column(neck, 0.76 * z, 0.86 * z, dark),
@@ -131,7 +130,7 @@ def drink_can(x: float, y: float, z: float, colour: Colour) -> Parts:
         column(radius, 0.06 * z, 0.9 * z, colour),
         *turned([(0.8 * radius, 0.0), (radius, 0.06 * z)], colour, steps=3),
         *turned([(radius, 0.9 * z), (0.8 * radius, z)], colour, steps=3),
-        *collision(with_cavity(column(0.9 * radius, 0.0, z, colour), is_open=False)),
+        *collision(column(0.9 * radius, 0.0, z, colour)),
     ]
 
 
@@ -150,7 +149,7 @@ def wine_glass(x: float, y: float, z: float, colour: Colour) -> Parts:
         column(0.9 * radius, 0.0, 0.02 * z, colour),
         column(0.1 * radius, 0.0, 0.5 * z, colour),
         *turned(bowl, colour, steps=6),
-        *collision(with_cavity(column(0.9 * radius, 0.5 * z, z, colour), is_open=True)),
+        *collision(column(0.9 * radius, 0.5 * z, z, colour)),
     ]
 
 
@@ -159,7 +158,7 @@ def teapot(x: float, y: float, z: float, colour: Colour) -> Parts:
     radius = min(x, 0.62 * y) / 2
     body = (2 * radius, 2 * radius, 0.82 * z)
     return [
-        with_cavity(ball(body, (0.0, 0.0, 0.41 * z), colour), is_open=False),
+        ball(body, (0.0, 0.0, 0.41 * z), colour),
         *visual(pill(0.16 * radius, 0.24 * y, (0.0, 0.5 * y - 0.1 * y, 0.55 * z), colour, about("x", -0.7))),
         *visual(pill(0.12 * radius, 0.45 * z, (0.0, 0.1 * radius - 0.5 * y, 0.5 * z), colour)),
         *visual(rod(0.1 * radius, 0.2 * y, (0.0, -0.38 * y, 0.66 * z), colour, about("x", math.pi / 2))),
