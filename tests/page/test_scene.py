@@ -159,13 +159,9 @@ def test_a_double_click_and_f_show_the_selection(tab, system, chair):
     frame = tab.locator("iframe").bounding_box()
     middle = frame["x"] + frame["width"] / 2, frame["y"] + frame["height"] / 2
 
-    def clear() -> bool:
-        """Press Esc, which cancels a drag first if a click has hit the handles."""
-        tab.keyboard.press("Escape")
-        return becomes_true(lambda: selected(tab) == "")
-
     def is_in_the_middle() -> bool:
-        until(clear, "nothing is selected")
+        tab.keyboard.press("Escape")
+        until(lambda: selected(tab) == "", "nothing is selected")
         tab.mouse.click(*middle)
         return becomes_true(lambda: selected(tab) == chair)
 
@@ -177,7 +173,7 @@ def test_a_double_click_and_f_show_the_selection(tab, system, chair):
         select(tab, view, entity)
         tab.mouse.dblclick(*at)
         until(is_in_the_middle, "a double click shows the chair")
-        until(clear, "nothing is selected")
+        tab.keyboard.press("Escape")
         tab.get_by_role("button", name="Show all").click()
         select(tab, view, entity)
         tab.keyboard.press("f")
