@@ -155,31 +155,6 @@ def test_a_click_selects_and_a_click_on_the_background_deselects(tab, system, ch
         until(click_beside, "nothing is selected")
 
 
-def test_a_double_click_and_f_show_the_selection(tab, system, chair):
-    frame = tab.locator("iframe").bounding_box()
-    middle = frame["x"] + frame["width"] / 2, frame["y"] + frame["height"] / 2
-
-    def is_in_the_middle() -> bool:
-        tab.keyboard.press("Escape")
-        until(lambda: selected(tab) == "", "nothing is selected")
-        tab.mouse.click(*middle)
-        return becomes_true(lambda: selected(tab) == chair)
-
-    with system.client() as client:
-        view, entity = looking(tab, client), client.get(chair)
-        x, y, z = entity.pose.position_m
-        at = pixel(tab, view, (x, y, z + 0.45 * entity.size_m[2]))
-        assert math.dist(at, middle) > 40.0
-        select(tab, view, entity)
-        tab.mouse.dblclick(*at)
-        until(is_in_the_middle, "a double click shows the chair")
-        tab.keyboard.press("Escape")
-        tab.get_by_role("button", name="Show all").click()
-        select(tab, view, entity)
-        tab.keyboard.press("f")
-        until(is_in_the_middle, "f shows the chair")
-
-
 def drag_along_x(tab, view, client, name, done=None) -> None:
     """Drag by the arrow along x until the map has changed, or until `done()`.
 
