@@ -43,9 +43,10 @@ class Journal:
         With `to_salvage`, the start of its history may be damaged.
         """
         self.path = path
-        self.file = JournalFile(path)
+        self.file = JournalFile(path, last_commit="SELECT max(seq) FROM commits")
         """For the other modules of `storage/`."""
         self._digest: bytes | None = None  # that of the last commit, once known
+        self._is_in_batch = False
         try:
             self.beginning = self._read_beginning(to_salvage=to_salvage)
         except errors.Refused:
@@ -186,6 +187,8 @@ class Journal:
                 row = (commit.seq, tbox, chain_digest(b"", tbox))
                 db.execute("INSERT INTO tboxes VALUES (?, ?, ?)", row)
         self._digest = digest
+        if not self._is_in_batch:
+            self.file.acknowledged.note(commit.seq)
         return digest
 
     @contextmanager
@@ -195,12 +198,16 @@ class Journal:
         Raises NotWritten, with none of them written, if the disk rejects them.
         """
         digest = self._digest
+        self._is_in_batch = True
         try:
             with self.file.writing("several commits"):
                 yield
         except BaseException:
             self._digest = digest
             raise
+        finally:
+            self._is_in_batch = False
+        self.file.acknowledged.note(self.last)
 
     def commits(self, after: int | None = None) -> Iterator[Commit]:
         """Return the commits after `after`, in order. Raises Damaged at the first damaged one."""

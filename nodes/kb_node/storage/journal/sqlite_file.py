@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Final
 
 from semmap.nodes.kb_node.storage.journal import write_ahead
+from semmap.nodes.kb_node.storage.journal.acknowledged import Acknowledged
 from semmap.schemas import errors
 
 _PAGE_BYTES: Final = 4096
@@ -39,8 +40,8 @@ class DiskFull(errors.Refused):
 class JournalFile:
     """An open file. Any thread may use its connection while `reading` or `writing`, one at a time."""
 
-    def __init__(self, path: Path) -> None:
-        """Open the file at `path` in WAL mode with `synchronous=FULL`.
+    def __init__(self, path: Path, *, last_commit: str = "SELECT 0") -> None:
+        """Open the file at `path` in WAL mode with `synchronous=FULL`; `last_commit` is a query for it.
 
         Raises InUse, DiskFull, Refused if it is damaged.
         """
@@ -57,23 +58,27 @@ class JournalFile:
                     raise
                 log.save_copy()
                 raise _log_damage_error(path) from None
-            if log is not None and log.has_lost_commits(self._count_valid_frames()):
+            if log is not None and log.has_lost_commits(self._count_valid_frames(), self._read(last_commit)):
                 log.save_copy()
                 self._db.close()
                 raise _log_damage_error(path)
+            self.acknowledged = Acknowledged(path)
         finally:
             if log is not None:
                 log.file.close()
 
     def _count_valid_frames(self) -> int:
         """Return the number of log frames that SQLite accepted."""
+        return self._read("PRAGMA wal_checkpoint(PASSIVE)", column=1)
+
+    def _read(self, query: str, column: int = 0) -> int:
+        """Return a number from the result of a query, 0 for NULL; close the file if it is damaged."""
         try:
             with self.reading() as db:
-                _, frames, _ = db.execute("PRAGMA wal_checkpoint(PASSIVE)").fetchone()
+                return int(db.execute(query).fetchone()[column] or 0)
         except errors.Refused:
             self._db.close()
             raise
-        return int(frames)
 
     def _open(self, path: Path) -> None:
         self.path = path
@@ -99,6 +104,7 @@ class JournalFile:
         """Close the file."""
         with self._lock:
             self._db.close()
+            self.acknowledged.close()
 
     @contextmanager
     def reading(self) -> Iterator[sqlite3.Connection]:

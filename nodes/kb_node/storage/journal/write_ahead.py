@@ -17,6 +17,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO, Final, NamedTuple
 
+from semmap.nodes.kb_node.storage.journal.acknowledged import read_acknowledged
+
 _HEADER: Final = struct.Struct(">IIII8sII")
 """Magic number, version, page size, sequence number, salts, checksum."""
 _FRAME: Final = struct.Struct(">II8sII")
@@ -36,6 +38,8 @@ class Log(NamedTuple):
     """The numbers of the frames that end transactions, from 1."""
     is_before_boot: bool
     """Whether it was written before the last boot, and a power failure may have interrupted it."""
+    acknowledged: int | None = None
+    """The last commit that was acknowledged, if that is known."""
 
     @property
     def has_valid_header(self) -> bool:
@@ -43,10 +47,15 @@ class Log(NamedTuple):
         self.file.seek(0)
         return _is_sound(self.file.read(_HEADER.size))
 
-    def has_lost_commits(self, recovered: int) -> bool:
-        """Return whether there are finished transactions after the `recovered` frames."""
+    def has_lost_commits(self, recovered: int, last: int) -> bool:
+        """Return whether there are finished transactions after the `recovered` frames and commit `last`.
+
+        SQLite writes the head of a frame before its page. An interruption between the two leaves a last
+        transaction that looks finished. It is not lost if it is known that nobody was told of it.
+        """
         behind = [end for end in self.ends if end > recovered]
-        return len(behind) > (1 if self.is_before_boot else 0)
+        is_unacknowledged = self.acknowledged is not None and self.acknowledged <= last
+        return len(behind) > (1 if self.is_before_boot or is_unacknowledged else 0)
 
     def save_copy(self) -> None:
         """Save a copy for the repair."""
@@ -63,7 +72,7 @@ def inspect_log(path: Path) -> Log | None:
     file = log.open("rb")
     ends = tuple(number for number, pages in _frames(file) if pages)
     booted_s = time.time() - time.clock_gettime(time.CLOCK_BOOTTIME)
-    return Log(path, file, ends, log.stat().st_mtime < booted_s)
+    return Log(path, file, ends, log.stat().st_mtime < booted_s, read_acknowledged(path))
 
 
 def has_damaged_copy(path: Path) -> bool:

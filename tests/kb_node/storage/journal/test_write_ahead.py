@@ -10,7 +10,7 @@ import pytest
 
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
-from semmap.nodes.kb_node.storage.journal.write_ahead import Log
+from semmap.nodes.kb_node.storage.journal.write_ahead import Log, inspect_log
 from semmap.nodes.kb_node.storage.repair.repair import repair
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction
@@ -46,22 +46,37 @@ def names(data):
 ALL = {f"chair{number}" for number in range(1, 9)}
 
 
+@pytest.mark.parametrize("recovered", [9, 6, 3, 0])
 @pytest.mark.parametrize(
-    ("is_before_boot", "recovered", "lost"),
-    [
-        (False, 9, False),
-        (False, 6, True),
-        (False, 3, True),
-        (False, 0, True),
-        (True, 9, False),
-        (True, 6, False),
-        (True, 3, True),
-        (True, 0, True),
-    ],
+    ("is_before_boot", "acknowledged", "allowed"),
+    [(False, None, 0), (True, None, 1), (False, 7, 1), (False, 8, 0), (True, 8, 1), (True, 7, 1)],
 )
-def test_an_unfinished_transaction_is_accepted_after_a_power_failure_only(is_before_boot, recovered, lost):
-    log = Log(Path("journal"), io.BytesIO(), (3, 6, 9), is_before_boot)
-    assert log.has_lost_commits(recovered) is lost
+def test_one_unfinished_transaction_is_accepted_after_a_power_failure_or_if_nobody_was_told_of_it(
+    is_before_boot, acknowledged, allowed, recovered
+):
+    log = Log(Path("journal"), io.BytesIO(), (3, 6, 9), is_before_boot, acknowledged)
+    behind = sum(end > recovered for end in log.ends)
+    assert log.has_lost_commits(recovered, last=7) is (behind > allowed)
+
+
+def interrupt_last_page(data):
+    """Leave the log as a kill between the head of the last frame and its page does."""
+    log, header, head, page = inspect_log(data / FILENAME), 32, 24, 4096
+    with (data / f"{FILENAME}-wal").open("r+b") as file:
+        file.seek(header + log.ends[-1] * (head + page) - page)
+        file.write(bytes(page))
+    log.file.close()
+
+
+@pytest.mark.parametrize("acknowledged", [7, 8])
+def test_a_page_that_was_not_written_is_damage_only_if_its_commit_was_acknowledged(data, acknowledged):
+    (data / f"{FILENAME}-acknowledged").write_bytes(acknowledged.to_bytes(8, "little"))
+    interrupt_last_page(data)
+    found = attempt(names, data)
+    if acknowledged == 7:
+        assert found == ALL - {"chair8"}
+    else:
+        assert "the write-ahead log with the last commits is damaged" in found
 
 
 def test_an_intact_log_is_read(data):
