@@ -32,11 +32,11 @@ from semmap.schemas.joints import (
     JOINT_POSITIONS,
     OPEN_FROM,
     OPENNESS,
-    STANDING,
     SWITCH_POSITIONS,
     Joint,
     is_on,
     openness,
+    select_joint_properties,
     wanted,
 )
 from semmap.schemas.scenes import Body, BodyOrder, GripOrder, JointOrder, Placement
@@ -176,11 +176,7 @@ def body_order(entity: Entity, pose: Pose) -> BodyOrder:
         pose=pose,
         size_m=entity.size_m,
         fixed=entity.fixed,
-        properties={
-            name: stated
-            for name in STANDING
-            if isinstance(stated := entity.properties.get(name), (bool, int, float, str))
-        },
+        properties=select_joint_properties(entity.properties),
         commit=latest_commit(entity),
     )
 
