@@ -602,6 +602,31 @@ def test_bodies_look_like_their_models_and_a_world_s_own_like_their_parts(rover)
     assert rover.surface().points == b""  # of an endless floor
 
 
+def test_bodies_of_the_world_file_have_a_digest_of_their_surface_at_any_position():
+    world = World(
+        mujoco.MjSpec.from_string("""<mujoco><worldbody><geom type="plane" size="0 0 .1"/>
+          <body name="cup1" pos="1 2 .05"><freejoint/><geom type="cylinder" size=".04 .05"/></body>
+          <body name="cup2" pos="3.3 .7 .05" euler="0 0 40"><freejoint/>
+            <geom type="cylinder" size=".04 .05"/></body>
+          <body name="cup3" pos="5 0 .06"><freejoint/><geom type="cylinder" size=".04 .06"/></body>
+          <body name="box1" pos="0 0 0"><geom type="box" size=".2 .2 .1" pos="0 0 .1"/>
+            <body name="flap" pos="-.2 0 .21"><joint name="lid" axis="0 -1 0" range="0 100" damping="1"/>
+              <geom type="box" size=".2 .2 .01" pos=".2 0 0"/></body></body>
+        </worldbody></mujoco>""")
+    )
+    world.spawn([order("can1", "can", pose(3, 3))])
+    before = {name: there.surface for name, there in bodies(world).items()}
+    assert before["cup1"] == before["cup2"] != ""
+    assert len({before[name] for name in ("cup1", "cup3", "box1")}) == 3
+    assert before["can1"] == ""
+    (closed,) = world.surfaces(["box1"]).surfaces.values()
+    assert [leaf.joint for leaf in closed.leaves] == ["lid"]
+    world.move_joints([JointOrder(name="box1", openness=1.0)])
+    world.step(3.0)
+    assert body(world, "box1").joints[0].position > 1.0
+    assert world.surfaces(["box1"]).surfaces["box1"] == closed
+
+
 def test_names_that_are_not_there_are_not_deleted_and_each_is_once():
     world = World()
     world.spawn([order("cup1", "cup", pose(0, 0))])
