@@ -627,6 +627,32 @@ def test_bodies_of_the_world_file_have_a_digest_of_their_surface_at_any_position
     assert world.surfaces(["box1"]).surfaces["box1"] == closed
 
 
+@pytest.mark.parametrize("turn", ["0 0 0", "45 30 20", "10 80 -50"])
+@pytest.mark.parametrize(
+    "geom",
+    [
+        'type="sphere" size=".3"',
+        'type="ellipsoid" size=".3 .2 .1"',
+        'type="cylinder" size=".1 .4"',
+        'type="capsule" size=".1 .4"',
+        'type="box" size=".3 .2 .1"',
+        'type="mesh" mesh="wedge"',
+    ],
+)
+def test_the_size_of_a_body_of_the_world_file_is_that_of_its_surface(geom, turn):
+    world = World(
+        mujoco.MjSpec.from_string(f"""<mujoco>
+          <asset><mesh name="wedge" vertex="0 0 0 .6 0 0 0 .6 0 0 0 .5 .6 0 .1"/></asset>
+          <worldbody><body name="thing1" pos="1 2 3" euler="20 10 30"><geom {geom} euler="{turn}"/></body>
+          </worldbody></mujoco>""")
+    )
+    points = np.frombuffer(world.surfaces(["thing1"]).surfaces["thing1"].points, "<f4").reshape(-1, 3)
+    size = np.array(body(world, "thing1").size_m)
+    low, high = points.min(axis=0), points.max(axis=0)
+    assert high - low == pytest.approx(size, rel=0.05)  # round surfaces have facets
+    assert low == pytest.approx((-size[0] / 2, -size[1] / 2, 0.0), abs=0.05 * size.max())
+
+
 def test_names_that_are_not_there_are_not_deleted_and_each_is_once():
     world = World()
     world.spawn([order("cup1", "cup", pose(0, 0))])
