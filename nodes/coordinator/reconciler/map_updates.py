@@ -300,7 +300,7 @@ class MapUpdater:
             self._change_about((name,), observed, partial(self._size_not_followed, name))
 
     def _size_not_followed(self, name: str, error: BaseException) -> None:
-        if isinstance(error, errors.Refused):
+        if isinstance(error, (errors.Refused, errors.BadRequest)):
             self._kept_sizes.add(name)
         self._report(f"{name}: its new size is not committed: {error}")
 
