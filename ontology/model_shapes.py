@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
+from itertools import count, takewhile
 from pathlib import Path
 from typing import Literal
 
@@ -108,7 +109,7 @@ class ModelShape(Struct, frozen=True, kw_only=True, omit_defaults=True):
 _own: dict[str, ModelShape] = {}
 _WORLD = "world/"
 _world: dict[str, ModelShape] = {}
-"""The shapes of the bodies of the world file, by `_WORLD` and name."""
+"""The shapes of the bodies of the world files, by `_WORLD` and name; see `keep_earlier` for earlier ones."""
 
 
 def own_size_m(model: str) -> Size | None:
@@ -128,15 +129,37 @@ def shape_named(model: str) -> ModelShape | None:
 def model_in_world(name: str, model: str, size_m: Size | None) -> str:
     """Return the model that stands for the shape of the entity `name`.
 
-    It is its body in the world file if there is one of this size, else `model`. A body that was created again
-    at another size has the shape of the model.
+    It is its body in the world file if there is one of this size, or the latest of an earlier world, else
+    `model`. A body that was created again at another size has the shape of the model.
     """
-    if not _world:
+    if not _world or (known := _world.get(own := _WORLD + name)) is None:
         return model
-    known = _world.get(own := _WORLD + name)
-    if known is None or (size_m is not None and not _is_alike(size_m, known.size_m)):
-        return model
-    return own
+    if size_m is None or is_same_size(size_m, known.size_m):
+        return own
+    earlier = [key for key in _earlier_keys(own, _world) if is_same_size(size_m, _world[key].size_m)]
+    return earlier[-1] if earlier else model
+
+
+def keep_earlier(before: Mapping[str, ModelShape], now: Mapping[str, ModelShape]) -> dict[str, ModelShape]:
+    """Return the shapes of a world's bodies `now`, and with them those `before` of earlier worlds, by name.
+
+    If a body had another shape in an earlier world, that is kept as `NAME/1`, a later one as `NAME/2`, for
+    past commits.
+    """
+    kept = {**before, **now}
+    for name, shape in now.items():
+        earlier = _earlier_keys(name, before)
+        known = [before[key] for key in (*earlier, name) if key in before]
+        for key in earlier:
+            del kept[key]
+        others = [was for was in known if was != shape]
+        kept.update((f"{name}/{number}", was) for number, was in enumerate(others, start=1))
+    return kept
+
+
+def _earlier_keys(name: str, known: Mapping[str, ModelShape]) -> list[str]:
+    """Return the keys of the earlier shapes of a body, the oldest first."""
+    return list(takewhile(known.__contains__, (f"{name}/{number}" for number in count(1))))
 
 
 def is_of_world(model: str) -> bool:
@@ -152,7 +175,12 @@ def add_world(path: Path) -> None:
 
 def read_shapes(path: Path) -> dict[str, ModelShape]:
     """Return the shapes in a file, by name."""
-    return msgspec.json.decode(path.read_bytes(), type=dict[str, ModelShape])
+    return decode_shapes(path.read_bytes())
+
+
+def decode_shapes(content: bytes | str) -> dict[str, ModelShape]:
+    """Return the shapes in the content of a file, by name."""
+    return msgspec.json.decode(content, type=dict[str, ModelShape])
 
 
 def added_shapes() -> dict[str, ModelShape]:
@@ -166,7 +194,8 @@ def add_shapes(added: Mapping[str, ModelShape]) -> None:
         (_world if name.startswith(_WORLD) else shapes())[name] = shape
 
 
-def _is_alike(one: Size, other: Size) -> bool:
+def is_same_size(one: Size, other: Size) -> bool:
+    """Return whether a body of the first size is one of the other, to a millimetre and a percent of it."""
     return all(abs(a - b) <= 0.001 + 0.01 * b for a, b in zip(one, other, strict=True))
 
 

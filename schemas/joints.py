@@ -149,6 +149,13 @@ def stated(joints: Iterable[Joint], properties: Mapping[str, object]) -> dict[st
     return {**(others or {}), **(switches or {})}
 
 
+def select_joint_properties(properties: Mapping[str, object]) -> dict[str, bool | float | str]:
+    """Return the properties that set joint positions."""
+    return {
+        name: value for name in STANDING if isinstance(value := properties.get(name), (bool, int, float, str))
+    }
+
+
 def wanted(joints: Iterable[Joint], properties: Mapping[str, object]) -> dict[str, float]:
     """Return the desired joint positions by name: the asserted ones, or the initial ones without assertions.
 

@@ -77,6 +77,8 @@ class Body(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The words of its name, if they are not a label of its class: `red mug`."""
     robot: bool = False
     """Whether `semmap up --robot` created it: it becomes a tracked entity for any source of truth."""
+    surface: str = ""
+    """The digest of its surface, for a body of the world file: equal for bodies of equal surfaces only."""
 
     @property
     def has_fallen(self) -> bool:
@@ -265,7 +267,7 @@ class Surface(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Surfaces(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The surfaces of existing bodies; parts of the world's own bodies are in their current position."""
+    """The surfaces of existing bodies."""
 
     surfaces: dict[str, Surface]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from semmap.nodes.drawing.articulation import JointPositions, joint_positions_of
 from semmap.schemas import errors
 from semmap.schemas.entities import Entity, Pose, Size, angle_rad, distance_m
 from semmap.schemas.polygons import Polygon, extent_of
@@ -30,6 +31,8 @@ class Figure:
     size_m: Size
     appearance: Appearance
     surface: Surface | None = None
+    joint_positions: JointPositions = ()
+    """The positions of the joints that move leaves of the surface, which has them at 0."""
     extent: Polygon | None = None
     """The polygon of a place, map frame, if it is not a box."""
 
@@ -45,16 +48,18 @@ def figure_of(
     """Return the figure of an entity and its body; `simulated`: a simulator runs."""
     if entity is None and body is None:
         return None
+    joints = () if body is None or surface is None else joint_positions_of(body.joints)
     if entity is None:
         if body is None:
             raise errors.InternalError("a figure needs an entity or a body")
-        return Figure(body.name, body.class_ or "", body.size_m, _appearance_of(body), surface)
+        return Figure(body.name, body.class_ or "", body.size_m, _appearance_of(body), surface, joints)
     if entity.place:
         label = entity.preferred_reference or entity.name
         size_m = entity.size_m or UNKNOWN_SIZE_M
         return Figure(label, entity.class_, size_m, "place", extent=extent_of(entity))
     if body is not None:
-        return Figure(entity.name, entity.class_, body.size_m, "ghost" if body.ghost else "solid", surface)
+        ghost: Appearance = "ghost" if body.ghost else "solid"
+        return Figure(entity.name, entity.class_, body.size_m, ghost, surface, joints)
     appearance: Appearance = "believed" if simulated else "solid"
     return Figure(entity.name, entity.class_, entity.size_m or UNKNOWN_SIZE_M, appearance)
 

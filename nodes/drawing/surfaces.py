@@ -1,11 +1,10 @@
-"""Body surfaces, requested from the simulator once for each model and size, or body of the world file."""
+"""Body surfaces, requested from the simulator once for each model and size, or digest."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from typing import Final
 
-from semmap.nodes.drawing.articulation import articulated, joint_positions_of
 from semmap.schemas.entities import Size
 from semmap.schemas.scenes import Body, Surface
 
@@ -14,8 +13,12 @@ _OWN: Final = "body:"
 
 
 def appearance_of(body: Body) -> str:
-    """Return the key of a body's surface: its model, or its own name for a body of the world file."""
-    return body.model or f"{_OWN}{body.name}"
+    """Return the key of a body's surface: its model, or the digest of the surface of a world's body.
+
+    So equal bodies share one surface, and a body of another world is not drawn like one of the same name. A
+    body without either, such as a box, has a key of its own.
+    """
+    return body.model or body.surface or f"{_OWN}{body.name}"
 
 
 class SurfaceCache:
@@ -25,13 +28,8 @@ class SurfaceCache:
         self._known: dict[Kind, Surface | None] = {}
 
     def of(self, body: Body | None) -> Surface | None:
-        """Return the surface of a body at its current joint positions, if it is known."""
-        surface = None if body is None else self._known.get(_kind(body))
-        return (
-            surface
-            if surface is None or body is None
-            else articulated(surface, joint_positions_of(body.joints))
-        )
+        """Return the surface of a body with all joints at 0, if it is known."""
+        return None if body is None else self._known.get(_kind(body))
 
     def of_kind(self, model: str, size_m: Size) -> Surface | None:
         """Return the surface of a model at a size, if it is known."""

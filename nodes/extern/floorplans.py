@@ -83,7 +83,8 @@ def _svg(client: Client, file: Path, as_of: When | None) -> Path:
         raise errors.Refused("the map has no entities to draw")
     commits = client.history(until=as_of, limit=1)
     last = commits[-1]
-    text = drawing(floor_of(entities), title="Floor plan", commit=last.seq, stamp_ns=last.stamp_ns)
+    floor = floor_of(entities, plan=client.floorplan(as_of=as_of))
+    text = drawing(floor, title="Floor plan", commit=last.seq, stamp_ns=last.stamp_ns)
     write_atomically(file, text.encode())
     return file
 

@@ -17,7 +17,12 @@ from semmap.nodes.drawing.figures import Figure
 from semmap.nodes.drawing.neighbourhood import Neighbourhood
 from semmap.nodes.recorder import commit_text
 from semmap.nodes.recorder.drawing.blueprint import bounds_of, layout
-from semmap.nodes.recorder.drawing.geometry import shape_of
+from semmap.nodes.recorder.drawing.geometry import (
+    leaf_paths_of,
+    leaf_shapes_of,
+    leaf_transforms_of,
+    shape_of,
+)
 from semmap.nodes.recorder.drawing.graph import nodes_and_edges
 from semmap.schemas import errors
 from semmap.schemas.commits import Commit, PlaceChanges
@@ -63,8 +68,19 @@ class Recording:
         self._stream.send_blueprint(layout(bounds_of(self._in_view), self._cameras))
 
     def draw(self, name: str, figure: Figure, pose: Pose) -> None:
-        """Draw a figure at a pose."""
-        self._log(["map", figure.group, name], *shape_of(figure), _transform(pose))
+        """Draw a figure at a pose, with its joints."""
+        path = ["map", figure.group, name]
+        self._log(path, *shape_of(figure), _transform(pose))
+        for leaf, shape in zip(leaf_paths_of(figure), leaf_shapes_of(figure), strict=False):
+            if shape:
+                self._log([*path, *leaf], *shape)
+        self.bend(name, figure)
+
+    def bend(self, name: str, figure: Figure) -> None:
+        """Move the leaves of a figure by its joints."""
+        path = ["map", figure.group, name]
+        for leaf, transform in zip(leaf_paths_of(figure), leaf_transforms_of(figure), strict=False):
+            self._log([*path, *leaf], transform)
 
     def move(self, name: str, figure: Figure, pose: Pose) -> None:
         """Move a figure to a pose."""
@@ -72,7 +88,7 @@ class Recording:
 
     def erase(self, name: str, figure: Figure) -> None:
         """Remove a figure."""
-        self._log(["map", figure.group, name], rr.Clear(recursive=False))
+        self._log(["map", figure.group, name], rr.Clear(recursive=True))
 
     def show(self, path: str, *archetypes: rr.AsComponents) -> None:
         """Draw results of perception."""

@@ -57,6 +57,8 @@ class BodyRecord:
     is_sure: bool = True
     """Whether its name or the world file determines its class."""
     robot: bool = False
+    surface: str = ""
+    """The digest of its surface, if it is in the world file and visible."""
     held_by: str = ""
     grip: Pose | None = None
     """Its pose in the frame of the bottom centre of the body to which it is attached."""
@@ -95,6 +97,7 @@ class BodyRecord:
             body="" if self.body == self.name else self.body,
             label=self.label,
             robot=self.robot,
+            surface=self.surface,
             held_by=self.held_by,
             grip=self.grip,
             grip_commit=self.grip_commit,

@@ -81,7 +81,13 @@ def _joints(order: BodyOrder, model: Model) -> tuple[Joint, ...]:
         )
         for leaf in model.leaves
     ]
-    at = stated(joints, order.properties) or {}
+    return place_joints(joints, order.properties)
+
+
+def place_joints(joints: Iterable[Joint], properties: Mapping[str, object]) -> tuple[Joint, ...]:
+    """Return joints at the positions stated in the map, or else at their initial ones."""
+    joints = tuple(joints)
+    at = stated(joints, properties) or {}
     return tuple(
         structs.replace(joint, position=_within(joint, at.get(joint.name, joint.initial))) for joint in joints
     )

@@ -6,7 +6,7 @@ import copy
 import math
 import time
 import uuid
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 import mujoco
 import numpy as np
@@ -17,7 +17,7 @@ from semmap.nodes.sim_node.bodies import Floats, Ints, StoredBody, pose_of
 from semmap.nodes.sim_node.body_classes import BodyClasses
 from semmap.nodes.sim_node.models.facets import surface_of
 from semmap.nodes.sim_node.models.library import build as library_model
-from semmap.nodes.sim_node.models.world_surface import body_surface, world_surface
+from semmap.nodes.sim_node.models.world_surface import body_surface, close_joints, digest_of, world_surface
 from semmap.nodes.sim_node.order_validation import ModelSource
 from semmap.nodes.sim_node.physics import base_scene, build
 from semmap.nodes.sim_node.physics.engine import Engine
@@ -79,6 +79,7 @@ class World:
         """Bodies of the world file that are only parts of others, by name or by their parent."""
         self.notes = base_scene.describe_names(self._engine.records.values())
         """Notes on the names and classes of the bodies of the world file."""
+        build.run_in_background(self._set_digests, while_waiting)
         self._settling = Settling(self._engine)
         self._models, self._while_waiting = models, while_waiting
         self.name = name
@@ -329,16 +330,32 @@ class World:
         )
 
     def surfaces(self, names: Iterable[str]) -> Surfaces:
-        """Return the surfaces of bodies; those of the world file with their parts as they are now."""
-        there = {name: row for row, name in enumerate(self._engine.index.names)}
-        whose, poses = self.body_names(), self._engine.poses()
-        found: dict[str, Surface | None] = {}
+        """Return the surfaces of bodies, with all joints at 0."""
+        found: dict[str, Surface] = {}
+        own = []
         for name in names:
             if (shape := self._engine.shape(name)) is not None:
                 found[name] = surface_of(shape)
-            elif name in there:
-                found[name] = body_surface(self.model, self.data, whose, name, poses[there[name]])
-        return Surfaces(surfaces={name: surface for name, surface in found.items() if surface is not None})
+            elif name in self._engine.records:
+                own.append(name)
+        return Surfaces(surfaces={**found, **dict(self._own_surfaces(own))})
+
+    def _set_digests(self) -> None:
+        for name, surface in self._own_surfaces(self._engine.records):
+            self._engine.records[name].surface = digest_of(surface)
+
+    def _own_surfaces(self, names: Iterable[str]) -> Iterator[tuple[str, Surface]]:
+        """Yield the surfaces of visible bodies of the world file."""
+        model, index = self.model, self._engine.index
+        data = close_joints(model, self.data)
+        poses, geoms = index.poses(data), dict[str, list[int]]()
+        for geom, whose in enumerate(self.body_names()):
+            geoms.setdefault(whose, []).append(geom)
+        for name in names:
+            row = index.row[name]
+            own = geoms.get(name, [])
+            if (surface := body_surface(model, data, own, int(index.body[row]), poses[row])) is not None:
+                yield name, surface
 
     def surface(self) -> Surface:
         """Return the surface of the world without bodies."""

@@ -22,7 +22,7 @@ from semmap.nodes.sim_node.robots.robot import add_robot
 from semmap.nodes.sim_node.vision.view import View, look_at, pinhole
 from semmap.nodes.sim_node.world import World
 from semmap.nodes.sim_node.world_shapes import world_shapes
-from semmap.ontology.model_shapes import read_shapes
+from semmap.ontology.model_shapes import decode_shapes, keep_earlier, read_shapes
 from semmap.schemas import codec, scene_files
 from semmap.schemas.entities import free_name
 from semmap.schemas.errors import BadFile, UnknownClass
@@ -55,14 +55,15 @@ def require_world(path: Path, models: ModelSource, robot: RobotConfig | None = N
 def write_world(path: Path, models: ModelSource, target: Path) -> None:
     """Write the shapes of the bodies of an MJCF scene for the knowledge base, without those of a robot.
 
-    Bodies of earlier worlds remain in the file, for past commits. Bodies of a JSON scene have the shapes of
-    their models. Raises BadFile as `open_world` does.
+    Bodies of earlier worlds remain in the file, for past commits, also those of the same names. Bodies of a
+    JSON scene have the shapes of their models. Raises BadFile as `open_world` does.
     """
     if is_scene(path):
         return
     before = read_shapes(target) if target.is_file() else {}
     target.parent.mkdir(parents=True, exist_ok=True)
-    target.write_text(as_json({**before, **world_shapes(open_world(path, models))}))
+    now = decode_shapes(as_json(world_shapes(open_world(path, models))))  # rounded, as those before
+    target.write_text(as_json(keep_earlier(before, now)))
 
 
 def open_world(

@@ -100,12 +100,13 @@ def _digest(model: Model) -> bytes:
 def _joints_of(
     model: mujoco.MjModel, data: mujoco.MjData, body: Body, origin: Floats, frame: Floats
 ) -> dict[int, Joint]:
-    """Return the hinges and slides of a body by the number of the MuJoCo body that each moves."""
+    """Return the hinges and slides of a body's parts by the number of the MuJoCo body that each moves."""
     found: dict[int, Joint] = {}
+    root = model.body(body.body or body.name).id
     for joint in body.joints:
         number = model.joint(joint.name).id
         kind = _KINDS.get(int(model.jnt_type[number]))
-        if kind is None:
+        if kind is None or model.jnt_bodyid[number] == root:  # which moves the body itself, with its pose
             continue
         limits = None if joint.lower is None or joint.upper is None else (joint.lower, joint.upper)
         found.setdefault(
@@ -124,11 +125,12 @@ def _joints_of(
 
 
 def _joint_above(model: mujoco.MjModel, geom: int, joints: Mapping[int, Joint]) -> Joint | None:
-    """Return the nearest joint that moves a geom."""
-    number = int(model.geom_bodyid[geom])
-    while number and number not in joints:
+    """Return the joint nearest to the root that moves a geom: a handle moves with its door."""
+    number, found = int(model.geom_bodyid[geom]), None
+    while number:
+        found = joints.get(number, found)
         number = int(model.body_parentid[number])
-    return joints.get(number)
+    return found
 
 
 def _vector(values: Floats) -> Vec3:

@@ -34,3 +34,15 @@ def test_each_body_of_the_world_s_own_looks_like_itself():
     cache.take(wanted["robot1"], SURFACE)
     assert cache.of(robots[0]) is SURFACE
     assert cache.of(robots[1]) is None
+
+
+def test_equal_bodies_of_the_world_share_a_surface_and_one_of_a_later_world_does_not():
+    cache = SurfaceCache()
+    cups = [body("cup1", surface="a"), body("cup2", surface="a")]
+    wanted = cache.wanted(cups)
+    assert list(wanted) == ["cup1"]
+    cache.take(wanted["cup1"], SURFACE)
+    assert cache.of(cups[1]) is SURFACE
+    later = body("cup1", surface="b")
+    assert cache.of(later) is None
+    assert list(cache.wanted([later])) == ["cup1"]

@@ -158,7 +158,7 @@ def test_the_recording_holds_the_start_and_every_commit(world, tmp_path):
     assert log(path)[0] == "1  the recording continues from here with 2 entities"
     assert positions(path, "chair1") == [[0.0, 0.0, 0.0]]
     assert positions(path, "cup7") == [[7.0, 0.0, 0.0]]
-    assert column(path, "/map/bodies/cup7", "Clear:is_recursive") == [False]
+    assert column(path, "/map/bodies/cup7", "Clear:is_recursive") == [True]
 
 
 def test_the_graph_has_what_is_computed_of_places(world, tmp_path):

@@ -602,6 +602,57 @@ def test_bodies_look_like_their_models_and_a_world_s_own_like_their_parts(rover)
     assert rover.surface().points == b""  # of an endless floor
 
 
+def test_bodies_of_the_world_file_have_a_digest_of_their_surface_at_any_position():
+    world = World(
+        mujoco.MjSpec.from_string("""<mujoco><worldbody><geom type="plane" size="0 0 .1"/>
+          <body name="cup1" pos="1 2 .05"><freejoint/><geom type="cylinder" size=".04 .05"/></body>
+          <body name="cup2" pos="3.3 .7 .05" euler="0 0 40"><freejoint/>
+            <geom type="cylinder" size=".04 .05"/></body>
+          <body name="cup3" pos="5 0 .06"><freejoint/><geom type="cylinder" size=".04 .06"/></body>
+          <body name="box1" pos="0 0 0"><geom type="box" size=".2 .2 .1" pos="0 0 .1"/>
+            <body name="flap" pos="-.2 0 .21"><joint name="lid" axis="0 -1 0" range="0 100" damping="1"/>
+              <geom type="box" size=".2 .2 .01" pos=".2 0 0"/></body></body>
+        </worldbody></mujoco>""")
+    )
+    world.spawn([order("can1", "can", pose(3, 3))])
+    before = {name: there.surface for name, there in bodies(world).items()}
+    assert before["cup1"] == before["cup2"] != ""
+    assert len({before[name] for name in ("cup1", "cup3", "box1")}) == 3
+    assert before["can1"] == ""
+    (closed,) = world.surfaces(["box1"]).surfaces.values()
+    assert [leaf.joint for leaf in closed.leaves] == ["lid"]
+    world.move_joints([JointOrder(name="box1", openness=1.0)])
+    world.step(3.0)
+    assert body(world, "box1").joints[0].position > 1.0
+    assert world.surfaces(["box1"]).surfaces["box1"] == closed
+
+
+@pytest.mark.parametrize("turn", ["0 0 0", "45 30 20", "10 80 -50"])
+@pytest.mark.parametrize(
+    "geom",
+    [
+        'type="sphere" size=".3"',
+        'type="ellipsoid" size=".3 .2 .1"',
+        'type="cylinder" size=".1 .4"',
+        'type="capsule" size=".1 .4"',
+        'type="box" size=".3 .2 .1"',
+        'type="mesh" mesh="wedge"',
+    ],
+)
+def test_the_size_of_a_body_of_the_world_file_is_that_of_its_surface(geom, turn):
+    world = World(
+        mujoco.MjSpec.from_string(f"""<mujoco>
+          <asset><mesh name="wedge" vertex="0 0 0 .6 0 0 0 .6 0 0 0 .5 .6 0 .1"/></asset>
+          <worldbody><body name="thing1" pos="1 2 3" euler="20 10 30"><geom {geom} euler="{turn}"/></body>
+          </worldbody></mujoco>""")
+    )
+    points = np.frombuffer(world.surfaces(["thing1"]).surfaces["thing1"].points, "<f4").reshape(-1, 3)
+    size = np.array(body(world, "thing1").size_m)
+    low, high = points.min(axis=0), points.max(axis=0)
+    assert high - low == pytest.approx(size, rel=0.05)  # round surfaces have facets
+    assert low == pytest.approx((-size[0] / 2, -size[1] / 2, 0.0), abs=0.05 * size.max())
+
+
 def test_names_that_are_not_there_are_not_deleted_and_each_is_once():
     world = World()
     world.spawn([order("cup1", "cup", pose(0, 0))])

@@ -112,6 +112,23 @@ def test_a_joint_moves_the_parts_below_it(shapes):
     assert room.behind == ("lid",)
 
 
+def test_a_handle_moves_with_its_door_and_a_hinged_body_with_its_pose():
+    world = World(
+        mujoco.MjSpec.from_string("""<mujoco><worldbody>
+          <body name="wardrobe1"><geom type="box" size=".3 .6 .01" pos="0 0 .01"/>
+            <body name="leaf" pos=".3 .6 1"><joint name="door" axis="0 0 1" range="0 90"/>
+              <geom type="box" size=".01 .6 1" pos="0 -.6 0"/>
+              <body name="handle" pos=".02 -1 0"><joint name="turn" axis="1 0 0" range="0 45"/>
+                <geom type="box" size=".01 .05 .01"/></body></body></body>
+          <body name="door1" pos="5 0 0"><joint name="hinge" axis="0 0 1" range="0 90"/>
+            <geom type="box" size=".02 .4 1" pos="0 .4 1"/></body>
+        </worldbody></mujoco>""")
+    )
+    shapes = world_shapes(world)
+    assert [(leaf.name, len(leaf.parts)) for leaf in shapes["wardrobe1"].leaves] == [("door", 2)]
+    assert shapes["door1"].leaves == ()
+
+
 def test_get_names_the_source_of_a_shape(known):
     sources = {entity.name: name_shape_source(entity) for entity in known}
     assert sources["oven1"] == "world"
@@ -131,3 +148,20 @@ def test_bodies_of_earlier_worlds_remain_in_the_file(tmp_path, monkeypatch):
         write_world(path, Models(), target)
     model_shapes.add_world(target)
     assert model_shapes.added_shapes().keys() >= {"world/cup1", "world/mug2"}
+
+
+def test_a_later_world_does_not_overwrite_shapes_of_the_same_names(tmp_path, monkeypatch):
+    monkeypatch.setattr(model_shapes, "_world", {})
+    target, path = tmp_path / "world_shapes.json", tmp_path / "world.xml"
+    for height in (0.4, 0.6, 0.5, 0.6):
+        path.write_text(
+            '<mujoco><worldbody><body name="table1"><geom type="box" size=".5 .5 .01"'
+            f' pos="0 0 {height}"/><geom type="box" size=".02 .02 .1" pos="0 0 .1"/></body>'
+            "</worldbody></mujoco>"
+        )
+        write_world(path, Models(), target)
+    model_shapes.add_world(target)
+    found = [model_shapes.model_in_world("table1", "table", (1.0, 1.0, size)) for size in (0.61, 0.41, 0.51)]
+    assert found == ["world/table1", "world/table1/1", "world/table1/2"]
+    assert [model_shapes.shape_named(name).surfaces[0].height for name in found] == [0.61, 0.41, 0.51]
+    assert model_shapes.model_in_world("table1", "table", (1.0, 1.0, 0.9)) == "table"

@@ -1,4 +1,4 @@
-"""Changes of the map that follow the scene: new poses, joint positions and attachments, and new entities.
+"""Changes of the map that follow the scene: poses, joint positions, attachments, sizes, and new entities.
 
 If the map rejects a change, the scene is corrected instead (`Corrections`).
 """
@@ -79,6 +79,8 @@ class MapUpdater:
         """Scene bodies that cannot become entities, with the reason."""
         self.without_state: set[str] = set()
         """Bodies whose joints or attachments the map cannot store: its TBox has no property for them."""
+        self._kept_sizes: set[str] = set()
+        """Bodies whose new size the map has rejected."""
         self._in_flight: set[str] = set()
         """Bodies with a commit under way."""
         self._placements: dict[str, Placement] = {}
@@ -95,6 +97,7 @@ class MapUpdater:
             if self._may_follow_joints(name):
                 self._follow((), name)
         self._follow_grips(actions.gripped)
+        self._follow_sizes(actions.resized)
         for body in actions.adopt:
             self._adopt(body)
 
@@ -282,6 +285,24 @@ class MapUpdater:
                 grips={name: (body.held_by, body.grip)},
             )
             self._change_about((name,), observed, partial(self._grip_not_followed, name))
+
+    def _follow_sizes(self, names: Sequence[str]) -> None:
+        """Commit the sizes of bodies that the world file has changed."""
+        for name in names:
+            if name in self._in_flight or name in self._kept_sizes:
+                continue
+            observed = ObservedState.of(
+                self._dispatcher.map.entities,
+                {},
+                reason=f"{name} has another size in the scene",
+                sizes_m={name: self._scene.bodies[name].size_m},
+            )
+            self._change_about((name,), observed, partial(self._size_not_followed, name))
+
+    def _size_not_followed(self, name: str, error: BaseException) -> None:
+        if isinstance(error, (errors.Refused, errors.BadRequest)):
+            self._kept_sizes.add(name)
+        self._report(f"{name}: its new size is not committed: {error}")
 
     def _grip_not_followed(self, name: str, error: BaseException) -> None:
         if isinstance(error, errors.BadRequest):  # a TBox without these properties

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from semmap.nodes.coordinator.commands.transactions import grip_statements
 from semmap.schemas.commits import Edit, Statement
-from semmap.schemas.entities import Entity, Pose, Source
+from semmap.schemas.entities import Entity, Pose, Size, Source
 from semmap.schemas.joints import (
     IS_OPEN,
     IS_SWITCHED_ON,
@@ -44,6 +44,7 @@ class ObservedState(NamedTuple):
     source: Source = "scene"
     grips: Mapping[str, tuple[str, Pose | None]] = MappingProxyType({})
     """By name, the holder of a body ("" for none) and the pose in the holder's frame."""
+    sizes_m: Mapping[str, Size] = MappingProxyType({})
     reason: str = ""
     """The reason of the commit; by default the bodies came to rest or were moved manually."""
 
@@ -56,15 +57,16 @@ class ObservedState(NamedTuple):
         source: Source = "scene",
         reason: str = "",
         grips: Mapping[str, tuple[str, Pose | None]] = MappingProxyType({}),
+        sizes_m: Mapping[str, Size] = MappingProxyType({}),
     ) -> ObservedState:
-        """Create it from the observed poses, joints and attachments of these entities."""
-        after = {name: commits_of(entities[name]) for name in {**poses, **joints, **grips}}
-        return cls(poses, after, joints, source, grips, reason)
+        """Create it from the observed poses, joints, attachments and sizes of these entities."""
+        after = {name: commits_of(entities[name]) for name in {**poses, **joints, **grips, **sizes_m}}
+        return cls(poses, after, joints, source, grips, sizes_m, reason)
 
     @property
     def names(self) -> tuple[str, ...]:
         """The entities it is about, first those whose joints moved others."""
-        return tuple({**self.joints, **self.poses, **self.grips})
+        return tuple({**self.joints, **self.poses, **self.grips, **self.sizes_m})
 
     def edits(self, entities: Mapping[str, Entity]) -> list[Edit]:
         """Return the edits of the entities that were not changed or removed since."""
@@ -81,6 +83,7 @@ class ObservedState(NamedTuple):
             name=name,
             at=None if pose is None else pose.position_m,
             orientation=None if pose is None else pose.orientation_wxyz,
+            size=self.sizes_m.get(name),
             unset=grip_statements("", None) if holder == "" else (),
             set=(*joint_statements(joints), *(grip_statements(holder, grip) if holder else ())),
         )

@@ -23,6 +23,7 @@ from collections.abc import Container, Mapping, Set
 from typing import NamedTuple
 
 from semmap.nodes.coordinator.config import Thresholds, Truth
+from semmap.ontology.model_shapes import is_same_size
 from semmap.schemas import errors
 from semmap.schemas.attachments import grip_of, holder_of
 from semmap.schemas.entities import Entity, Pose, angle_rad, distance_m
@@ -32,11 +33,11 @@ from semmap.schemas.joints import (
     JOINT_POSITIONS,
     OPEN_FROM,
     OPENNESS,
-    STANDING,
     SWITCH_POSITIONS,
     Joint,
     is_on,
     openness,
+    select_joint_properties,
     wanted,
 )
 from semmap.schemas.scenes import Body, BodyOrder, GripOrder, JointOrder, Placement
@@ -64,6 +65,8 @@ class Actions(NamedTuple):
     """Bodies that are attached or detached as the map says."""
     gripped: tuple[str, ...] = ()
     """Bodies whose attachment the map commits."""
+    resized: tuple[str, ...] = ()
+    """Bodies whose size the map commits: the world file has changed."""
 
 
 def reconcile(
@@ -98,6 +101,7 @@ def reconcile(
     delete, spawn, place, follow, joints, opened, adopt, missing = [], [], [], [], [], [], [], []
     grips: list[GripOrder] = []
     gripped: list[str] = []
+    resized: list[str] = []
     coming = {
         latest_commit(e) for e in entities.values() if not (e.place or e.pose is None or e.name in bodies)
     }
@@ -110,6 +114,8 @@ def reconcile(
             if body is None:
                 missing.append(name)
                 continue
+            if _is_resized(entity, body):
+                resized.append(name)
             if _is_attached_differently(entity, body, thresholds):
                 gripped.append(name)
             elif _must_restore(entity, body):
@@ -164,6 +170,7 @@ def reconcile(
         tuple(missing),
         tuple(grips),
         tuple(gripped),
+        tuple(resized),
     )
 
 
@@ -176,11 +183,7 @@ def body_order(entity: Entity, pose: Pose) -> BodyOrder:
         pose=pose,
         size_m=entity.size_m,
         fixed=entity.fixed,
-        properties={
-            name: stated
-            for name in STANDING
-            if isinstance(stated := entity.properties.get(name), (bool, int, float, str))
-        },
+        properties=select_joint_properties(entity.properties),
         commit=latest_commit(entity),
     )
 
@@ -288,6 +291,13 @@ def _joints_ordered_since(entity: Entity, body: Body, *, any_source: bool = Fals
     return (
         stated is not None and (any_source or stated.source != "scene") and stated.commit > body.joint_commit
     )
+
+
+def _is_resized(entity: Entity, body: Body) -> bool:
+    """Return whether the map has the size of a body in an earlier world file."""
+    if not body.surface or entity.size_m is None or entity.shape_provenance.source != "scene":
+        return False
+    return not is_same_size(entity.size_m, body.size_m)
 
 
 def _reshaped(entity: Entity, body: Body) -> bool:

@@ -22,6 +22,7 @@ from semmap.nodes.sim_node.vision.offscreen_scene import OffscreenScene
 from semmap.nodes.sim_node.vision.view import View
 from semmap.schemas import errors
 from semmap.schemas.entities import Entity, Vector
+from semmap.schemas.joints import select_joint_properties
 from semmap.schemas.scenes import BodyOrder
 
 Rgb = NDArray[np.uint8]
@@ -80,8 +81,7 @@ def _open_container(file: Path) -> av.container.OutputContainer:
 
 
 def _apply(stage: OffscreenScene, scene: Scene) -> None:
-    """Add the new bodies of a scene; bodies with a new shape are replaced."""
-    stage.remove(entity.name for entity in scene.add)
+    """Add the new bodies of a scene, or those with a new shape or moved joints."""
     stage.add([_order(entity) for entity in scene.add])
 
 
@@ -104,6 +104,7 @@ def _order(entity: Entity) -> BodyOrder:
         pose=entity.pose,
         size_m=entity.size_m,
         fixed=entity.fixed,
+        properties=select_joint_properties(entity.properties),
         commit=entity.shape_provenance.commit,
     )
 

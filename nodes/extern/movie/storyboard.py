@@ -14,6 +14,7 @@ from semmap.nodes.runtime import playback_clock
 from semmap.schemas import errors, wording
 from semmap.schemas.commits import Commit
 from semmap.schemas.entities import Entity, Pose
+from semmap.schemas.joints import select_joint_properties
 
 GLIDE_S: Final = 0.6
 """The duration of the motion of an object [s]."""
@@ -30,7 +31,7 @@ class Scene(Struct, frozen=True, kw_only=True):
     seconds: float
     caption: str
     add: tuple[Entity, ...] = ()
-    """The entities that appear, or get a new shape."""
+    """The entities that appear, get a new shape, or move their joints."""
     remove: tuple[str, ...] = ()
     glide: tuple[tuple[str, Pose, Pose], ...] = ()
     """The moved entities: name, start and end."""
@@ -88,7 +89,7 @@ def _commit_scene(commit: Commit, there: dict[str, Entity], seconds: float) -> S
             continue
         if entity.pose is None:
             raise errors.InternalError(f"{entity.name} has no pose")
-        if (was.model, was.size_m, was.fixed) != (entity.model, entity.size_m, entity.fixed):
+        if _shape_of(was) != _shape_of(entity):
             add.append(entity)
         elif was.pose != entity.pose:
             glide.append((entity.name, was.pose, entity.pose))
@@ -102,6 +103,11 @@ def _commit_scene(commit: Commit, there: dict[str, Entity], seconds: float) -> S
         glide=tuple(glide),
         labels=dict(list(labels.items())[:_LABELLED]),
     )
+
+
+def _shape_of(entity: Entity) -> tuple[object, ...]:
+    """Return what determines the shape of an entity's body, with its joints."""
+    return entity.model, entity.size_m, entity.fixed, select_joint_properties(entity.properties)
 
 
 def caption(commit: Commit) -> str:

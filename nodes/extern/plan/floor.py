@@ -10,6 +10,7 @@ from typing import Final, Literal
 from semmap.nodes.geometry.polygons import Point, Polygon, area, clipped, hull
 from semmap.ontology.model_shapes import own_size_m
 from semmap.schemas.entities import Entity, Pose, Quaternion, Size
+from semmap.schemas.plans import Plan, PlannedThing
 from semmap.schemas.polygons import Polygon as Outline
 from semmap.schemas.polygons import extent_of
 
@@ -20,6 +21,7 @@ OVERHEAD_M: Final = 2.0
 """Objects whose bottom is higher above the floor are drawn dashed."""
 _ON_SOMETHING_M: Final = 0.25
 _SMALL_M2: Final = 0.12
+_COVERED_M: Final = 0.001
 _MOSTLY: Final = 0.6
 """The fraction of its floor from which a place counts as part of another one, or as composed of others."""
 
@@ -40,13 +42,17 @@ class Area:
 
 @dataclass(frozen=True)
 class Piece:
-    """An object; `outline` is its footprint, counterclockwise."""
+    """An object; `outline` is the convex hull of its footprint, counterclockwise.
+
+    `parts` are the convex outlines of its parts, without those that others cover; empty if it is drawn whole.
+    """
 
     name: str
     kind: Kind
     outline: tuple[Point, ...]
     top_m: float
     is_open: bool = False
+    parts: tuple[tuple[Point, ...], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -62,7 +68,7 @@ class Floor:
     def at(self, point: Point) -> str | None:
         """Return the name of the uppermost object at a point of the map [m], or of the room."""
         shapes: list[Area | Piece] = [*reversed(self.pieces), *reversed(self.zones), *self.rooms]
-        return next((shape.name for shape in shapes if Outline(shape.outline).contains(point)), None)
+        return next((shape.name for shape in shapes if _is_at(shape, point)), None)
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -81,17 +87,21 @@ def floor_of(
     poses: Mapping[str, Pose] | None = None,
     outlines: Mapping[str, Polygon] | None = None,
     body_sizes_m: Mapping[str, Size] | None = None,
+    plan: Plan | None = None,
 ) -> Floor:
     """Return the plan of these entities, at `poses` or else at their poses in the map.
 
     The outline of a place is its extent, or the one in `outlines` (map frame [m], counterclockwise). An
-    object without an asserted size has that of its body, in `body_sizes_m`, or else that of its model.
+    object has the outlines of its parts in `plan`, which is computed from the shapes that the knowledge base
+    has. Without these, it is a box of its asserted size, that of its body in `body_sizes_m`, or its model's.
     """
     poses, outlines, body_sizes_m = poses or {}, outlines or {}, body_sizes_m or {}
+    things = {} if plan is None else {thing.name: thing for thing in plan.things}
     places: list[Area] = []
     pieces: list[Piece] = []
     unplaced = 0
     for entity in sorted(entities, key=lambda e: e.name):
+        parts: tuple[tuple[Point, ...], ...] = ()
         pose = poses.get(entity.name, entity.pose)
         size_m = entity.size_m
         if size_m is None and entity.model and not entity.place:
@@ -101,7 +111,10 @@ def floor_of(
         elif (extent := extent_of(entity)) is not None:
             outline = extent.outer
         elif pose is not None and size_m is not None:
-            outline = footprint(pose, size_m)
+            is_opening = not {"Door", "Window"}.isdisjoint(entity.types)  # drawn as a gap in a wall
+            if not is_opening:
+                parts = _parts(things.get(entity.name), entity.pose, pose)
+            outline = tuple(hull([point for part in parts for point in part])) or footprint(pose, size_m)
         else:
             unplaced += 1
             continue
@@ -110,9 +123,56 @@ def floor_of(
         elif pose is not None and size_m is not None:
             top_m = pose.position_m[2] + size_m[2]
             is_open = entity.properties.get("isOpen") is True
-            pieces.append(Piece(entity.name, _kind(entity, pose, outline), outline, top_m, is_open))
+            pieces.append(Piece(entity.name, _kind(entity, pose, outline), outline, top_m, is_open, parts))
     rooms, zones = _rooms_and_zones(places)
     return Floor(rooms, zones, tuple(sorted(pieces, key=lambda p: (p.top_m, p.name))), unplaced)
+
+
+def _is_at(shape: Area | Piece, point: Point) -> bool:
+    outlines = (isinstance(shape, Piece) and shape.parts) or (shape.outline,)
+    return any(Outline(outline).contains(point) for outline in outlines)
+
+
+def _parts(thing: PlannedThing | None, was: Pose | None, now: Pose) -> tuple[tuple[Point, ...], ...]:
+    """Return the outlines of the parts of an object, which has moved from the pose of its plan.
+
+    The largest is first, and those that another one covers are omitted. The result is empty if they are
+    unknown, and for a tilted object that has moved.
+    """
+    if thing is None or was is None:
+        return ()
+    corners = sorted((part.corners for part in thing.parts), key=lambda outline: -area(outline))
+    if was != now:
+        if not (_is_upright(was.orientation_wxyz) and _is_upright(now.orientation_wxyz)):
+            return ()
+        corners = [_moved(outline, was, now) for outline in corners]
+    kept: list[tuple[Point, ...]] = []
+    for outline in corners:
+        if not any(_covers(other, outline) for other in kept):
+            kept.append(tuple(outline))
+    return tuple(kept)
+
+
+def _moved(outline: Polygon, was: Pose, now: Pose) -> tuple[Point, ...]:
+    """Return an outline of an upright object after it moved."""
+    turn = now.yaw_rad - was.yaw_rad
+    cos, sin = math.cos(turn), math.sin(turn)
+    (x0, y0, _), (x1, y1, _) = was.position_m, now.position_m
+    return tuple(
+        (x1 + cos * (x - x0) - sin * (y - y0), y1 + sin * (x - x0) + cos * (y - y0)) for x, y in outline
+    )
+
+
+def _covers(outer: Polygon, inner: Polygon) -> bool:
+    """Return whether all points of an outline are in a convex one, to a millimetre."""
+    ax, ay = outer[-1]
+    for bx, by in outer:
+        ex, ey = bx - ax, by - ay
+        least = -_COVERED_M * math.hypot(ex, ey)
+        if any(ex * (py - ay) - ey * (px - ax) < least for px, py in inner):
+            return False
+        ax, ay = bx, by
+    return True
 
 
 def footprint(pose: Pose, size: Size) -> tuple[Point, ...]:

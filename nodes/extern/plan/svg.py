@@ -55,6 +55,8 @@ text{font-family:Helvetica,Arial,'DejaVu Sans',sans-serif;fill:#1d2430}
 .furniture{fill:#e8e1d3;stroke:#6d6455;stroke-width:.2}
 .small{fill:#fff;stroke:#6d6455;stroke-width:.15}
 .person{fill:#cfe3f5;stroke:#2d5f8b;stroke-width:.25}
+.edge{stroke-width:.4}.inside{stroke-width:.06}
+.furniture.inside{stroke:#e8e1d3}.small.inside{stroke:#fff}.person.inside{stroke:#cfe3f5}
 .overhead{fill:none;stroke:#6d6455;stroke-width:.18;stroke-dasharray:.7 .5}
 .gap{fill:#fdfcfa;stroke:#5a6270;stroke-width:.15}
 .leaf{fill:#b98d5a;stroke:#7a5a34;stroke-width:.15}
@@ -223,7 +225,18 @@ def _shapes(sheet: _Paper, floor: Floor) -> Iterator[str]:
             yield from _opening(sheet, piece)
     for piece in floor.pieces:
         if piece.kind not in ("door", "window"):
-            yield _polygon(sheet, piece.outline, piece.kind, of=piece.name)
+            yield from _piece(sheet, piece)
+
+
+def _piece(sheet: _Paper, piece: Piece) -> Iterator[str]:
+    """Draw the outline of an object: the edges of all its parts, and above them their insides."""
+    parts = () if piece.kind == "overhead" else piece.parts
+    if len(parts) < 2:
+        yield _polygon(sheet, piece.outline, piece.kind, of=piece.name)
+        return
+    for layer in ("edge", "inside"):
+        for part in parts:
+            yield _polygon(sheet, part, f"{piece.kind} {layer}", of=piece.name)
 
 
 def _opening(sheet: _Paper, piece: Piece) -> Iterator[str]:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 from semmap.nodes.drawing.figures import Figure, figure_of, is_still, pose_of
 from semmap.nodes.drawing.neighbourhood import Neighbourhood
 from semmap.nodes.drawing.surfaces import SurfaceCache
+from semmap.nodes.recorder.drawing.geometry import leaf_paths_of
 from semmap.nodes.recorder.recording import Recording
 from semmap.schemas.entities import Entity, Pose
 from semmap.schemas.scenes import Body
@@ -68,10 +70,28 @@ class DrawnScene:
             del self._drawn[name]
         if now is None:
             return
-        if before is None or before[0] != now[0]:
+        if before is None:
             self._recording.draw(name, *now)
+        elif before[0] != now[0]:
+            now = self._redraw(name, before, now)
         elif is_still(before[1], now[1]):
             return
         else:
             self._recording.move(name, *now)
         self._drawn[name] = now
+
+    def _redraw(self, name: str, before: Drawn, now: Drawn) -> Drawn:
+        """Draw a figure that has changed, and return it with its recorded pose.
+
+        If only joints have moved, its surface is not recorded again.
+        """
+        if replace(before[0], joint_positions=now[0].joint_positions) == now[0]:
+            self._recording.bend(name, now[0])
+            if is_still(before[1], now[1]):
+                return now[0], before[1]
+            self._recording.move(name, *now)
+            return now
+        if not set(leaf_paths_of(before[0])) <= set(leaf_paths_of(now[0])):
+            self._recording.erase(name, before[0])
+        self._recording.draw(name, *now)
+        return now

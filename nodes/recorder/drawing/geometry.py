@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
+from semmap.nodes.drawing.articulation import paths_of, transform_of
 from semmap.nodes.drawing.figures import Figure
 from semmap.nodes.drawing.palette import GREY, colour_of
 from semmap.nodes.drawing.triangulation import triangles_of
@@ -17,6 +18,8 @@ _SHEET_M = 0.002
 _LABEL_M = 0.02
 _BORDER_M = 0.015
 _THIN_M = 0.001
+_FIXED = -1
+"""Stands for the part of a surface that no joint moves."""
 
 
 def shape_of(figure: Figure) -> tuple[rr.AsComponents, ...]:
@@ -28,16 +31,51 @@ def shape_of(figure: Figure) -> tuple[rr.AsComponents, ...]:
         return _sheet(figure)
     if figure.surface is None or figure.appearance == "ghost":
         return (_box(figure),)
-    return _box(figure), _mesh(figure.surface)
+    return _box(figure), *_mesh(figure.surface, _FIXED)
 
 
-def _mesh(surface: Surface) -> rr.Mesh3D:
-    return rr.Mesh3D(
-        vertex_positions=np.frombuffer(surface.points, "<f4").reshape(-1, 3),
-        vertex_normals=np.frombuffer(surface.normals, "<f4").reshape(-1, 3),
-        vertex_colors=np.frombuffer(surface.colours, "u1").reshape(-1, 3),
-        triangle_indices=np.frombuffer(surface.triangles, "<u4").reshape(-1, 3),
+def leaf_paths_of(figure: Figure) -> list[tuple[str, ...]]:
+    """Return the path of each moving leaf of a figure: the joints that it moves with, and its own.
+
+    A leaf is an entity of the recording below the one that holds it, so a motion is only a transform.
+    """
+    if figure.surface is None or figure.appearance in ("ghost", "place"):
+        return []
+    leaves = figure.surface.leaves
+    return [tuple(leaves[number].joint for number in path) for path in paths_of(leaves)]
+
+
+def leaf_shapes_of(figure: Figure) -> list[tuple[rr.AsComponents, ...]]:
+    """Return the surface of each moving leaf of a figure, without the leaves that it holds."""
+    surface = figure.surface
+    return [] if surface is None else [_mesh(surface, number) for number in range(len(surface.leaves))]
+
+
+def leaf_transforms_of(figure: Figure) -> list[rr.Transform3D]:
+    """Return the transform of each moving leaf of a figure, in the frame of what holds it."""
+    positions = dict(figure.joint_positions)
+    leaves = () if figure.surface is None else figure.surface.leaves
+    moves = [transform_of(leaf, positions.get(leaf.joint, 0.0)) for leaf in leaves]
+    return [rr.Transform3D(mat3x3=turn, translation=shift) for turn, shift in moves]
+
+
+def _mesh(surface: Surface, number: int) -> tuple[rr.Mesh3D, ...]:
+    """Return the part of a surface that belongs to a leaf, or to none; empty if there is nothing."""
+    points = np.frombuffer(surface.points, "<f4").reshape(-1, 3)
+    owner = np.full(len(points), _FIXED)
+    for k, leaf in enumerate(surface.leaves):  # those on another leaf follow it
+        owner[leaf.first : leaf.first + leaf.count] = k
+    own = owner == number
+    if not own.any():
+        return ()
+    triangles = np.frombuffer(surface.triangles, "<u4").reshape(-1, 3)
+    mesh = rr.Mesh3D(
+        vertex_positions=points[own],
+        vertex_normals=np.frombuffer(surface.normals, "<f4").reshape(-1, 3)[own],
+        vertex_colors=np.frombuffer(surface.colours, "u1").reshape(-1, 3)[own],
+        triangle_indices=(np.cumsum(own) - 1)[triangles[own[triangles[:, 0]]]],
     )
+    return (mesh,)
 
 
 def _box(figure: Figure) -> rr.Boxes3D:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, Final
+import copy
+import hashlib
+from collections.abc import Iterator, Sequence
+from typing import Any, Final, Literal
 
 import mujoco
 import numpy as np
+from msgspec import structs
 from numpy.typing import NDArray
 
 from semmap.nodes.sim_node.models.facets import facets
-from semmap.nodes.sim_node.models.parts import Floats, Mesh, Part, Shape
+from semmap.nodes.sim_node.models.parts import Floats, Mesh, Part, Shape, Vec3
 from semmap.nodes.sim_node.physics.build import COLLISION_GROUP
-from semmap.schemas.scenes import Surface
+from semmap.schemas import codec
+from semmap.schemas.scenes import Leaf, Surface
 
 _SHAPES = {
     mujoco.mjtGeom.mjGEOM_BOX: Shape.BOX,
@@ -23,9 +27,14 @@ _SHAPES = {
     mujoco.mjtGeom.mjGEOM_MESH: Shape.MESH,
 }
 
-
+_LEAF_KINDS: Final[dict[int, Literal["hinge", "slide"]]] = {
+    int(mujoco.mjtJoint.mjJNT_HINGE): "hinge",
+    int(mujoco.mjtJoint.mjJNT_SLIDE): "slide",
+}
 _MOST_TRIANGLES: Final = 100_000
 """A body of more triangles is not drawn in detail."""
+_DECIMALS: Final = 5
+"""Coordinates are rounded [m], so that equal bodies at different places have equal surfaces."""
 
 
 def world_surface(model: mujoco.MjModel, data: mujoco.MjData, names: Sequence[str]) -> Surface:
@@ -33,49 +42,100 @@ def world_surface(model: mujoco.MjModel, data: mujoco.MjData, names: Sequence[st
 
     Planes, height fields and invisible geoms are omitted.
     """
-    return _surface(
-        model, data, [geom for geom, name in enumerate(names) if not name], np.zeros(3), np.eye(3)
-    )
+    geoms = [geom for geom, name in enumerate(names) if not name]
+    return _surface(model, data, geoms, np.zeros(3), np.eye(3))[0]
+
+
+def close_joints(model: mujoco.MjModel, data: mujoco.MjData) -> mujoco.MjData:
+    """Return a copy of the state with all hinges and slides at 0."""
+    closed = copy.copy(data)
+    closed.qpos[model.jnt_qposadr[np.isin(model.jnt_type, list(_LEAF_KINDS))]] = 0.0
+    mujoco.mj_kinematics(model, closed)
+    return closed
 
 
 def body_surface(
-    model: mujoco.MjModel, data: mujoco.MjData, names: Sequence[str], name: str, pose: Floats
+    model: mujoco.MjModel, data: mujoco.MjData, geoms: Sequence[int], body: int, pose: Floats
 ) -> Surface | None:
-    """Return the surface of a body of the world file, with its parts as they are now, in its frame.
+    """Return the surface of a body of the world file in its frame; in `data`, all joints are at 0.
 
-    `names` (ngeom,) is the body of each geom, and `pose` (7,) that of the body: position [m] and quaternion
-    wxyz, map frame. Returns None if it is invisible or has too many triangles.
+    `geoms` are its geoms in ascending order, `body` is its number in the model, and `pose` (7,) its position
+    [m] and quaternion wxyz in the map frame. Each joint of its parts moves a leaf. Returns None if it is
+    invisible or has too many triangles.
     """
     turn = np.zeros(9)
     mujoco.mju_quat2Mat(turn, np.asarray(pose[3:], dtype=float))
-    geoms = [geom for geom, whose in enumerate(names) if whose == name]
-    surface = _surface(model, data, geoms, pose[:3], turn.reshape(3, 3))
-    return surface if 0 < len(surface.triangles) <= 12 * _MOST_TRIANGLES else None
+    origin, frame = pose[:3], turn.reshape(3, 3)
+    surface, starts = _surface(model, data, geoms, origin, frame)
+    if not 0 < len(surface.triangles) <= 12 * _MOST_TRIANGLES:
+        return None
+    moved = {geom: list(_parts_above(model, int(model.geom_bodyid[geom]), body)) for geom in geoms}
+    leaves = []
+    for part in sorted({part for parts in moved.values() for part in parts}):
+        rows = [row for row, geom in enumerate(geoms) if part in moved[geom]]
+        first, end = starts[rows[0]], starts[rows[-1] + 1]
+        leaves += [
+            Leaf(
+                joint=model.joint(joint).name,
+                kind=_LEAF_KINDS[int(model.jnt_type[joint])],
+                axis=_vector(data.xaxis[joint] @ frame),
+                anchor=_vector((data.xanchor[joint] - origin) @ frame),
+                first=first,
+                count=end - first,
+            )
+            for joint in range(model.body_jntadr[part], model.body_jntadr[part] + model.body_jntnum[part])
+            if int(model.jnt_type[joint]) in _LEAF_KINDS and end > first
+        ]
+    return structs.replace(surface, leaves=tuple(leaves))
+
+
+def digest_of(surface: Surface) -> str:
+    """Return the digest of a surface, which is equal for equal surfaces only."""
+    return hashlib.blake2b(codec.encode(surface), digest_size=16).hexdigest()
+
+
+def _parts_above(model: mujoco.MjModel, part: int, body: int) -> Iterator[int]:
+    """Yield the bodies with joints from `part` up, below `body`, whose own joints move all of it."""
+    while part not in (0, body):
+        if model.body_jntnum[part]:
+            yield part
+        part = int(model.body_parentid[part])
 
 
 def _surface(
     model: mujoco.MjModel, data: mujoco.MjData, geoms: Sequence[int], origin: Floats, frame: Floats
-) -> Surface:
-    """Return the surface of these geoms in a frame.
+) -> tuple[Surface, list[int]]:
+    """Return the surface of these geoms in a frame, and the first row of each geom's points, and the end.
 
     `origin` (3,) [m] is its origin, and the columns of `frame` (3, 3) are its axes.
     """
-    points, normals, colours, triangles, count = [], [], [], [], 0
+    points, normals, colours, triangles, starts = [], [], [], [], [0]
     for geom in geoms:
         if (part := _part(model, geom)) is None:
+            starts.append(starts[-1])
             continue
         piece, turn = facets(part), frame.T @ data.geom_xmat[geom].reshape(3, 3)
         points.append(piece.points @ turn.T + (data.geom_xpos[geom] - origin) @ frame)
         normals.append(piece.normals @ turn.T)
         colours.append(np.tile(part.colour, (len(piece.points), 1)))
-        triangles.append(piece.triangles + count)
-        count += len(piece.points)
-    return Surface(
-        points=_rows(points).astype("<f4").tobytes(),
-        normals=_rows(normals).astype("<f4").tobytes(),
+        triangles.append(piece.triangles + starts[-1])
+        starts.append(starts[-1] + len(piece.points))
+    surface = Surface(
+        points=_rounded(points).astype("<f4").tobytes(),
+        normals=_rounded(normals).astype("<f4").tobytes(),
         colours=np.round(255.0 * _rows(colours)).astype("u1").tobytes(),
         triangles=_rows(triangles).astype("<u4").tobytes(),
     )
+    return surface, starts
+
+
+def _rounded(pieces: Sequence[NDArray[Any]]) -> NDArray[Any]:
+    return np.round(_rows(pieces), _DECIMALS) + 0.0  # no negative zeros, which are other bytes
+
+
+def _vector(values: Floats) -> Vec3:
+    x, y, z = (float(value) for value in np.round(values, _DECIMALS) + 0.0)
+    return x, y, z
 
 
 def _rows(pieces: Sequence[NDArray[Any]]) -> NDArray[Any]:

@@ -377,18 +377,49 @@ def _within(model: mujoco.MjModel, body: int) -> NDArray[np.bool_]:
 def _extents(
     model: mujoco.MjModel, data: mujoco.MjData, geoms: NDArray[np.intp], body: int
 ) -> tuple[Floats, Floats]:
-    """Return lowest and highest corner (3,) of the box around `geoms`, in the frame of a body."""
+    """Return lowest and highest corner (3,) of the box around `geoms`, in the frame of a body.
+
+    MuJoCo has boxes in the frames of the geoms, and the axes of a mesh are those of its inertia. A box around
+    a turned box would be too large.
+    """
     if not len(geoms):
         return np.full(3, -0.005), np.full(3, 0.005)
     world_from_body = data.xmat[body].reshape(3, 3)
     rotation = world_from_body.T @ data.geom_xmat[geoms].reshape(-1, 3, 3)
     centre = (data.geom_xpos[geoms] - data.xpos[body]) @ world_from_body
     aabb = model.geom_aabb[geoms]
-    centre = centre + np.einsum("nij,nj->ni", rotation, aabb[:, :3])
     half = np.einsum("nij,nj->ni", np.abs(rotation), aabb[:, 3:])
-    return (centre - half).min(axis=0), np.maximum(
-        (centre + half).max(axis=0), (centre - half).min(axis=0) + 1e-3
-    )
+    middle = centre + np.einsum("nij,nj->ni", rotation, aabb[:, :3])
+    low, high = middle - half, middle + half
+    for row, geom in enumerate(geoms.tolist()):
+        size, axis = model.geom_size[geom], np.abs(rotation[row, :, 2])
+        match int(model.geom_type[geom]):
+            case mujoco.mjtGeom.mjGEOM_MESH:
+                vertices = _vertices_of(model, geom) @ rotation[row].T
+                low[row], high[row] = (
+                    centre[row] + edge for edge in (vertices.min(axis=0), vertices.max(axis=0))
+                )
+                continue
+            case mujoco.mjtGeom.mjGEOM_SPHERE:
+                reach = np.full(3, size[0])
+            case mujoco.mjtGeom.mjGEOM_ELLIPSOID:
+                reach = np.sqrt(rotation[row] ** 2 @ size**2)
+            case mujoco.mjtGeom.mjGEOM_CYLINDER:
+                reach = size[0] * np.sqrt(np.maximum(0.0, 1.0 - axis**2)) + size[1] * axis
+            case mujoco.mjtGeom.mjGEOM_CAPSULE:
+                reach = size[0] + size[1] * axis
+            case _:
+                continue
+        low[row], high[row] = centre[row] - reach, centre[row] + reach
+    lowest = low.min(axis=0)
+    return lowest, np.maximum(high.max(axis=0), lowest + 1e-3)
+
+
+def _vertices_of(model: mujoco.MjModel, geom: int) -> Floats:
+    """Return the vertices (N, 3) of a mesh in the frame of its geom."""
+    mesh = int(model.geom_dataid[geom])
+    first = int(model.mesh_vertadr[mesh])
+    return np.asarray(model.mesh_vert[first : first + int(model.mesh_vertnum[mesh])], dtype=float)
 
 
 def _one_line(error: Exception) -> str:

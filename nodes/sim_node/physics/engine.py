@@ -155,7 +155,7 @@ class Engine:
         own = {name: state.pose for name, state in states.items() if not self.records[name].anchored}
         self.put({name: pose for name, pose in own.items() if not self.records[name].static})
         here = dict(zip(self.index.names, map(pose_of, self.poses()), strict=True))
-        stand = {name: pose for name, pose in own.items() if not _is_at(pose, here[name])}
+        stand = {name: pose for name, pose in own.items() if not is_at(pose, here[name])}
         if stand or any(self.records[name].held_by for name in states):
             self._recompile(stand)
         mujoco.mj_kinematics(self.model, self.data)
@@ -413,5 +413,6 @@ class Engine:
         self.data.qacc_warmstart[:] = 0.0
 
 
-def _is_at(pose: Pose, here: Pose) -> bool:
+def is_at(pose: Pose, here: Pose) -> bool:
+    """Return whether a body is at a pose, so that it need not be moved there."""
     return max(distance_m(pose, here), angle_rad(pose, here)) <= _MOVED

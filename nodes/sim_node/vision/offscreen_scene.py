@@ -11,14 +11,15 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from semmap.nodes.sim_node import order_validation
-from semmap.nodes.sim_node.bodies import Floats
+from semmap.nodes.sim_node.bodies import Floats, pose_of
 from semmap.nodes.sim_node.models.sources import Models
 from semmap.nodes.sim_node.physics import base_scene
-from semmap.nodes.sim_node.physics.engine import Engine
+from semmap.nodes.sim_node.physics.engine import Engine, is_at
 from semmap.nodes.sim_node.vision.camera import Eye
 from semmap.nodes.sim_node.vision.labels import draw_labels, project_points
 from semmap.nodes.sim_node.vision.view import FROM_ABOVE, View, bulk, camera_view, overview
 from semmap.nodes.sim_node.world_file import is_scene
+from semmap.ontology.model_shapes import is_same_size
 from semmap.schemas.entities import Pose, Vector
 from semmap.schemas.scenes import BodyOrder
 
@@ -57,11 +58,31 @@ class OffscreenScene:
         return name in self._engine.records
 
     def add(self, orders_: Iterable[BodyOrder]) -> Mapping[str, str]:
-        """Add bodies at their ordered poses; return the reasons for rejections by name."""
-        made, failed = order_validation.validate_spawn(list(orders_), self._models, self._engine.has)
+        """Add bodies at their ordered poses; return the reasons for rejections by name.
+
+        A body of the world file is used for an order of its name and size. Other bodies of these names are
+        replaced.
+        """
+        own, others = list[BodyOrder](), list[BodyOrder]()
+        for order in orders_:
+            (own if self._is_own(order) else others).append(order)
+        self.remove(order.name for order in others)
+        made, failed = order_validation.validate_spawn(others, self._models, self._engine.has)
         if made:
             self._engine.add(list(made.values()))
+        for order in own:
+            record = self._engine.records[order.name]
+            record.joints = order_validation.place_joints(record.joints, order.properties)
+        self._engine.set_joints(order.name for order in own)
+        self.put({order.name: order.pose for order in own})
         return failed
+
+    def _is_own(self, order: BodyOrder) -> bool:
+        """Return whether the world file has the body that is ordered."""
+        record = self._engine.records.get(order.name)
+        if record is None or self._engine.shape(order.name) is not None:
+            return False
+        return order.size_m is None or is_same_size(order.size_m, record.size_m)
 
     def remove(self, names: Iterable[str]) -> None:
         """Remove bodies; unknown names are ignored."""
@@ -70,9 +91,20 @@ class OffscreenScene:
             self._engine.remove(there)
 
     def put(self, poses: Mapping[str, Pose]) -> None:
-        """Move bodies, without collision checks; unknown names are ignored."""
-        there = {name: pose for name, pose in poses.items() if name in self._engine.records}
-        static = {name for name in there if self._engine.records[name].static}
+        """Move bodies, without collision checks; unknown names are ignored.
+
+        A body that a joint or its parent body fixes is moved by joints only.
+        """
+        records, here = (
+            self._engine.records,
+            dict(zip(self._engine.index.names, self._engine.poses(), strict=True)),
+        )
+        there = {
+            name: pose
+            for name, pose in poses.items()
+            if name in records and not records[name].anchored and not is_at(pose, pose_of(here[name]))
+        }
+        static = {name for name in there if records[name].static}
         self._engine.hold({name: there[name] for name in static})
         self._engine.put({name: pose for name, pose in there.items() if name not in static})
 

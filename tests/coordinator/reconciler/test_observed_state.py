@@ -140,6 +140,13 @@ def test_entities_that_were_changed_since_are_not_edited(meanwhile, is_edited):
     assert [edit.name for edit in settled.edits(now)] == (["chair1"] if is_edited else [])
 
 
+def test_an_edit_has_the_size_of_a_body_of_another_world():
+    chair = entity("chair1", HERE)
+    observed = ObservedState.of({"chair1": chair}, {}, sizes_m={"chair1": (1.0, 2.0, 3.0)})
+    (edit,) = observed.edits({"chair1": chair})
+    assert (observed.names, edit.size, edit.at) == (("chair1",), (1.0, 2.0, 3.0), None)
+
+
 def test_entities_that_were_removed_since_are_left_out():
     both = {"chair1": CHAIR, "chair2": structs.replace(CHAIR, name="chair2")}
     settled = ObservedState.of(both, dict.fromkeys(both, THERE))

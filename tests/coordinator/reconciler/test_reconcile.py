@@ -63,6 +63,23 @@ def look(entities: list[Entity], bodies: list[Body], truth="map", failed=None) -
 NOTHING = Actions()
 
 
+@pytest.mark.parametrize(
+    ("source", "size_m", "surface", "truth", "resized"),
+    [
+        ("scene", (0.5, 0.5, 0.7), "abc", "scene", ("a",)),
+        ("scene", (0.5, 0.5, 0.501), "abc", "scene", ()),
+        ("scene", None, "abc", "scene", ()),
+        ("scene", (0.5, 0.5, 0.7), "", "scene", ()),
+        ("operator", (0.5, 0.5, 0.7), "abc", "scene", ()),
+        ("scene", (0.5, 0.5, 0.7), "abc", "map", ()),
+    ],
+)
+def test_the_map_follows_the_size_of_a_body_of_another_world(source, size_m, surface, truth, resized):
+    known = structs.replace(entity("a", at(0)), size_m=size_m, shape_provenance=provenance(1, source))
+    there = structs.replace(body("a", at(0)), surface=surface)
+    assert look([known], [there], truth=truth).resized == resized
+
+
 def test_agreement_needs_nothing():
     assert look([entity("chair1", at(1))], [body("chair1", at(1.04))]) == NOTHING
     assert look([entity("chair1", at(1))], [body("chair1", at(1.04))], "scene") == NOTHING

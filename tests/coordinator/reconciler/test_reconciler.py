@@ -420,12 +420,12 @@ def test_an_invalid_reply_does_not_stop_the_reconciler(dispatcher):
 class Refusing:
     """Pending changes of the map that the test completes, and the orders to the simulator."""
 
-    def __init__(self, dispatcher, *entities: str):
+    def __init__(self, dispatcher, *entities: str, truth="map"):
         self.changes, self.said, self.asked = [], [], []
         for i, name in enumerate(entities):
             dispatcher.change(c.Add(class_="Chair", name=name, at=(float(i), 1.0, 0.0)))
         self.reconciler = Reconciler(
-            CoordinatorConfig("map"), dispatcher, self.change, self.ask, self.said.append
+            CoordinatorConfig(truth), dispatcher, self.change, self.ask, self.said.append
         )
         self.reconciler.scene.known = True
         for entity in dispatcher.map.entities.values():
@@ -528,6 +528,29 @@ def test_an_attachment_is_restored_when_the_map_rejects_it(dispatcher, error, tr
     map_.refuse(error)
     assert (len(map_.changes), map_.said) == (tries, said)
     assert [call.VERB for call in map_.asked] == asked
+
+
+@pytest.mark.parametrize(
+    ("error", "tries"), [(errors.Refused("too large for its room"), 1), (MemoryError("no memory"), 2)]
+)
+def test_the_map_follows_the_size_of_a_body_of_another_world_once_unless_it_rejects_it(
+    dispatcher, error, tries
+):
+    dispatcher.map.bodies = dict
+    map_ = Refusing(dispatcher, "chair1", truth="scene")
+    chair = dispatcher.map.entities["chair1"]
+    of_scene = structs.replace(chair.shape_provenance, source="scene")
+    known = structs.replace(chair, size_m=(0.5, 0.5, 1.0), shape_provenance=of_scene)
+    dispatcher.map.entities["chair1"] = known
+    map_.become("chair1", surface="abc")
+    map_.reconciler.reconcile()
+    map_.reconciler.reconcile()
+    ((change, _),) = map_.changes
+    assert change.sizes_m == {"chair1": (0.5, 0.5, 0.5)}
+    assert change.reason == "chair1 has another size in the scene"
+    map_.refuse(error)
+    assert len(map_.changes) == tries
+    assert map_.said == [f"chair1: its new size is not committed: {error}"]
 
 
 @pytest.mark.parametrize(

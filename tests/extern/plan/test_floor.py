@@ -6,6 +6,7 @@ from msgspec import structs
 from semmap.nodes.extern.plan.floor import floor_of, footprint
 from semmap.ontology.model_shapes import own_size_m
 from semmap.schemas.entities import Pose, orientation_from_yaw
+from semmap.schemas.plans import Outline, Plan, PlannedThing
 from tests.extern.plan.things import place, thing
 
 
@@ -96,6 +97,50 @@ def test_an_object_without_a_size_has_that_of_its_body_or_model():
     assert by_model.top_m == z
     default_box = floor_of([structs.replace(cup, model="")], body_sizes_m={"cup1": (0.2, 0.2, 0.2)})
     assert (default_box.pieces, default_box.unplaced) == ((), 1)
+
+
+def rectangle(x0, y0, x1, y1, top=0.7):
+    return Outline(corners=((x0, y0), (x1, y0), (x1, y1), (x0, y1)), low=0.0, high=top)
+
+
+def plan(name, *parts):
+    about = {"name": name, "label": name, "class_": "Couch", "footprint": (), "parts": parts}
+    return Plan(places=(), things=(PlannedThing(**about),))
+
+
+CORNER = plan("couch1", rectangle(0.9, -1, 1, 1), rectangle(0, -1, 1, 0), rectangle(0.1, -0.9, 0.9, -0.1))
+
+
+def test_an_object_has_the_outlines_of_its_parts_without_those_that_others_cover():
+    couch = thing("couch1", size=(2.0, 2.0, 0.7))
+    floor = floor_of([couch], plan=CORNER)
+    (piece,) = floor.pieces
+    assert [corners(part) for part in piece.parts] == [
+        corners(rectangle(0, -1, 1, 0).corners),
+        corners(rectangle(0.9, -1, 1, 1).corners),
+    ]
+    assert floor.bounds == (0, 1, -1, 1)
+    assert [floor.at(point) for point in ((0.5, -0.5), (0.95, 0.5), (0.3, 0.3))] == ["couch1", "couch1", None]
+
+
+def test_outlines_move_with_an_upright_object_and_a_tilted_one_is_its_box():
+    couch = thing("couch1", size=(2.0, 2.0, 0.7))
+    turned = Pose(position_m=(5.0, 5.0, 0.0), orientation_wxyz=orientation_from_yaw(math.pi / 2))
+    (piece,) = floor_of([couch], {"couch1": turned}, plan=CORNER).pieces
+    assert corners(piece.parts[0]) == [(5.0, 5.0), (5.0, 6.0), (6.0, 5.0), (6.0, 6.0)]
+    quarter = math.sqrt(0.5)
+    tilted = structs.replace(turned, orientation_wxyz=(quarter, quarter, 0.0, 0.0))
+    (piece,) = floor_of([couch], {"couch1": tilted}, plan=CORNER).pieces
+    assert piece.parts == ()
+    assert len(piece.outline) == 4
+
+
+def test_doors_and_objects_that_are_not_in_the_plan_are_boxes():
+    door = thing("door1", types=("Door",), size=(0.06, 0.9, 2.0))
+    (gap,) = floor_of([door], plan=plan("door1", rectangle(0, 0, 1, 1), rectangle(3, 3, 4, 4))).pieces
+    assert corners(gap.outline) == [(-0.03, -0.45), (-0.03, 0.45), (0.03, -0.45), (0.03, 0.45)]
+    (table,) = floor_of([thing("table1")], plan=CORNER).pieces
+    assert (table.parts, corners(table.outline)[0]) == ((), (-0.5, -1.0))
 
 
 def test_the_bounds_of_nothing_are_a_square_metre():

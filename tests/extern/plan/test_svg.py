@@ -5,6 +5,7 @@ import pytest
 
 from semmap.nodes.extern.plan.floor import floor_of
 from semmap.nodes.extern.plan.svg import draw, drawing
+from semmap.schemas.plans import Outline, Plan, PlannedThing
 from tests.extern.plan.things import place, thing
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -31,6 +32,21 @@ def test_lengths_on_paper_are_those_of_the_scale():
     assert max(ys) - min(ys) == pytest.approx(2000.0 / scale, abs=0.02)
     assert svg.get("width").endswith("mm")
     assert svg.get("viewBox") == f"0 0 {svg.get('width')[:-2]} {svg.get('height')[:-2]}"
+
+
+def test_an_object_of_several_parts_is_drawn_by_their_outlines():
+    parts = tuple(
+        Outline(corners=((x0, y0), (x1, y0), (x1, y1), (x0, y1)), low=0.0, high=0.7)
+        for x0, y0, x1, y1 in ((0, 0, 2, 1), (0, 1, 1, 2))
+    )
+    about = {"name": "couch1", "label": "couch", "class_": "Couch", "footprint": (), "parts": parts}
+    svg = drawn(thing("couch1", size=(2.0, 2.0, 0.7)), plan=Plan(places=(), things=(PlannedThing(**about),)))
+    drawn_as = [p.get("class") for p in svg.iter(f"{SVG}polygon")]
+    assert drawn_as == ["furniture edge", "furniture edge", "furniture inside", "furniture inside"]
+    scale = int(next(t for t in texts(svg) if t.startswith("1 : ")).removeprefix("1 : "))
+    xs, ys = zip(*outline(svg, "furniture edge"), strict=True)
+    assert (max(xs) - min(xs)) / (max(ys) - min(ys)) == pytest.approx(2.0, abs=0.01)
+    assert max(xs) - min(xs) == pytest.approx(2000.0 / scale, abs=0.02)
 
 
 def test_north_is_up():

@@ -3,13 +3,21 @@ import pytest
 import rerun as rr
 from msgspec import structs
 
+from semmap.nodes.drawing.articulation import articulated
 from semmap.nodes.drawing.figures import figure_of
 from semmap.nodes.drawing.neighbourhood import GraphNode, Neighbourhood
 from semmap.nodes.recorder.drawing.drawn_scene import DrawnScene
-from semmap.nodes.recorder.drawing.geometry import shape_of
+from semmap.nodes.recorder.drawing.geometry import (
+    leaf_paths_of,
+    leaf_shapes_of,
+    leaf_transforms_of,
+    shape_of,
+)
 from semmap.schemas.entities import Pose
+from semmap.schemas.joints import Joint
 from semmap.schemas.polygons import EXTENT, box_around, read_wkt
-from tests.recorder.messages import body, entity, pose
+from semmap.schemas.scenes import Leaf
+from tests.recorder.messages import body, entity, pose, surface
 
 
 class Told:
@@ -81,6 +89,70 @@ def test_moves_are_told_when_they_are_moves(stage, told):
     assert told.take() == []
     stage.move("c", pose(0.5))
     assert told.take() == [("move", "c")]
+
+
+def cupboard(**others):
+    """Return a body with a door in a frame, and a handle on the door, which turns and slides."""
+    kinds = {"door": "hinge", "handle": "hinge", "latch": "slide"}
+    joints = [Joint(name=name, kind=kinds[name], position=at) for name, at in others.pop("at", {}).items()]
+    return body("c", model="cupboard", joints=tuple(joints), **others)
+
+
+def leaf(joint, kind, axis, anchor, first, count):
+    return Leaf(joint=joint, kind=kind, axis=axis, anchor=anchor, first=first, count=count)
+
+
+def jointed():
+    parts = surface()
+    return structs.replace(
+        parts,
+        points=parts.points * 4,
+        normals=parts.normals * 4,
+        colours=parts.colours * 4,
+        triangles=np.arange(12, dtype="<u4").tobytes(),
+        leaves=(
+            leaf("door", "hinge", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0), 3, 6),
+            leaf("handle", "hinge", (1.0, 0.0, 0.0), (0.5, 0.0, 0.2), 6, 3),
+            leaf("latch", "slide", (0.0, 1.0, 0.0), (0.0, 0.0, 0.0), 9, 3),
+        ),
+    )
+
+
+def test_joints_move_leaves_and_do_not_draw_the_surface_again(stage, told):
+    stage.surfaces.take(("cupboard", (0.5, 0.5, 1.0)), jointed())
+    stage.show_all({}, {"c": cupboard()}, simulated=True)
+    assert told.take() == [("draw", "c")]
+    stage.show_all({}, {"c": cupboard(at={"door": 1.0})}, simulated=True)
+    assert told.take() == [("bend", "c")]
+    stage.show_all({}, {"c": cupboard(at={"door": 1.0})}, simulated=True)
+    assert told.take() == []
+    moved = structs.replace(cupboard(at={"door": 0.5}), pose=pose(1.0))
+    stage.show_all({}, {"c": moved}, simulated=True)
+    assert told.take() == [("bend", "c"), ("move", "c")]
+    stage.show_all({}, {"c": cupboard(at={"door": 0.5}, ghost=True)}, simulated=True)
+    assert told.take() == [("erase", "c"), ("draw", "c")]
+
+
+def test_transforms_of_leaves_have_the_effect_of_the_joints():
+    at = {"door": 1.0, "handle": -0.5, "latch": 0.3}
+    figure = figure_of(None, cupboard(at=at), simulated=True, surface=jointed())
+    paths = leaf_paths_of(figure)
+    assert paths == [("door",), ("door", "handle"), ("latch",)]
+    transforms = dict(zip(paths, leaf_transforms_of(figure), strict=True))
+    found = [points_of(shape_of(figure)[1])]
+    for path, (mesh,) in zip(paths, leaf_shapes_of(figure), strict=True):
+        points = points_of(mesh)
+        for length in range(len(path), 0, -1):  # from the leaf to what holds it
+            transform = transforms[path[:length]]
+            columns = np.array(transform.mat3x3.as_arrow_array().to_pylist()).reshape(3, 3)
+            points = points @ columns + np.array(transform.translation.as_arrow_array().to_pylist())
+        found.append(points)
+    expected = np.frombuffer(articulated(jointed(), figure.joint_positions).points, "<f4").reshape(-1, 3)
+    assert np.concatenate(found) == pytest.approx(expected, abs=1e-5)
+
+
+def points_of(mesh):
+    return np.array(mesh.vertex_positions.as_arrow_array().to_pylist())
 
 
 def test_a_graph_is_drawn_when_it_changes(stage, told):

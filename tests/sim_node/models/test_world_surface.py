@@ -1,10 +1,16 @@
-"""The world's walls, as triangles."""
+"""The walls of a world and the bodies of its file, as triangles."""
 
 import mujoco
 import numpy as np
 import pytest
 
-from semmap.nodes.sim_node.models.world_surface import body_surface, world_surface
+from semmap.nodes.drawing.articulation import articulated
+from semmap.nodes.sim_node.models.world_surface import (
+    body_surface,
+    close_joints,
+    digest_of,
+    world_surface,
+)
 
 ROOM = """<mujoco>
   <asset>
@@ -69,21 +75,62 @@ def test_triangles_turn_their_faces_outwards(told):
     assert (np.einsum("ij,ij->i", faces, normals[triangles[:, 0]])[large] > 0.0).all()
 
 
-def test_a_body_is_told_in_its_own_frame_with_its_parts():
-    model = mujoco.MjModel.from_xml_string("""<mujoco><worldbody>
-        <body name="robot" pos="5 6 0" euler="0 0 90">
-          <geom type="box" size="0.5 0.1 0.2" pos="0 0 0.2" rgba="1 0 0 1"/>
-          <body name="arm" pos="0 0 0.4"><geom type="box" size="0.1 0.1 0.3" pos="0.4 0 0.3"/></body>
-        </body>
-        <geom type="box" size="1 1 1"/>
-      </worldbody></mujoco>""")
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    names = ["robot" if body else "" for body in model.geom_bodyid]
-    half = np.sqrt(0.5)
-    told = body_surface(model, data, names, "robot", np.array([5.0, 6.0, 0.0, half, 0.0, 0.0, half]))
-    points = np.frombuffer(told.points, "<f4").reshape(-1, 3)
-    assert spans(points) == pytest.approx(np.array([(-0.5, -0.1, 0.0), (0.5, 0.1, 1.0)]), abs=1e-6)
-    arm = points[points[:, 2] > 0.5]
-    assert spans(arm)[:, 0] == pytest.approx([0.3, 0.5], abs=1e-6)
-    assert body_surface(model, data, names, "missing", np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])) is None
+ROBOT = mujoco.MjModel.from_xml_string("""<mujoco><worldbody>
+    <body name="robot" pos="5 6 0" euler="0 0 90">
+      <joint name="base" type="slide" axis="1 0 0"/>
+      <geom type="box" size="0.5 0.1 0.2" pos="0 0 0.2" rgba="1 0 0 1"/>
+      <body name="arm" pos="0.4 0 0.4">
+        <joint name="shoulder" axis="0 1 0"/><joint name="pan" axis="0 0 1" pos="0.1 0 0"/>
+        <geom type="box" size="0.1 0.1 0.3" pos="0 0 0.3"/>
+        <body name="plate" pos="0 0 0.6" euler="0 30 0"><geom type="sphere" size="0.1"/>
+          <body name="hand"><joint name="wrist" axis="1 1 0"/><joint name="reach" type="slide" axis="0 0 1"/>
+            <geom type="box" size="0.1 0.02 0.02"/></body></body>
+      </body>
+      <body name="antenna" pos="-0.4 0 0.4"><geom type="box" size="0.02 0.02 0.1" pos="0 0 0.1"/></body>
+    </body>
+    <geom type="box" size="1 1 1"/>
+  </worldbody></mujoco>""")
+ROBOT_GEOMS = np.flatnonzero(ROBOT.geom_bodyid).tolist()
+
+
+def at(**positions):
+    """Return the state with joints at these positions."""
+    data = mujoco.MjData(ROBOT)
+    for name, position in positions.items():
+        data.joint(name).qpos[:] = position
+    mujoco.mj_forward(ROBOT, data)
+    return data
+
+
+def robot_surface(data, geoms=ROBOT_GEOMS):
+    body = data.body("robot")
+    return body_surface(ROBOT, data, geoms, body.id, np.concatenate([body.xpos, body.xquat]))
+
+
+def points_of(surface):
+    return np.frombuffer(surface.points, "<f4").reshape(-1, 3)
+
+
+def test_the_surface_of_a_body_is_in_its_own_frame_and_has_its_parts():
+    points = points_of(robot_surface(at()))
+    assert points[:, :2].min(axis=0) == pytest.approx((-0.5, -0.1), abs=0.002)
+    assert points[:, 2].min() == pytest.approx(0.0, abs=1e-6)
+    assert robot_surface(at(), geoms=[]) is None
+
+
+def test_joints_move_the_surface_of_a_body_as_they_move_its_parts():
+    closed, random = robot_surface(at()), np.random.default_rng(1)
+    assert [leaf.joint for leaf in closed.leaves] == ["shoulder", "pan", "wrist", "reach"]
+    for _ in range(20):
+        names = ("base", *(leaf.joint for leaf in closed.leaves))
+        positions = dict(zip(names, random.uniform(-1.0, 1.0, 5).tolist(), strict=True))
+        moved, truth = articulated(closed, tuple(positions.items())), robot_surface(at(**positions))
+        assert points_of(moved) == pytest.approx(points_of(truth), abs=1e-4)
+        assert np.frombuffer(moved.normals, "<f4") == pytest.approx(
+            np.frombuffer(truth.normals, "<f4"), abs=1e-3
+        )
+
+
+def test_the_surface_does_not_depend_on_the_position_of_joints_when_it_is_requested():
+    bent = close_joints(ROBOT, at(base=1.0, shoulder=0.7, reach=0.2))
+    assert digest_of(robot_surface(bent)) == digest_of(robot_surface(at()))

@@ -12,6 +12,9 @@ from semmap.nodes.extern.plan.floor import Floor, floor_of
 from semmap.nodes.extern.plan.svg import Drawing, draw
 from semmap.nodes.extern.web.page import Page
 from semmap.nodes.extern.web.panels.widgets.redraw import LazyRedraw
+from semmap.schemas import errors
+from semmap.schemas.commands import PlanFloor
+from semmap.schemas.plans import Plan
 
 _MARKED: Final = 'fill="rgba(47,129,247,.25)" stroke="#2f81f7" stroke-width="2"'
 _PRINT: Final = """
@@ -68,16 +71,26 @@ class _Plan:
         )
         commit, stamp_ns = state.commit, _stamp_ns(self._page)
         scene = self._page.live.scene if self._page.moment.is_now else None
-        bodies = () if scene is None else scene.bodies
+        sizes_m = {} if scene is None else {body.name: body.size_m for body in scene.bodies}
+        outlines = await self._outlines()
 
         def drawn() -> tuple[Floor, Drawing]:
-            floor = floor_of(entities, poses, body_sizes_m={body.name: body.size_m for body in bodies})
+            floor = floor_of(entities, poses, body_sizes_m=sizes_m, plan=outlines)
             return floor, draw(floor, title=title, commit=commit, stamp_ns=stamp_ns)
 
         self._floor, drawing = await asyncio.to_thread(drawn)
         self._drawing = drawing
         self._image.set_source(_source(drawing.svg))
         self._mark()
+
+    async def _outlines(self) -> Plan | None:
+        """Return the outlines of objects at the moment shown; None if the knowledge base cannot send them."""
+        if not self._page.live.connected:
+            return None
+        try:
+            return await self._page.live.ask(PlanFloor(as_of=self._page.moment.commit))
+        except errors.SemmapError:
+            return None
 
     def _mark(self) -> None:
         """Outline the selected entities. Only numbers go into the markup."""

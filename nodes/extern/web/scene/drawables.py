@@ -14,6 +14,7 @@ from semmap.nodes.drawing.figures import UNKNOWN_SIZE_M, Figure, figure_of, pose
 from semmap.nodes.drawing.palette import GREY, colour_of
 from semmap.nodes.drawing.surfaces import appearance_of
 from semmap.nodes.extern.web.scene.meshes import Appearance, linear, srgb, tinted
+from semmap.ontology.model_shapes import is_same_size
 from semmap.schemas.entities import Entity, Pose, Size
 from semmap.schemas.joints import JOINT_POSITIONS, positions_of
 from semmap.schemas.scenes import Body, Surface
@@ -70,11 +71,13 @@ def drawable_of(
     simulated: bool,
     past: bool = False,
     joint_positions: JointPositions | None = None,
+    present: Body | None = None,
 ) -> Drawable | None:
     """Return how an entity, a body, or both together are drawn; None for places and without a pose.
 
     `pose` and `joint_positions` are the current pose and joint positions of the body; by default those of the
-    map are used. In the `past` there are entities only.
+    map are used. In the `past` there are entities only. One is drawn like its `present` body of the world
+    file, if that has its size.
     """
     figure = figure_of(entity, body, simulated=simulated and not past)
     pose = pose or pose_of(entity, body)
@@ -82,6 +85,8 @@ def drawable_of(
         return None
     model = appearance_of(body) if body is not None else _model_of(entity)
     size_m = figure.size_m
+    if body is None and present is not None and _is_same(entity, present):
+        model, size_m = present.surface, present.size_m
     if not model or surface_of(model, size_m) is None:
         model = BOX
     appearance: Appearance = "past" if past else _appearance_of(figure)
@@ -108,6 +113,13 @@ def _appearance_of(figure: Figure) -> Appearance:
         case "believed":
             return "believed"
     return "solid"
+
+
+def _is_same(entity: Entity | None, present: Body) -> bool:
+    """Return whether an entity of the past has the shape of a body of the world file."""
+    if entity is None or not present.surface:
+        return False
+    return entity.size_m is None or is_same_size(entity.size_m, present.size_m)
 
 
 def _model_of(entity: Entity | None) -> str:

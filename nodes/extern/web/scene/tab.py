@@ -229,7 +229,11 @@ class TabScene:
         return self._assets.glb(key)
 
     def _bodies_by_name(self) -> dict[str, Body]:
-        scene = self.page.live.scene if self.page.moment.is_now else None
+        """Return the bodies at the moment shown; there are none in the past."""
+        return self._present_bodies() if self.page.moment.is_now else {}
+
+    def _present_bodies(self) -> dict[str, Body]:
+        scene = self.page.live.scene
         if self._bodies_of[0] is not scene:
             self._bodies_of = (scene, {body.name: body for body in scene.bodies} if scene else {})
         return self._bodies_of[1]
@@ -237,6 +241,7 @@ class TabScene:
     def _wanted(self) -> dict[str, Drawable]:
         state, now = self.page.state, self.page.moment.is_now
         bodies, known = self._bodies_by_name(), self._known
+        present = {} if now else self._present_bodies()
         simulated = self.page.live.scene is not None
         wanted: dict[str, Drawable] = {}
         after: dict[str, tuple[tuple[object, ...], Drawable | None]] = {}
@@ -244,7 +249,7 @@ class TabScene:
             entity, body, pose = state.entities.get(name), bodies.get(name), state.poses.get(name)
             joint_positions = self.page.live.joint_positions.get(name) if now else None
             before = known.get(name)
-            inputs = (entity, body, pose, joint_positions)
+            inputs = (entity, body, pose, joint_positions, present.get(name))
             if before is not None and all(a is b for a, b in zip(before[0], inputs, strict=True)):
                 thing = before[1]
             else:
@@ -257,6 +262,7 @@ class TabScene:
                     simulated=simulated,
                     past=not now,
                     joint_positions=joint_positions,
+                    present=present.get(name),
                 )
             after[name] = (inputs, thing)
             if thing is not None:

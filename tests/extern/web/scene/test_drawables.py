@@ -42,6 +42,21 @@ def test_past_entities_have_the_past_appearance():
     assert show(entity("chair1"), None, past=True).appearance == "past"
 
 
+def test_past_entities_of_the_size_of_a_body_of_the_world_file_look_like_it():
+    def known(model, size_m):
+        return surface(size_m) if (model, size_m) == ("abc", (0.5, 0.5, 1.0)) else None
+
+    def model(an_entity, present):
+        return drawable_of(an_entity, None, None, known, simulated=True, past=True, present=present).model
+
+    own = structs.replace(body("chair1", model=""), surface="abc")
+    assert model(entity("chair1", size_m=None), own) == "abc"
+    assert model(entity("chair1", size_m=(0.5, 0.5, 1.001)), own) == "abc"
+    assert model(entity("chair1", size_m=(0.5, 0.5, 1.2)), own) == BOX
+    assert model(entity("chair1"), body("chair1")) == BOX
+    assert model(entity("chair1"), None) == BOX
+
+
 def test_places_and_entities_without_a_pose_are_not_drawn():
     assert show(entity("kitchen1", "Kitchen", place=True), None) is None
     assert show(None, None) is None
