@@ -20,7 +20,7 @@ from semmap.nodes.language.reference_resolution.description import (
 from semmap.nodes.language.reference_resolution.map_geometry import MapGeometry
 from semmap.nodes.language.reference_resolution.map_index import MapIndex
 from semmap.nodes.language.reference_resolution.resolver import Resolver, Scope
-from semmap.nodes.language.steps.noun_phrase import NounPhrase, PlacePhrase
+from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.tokens import Text
 from semmap.schemas.language import PlaceRelation, ThingDescription
 from semmap.schemas.relations import RelationName

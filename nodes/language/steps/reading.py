@@ -9,9 +9,10 @@ from typing import Final
 from semmap.nodes.language.lexicon import commands
 from semmap.nodes.language.steps import tokens
 from semmap.nodes.language.steps.answers import answer
-from semmap.nodes.language.steps.clauses import Clause, ClauseReader, Role
+from semmap.nodes.language.steps.clause import Clause, Role
+from semmap.nodes.language.steps.clauses import ClauseReader
 from semmap.nodes.language.steps.meaning import Meaning, Meanings, Names, World
-from semmap.nodes.language.steps.noun_phrase import NounPhrase, PlacePhrase
+from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
 from semmap.schemas.language import Antecedent, CommandStep, Filler
 
 _LOCATED_BY: Final = {
