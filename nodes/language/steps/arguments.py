@@ -64,7 +64,7 @@ class ArgumentReader(ClauseBoundaries):
                     role = roles.get("to") or roles["place"]
                     clause.roles.append(Role(role, i, phrase.end, phrase.head, [phrase]))
                 i = phrase.end
-            elif length := g.match("manner", words, i):
+            elif (length := g.match("manner", words, i)) and not self._quantifies(i, length):
                 clause.roles.append(Role("Manner", i, i + length, i))
                 i += length
             elif "direction" in roles and g.is_a(words[i], "direction"):
@@ -79,7 +79,7 @@ class ArgumentReader(ClauseBoundaries):
                 i = phrase.end
                 self._add_object(clause, objects, phrase)
             elif length := max(
-                g.match("polite", words, i), g.match("then", words, i), g.match("particle", words, i)
+                g.match("polite", words, i), g.match("then", words, i), g.match("loose_particle", words, i)
             ):
                 i += length
             else:
@@ -95,6 +95,11 @@ class ArgumentReader(ClauseBoundaries):
                 i = end
         self._finish(clause)
         return i
+
+    def _quantifies(self, i: int, length: int) -> bool:
+        """Return whether an expression of manner at `i` is a determiner there: a little water."""
+        phrase = self._np.read(i) if self._g.match("determiner", self._words, i) else None
+        return phrase is not None and phrase.end > i + length
 
     def _next_goal(self, i: int) -> int:
         """Return the index of another goal after *then* at `i`, or 0: to the desk, then TO THE SHELF."""
@@ -141,6 +146,7 @@ class ArgumentReader(ClauseBoundaries):
         if (
             len(objects) == 2
             and "receiver" in roles
+            and (self._is_person(objects[0]) or objects[0].kind in ("pronoun", "speaker", "robot"))
             and (first := clause.role(role)) is not None
             and first.phrases[-1] is objects[0]
         ):
@@ -160,12 +166,12 @@ class ArgumentReader(ClauseBoundaries):
         both = (*clause.verb.lower().split(), self._words[i])
         if (
             both in self._g.verbs
-            and clause.role(self._g.frames[clause.frame].roles.get("object", "")) is not None
+            and clause.role(self._g.frames[clause.frame].roles.get("object", "Theme")) is not None
         ):
             frame = self._g.verbs[both]
             old, new = self._g.frames[clause.frame].roles, self._g.frames[frame].roles
             for role in clause.roles:
-                if role.role == old.get("object"):
+                if role.role == old.get("object", "Theme"):
                     role.role = new.get("object", role.role)
             clause.frame, clause.verb = frame, " ".join(both)
             return i + 1
@@ -200,7 +206,10 @@ class ArgumentReader(ClauseBoundaries):
         if last is None or not last.phrases:
             self.found.unused.append(self._t.between(i + 1, phrase.end))
             return phrase.end
-        last.phrases.append(phrase)
+        if self._words[i] == "or":
+            last.phrases[-1].alternatives.append(phrase)
+        else:
+            last.phrases.append(phrase)
         last.end = phrase.end
         return phrase.end
 
@@ -213,7 +222,7 @@ class ArgumentReader(ClauseBoundaries):
             for kind in ("to", "from", "place", "for", "about", "path", "with", "of")
         )
         length, kind = best
-        if not length:
+        if not length or self._is_infinitive(i):
             return None
         phrase = self._np.read(i + length)
         if phrase is None or phrase.end == i + length:
@@ -280,6 +289,10 @@ class ArgumentReader(ClauseBoundaries):
                 both = [place.other] if place.other.second is None else [place.other, place.other.second]
                 clause.roles.append(Role(roles["place"], place.first, place.end, place.other.head, both))
         given = clause.role("Theme")
+        is_left = clause.verb.lower() == "leave" and given is not None and clause.role("Goal") is None
+        if is_left and given is not None and self._np.is_place(given.phrases[0]):  # leave the kitchen
+            clause.frame, given.role = "Motion", "Source"
+            return
         if (
             clause.frame == "Giving"
             and given is not None
@@ -347,18 +360,12 @@ class ArgumentReader(ClauseBoundaries):
     def _mention_all(self, i: int, end: int) -> None:
         """Note the things and persons from `i` to before `end`, to which a later pronoun may refer."""
         while i < end:
-            phrase = self._np.read(i)
+            is_verb = self._g.verb(self._words, i)[0] and not self._np.is_known(i, i + 1)
+            phrase = None if is_verb else self._np.read(i)
             if phrase is None or phrase.end <= i:
                 i += 1
                 continue
-            if phrase.kind == "person" or (phrase.key and phrase.determiner):
+            is_name = self._is_person(phrase) and self._t.tokens[phrase.head].is_capital
+            if phrase.kind == "person" or is_name or (phrase.key and phrase.determiner):
                 self.found.context.append((len(self.found.clauses), phrase))
             i = phrase.end
-
-    def _mention(self, i: int) -> None:
-        """Note the person at `i`, to whom a later pronoun may refer."""
-        phrase = self._np.read(i)
-        if phrase is not None and (
-            phrase.kind == "person" or (self._is_person(phrase) and self._t.tokens[phrase.head].is_capital)
-        ):
-            self.found.context.append((len(self.found.clauses), phrase))

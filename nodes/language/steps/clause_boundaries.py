@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from semmap.nodes.language.lexicon.commands import Grammar
 from semmap.nodes.language.reference_resolution.map_index import Nouns
 from semmap.nodes.language.steps.clause import Parsed
+from semmap.nodes.language.steps.noun_group import ALWAYS_VERBS
 from semmap.nodes.language.steps.noun_phrase import NounPhraseReader
 from semmap.nodes.language.steps.phrase import NounPhrase
 from semmap.nodes.language.steps.times import starts_time
@@ -35,6 +36,8 @@ class ClauseBoundaries:
             if words[j] == "you" or g.verb(words, j)[0] >= length:
                 break
             j += length
+        if j > i and self._is_infinitive(j):  # and then to follow Anna
+            return True
         if self._t.is_mark(j):
             return True
         if self._wish(j):
@@ -57,6 +60,14 @@ class ClauseBoundaries:
         if self._np.is_known(j, j + 1) and not self._opens_phrase(j + 1):
             return False
         return following not in ("of", "is", "are", "'s")
+
+    def _is_infinitive(self, i: int) -> bool:
+        """Return whether *to* and a verb are at `i`."""
+        return (
+            self._words[i : i + 1] == ("to",)
+            and self._g.verb(self._words, i + 1)[0] > 0
+            and not self._np.is_known(i + 1, i + 2)
+        )
 
     def _is_gerund(self, i: int) -> bool:
         return self._words[i].endswith("ing") and (self._words[i],) not in self._g.verbs
@@ -132,53 +143,45 @@ class ClauseBoundaries:
         )
         if not subject:
             return False
-        j = i + 1
-        while j < len(words) and (
-            g.is_a(words[j], "modal") or words[j] in ("probably", "usually", "likely", "currently", "most")
-        ):
-            j += 1
+        be = self._after_adverbs(i + 1)
         return (
-            j < len(words)
-            and g.is_a(words[j], "be")
-            and g.match(
-                "place",
-                words,
-                j
-                + 1
-                + (
-                    words[j + 1 : j + 2]
-                    in (
-                        ("located",),
-                        ("standing",),
-                        ("sitting",),
-                        ("waiting",),
-                        ("lying",),
-                        ("probably",),
-                        ("usually",),
-                    )
-                ),
-            )
-            > 0
+            be < len(words)
+            and g.is_a(words[be], "be")
+            and g.match("place", words, self._after_adverbs(be + 1)) > 0
         )
 
     def _states_place(self, i: int) -> bool:
-        """Return whether a statement about a person begins at `i`, as in "someone is waving"."""
+        """Return whether it is stated at `i` where something is: the cup is on the desk, someone is waving."""
         if i >= len(self._words) or not (
-            self._g.match("determiner", self._words, i) or self._words[i].startswith(("some", "any", "every"))
+            self._g.match("determiner", self._words, i)
+            or self._g.is_a(self._words[i], "possessive")
+            or self._words[i].startswith(("some", "any", "every"))
         ):
             return False
         if i and self._words[i - 1] not in (",", ".", "!", ";", "?", "and", "then"):
             return False
         phrase = self._np.read(i)
-        if phrase is None or phrase.kind != "person" or phrase.end + 1 >= len(self._words):
+        if phrase is None or phrase.end + 1 >= len(self._words):
             return False
-        behind = phrase.end + 1
-        return self._g.is_a(self._words[phrase.end], "be") and bool(
-            self._g.is_a(self._words[behind], "posture") or self._g.match("place", self._words, behind)
-        )
+        be = self._after_adverbs(phrase.end)
+        behind = self._after_adverbs(be + 1)
+        if behind >= len(self._words) or not self._g.is_a(self._words[be], "be"):
+            return False
+        waves = phrase.kind == "person" and self._g.is_a(self._words[behind], "posture")
+        return waves or self._g.match("place", self._words, behind) > 0
+
+    def _after_adverbs(self, i: int) -> int:
+        """Return the index after modal verbs and adverbs at `i`: SHOULD PROBABLY be."""
+        while i < len(self._words) and (
+            self._g.is_a(self._words[i], "modal") or self._g.is_a(self._words[i], "stated")
+        ):
+            i += 1
+        return i
 
     def _condition(self, i: int) -> int:
         """Return the end of a subordinate clause that begins at `i`, or `i`."""
+        if length := self._g.match("anaphoric", self._words, i):
+            return i + length
         length = self._g.match("condition", self._words, i)
         if (
             not length
@@ -254,6 +257,11 @@ class ClauseBoundaries:
         word = self._words[i]
         if self._excludes(i):
             return False
+        if self._g.match("anaphoric", self._words, i):
+            return True
+        verb = self._g.verb(self._words, i)[0] if word in ALWAYS_VERBS else 0
+        if verb and self._opens_phrase(i + verb):  # go to the kitchen find the milk
+            return True
         if word == "," or self._g.is_a(word, "and") or self._g.match("then", self._words, i):
             return self.starts_clause(i)
         return self._found_at(i) and word not in ("there", "it") and not self._t.tokens[i].is_capital

@@ -30,8 +30,11 @@ class ClauseReader(MessageReader):
             elif self._t.is_mark(i):
                 i += 1
             elif (end := self._condition(i)) > i:
+                if self._g.match("anaphoric", self._words, i) and first_of_sentence < len(self.found.clauses):
+                    self._close(first_of_sentence, conditions)  # it is no condition on what was said before
+                    first_of_sentence = len(self.found.clauses)
                 conditions.append(self._t.between(i, end))
-                self._mention(i + self._g.match("condition", self._words, i))
+                self._mention_all(i + self._g.match("condition", self._words, i), end)
                 i = end
             elif length := starts_time(self._g, self._words, i):
                 times.append(self._t.between(i, i + length))
@@ -41,6 +44,13 @@ class ClauseReader(MessageReader):
                 i += length
             elif self._words[i : i + 2] == ("there", "you"):
                 i += 1  # there you will find Anna
+            elif self._is_infinitive(i):
+                i += 1
+            elif self._g.is_a(self._words[i], "attention") and self._words[i + 1 : i + 2] == (",",):
+                i += 2
+            elif (topic := self._dislocated(i)) is not None:
+                self.found.context.append((len(self.found.clauses), topic))
+                i = topic.end + 1
             elif wish := self._wish(i):
                 i = self._wished(i, wish)
                 self.found.clauses[-1].times += times
@@ -80,6 +90,20 @@ class ClauseReader(MessageReader):
         if conditions and not self.found.clauses:
             self.found.unused += conditions
         return self.found
+
+    def _dislocated(self, i: int) -> NounPhrase | None:
+        """Return the object before its clause, which has a pronoun for it: the towel, bring IT to Anna."""
+        if i and not self._t.is_mark(i - 1):
+            return None
+        phrase = self._np.read(i)
+        if phrase is None or not phrase.key or self._words[phrase.end : phrase.end + 1] != (",",):
+            return None
+        end = self._clause_end(phrase.end + 2)
+        has_pronoun = any(
+            self._g.match("pronoun", self._words, j) == 1 and self._words[j] in ("it", "them", "him", "her")
+            for j in range(phrase.end + 1, end)
+        )
+        return phrase if has_pronoun and self._g.verb(self._words, phrase.end + 1)[0] else None
 
     def _fronted(self, i: int) -> tuple[str, PlacePhrase] | None:
         """Return the kind and the phrase of a place before the verb: in the kitchen, find Anna."""
@@ -133,9 +157,13 @@ class ClauseReader(MessageReader):
         length, frame = self._g.verb(self._words, i) if not self._lets_know(i) else (1, "Telling")
         clause = Clause(frame, self._t.between(i, i + length), i)
         self.found.clauses.append(clause)
+        self._np.takes_that = frame in ("Telling", "Questioning")
         j = i + length
         match frame:
             case "Telling":
+                return self._tell(clause, j)
+            case "Guiding" if self._shows_question(clause, j):
+                clause.frame = "Telling"  # show Anna where the bathroom is
                 return self._tell(clause, j)
             case "Questioning":
                 return self._ask(clause, j)
@@ -152,11 +180,34 @@ class ClauseReader(MessageReader):
             ):
                 clause.frame = "Telling"  # check how many cups there are
                 return self._told(clause, j)
-            case "Inspecting" if j < len(self._words) and self._words[j] in ("if", "whether", "that"):
+            case "Inspecting" if (state := self._stated(j)) is not None:  # make sure the fridge is closed
+                end = self._clause_end(state.end)
+                clause.roles.append(Role("Ground", j, state.end, state.head, [state]))
+                clause.roles.append(Role("Desired_state", state.end, end, state.end))
+                return end
+            case "Inspecting" | "Perception_active" if j < len(self._words) and self._words[j] in (
+                "if",
+                "whether",
+                "that",
+            ):
+                clause.frame = "Inspecting"
                 end = self._clause_end(j)
                 clause.roles.append(Role("Desired_state", j, end, j))
                 return end
         return self._arguments(clause, j)
+
+    def _stated(self, i: int) -> NounPhrase | None:
+        """Return the phrase at `i` of which the following words state something."""
+        phrase = self._np.read(i)
+        if phrase is None or phrase.end >= len(self._words):
+            return None
+        word = self._words[phrase.end]
+        return phrase if any(self._g.is_a(word, kind) for kind in ("be", "have", "modal")) else None
+
+    def _shows_question(self, clause: Clause, i: int) -> bool:
+        """Return whether a question is shown to a person: show Anna how many cups there are."""
+        phrase = self._np.read(i) if clause.verb.lower() == "show" else None
+        return phrase is not None and bool(self._g.match("question", self._words, phrase.end))
 
     def _special(self, i: int, conditions: list[str], times: list[str]) -> int:
         """Read a question, or where something can be found."""
@@ -209,21 +260,7 @@ class ClauseReader(MessageReader):
             phrase = self._predicate(phrase)
             role.end = j = phrase.end
         while j < len(words) and (
-            g.is_a(words[j], "be")
-            or g.is_a(words[j], "modal")
-            or words[j]
-            in (
-                "probably",
-                "usually",
-                "likely",
-                "currently",
-                "most",
-                "located",
-                "standing",
-                "sitting",
-                "waiting",
-                "lying",
-            )
+            g.is_a(words[j], "be") or g.is_a(words[j], "modal") or g.is_a(words[j], "stated")
         ):
             clause.verb = clause.verb or words[j]
             j += 1

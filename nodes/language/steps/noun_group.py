@@ -23,7 +23,7 @@ _NEVER_INSIDE: Final = (
     "manner",
 )
 _ONLY_FIRST: Final = ("determiner", "all", "possessive", "pronoun", "relative")
-_ALWAYS_VERBS: Final = frozenset(("bring", "take", "give", "put", "tell", "follow", "go", "find"))
+ALWAYS_VERBS: Final = frozenset(("bring", "take", "give", "put", "tell", "follow", "go", "find"))
 _ADVERBS: Final = frozenset(
     (
         "please",
@@ -62,6 +62,8 @@ class NounGroupReader:
         `starts_clause` returns whether a new clause begins at an index. `above` maps classes to their
         superclasses.
         """
+        self.takes_that = False
+        """Whether *that* may begin a message in the clause that is read, and not a relative clause."""
         self._t, self._g, self._nouns, self._starts_clause = text, grammar, nouns, starts_clause
         self._above = above
         self._words = text.words
@@ -103,15 +105,19 @@ class NounGroupReader:
             elif (
                 number is not None
                 and (words[i] != "one" or not phrase.determiner)
-                and self._group_end(i + 1) > i + 1
+                and self._group_end(j := self._after_of(i + 1)) > j
             ):
                 phrase.quantity, phrase.is_plural = number, number > 1
-                i += 1
-                if words[i : i + 2] == ("of", "the"):
-                    i += 2
+                i = j
             else:
                 break
         return i
+
+    def _after_of(self, i: int) -> int:
+        """Return the index after *of the* at `i`, or `i`."""
+        is_of = self._words[i : i + 1] == ("of",)
+        article = self._g.match("determiner", self._words, i + 1) if is_of else 0
+        return i + 1 + article if article else i
 
     def _group_end(self, start: int) -> int:
         """Return the index after the words before and of the noun that begin at `start`."""
@@ -136,11 +142,13 @@ class NounGroupReader:
                 or word.startswith("n't")
             ):
                 break
+            if seen and word == "left" and self._t.is_mark(i + 1):
+                break
             if i > start and word == "one":
                 return i + 1
             if any(g.is_a(word, kind) for kind in _ONLY_FIRST) and not self.is_known(i, i + 1):
                 break
-            if seen and (g.is_a(word, "posture") or g.is_a(word, "particle") or word in _ALWAYS_VERBS):
+            if seen and (g.is_a(word, "posture") or g.is_a(word, "particle") or word in ALWAYS_VERBS):
                 break
             if seen and g.is_a(word, "stative"):
                 break
@@ -190,6 +198,11 @@ class NounGroupReader:
             phrase.attributes.append(base)
         elif g.is_a(base, "anything"):
             noun = head
+        if noun is None and g.is_a(self._bases[start], "anything"):  # something sweet
+            phrase.head = start
+            phrase.noun, phrase.key = words[start], self.key(start, start + 1)
+            self._modifiers(phrase, start + 1, end)
+            return
         if noun is None:
             noun = self._unknown_noun(start, end)
             is_bare = not phrase.determiner and phrase.quantity is None and not phrase.all_of

@@ -58,7 +58,7 @@ class NounPhraseReader(NounGroupReader):
             phrase.kind, phrase.head, phrase.end, phrase.noun = "here", i, i + length, word
             return True
         elif length := g.match("pronoun", words, i):
-            if not self._is_determiner(i, length):
+            if not self._is_determiner(i, length) and g.match("determiner", words, i) <= length:
                 phrase.kind, phrase.head, phrase.end = "pronoun", i + length - 1, i + length
                 phrase.noun = " ".join(words[i : i + length])
                 return True
@@ -103,8 +103,8 @@ class NounPhraseReader(NounGroupReader):
         start = owner.end + 1
         phrase = NounPhrase(first, owner=owner, determiner="the")
         end = self._group_end(start)
-        if end == start:
-            owner.end += 1
+        if end == start:  # the oven's off
+            self._after_the_noun(owner, with_places)
             return owner
         self._group(phrase, start, end)
         phrase.first = first
@@ -141,6 +141,8 @@ class NounPhraseReader(NounGroupReader):
             elif words[i] in ("called", "named") and not self._t.is_mark(i + 1):
                 end = self._group_end(i + 1)
                 phrase.name, phrase.end = self._t.between(i + 1, end), max(end, i + 1)
+            elif words[i] == "left" and self._t.is_mark(i + 1):
+                phrase.end = i + 1  # is any milk left
             elif phrase.noun and words[i] == "to" and i + 1 < len(words) and words[i + 1] in g.purposes:
                 phrase.purpose, phrase.end = words[i + 1], i + 2
             elif (
@@ -151,6 +153,8 @@ class NounPhraseReader(NounGroupReader):
                 if not self._relative(phrase, i + 1, with_places):
                     return
                 phrase.end += words[phrase.end : phrase.end + 1] == (",",)
+            elif words[i] == "where" and not self.is_place(phrase):
+                return
             elif g.is_a(words[i], "relative") and i + 1 < len(words):
                 if not self._relative(phrase, i, with_places):
                     return
@@ -191,7 +195,12 @@ class NounPhraseReader(NounGroupReader):
     def _place(self, i: int, negated: bool = False) -> PlacePhrase | None:
         """Return the place phrase that begins at `i`, or None."""
         length = self._g.match("place", self._words, i)
-        if not length or self._starts_time(i) or self._g.match("here", self._words, i):
+        if (
+            not length
+            or self._starts_time(i)
+            or self._g.match("manner", self._words, i)
+            or self._g.match("here", self._words, i)
+        ):
             return None
         preposition = " ".join(self._words[i : i + length])
         other = self.read(i + length)
@@ -224,6 +233,7 @@ class NounPhraseReader(NounGroupReader):
         is_that_clause = (
             words[i] == "that"
             and j == i + 1
+            and self.takes_that
             and (phrase.kind != "thing" or phrase.key in self._nouns.entities)
         )
         if self._t.is_mark(j) or (is_that_clause and not g.is_a(words[j], "posture")):
@@ -267,12 +277,21 @@ class NounPhraseReader(NounGroupReader):
         )
         return not is_there or self._is_color(start)
 
+    def is_place(self, phrase: NounPhrase) -> bool:
+        """Return whether a phrase denotes a place by its class: the kitchen."""
+        classes = self._nouns.classes.get(phrase.key, ())
+        return phrase.kind == "thing" and any("Location" in self._above.get(name, ()) for name in classes)
+
     def _is_color(self, i: int) -> bool:
         return self._bases[i] in self._nouns.qualities
 
     def _participle(self, phrase: NounPhrase, i: int, first: int, *, negated: bool = False) -> None:
         """Read an attribute of several words at `i`: raising their left arm, pointing to the right."""
         g, words = self._g, self._words
+        if phrase.kind == "thing" and (place := self._place(i + 1, negated)) is not None:
+            phrase.places.append(place)  # the book lying on the desk
+            phrase.end = place.end
+            return
         j, may_go_to = i + 1, True
         takes_place = g.is_a(words[i], "posture_at")
         while not self._t.is_mark(j):

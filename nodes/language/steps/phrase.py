@@ -17,6 +17,8 @@ class PlacePhrase:
     first: int
     end: int
     negated: bool = False
+    names: tuple[str, ...] = ()
+    """The entities of the other thing, if it is a pronoun that was resolved."""
 
 
 @dataclass(slots=True)
@@ -46,6 +48,8 @@ class NounPhrase:
     second: NounPhrase | None = None
     """The other thing after *between*."""
     excluded: list[NounPhrase] = field(default_factory=list)
+    alternatives: list[NounPhrase] = field(default_factory=list)
+    """The other things after *or*, any of which will do as well."""
 
     @property
     def is_definite(self) -> bool:

@@ -64,6 +64,10 @@ class QuestionReader(ArgumentReader):
                 and words[prop + 1 : prop + 2] == ("of",)
             ):
                 return self._told_of(clause, j + 1)  # what is the name of the person
+            if topic is not None and words[topic.end : topic.end + 1] in (("called",), ("named",)):
+                clause.roles.append(Role("Message", topic.end, topic.end + 1, topic.end))
+                clause.roles.append(Role("Topic", j + 1, topic.end, topic.head, [topic]))
+                return self._addressed(clause, topic.end + 1)
             is_good = topic is not None and (
                 self._is_topic(topic) and (text != "what" or topic.superlative or topic.places or topic.key)
             )
@@ -91,6 +95,13 @@ class QuestionReader(ArgumentReader):
                 clause.roles.append(Role("Message", i, j, i))
                 clause.roles.append(Role("Topic", j, topic.end, topic.head, [topic]))
                 return self._addressed(clause, topic.end + 1)
+        if text in ("how", "what") and words[j : j + 1] in (("does",), ("do",)):  # what does Anna look like
+            topic = self._np.read(j + 1)
+            if topic is not None and self._is_topic(topic) and not self._ends_clause(topic.end):
+                end = self._message_end(topic.end)
+                clause.roles.append(Role("Message", topic.end, end, topic.end))
+                clause.roles.append(Role("Topic", j + 1, topic.end, topic.head, [topic]))
+                return self._addressed(clause, end)
         if text in ("how", "what") and not self._t.is_mark(j):  # how the person at the sink looks
             topic = self._np.read(j)
             if (
@@ -123,6 +134,12 @@ class QuestionReader(ArgumentReader):
                     clause.roles.append(Role("Topic", j, topic.end, topic.head, [topic]))
                     return self._addressed(clause, end)
             kind = j
+            if text == "what" and g.is_a(words[kind], "property"):
+                topic = self._np.read(kind + 1)  # what color the cup is
+                if topic is not None and topic.end < len(words) and g.is_a(words[topic.end], "be"):
+                    clause.roles.append(Role("Message", i, kind + 1, kind))
+                    clause.roles.append(Role("Topic", kind + 1, topic.end, topic.head, [topic]))
+                    return self._addressed(clause, topic.end + 1)
             if (
                 text == "what"
                 and g.is_a(words[kind], "property")

@@ -129,7 +129,9 @@ class _StepReader:
             return []
         other = role.phrases[0]
         preposition = " ".join(self._t.words[role.first : other.first])
-        return [PlacePhrase(preposition or "in", other, role.first, role.end)]
+        before = self._antecedent(other, clause, role, []) if other.kind == "pronoun" else None
+        names = () if before is None else before.filler.entities
+        return [PlacePhrase(preposition or "in", other, role.first, role.end, names=names)]
 
     def _fillers(
         self, clause: Clause, role: Role, number: int, where: list[PlacePhrase], mentions: list[_Mention]
@@ -153,9 +155,9 @@ class _StepReader:
                 yield self._pronoun(phrase, text, head, clause, role, number, mentions)
                 continue
             self._complete(phrase, mentions)
-            for other in phrase.excluded:
+            for other in (*phrase.excluded, *phrase.alternatives):
                 if other.noun in ("one", "ones"):  # any cup but not the red one
-                    other.noun, other.key = phrase.noun, phrase.key
+                    self._take_noun(other, phrase)
             places = where if is_object and role.role not in _PLACES else []
             owner = self._owner(phrase)
             meaning = self._meanings.of(
@@ -192,8 +194,12 @@ class _StepReader:
                 if m.phrase is not None and not m.is_person and not m.is_place
             )
             if (like := next(before, None)) is not None:
-                noun = like.noun.rpartition(" ")[2]  # of "red cup" only "cup"
-                phrase.noun, phrase.key = noun, self._meanings.key(noun)
+                self._take_noun(phrase, like)
+
+    def _take_noun(self, phrase: NounPhrase, like: NounPhrase) -> None:
+        """Give a phrase the noun of another one: of *red cup* only *cup*."""
+        phrase.noun = like.noun.rpartition(" ")[2]
+        phrase.key = self._meanings.key(phrase.noun)
 
     def _there(self, text: str, head: str, number: int) -> Filler:
         """Return the filler for *there*: the last place that was mentioned."""
@@ -235,12 +241,18 @@ class _StepReader:
                 return Filler(text, head)
             self._found.doubts.append(f"'{phrase.noun}' refers to nothing that was mentioned")
             return Filler(text, head)
-        description = antecedent.filler.description
+        meant = [antecedent.filler]
+        if self._g.is_a(phrase.noun, "several_pronoun"):  # all things of a list
+            meant = [
+                m.filler
+                for m in self._mentions
+                if m is antecedent or (m.step and (m.step, m.role) == (antecedent.step, antecedent.role))
+            ]
         filler = Filler(
             text,
             head,
-            antecedent.filler.entities,
-            description,
+            tuple(dict.fromkeys(name for one in meant for name in one.entities)),
+            antecedent.filler.description if len(meant) == 1 else None,
             Antecedent(antecedent.step, antecedent.role) if antecedent.step else None,
         )
         mentions.append(

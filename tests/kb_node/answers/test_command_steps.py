@@ -99,6 +99,53 @@ def filler(understood, role, step=0):
             "Give me the name of the person at the sink",
             ['Telling(Addressee="me", Message="the name", Topic="of the person at the sink")'],
         ),
+        (
+            "get the kettle, the laptop and the red cup, and put them on the desk",
+            [
+                "Taking(Theme=kettle1, Theme=laptop1, Theme=redcup)",
+                "Placing(Theme=kettle1|laptop1|redcup, Goal=desk1)",
+            ],
+        ),
+        (
+            "fetch either the red cup or the blue one",
+            ["Taking(Theme=redcup|bluecup)"],
+        ),
+        (
+            "go to the kitchen find Nora give her the kettle",
+            [
+                "Motion(Goal=kitchen1)",
+                "Locating(Sought_entity=nora1)",
+                "Giving(Recipient=nora1, Theme=kettle1)",
+            ],
+        ),
+        (
+            "The kettle should be on the counter, bring it to Nora",
+            ["Being_located(Theme=kettle1, Location=counter1)", "Bringing(Theme=kettle1, Beneficiary=nora1)"],
+        ),
+        (
+            "the kettle on the counter, bring it to Nora",
+            ["Bringing(Theme=kettle1, Beneficiary=nora1)"],
+        ),
+        (
+            "Turn the oven off and then to follow Nora",
+            ["Change_operational_state(Device=oven1)", "Cotheme(Cotheme=nora1)"],
+        ),
+        (
+            "make sure the fridge is closed",
+            ['Inspecting(Ground=fridge1, Desired_state="is closed")'],
+        ),
+        (
+            "give one of the plates to Nora",
+            ["Giving(Theme=plate1|plate2, Recipient=nora1)"],
+        ),
+        (
+            "tell everyone in the kitchen that we are leaving",
+            ['Telling(Addressee=nora1, Message="that we are leaving")'],
+        ),
+        (
+            "leave the kitchen",
+            ["Motion(Source=kitchen1)"],
+        ),
     ],
 )
 def test_a_command_is_a_list_of_steps(read, text, steps):
@@ -162,6 +209,17 @@ def test_a_condition_holds_for_all_steps_of_its_sentence(read):
     assert [step.condition for step in understood.steps] == ["if Nora leaves", "if Nora leaves", ""]
 
 
+@pytest.mark.parametrize("word", ["if so", "otherwise", "in that case"])
+def test_a_condition_on_the_step_before_holds_from_there_on(read, word):
+    understood = read(f"look whether the oven is on, and {word}, bring Nora the kettle")
+    assert [step.condition for step in understood.steps] == ["", word]
+
+
+def test_whom_a_condition_mentions_is_whom_a_pronoun_means(read):
+    understood = read("in case you see Nora, give her the kettle")
+    assert filler(understood, "Recipient").entities == ("nora1",)
+
+
 def test_negation_is_of_its_own_clause(read):
     understood = read("don't take the red cup, take the blue one")
     assert texts(understood) == ["not Taking(Theme=redcup)", "Taking(Theme=bluecup)"]
@@ -183,6 +241,11 @@ def test_negation_is_of_its_own_clause(read):
         ("bring the frobnicator", "'frobnicator' is not known"),
         ("take the violin", "violin"),
         ("go to the balcony", "balcony"),
+        ("take the umbrella that Nora likes", "no umbrella is known"),
+        ("take the kettle off", "off"),
+        ("take the kettle upstairs", "upstairs"),
+        ("take something shiny from the frobnicator", "frobnicator"),
+        ("the person at the sink would like a cup", "would like"),
         ("take it", "'it' refers to nothing that was mentioned"),
         ("go to the kitchen by helicopter", "by helicopter"),
         ("this morning was nice, take the kettle", "nice"),
@@ -244,6 +307,10 @@ def test_superlatives_stay_in_the_description(read, text, entities, superlative)
         ("is the kettle on the desk?", "no: kettle1 is on counter1"),
         ("is the kettle in the kitchen?", "yes: kettle1"),
         ("what is the name of the person in the kitchen?", "nora1: name Nora"),
+        ("what's on the desk?", "book1, cup1, lamp1, laptop1"),
+        ("find out what colour the fridge is", "fridge1: colour white"),
+        ("how many plates are lying on the table?", "2: plate1, plate2"),
+        ("which of the cups is the oldest?", "'of the cups is the oldest': the map cannot tell; look there"),
         ("tell me the pose of Nora", "'of Nora': the map does not have the pose; look there"),
         (
             "how many people in the kitchen are waving?",
