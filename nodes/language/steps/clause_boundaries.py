@@ -151,7 +151,7 @@ class ClauseBoundaries:
         )
 
     def _states_place(self, i: int) -> bool:
-        """Return whether it is stated at `i` where something is: the cup is on the desk, someone is waving."""
+        """Return whether a statement of a place begins at `i`: the cup is on the desk, someone is waving."""
         if i >= len(self._words) or not (
             self._g.match("determiner", self._words, i)
             or self._g.is_a(self._words[i], "possessive")
