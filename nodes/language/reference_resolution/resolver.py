@@ -336,7 +336,7 @@ class Resolver:
         return names
 
     def _nearest_in_the_stack(self, names: Names, description: Description) -> Names:
-        """Return the nearest of several things above or below one of their kind: the drawer above the open one."""
+        """Return the nearest of things above or below one of their kind: the drawer above the open one."""
         for restriction in description.restrictions:
             if not isinstance(restriction, Related) or restriction.relation not in ("isAbove", "isUnder"):
                 continue

@@ -31,7 +31,7 @@ class ClauseReader(MessageReader):
                 i += 1
             elif (end := self._condition(i)) > i:
                 if self._g.match("anaphoric", self._words, i) and first_of_sentence < len(self.found.clauses):
-                    self._close(first_of_sentence, conditions)  # it is no condition on what was said before
+                    self._close(first_of_sentence, conditions)  # of what was said before
                     first_of_sentence = len(self.found.clauses)
                 conditions.append(self._t.between(i, end))
                 self._mention_all(i + self._g.match("condition", self._words, i), end)

@@ -1,4 +1,4 @@
-"""Questions, told or asked: what is asked (Message) and of what (Topic)."""
+"""Direct and embedded questions: what is asked (Message) and of what (Topic)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from semmap.nodes.language.steps.times import starts_time
 
 
 class QuestionReader(ArgumentReader):
-    """Reads questions, their topics and to whom the answer is told."""
+    """Reads questions, their topics and the recipient of the answer."""
 
     def _question(self, clause: Clause, i: int) -> int:
         """Read an embedded question as Message and Topic, or as a Message in words."""

@@ -281,7 +281,8 @@ def test_neighbours_and_doors_between_places_are_found(flat, text, meant):
 STACK = tuple(
     NewEntity(
         name=f"drawer{n}", class_iri=v.bare(v.dm("Drawer")), size=(0.5, 0.5, 0.2),
-        pose=Pose(position_m=(3.0, 3.0, 0.05 + 0.22 * n)), set=(Statement(property="isOpen", values=(opened,)),),
+        pose=Pose(position_m=(3.0, 3.0, 0.05 + 0.22 * n)),
+        set=(Statement(property="isOpen", values=(opened,)),),
     )
     for n, opened in enumerate(("false", "false", "true", "false", "false"))
 )  # fmt: skip
