@@ -288,6 +288,8 @@ class ArgumentReader(ClauseBoundaries):
                 phrase.end = main.end = place.first
                 both = [place.other] if place.other.second is None else [place.other, place.other.second]
                 clause.roles.append(Role(roles["place"], place.first, place.end, place.other.head, both))
+        if self._t.is_translated and clause.frame in ("Bringing", "Guiding"):
+            self._move_goal(clause, main)
         given = clause.role("Theme")
         is_left = clause.verb.lower() == "leave" and given is not None and clause.role("Goal") is None
         if is_left and given is not None and self._np.is_place(given.phrases[0]):  # leave the kitchen
@@ -323,6 +325,16 @@ class ArgumentReader(ClauseBoundaries):
             or opened.phrases[0].noun.endswith("door")
         ):
             opened.role = "Container_portal"
+
+    def _move_goal(self, clause: Clause, main: Role | None) -> None:
+        """Make a Goal of the place after the object: Italian *in* is also *to*."""
+        phrase = main.phrases[-1] if main is not None and main.phrases else None
+        if main is None or phrase is None or not phrase.places or clause.role("Goal") is not None:
+            return
+        if self._np.is_place(phrase.places[-1].other) and not phrase.places[-1].negated:
+            place = phrase.places.pop()
+            phrase.end = main.end = min(phrase.end, place.first)
+            clause.roles.append(Role("Goal", place.first, place.end, place.other.head, [place.other]))
 
     def _tells(self, clause: Clause, given: Role) -> None:
         """Make Telling of *give me the name of the person*."""

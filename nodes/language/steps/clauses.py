@@ -155,7 +155,7 @@ class ClauseReader(MessageReader):
 
     def _clause(self, i: int) -> int:
         length, frame = self._g.verb(self._words, i) if not self._lets_know(i) else (1, "Telling")
-        clause = Clause(frame, self._t.between(i, i + length), i)
+        clause = Clause(frame, " ".join(self._words[i : i + length]), i)
         self.found.clauses.append(clause)
         self._np.takes_that = frame in ("Telling", "Questioning")
         j = i + length

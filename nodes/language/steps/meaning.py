@@ -379,9 +379,11 @@ class Meanings:
         other = self.of(phrase.of)
         meaning.doubts += other.doubts
         fitting = [name for name in names if any(self._belongs(name, whole) for whole in other.names)]
-        if fitting:
-            return fitting
-        return list(other.names)
+        if other.is_person and not fitting:
+            text = self._t.between(phrase.of.first, phrase.of.end)
+            meaning.doubts.append(f"no {self._noun(phrase)} is known that belongs to {text}")
+            return []
+        return fitting or list(other.names)
 
     def _belongs(self, name: str, whole: str) -> bool:
         item, other = self._index.items[name], self._index.items[whole]

@@ -78,6 +78,8 @@ class MessageReader(QuestionReader):
     def _ask(self, clause: Clause, i: int) -> int:
         """Read *ask her to leave* as a Request and *ask her where she is from* as Questioning."""
         words = self._words
+        if self._t.is_translated and words[i : i + 1] == ("to",):  # chiedi a Anna
+            i += 1
         phrase = self._np.read(i)
         if (
             phrase is not None
@@ -118,6 +120,8 @@ class MessageReader(QuestionReader):
     def _answer(self, clause: Clause, i: int) -> int:
         """Read *answer the question of Anna*, *answer her question*, *answer Anna's question*."""
         words = self._words
+        if words[i : i + 1] == ("to",):  # answer to the question
+            i += 1
         phrase = self._np.read(i, with_places=False)
         if phrase is None:
             return self._arguments(clause, i)

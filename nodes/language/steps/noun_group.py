@@ -203,6 +203,10 @@ class NounGroupReader:
             phrase.noun, phrase.key = words[start], self.key(start, start + 1)
             self._modifiers(phrase, start + 1, end)
             return
+        if noun is None and self._t.is_translated and self._is_modifier(head):  # quella rossa
+            phrase.noun = "one"
+            self._modifiers(phrase, start, end)
+            return
         if noun is None:
             noun = self._unknown_noun(start, end)
             is_bare = not phrase.determiner and phrase.quantity is None and not phrase.all_of

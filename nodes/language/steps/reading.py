@@ -13,6 +13,8 @@ from semmap.nodes.language.steps.clause import Clause, Role
 from semmap.nodes.language.steps.clauses import ClauseReader
 from semmap.nodes.language.steps.meaning import Meaning, Meanings, Names, World
 from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
+from semmap.nodes.language.steps.translation import translate
+from semmap.nodes.language.understanding.grounding import Scene
 from semmap.schemas.language import Antecedent, CommandStep, Filler
 
 _LOCATED_BY: Final = {
@@ -21,6 +23,10 @@ _LOCATED_BY: Final = {
 }
 """Frames with the role that states where their object is."""
 _WORDS_ONLY: Final = frozenset(("Message", "Trigger", "Desired_state", "Manner", "Direction"))
+_PEOPLE: Final = frozenset(
+    ("Cotheme", "Guiding", "Make_acquaintance", "Greeting", "Introducing", "Being_located", "Locating")
+)
+"""Frames whose object is a person, if a pronoun may refer to one."""
 _PLACES: Final = frozenset(("Goal", "Source", "Ground", "Location", "Path"))
 
 
@@ -48,9 +54,9 @@ class _Mention:
     phrase: NounPhrase | None = None
 
 
-def read_steps(text: str, world: World) -> Steps:
-    """Return the steps of a command in English."""
-    return _StepReader(tokens.read(text), world).read()
+def read_steps(text: str, world: World, scene: Scene | None = None) -> Steps:
+    """Return the steps of a command in English, or in Italian if the labels of a `scene` are given."""
+    return _StepReader(tokens.read(text) if scene is None else translate(text, scene), world).read()
 
 
 class _StepReader:
@@ -71,7 +77,7 @@ class _StepReader:
                 meaning = self._meanings.of(phrase, may_be_none=True)
                 filler = Filler(
                     self._t.between(phrase.first, phrase.end),
-                    self._t.words[phrase.head],
+                    self._t.word(phrase.head),
                     meaning.names,
                     meaning.description,
                 )
@@ -100,7 +106,7 @@ class _StepReader:
         self._mentions += mentions
         return CommandStep(
             clause.frame,
-            clause.verb.lower(),
+            self._t.word(clause.first) if self._t.is_translated else clause.verb.lower(),
             roles,
             clause.negated,
             "; ".join(dict.fromkeys(clause.conditions)),
@@ -136,15 +142,14 @@ class _StepReader:
     def _fillers(
         self, clause: Clause, role: Role, number: int, where: list[PlacePhrase], mentions: list[_Mention]
     ) -> Iterator[Filler]:
-        words = self._t.words
         if role.role in _WORDS_ONLY or not role.phrases:
-            yield Filler(self._t.between(role.first, role.end), words[role.head])
+            yield Filler(self._t.between(role.first, role.end), self._t.word(role.head))
             return
         is_object = role.role == self._g.frames[clause.frame].roles.get("object") or role.role in ("Cotheme",)
         for k, phrase in enumerate(role.phrases):
             first = role.first if k == 0 else phrase.first
             end = role.end if k == len(role.phrases) - 1 else phrase.end
-            text, head = self._t.between(first, end), words[phrase.head]
+            text, head = self._t.between(first, end), self._t.word(phrase.head)
             if phrase.noun == "there" and role.role in _PLACES:
                 yield self._there(text, head, number)
                 continue
@@ -170,8 +175,9 @@ class _StepReader:
             filler = Filler(text, head, meaning.names, meaning.description)
             self._note(meaning)
             if role.role == "Topic" and (message := clause.role("Message")) is not None:
-                asked = self._t.between(message.first, message.end).lower()
-                self._found.answers.append(answer(asked, words[message.head], text, meaning, self._world))
+                asked = " ".join(self._t.words[message.first : message.end])
+                asked_of = self._t.words[message.head]
+                self._found.answers.append(answer(asked, asked_of, text, meaning, self._world))
             mentions.append(
                 _Mention(
                     number,
@@ -270,15 +276,7 @@ class _StepReader:
         if role.role in ("Beneficiary", "Recipient", "Addressee") or g.is_a(word, "person_pronoun"):
             return next((m for m in reversed(mentions) if m.is_person), None)
         if g.is_a(word, "several_pronoun"):
-            people = clause.frame in (
-                "Cotheme",
-                "Guiding",
-                "Make_acquaintance",
-                "Greeting",
-                "Introducing",
-                "Being_located",
-                "Locating",
-            )
+            people = clause.frame in _PEOPLE
             last = next(
                 (
                     m
@@ -294,6 +292,8 @@ class _StepReader:
                 return last
             thing = next((m for m in reversed(mentions) if not m.is_place and not m.is_person), None)
             return thing or person
+        if self._t.is_translated and clause.frame in _PEOPLE and word == "it":  # seguila
+            return next((m for m in reversed(mentions) if not m.is_place), None)
         things = [m for m in mentions if not m.is_person]
         if (
             role.role in _PLACES

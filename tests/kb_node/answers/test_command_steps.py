@@ -235,6 +235,7 @@ def test_negation_is_of_its_own_clause(read):
         ("take the cups from the oven", "no cup is known on or in oven1"),
         ("take the kettle from the desk", "kettle1 is not on or in desk1"),
         ("take the three plates", "'the three plates': there are only 2"),
+        ("take the cup of Nora", "no cup is known that belongs to Nora"),
         ("take Nora's cup", "no cup is known that belongs to Nora"),
         ("take Gregor's cup", "'Gregor' is not known"),
         ("take my cup", "'my cup': the owner is not known"),
@@ -334,3 +335,114 @@ def test_every_text_ends_in_steps_or_doubts(read):
         for second in words:
             understood = read(f"take {first} {second}")
             assert understood.steps or understood.doubts or understood.unknown
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        ("Vai in cucina e poi trova Nora.", ["Motion(Goal=kitchen1)", "Locating(Sought_entity=nora1)"]),
+        (
+            "Prendi la tazza rossa dal tavolo e portala a Nora.",
+            ["Taking(Theme=redcup, Source=table1)", "Bringing(Theme=redcup, Beneficiary=nora1)"],
+        ),
+        (
+            "Porta la tazza blu in cucina e mettila sulla scrivania.",
+            ["Bringing(Theme=bluecup, Goal=kitchen1)", "Placing(Theme=bluecup, Goal=desk1)"],
+        ),
+        ("Segui Nora dalla cucina allo studio.", ["Cotheme(Cotheme=nora1, Source=kitchen1, Goal=studio1)"]),
+        ("Accompagna Nora allo studio.", ["Guiding(Cotheme=nora1, Goal=studio1)"]),
+        ("Saluta Nora e poi seguila.", ["Greeting(Addressee=nora1)", "Cotheme(Cotheme=nora1)"]),
+        (
+            "Incontra Nora in cucina e accompagnala nello studio.",
+            ["Make_acquaintance(Individual_2=nora1)", "Guiding(Cotheme=nora1, Goal=studio1)"],
+        ),
+        ("Dammi il bollitore.", ['Giving(Recipient="mi", Theme=kettle1)']),
+        ("Dai il bollitore a Nora.", ["Giving(Theme=kettle1, Recipient=nora1)"]),
+        ("Portami il latte.", ['Bringing(Beneficiary="mi", Theme=milk1)']),
+        (
+            "Trova Nora in cucina e dille una barzelletta.",
+            ["Locating(Sought_entity=nora1, Ground=kitchen1)",
+             'Telling(Addressee=nora1, Message="una barzelletta")'],
+        ),
+        (
+            "Rispondi alla domanda di Nora.",
+            ['Communication_response(Trigger="alla domanda", Addressee=nora1)'],
+        ),
+        ("Presentati a Nora.", ['Introducing(Theme="ti", Addressee=nora1)']),
+        ("Chiedi a Nora come si chiama.", ['Questioning(Addressee=nora1, Message="come si chiama")']),
+        ("Non toccare il bollitore.", ["not Manipulation(Entity=kettle1)"]),
+        (
+            "Non prendere la tazza rossa, prendi quella blu.",
+            ["not Taking(Theme=redcup)", "Taking(Theme=bluecup)"],
+        ),
+        (
+            "Prendi due piatti e mettili sulla scrivania.",
+            ["Taking(Theme=plate1|plate2)", "Placing(Theme=plate1|plate2, Goal=desk1)"],
+        ),
+        ("Pulisci la cucina.", ["Cleaning(Theme=kitchen1)"]),
+        ("Apri il frigorifero e chiudi il forno.",
+         ["Closure(Containing_object=fridge1)", "Closure(Containing_object=oven1)"]),
+        ("Conta i piatti sul tavolo.", ["Counting(Theme=plate1|plate2)"]),
+        ("Versa il latte in una tazza.", ["Pouring(Theme=milk1, Goal=bluecup|cup1|redcup)"]),
+        ("Spegni il forno.", ["Change_operational_state(Device=oven1)"]),
+        ("Cerca il portatile nello studio.", ["Locating(Sought_entity=laptop1, Ground=studio1)"]),
+    ],
+)  # fmt: skip
+def test_an_italian_command_has_the_same_steps(read, text, steps):
+    understood = read(text)
+    assert understood.language == "italian"
+    assert texts(understood) == steps
+    assert (understood.doubts, understood.unknown, understood.question) == ((), (), "")
+
+
+@pytest.mark.parametrize(
+    ("text", "step", "doubt"),
+    [
+        (
+            "Se Nora è in cucina, portale il bollitore.",
+            "Bringing(Beneficiary=nora1, Theme=kettle1) [Se Nora è in cucina]",
+            "'Se Nora è in cucina' is a condition",
+        ),
+        (
+            "Tra cinque minuti spegni il forno.",
+            "Change_operational_state(Device=oven1) [Tra cinque minuti]",
+            "'Tra cinque minuti' is a time",
+        ),
+        (
+            "Domani mattina porta il bollitore a Nora.",
+            "Bringing(Theme=kettle1, Beneficiary=nora1) [Domani mattina]",
+            "'Domani mattina' is a time",
+        ),
+        (
+            "Porta il bollitore a Nora a meno che non sia vuoto.",
+            "Bringing(Theme=kettle1, Beneficiary=nora1) [a meno che non sia vuoto]",
+            "'a meno che non sia vuoto' is a condition",
+        ),
+        (
+            "Prendi il bollitore dal forno.",
+            'Taking(Theme="il bollitore", Source=oven1)',
+            "kettle1 is not on or in oven1",
+        ),
+        (
+            "Prendi la tazza di Nora.",
+            'Taking(Theme="la tazza di Nora")',
+            "no cup is known that belongs to Nora",
+        ),
+    ],
+)  # fmt: skip
+def test_nothing_of_an_italian_command_is_lost(read, text, step, doubt):
+    understood = read(text)
+    assert texts(understood) == [step]
+    assert doubt in " ".join(understood.doubts)
+
+
+@pytest.mark.parametrize(
+    ("text", "answer"),
+    [
+        ("Quanti piatti ci sono sul tavolo?", "2: plate1, plate2"),
+        ("Chi è in cucina?", "nora1"),
+        ("Dov'è il bollitore?", "kettle1 is on counter1"),
+    ],
+)
+def test_a_question_in_italian_is_answered(read, text, answer):
+    assert read(text).answer == answer
