@@ -159,6 +159,7 @@ class Resolver:
         inner = Scope((name,), description)
 
         def meant(other: Description) -> Resolved:
+            self.require_speaker(other)
             return self.resolve(other, scope if other.head == "it" else inner)
 
         match restriction:
@@ -228,9 +229,14 @@ class Resolver:
             whole = self.resolve(by, scope)
             own = item.name in whole.names  # Anna is not one of Anna's things
             return not own and (not owners.isdisjoint(whole.names) or self._is_of(item, whole))
-        if self.asker is None:
+        return bool(owners) if self.asker is None else self.asker in owners
+
+    def require_speaker(self, description: Description) -> None:
+        """Raise BadRequest if a description contains *my* and there is no speaker."""
+        if self.asker is None and any(
+            isinstance(r, Owned) and r.by is None for r in description.restrictions
+        ):
             raise errors.BadRequest("the owner 'my' requires a speaker; add --for PERSON")
-        return self.asker in owners
 
     def _is_from_viewer(self, name: str, relation: str) -> bool:
         """Return whether an entity is beside, before or behind the viewer. Raises BadRequest without one."""
