@@ -84,6 +84,7 @@ class ThingDescription(Struct, frozen=True, rename={"class_": "class"}, omit_def
 
     `class_` is a class of the TBox, `called` the noun if it is not a label of that class, and `name` the name
     of a person. `quantity` is a number or `all`. `purpose` is what something is for (*to drink*).
+    `alternatives` are other things any of which will do as well (*or a knife*).
     """
 
     class_: str = ""
@@ -96,6 +97,7 @@ class ThingDescription(Struct, frozen=True, rename={"class_": "class"}, omit_def
     purpose: str = ""
     owner: str = ""
     excluded: tuple[str, ...] = ()
+    alternatives: tuple[str, ...] = ()
 
 
 class Antecedent(Struct, frozen=True):

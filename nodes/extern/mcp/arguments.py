@@ -11,6 +11,7 @@ import msgspec
 from msgspec import Meta, Struct, field
 
 from semmap.schemas.entities import Angle, Probability, Size, Text, Value, Vector, Word
+from semmap.schemas.language import Language
 from semmap.schemas.map_history import KeptRelation
 from semmap.schemas.moments import When
 from semmap.schemas.relations import ViewPoint
@@ -55,6 +56,13 @@ class Find(Paged, frozen=True, kw_only=True):
     answer: (
         Annotated[Text, Meta(description="Answer to the clarification question about the text.")] | None
     ) = None
+
+
+class Understand(Paged, frozen=True, kw_only=True):
+    """A command in words."""
+
+    text: Annotated[Text, Meta(description="A command: take the red cup and bring it to Anna.")]
+    language: Annotated[Language, Meta(description="Detected if not given.")] | None = None
 
 
 class Get(Paged, frozen=True, kw_only=True):

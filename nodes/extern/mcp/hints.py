@@ -7,6 +7,7 @@ from typing import Final
 
 _REPLACEMENTS: Final[tuple[tuple[str, str], ...]] = (
     (r"--from VIEWER,? or --from-pose X Y Z YAW", "viewer, or viewpoint as x, y, z, yaw"),
+    (r"--for PERSON", "asker"),
     (r"narrow it, add LIMIT to it, or raise the limit", "narrow it, or add LIMIT and OFFSET to it"),
     (r"[;,] if that is intended, add --force", "; only an operator can do that all the same"),
     (r"\(--near PLACE --within M\)", "(near the place, within so many metres)"),

@@ -69,6 +69,19 @@ def find(client: Client, arguments: a.Find) -> Answer:
     return Answer(first=found.seq, last=found.seq, head=head, items=items, of="candidates")
 
 
+def understand(client: Client, arguments: a.Understand) -> Answer:
+    """Return the steps of a command, with what is not understood and what contradicts the map."""
+
+    def read(as_of: When | None) -> Found:
+        if as_of is not None:
+            raise errors.Refused("the map has changed since that page; call understand without a cursor")
+        return rows.understood(
+            client.understand(arguments.text, language=arguments.language), Authors(client.list()).by
+        )
+
+    return _paged(client, arguments, None, read, of="steps")
+
+
 def get(client: Client, arguments: a.Get) -> Answer:
     """Return one entity."""
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final
+
+import msgspec
 
 from semmap.nodes.extern.cli.output.sparql_formats import format_term
 from semmap.nodes.extern.mcp.answers import (
@@ -20,7 +22,7 @@ from semmap.ontology import vocabulary as v
 from semmap.schemas import changes
 from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Term
-from semmap.schemas.language import Candidate
+from semmap.schemas.language import Candidate, Understood
 from semmap.schemas.map_history import Difference
 from semmap.schemas.relations import Described, Relation
 from semmap.schemas.replies import LoggedCommit, SystemStatus
@@ -99,6 +101,20 @@ def candidate(found: Candidate, by: str) -> dict[str, Any]:
     """Return an entity that matches a description; its label and reasons quote the authors `by`."""
     quoted = {"called": found.called, "reasons": found.reasons}
     return {"name": found.entity, "class": found.class_, "said": quoted, "by": by}
+
+
+def understood(found: Understood, by: Callable[..., str]) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """Return the head and the steps of a command. `by` returns the authors that texts quote."""
+    head: dict[str, Any] = {"language": found.language, "mood": found.mood}
+    if found.doubts:
+        head["doubts"] = [attribute_text(text, by(text)) for text in found.doubts]
+    if found.unknown:
+        head["unknown_verbs"] = list(found.unknown)
+    if found.question:
+        head["question_to_ask_back"] = attribute_text(found.question, by(found.question))
+    if found.answer:
+        head["answer"] = attribute_text(found.answer, by(found.answer))
+    return head, [msgspec.to_builtins(step) for step in found.steps]
 
 
 def relation(found: Relation) -> dict[str, Any]:

@@ -80,6 +80,14 @@ READ_TOOLS: Final = (
         queries.find,
     ),
     Tool(
+        "understand",
+        "Converts a command in English or Italian to steps: frames with roles that are filled by entities of"
+        " the map or by descriptions. Do nothing while there are `doubts`, `unknown_verbs` or a"
+        " `question_to_ask_back`. A question is answered from the map (`answer`).",
+        a.Understand,
+        queries.understand,
+    ),
+    Tool(
         "list",
         "Lists the entities of a class (with its subclasses), or those on, in, near or nearest to another"
         " one, with positions [m] and what each is on, inside and in. Without arguments: all, in pages.",

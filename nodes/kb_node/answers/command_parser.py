@@ -61,13 +61,13 @@ class CommandParser:
         questions = (self._search.question(names, found.language) for names in open_still)
         doubts = dict.fromkeys(doubt for frame in found.frames for doubt in self._doubts(frame))
         found = structs.replace(found, question=" ".join(questions), doubts=tuple(doubts))
-        is_read = found.language == "english" and found.mood != "past"
-        return self._with_steps(query.text, found) if is_read else found
+        return self._with_steps(query.text, found) if found.mood != "past" else found
 
     def _with_steps(self, text: str, found: Understood) -> Understood:
         """Add the steps; if there are any, doubts, unknown verbs and questions are about them."""
-        with self._search.world(self._there().vocabulary.above, self._seen) as world:
-            read = read_steps(text, world)
+        scene = self._there()
+        with self._search.world(scene.vocabulary.above, self._seen) as world:
+            read = read_steps(text, world, None if found.language == "english" else scene)
         if not read.steps:
             return structs.replace(
                 found,

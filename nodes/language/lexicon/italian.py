@@ -63,6 +63,8 @@ def italian() -> Italian:
             verbs.update(dict.fromkeys(forms, english))
             if infinitive in table["moving"]["verbs"]:
                 moving |= forms
+    for english, infinitives in table["verbs"].items():  # "da" is of dare, and "di" of dire
+        verbs.update((form, english) for infinitive in infinitives for form in irregular.get(infinitive, ()))
     return Italian(
         {tuple(text.split()): english for english, words in table["words"].items() for text in words},
         {text: english for english, words in table["relative"].items() for text in words},

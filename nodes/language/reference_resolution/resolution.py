@@ -102,6 +102,9 @@ def _resolve_all(
         parts.append(found)
         scope = Scope(found.names, found.description)
     outcomes = [_outcome(part, resolver) for part in parts]
+    for part, outcome in zip(parts, outcomes, strict=True):
+        if part.names and outcome != "ambiguous":  # of things of several owners, the question asks
+            resolver.require_speaker(part.description)
     names = tuple(dict.fromkeys(name for part in parts for name in part.names))
     if any(description.is_alternative for description in descriptions):
         return _either(parts, read, resolver)

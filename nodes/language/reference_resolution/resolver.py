@@ -31,6 +31,7 @@ from semmap.nodes.language.reference_resolution.description import (
 )
 from semmap.nodes.language.reference_resolution.map_geometry import MapGeometry
 from semmap.nodes.language.reference_resolution.map_index import Item, MapIndex
+from semmap.schemas import errors
 
 _ALIKE: Final = 1.25
 """The smallest ratio of sizes at which one object counts as big and another as small."""
@@ -119,6 +120,7 @@ class Resolver:
             names = fitting
         if len(names) > 1 and description.is_definite and not description.is_plural:
             names = self._smallest_of_the_small(names, description)
+            names = self._nearest_in_the_stack(names, description)
             if description.head == "noun" and description.order is None:
                 exact = (
                     name for name in names if self.index.is_exact_match(name, description.key, self.language)
@@ -157,6 +159,7 @@ class Resolver:
         inner = Scope((name,), description)
 
         def meant(other: Description) -> Resolved:
+            self.require_speaker(other)
             return self.resolve(other, scope if other.head == "it" else inner)
 
         match restriction:
@@ -203,6 +206,11 @@ class Resolver:
                 return property_name in item.values
             case Among(_, other) if other.is_definite and other.head == "noun" and not other.is_plural:
                 return bool(self.resolve(other, scope).names)
+            case Related(others=others) if any(
+                other.is_definite and other.head == "noun" and not self.resolve(other, scope).kind
+                for other in others
+            ):
+                return False
         return not _is_unknown(restriction)
 
     def _is_in_state(self, item: Item, property_name: str, value: bool | str) -> bool:
@@ -222,6 +230,13 @@ class Resolver:
             own = item.name in whole.names  # Anna is not one of Anna's things
             return not own and (not owners.isdisjoint(whole.names) or self._is_of(item, whole))
         return bool(owners) if self.asker is None else self.asker in owners
+
+    def require_speaker(self, description: Description) -> None:
+        """Raise BadRequest if a description contains *my* and there is no speaker."""
+        if self.asker is None and any(
+            isinstance(r, Owned) and r.by is None for r in description.restrictions
+        ):
+            raise errors.BadRequest("the owner 'my' requires a speaker; add --for PERSON")
 
     def _is_from_viewer(self, name: str, relation: str) -> bool:
         """Return whether an entity is beside, before or behind the viewer. Raises BadRequest without one."""
@@ -244,8 +259,15 @@ class Resolver:
         found = [tuple(n for n in other.names if n != name) for other in others]
         if relation == "isUnder" and any(self.geometry.related("isOn", other, name) for other in found[0]):
             return True
+        if relation == "isAbove" and any(
+            self._are_alike(name, other) and self.geometry.related("isOn", name, other) for other in found[0]
+        ):
+            return True  # the upper of two boxes
         if relation == "isBetween":
-            pairs = ((a, b) for a in found[0] for b in found[-1] if a != b)
+            pairs = [(a, b) for a in found[0] for b in found[-1] if a != b]
+            if all(other.description.is_definite and not other.description.is_plural for other in others):
+                pairs.sort(key=lambda pair: (self.geometry.distance(*pair), pair))
+                pairs = pairs[:1]  # of several sinks the one beside the counter
             return any(name in self.geometry.between(*pair) for pair in pairs)
         return any(
             self.geometry.related(relation, name, other) or self._is_asserted(relation, name, other)  # type: ignore[arg-type]
@@ -318,6 +340,24 @@ class Resolver:
                 axis, sign = restriction.axis, restriction.sign
                 names = tuple(n for n in names if self._stands_out(n, axis, sign, names)) or names
         return names
+
+    def _nearest_in_the_stack(self, names: Names, description: Description) -> Names:
+        """Return the nearest of things above or below one of their kind: the drawer above the open one."""
+        for restriction in description.restrictions:
+            if not isinstance(restriction, Related) or restriction.relation not in ("isAbove", "isUnder"):
+                continue
+            others = self.resolve(restriction.others[0], Scope(names, description)).names
+            if len(others) == 1 and self._are_alike(names[0], others[0]):
+                heights = {n: abs(self._height(n) - self._height(others[0])) for n in names}
+                names = tuple(n for n in names if heights[n] <= min(heights.values()) + _TIE_M)
+        return names
+
+    def _height(self, name: str) -> float:
+        position = self.geometry.position(name)
+        return math.inf if position is None else position[2]
+
+    def _are_alike(self, name: str, other: str) -> bool:
+        return self.index.items[name].class_name == self.index.items[other].class_name
 
     def _ordered(self, names: Names, order: Order, description: Description) -> tuple[Names, bool]:
         """Those that come first; all that tie for it, and whether they do."""

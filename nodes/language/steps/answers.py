@@ -12,10 +12,10 @@ _MOST: Final = 5
 _PROPERTIES: Final = {
     **dict.fromkeys(("color", "colour"), "Color"),
     **dict.fromkeys(("material",), "Material"),
-    **dict.fromkeys(("weight", "mass"), "mass"),
+    **dict.fromkeys(("weight", "mass", "weigh", "weighs"), "mass"),
     **dict.fromkeys(("size", "height"), "size"),
     **dict.fromkeys(("position", "location"), "where"),
-    **dict.fromkeys(("name", "names", "identity"), "label"),
+    **dict.fromkeys(("name", "names", "identity", "called", "named"), "label"),
     **dict.fromkeys(("number", "amount", "count", "quantity", "total"), "number"),
 }
 """Nouns of properties -> what the map has of them."""
@@ -30,10 +30,11 @@ def answer(message: str, head: str, topic: str, meaning: Meaning, world: World) 
     looks = (
         meaning.is_person and description is not None and (description.attributes or description.superlative)
     )
-    if looks or (not meaning.names and meaning.alike and _is_open(meaning)):
+    is_tied = meaning.is_unordered and len(meaning.names) > 1
+    if looks or is_tied or (not meaning.names and meaning.alike and _is_open(meaning)):
         return f"'{topic}': the map cannot tell; look there"
     names = meaning.names
-    words = message.split()
+    words = message.replace("'s", " is").replace("'re", " are").split()
     wanted = _PROPERTIES.get(head)
     if words[:1] in (["is"], ["are"]):
         return _with_evidence("yes", names, world) if names else _no(topic, meaning, world)

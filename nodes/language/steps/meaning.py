@@ -8,6 +8,8 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Final
 
+from msgspec import structs
+
 from semmap.nodes.language.lexicon.commands import Grammar
 from semmap.nodes.language.reference_resolution.description import (
     Description,
@@ -20,7 +22,7 @@ from semmap.nodes.language.reference_resolution.description import (
 from semmap.nodes.language.reference_resolution.map_geometry import MapGeometry
 from semmap.nodes.language.reference_resolution.map_index import MapIndex
 from semmap.nodes.language.reference_resolution.resolver import Resolver, Scope
-from semmap.nodes.language.steps.noun_phrase import NounPhrase, PlacePhrase
+from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.tokens import Text
 from semmap.schemas.language import PlaceRelation, ThingDescription
 from semmap.schemas.relations import RelationName
@@ -56,6 +58,8 @@ class Meaning:
     is_person: bool = False
     is_place: bool = False
     ambiguous: bool = False
+    is_unordered: bool = False
+    """Whether the map cannot tell which of the entities is the superlative one."""
     doubts: list[str] = field(default_factory=list)
 
 
@@ -96,16 +100,26 @@ class Meanings:
         entities of a possessive pronoun.
         """
         if self.is_person(phrase):
-            return self._person(phrase, places)
-        return self._thing(phrase, places, may_be_none=may_be_none, as_place=as_place, owner=owner)
+            meaning = self._person(phrase, places)
+        else:
+            meaning = self._thing(phrase, places, may_be_none=may_be_none, as_place=as_place, owner=owner)
+        if not phrase.alternatives or meaning.description is None:
+            return meaning
+        others = [self.of(other, places, may_be_none=may_be_none) for other in phrase.alternatives]
+        texts = (self._t.between(other.first, other.end) for other in phrase.alternatives)
+        meaning.names = tuple(dict.fromkeys(name for each in (meaning, *others) for name in each.names))
+        meaning.ambiguous = meaning.ambiguous or any(other.ambiguous for other in others)
+        meaning.doubts += (doubt for other in others for doubt in other.doubts)
+        meaning.description = structs.replace(meaning.description, alternatives=tuple(texts))
+        return meaning
 
     # Places
 
     def _relations(self, places: Iterable[PlacePhrase], meaning: Meaning) -> list[tuple[PlacePhrase, Names]]:
         found: list[tuple[PlacePhrase, Names]] = []
         for place in places:
-            if place.other.kind in ("pronoun", "speaker", "here", "robot"):
-                found.append((place, ()))
+            if place.other.kind in ("pronoun", "speaker", "here", "robot") or self._is_floor(place):
+                found.append((place, place.names))
                 continue
             if place.other.kind == "name" and not self._t.tokens[place.other.head].is_capital:
                 meaning.doubts.append(f"'{place.preposition} {place.other.name}' is not understood")
@@ -119,12 +133,18 @@ class Meanings:
             found.append((place, names))
         return found
 
+    def _is_floor(self, place: PlacePhrase) -> bool:
+        """Return whether a place is the floor, which no map has as an entity."""
+        return self._g.is_a(place.other.noun, "floor") and not self._nouns.is_noun(place.other.key)
+
     def _relation(self, place: PlacePhrase, names: Names) -> PlaceRelation:
         other = place.other
         return PlaceRelation(place.preposition, self._t.between(other.first, other.end), names, place.negated)
 
     def _at(self, names: Sequence[str], place: PlacePhrase, others: Names) -> list[str] | None:
         """Return those of `names` that are at a place, or None if the map cannot tell."""
+        if self._is_floor(place):
+            return [name for name in names if self._world.geometry.is_on_floor(name) != place.negated]
         if not others:
             return None
         related = self._world.geometry.related
@@ -269,7 +289,8 @@ class Meanings:
             ]
             names = exact or names
         if phrase.superlative and names and not is_open:
-            names = self._ordered(names, phrase)
+            ordered = self._ordered(names, phrase)
+            meaning.is_unordered, names = ordered is None, names if ordered is None else ordered
         elif (
             phrase.quantity is not None
             and len(names) < phrase.quantity
@@ -358,9 +379,11 @@ class Meanings:
         other = self.of(phrase.of)
         meaning.doubts += other.doubts
         fitting = [name for name in names if any(self._belongs(name, whole) for whole in other.names)]
-        if fitting:
-            return fitting
-        return list(other.names)
+        if other.is_person and not fitting:
+            text = self._t.between(phrase.of.first, phrase.of.end)
+            meaning.doubts.append(f"no {self._noun(phrase)} is known that belongs to {text}")
+            return []
+        return fitting or list(other.names)
 
     def _belongs(self, name: str, whole: str) -> bool:
         item, other = self._index.items[name], self._index.items[whole]
@@ -423,24 +446,28 @@ class Meanings:
         self, names: list[str], relations: Sequence[tuple[PlacePhrase, Names]], phrase: NounPhrase
     ) -> str:
         """Return the sentence that nothing of the kind is where the command states."""
-        place = next((others[0] for _, others in relations if len(others) == 1), "")
+        at, place = next(
+            ((relation.preposition, others[0]) for relation, others in relations if len(others) == 1),
+            ("", ""),
+        )
+        if self._g.contains("contained", at):
+            at = "on or in"
         if any(relation.negated for relation, _ in relations):
             return f"'{self._t.between(phrase.first, phrase.end)}': no such {self._noun(phrase)} is known"
         if len(names) > 1 or not place:
-            at = place or "there"
-            return f"no {self._noun(phrase)} is known on or in {at}"
+            return f"no {self._noun(phrase)} is known {f'{at} {place}' if place else 'there'}"
         where = self._world.where(names[0])
-        return f"{names[0]} is not on or in {place}" + (f"; it is {where}" if where else "")
+        return f"{names[0]} is not {at} {place}" + (f"; it is {where}" if where else "")
 
-    def _ordered(self, names: list[str], phrase: NounPhrase) -> list[str]:
-        """Return the first of the things by a superlative, or all of them if the map cannot tell."""
+    def _ordered(self, names: list[str], phrase: NounPhrase) -> list[str] | None:
+        """Return the first of the things by a superlative, or None if the map cannot tell."""
         sign, values = self._values(names, phrase.superlative)
         known = sorted(
             (name for name in names if math.isfinite(values.get(name, math.inf))),
             key=lambda n: (sign * values[n], n),
         )
         if not sign or len(known) < len(names):
-            return names
+            return None
         count = phrase.quantity or 1
         if phrase.is_plural and phrase.quantity is None:
             return names

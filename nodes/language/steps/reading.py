@@ -9,9 +9,12 @@ from typing import Final
 from semmap.nodes.language.lexicon import commands
 from semmap.nodes.language.steps import tokens
 from semmap.nodes.language.steps.answers import answer
-from semmap.nodes.language.steps.clauses import Clause, ClauseReader, Role
+from semmap.nodes.language.steps.clause import Clause, Role
+from semmap.nodes.language.steps.clauses import ClauseReader
 from semmap.nodes.language.steps.meaning import Meaning, Meanings, Names, World
-from semmap.nodes.language.steps.noun_phrase import NounPhrase, PlacePhrase
+from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
+from semmap.nodes.language.steps.translation import translate
+from semmap.nodes.language.understanding.grounding import Scene
 from semmap.schemas.language import Antecedent, CommandStep, Filler
 
 _LOCATED_BY: Final = {
@@ -20,6 +23,10 @@ _LOCATED_BY: Final = {
 }
 """Frames with the role that states where their object is."""
 _WORDS_ONLY: Final = frozenset(("Message", "Trigger", "Desired_state", "Manner", "Direction"))
+_PEOPLE: Final = frozenset(
+    ("Cotheme", "Guiding", "Make_acquaintance", "Greeting", "Introducing", "Being_located", "Locating")
+)
+"""Frames whose object is a person, if a pronoun may refer to one."""
 _PLACES: Final = frozenset(("Goal", "Source", "Ground", "Location", "Path"))
 
 
@@ -47,9 +54,9 @@ class _Mention:
     phrase: NounPhrase | None = None
 
 
-def read_steps(text: str, world: World) -> Steps:
-    """Return the steps of a command in English."""
-    return _StepReader(tokens.read(text), world).read()
+def read_steps(text: str, world: World, scene: Scene | None = None) -> Steps:
+    """Return the steps of a command in English, or in Italian if the labels of a `scene` are given."""
+    return _StepReader(tokens.read(text) if scene is None else translate(text, scene), world).read()
 
 
 class _StepReader:
@@ -70,7 +77,7 @@ class _StepReader:
                 meaning = self._meanings.of(phrase, may_be_none=True)
                 filler = Filler(
                     self._t.between(phrase.first, phrase.end),
-                    self._t.words[phrase.head],
+                    self._t.word(phrase.head),
                     meaning.names,
                     meaning.description,
                 )
@@ -99,7 +106,7 @@ class _StepReader:
         self._mentions += mentions
         return CommandStep(
             clause.frame,
-            clause.verb.lower(),
+            self._t.word(clause.first) if self._t.is_translated else clause.verb.lower(),
             roles,
             clause.negated,
             "; ".join(dict.fromkeys(clause.conditions)),
@@ -128,20 +135,21 @@ class _StepReader:
             return []
         other = role.phrases[0]
         preposition = " ".join(self._t.words[role.first : other.first])
-        return [PlacePhrase(preposition or "in", other, role.first, role.end)]
+        before = self._antecedent(other, clause, role, []) if other.kind == "pronoun" else None
+        names = () if before is None else before.filler.entities
+        return [PlacePhrase(preposition or "in", other, role.first, role.end, names=names)]
 
     def _fillers(
         self, clause: Clause, role: Role, number: int, where: list[PlacePhrase], mentions: list[_Mention]
     ) -> Iterator[Filler]:
-        words = self._t.words
         if role.role in _WORDS_ONLY or not role.phrases:
-            yield Filler(self._t.between(role.first, role.end), words[role.head])
+            yield Filler(self._t.between(role.first, role.end), self._t.word(role.head))
             return
         is_object = role.role == self._g.frames[clause.frame].roles.get("object") or role.role in ("Cotheme",)
         for k, phrase in enumerate(role.phrases):
             first = role.first if k == 0 else phrase.first
             end = role.end if k == len(role.phrases) - 1 else phrase.end
-            text, head = self._t.between(first, end), words[phrase.head]
+            text, head = self._t.between(first, end), self._t.word(phrase.head)
             if phrase.noun == "there" and role.role in _PLACES:
                 yield self._there(text, head, number)
                 continue
@@ -152,9 +160,9 @@ class _StepReader:
                 yield self._pronoun(phrase, text, head, clause, role, number, mentions)
                 continue
             self._complete(phrase, mentions)
-            for other in phrase.excluded:
+            for other in (*phrase.excluded, *phrase.alternatives):
                 if other.noun in ("one", "ones"):  # any cup but not the red one
-                    other.noun, other.key = phrase.noun, phrase.key
+                    self._take_noun(other, phrase)
             places = where if is_object and role.role not in _PLACES else []
             owner = self._owner(phrase)
             meaning = self._meanings.of(
@@ -167,8 +175,9 @@ class _StepReader:
             filler = Filler(text, head, meaning.names, meaning.description)
             self._note(meaning)
             if role.role == "Topic" and (message := clause.role("Message")) is not None:
-                asked = self._t.between(message.first, message.end).lower()
-                self._found.answers.append(answer(asked, words[message.head], text, meaning, self._world))
+                asked = " ".join(self._t.words[message.first : message.end])
+                asked_of = self._t.words[message.head]
+                self._found.answers.append(answer(asked, asked_of, text, meaning, self._world))
             mentions.append(
                 _Mention(
                     number,
@@ -191,8 +200,12 @@ class _StepReader:
                 if m.phrase is not None and not m.is_person and not m.is_place
             )
             if (like := next(before, None)) is not None:
-                noun = like.noun.rpartition(" ")[2]  # of "red cup" only "cup"
-                phrase.noun, phrase.key = noun, self._meanings.key(noun)
+                self._take_noun(phrase, like)
+
+    def _take_noun(self, phrase: NounPhrase, like: NounPhrase) -> None:
+        """Give a phrase the noun of another one: of *red cup* only *cup*."""
+        phrase.noun = like.noun.rpartition(" ")[2]
+        phrase.key = self._meanings.key(phrase.noun)
 
     def _there(self, text: str, head: str, number: int) -> Filler:
         """Return the filler for *there*: the last place that was mentioned."""
@@ -234,12 +247,18 @@ class _StepReader:
                 return Filler(text, head)
             self._found.doubts.append(f"'{phrase.noun}' refers to nothing that was mentioned")
             return Filler(text, head)
-        description = antecedent.filler.description
+        meant = [antecedent.filler]
+        if self._g.is_a(phrase.noun, "several_pronoun"):  # all things of a list
+            meant = [
+                m.filler
+                for m in self._mentions
+                if m is antecedent or (m.step and (m.step, m.role) == (antecedent.step, antecedent.role))
+            ]
         filler = Filler(
             text,
             head,
-            antecedent.filler.entities,
-            description,
+            tuple(dict.fromkeys(name for one in meant for name in one.entities)),
+            antecedent.filler.description if len(meant) == 1 else None,
             Antecedent(antecedent.step, antecedent.role) if antecedent.step else None,
         )
         mentions.append(
@@ -257,15 +276,7 @@ class _StepReader:
         if role.role in ("Beneficiary", "Recipient", "Addressee") or g.is_a(word, "person_pronoun"):
             return next((m for m in reversed(mentions) if m.is_person), None)
         if g.is_a(word, "several_pronoun"):
-            people = clause.frame in (
-                "Cotheme",
-                "Guiding",
-                "Make_acquaintance",
-                "Greeting",
-                "Introducing",
-                "Being_located",
-                "Locating",
-            )
+            people = clause.frame in _PEOPLE
             last = next(
                 (
                     m
@@ -281,6 +292,8 @@ class _StepReader:
                 return last
             thing = next((m for m in reversed(mentions) if not m.is_place and not m.is_person), None)
             return thing or person
+        if self._t.is_translated and clause.frame in _PEOPLE and word == "it":  # seguila
+            return next((m for m in reversed(mentions) if not m.is_place), None)
         things = [m for m in mentions if not m.is_person]
         if (
             role.role in _PLACES

@@ -33,10 +33,17 @@ class Text:
     text: str
     tokens: Sequence[Token]
     words: Sequence[str]
+    is_translated: bool = False
+    """Whether the words are English ones for a text in another language, possibly in another order."""
 
     def between(self, first: int, end: int) -> str:
         """Return the text of the tokens from index `first` to before `end`."""
-        return self.text[self.tokens[first].first : self.tokens[end - 1].end] if first < end else ""
+        spans = [token for token in self.tokens[first:end] if token.first < token.end]
+        return self.text[min(t.first for t in spans) : max(t.end for t in spans)] if spans else ""
+
+    def word(self, i: int) -> str:
+        """Return the word at `i` as in the text, in lower case: of a translated compound the first."""
+        return self.between(i, i + 1).lower().partition(" ")[0] if self.is_translated else self.words[i]
 
     def is_mark(self, i: int) -> bool:
         """Return whether a punctuation mark is at `i`, or the text ends there."""

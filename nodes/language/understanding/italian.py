@@ -21,7 +21,7 @@ _CLITICS: Final = {
     **{first + second: (first, second) for first in _FIRST for second in _SECOND},
     **{one: (one,) for one in ("mi", "ti", "ci", "vi", *_SECOND, "gli", "si")},
 }
-_SHORT: Final = ("da", "va", "fa", "sta")  # these double the consonant of a clitic: dammi
+_SHORT: Final = ("da", "va", "fa", "sta", "di")  # these double the consonant of a clitic: dammi
 _DETERMINERS: Final = ("the", "a", "this", "that", "my", "your", "his", "our", "their", "some", "no", "every")
 _POSSESSIVES: Final = ("my", "your", "his", "our", "their")
 _PLURAL: Final = ("i", "gli", "le")
@@ -30,8 +30,14 @@ _NUMBERS: Final = ("two", "three", "four", "five", "ten", "thirty", "ninety")
 _ENDING: Final = ("and", "then", "please", "to", "from", "in", "on", "with", "near", "for", "here", "there")
 _OPENING: Final = (
     *("and", "or", "but", "then", "please", "robot", "sorry", "hey", "hello", "you", "not", "to", "okay"),
-    *("would", "should", "while", "thanks", "now"),
+    *("would", "should", "while", "thanks", "now", "tomorrow", "morning", "evening", "tonight", "later"),
+    *("minutes", "seconds", "hours", "otherwise", "so"),
 )  # a clause begins after these
+
+
+def normalise(text: str) -> str:
+    """Return a text with uniform apostrophes and accents."""
+    return _IS.sub("è", text.replace("’", "'"))
 
 
 def split(text: str) -> list[str]:
@@ -56,7 +62,7 @@ def _tokens(text: str) -> list[str]:
     """Return the words; clitics at the end of a verb are separate and begin with `-`."""
     known = italian()
     found: list[str] = []
-    for word in _WORD.findall(_IS.sub("è", plain(text))):
+    for word in _WORD.findall(normalise(plain(text))):
         previous = found[-1] if found else ""
         nominal = previous in ARTICULATED or known.expressions.get((previous,), "") in _DETERMINERS
         opens = not found or previous == "favore" or known.expressions.get((previous,), "") in _OPENING

@@ -93,6 +93,7 @@ def test_pages_are_of_the_commit_of_the_first(client):
         ("overview", {}),
         ("find", {"text": "the red cup on the kitchen table"}),
         ("find", {"text": "something to drink"}),
+        ("understand", {"text": "take the cup from the table and put it on the desk if I am away"}),
         ("list", {"class_": "Cup"}),
         ("list", {"near": "table1", "within": 1.5}),
         ("list", {"nearest": 3, "to": "cup1"}),

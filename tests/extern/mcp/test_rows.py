@@ -1,7 +1,8 @@
 import json
 
-from semmap.nodes.extern.mcp.rows import OVERVIEW_BUDGET, overview
+from semmap.nodes.extern.mcp.rows import OVERVIEW_BUDGET, overview, understood
 from semmap.schemas.entities import Entity, Pose, Provenance
+from semmap.schemas.language import CommandStep, Filler, ThingDescription, Understood
 from semmap.schemas.replies import SystemStatus
 
 BY = Provenance(commit=1, stamp_ns=1, source="operator")
@@ -72,4 +73,21 @@ def test_what_a_place_is_called_says_by_whom():
     found = overview(status(), [entity("kitchen1", "Kitchen", place=True, ref="Ann's kitchen")], {})
     assert found["places"] == [
         {"name": "kitchen1", "class": "Kitchen", "said": "Ann's kitchen", "by": "operator", "holds": "0"}
+    ]
+
+
+def test_a_command_is_its_steps_with_what_is_not_understood_as_data():
+    theme = Filler("the cup", "cup", ("cup1",), ThingDescription(class_="Cup"))
+    step = CommandStep("Taking", "take", {"Theme": (theme,)}, condition="if Ann leaves")
+    found = Understood((), (), (), unknown=("squonk",), doubts=("cup1 is not red",), steps=(step,))
+    head, steps = understood(found, lambda text: "semmap")
+    assert head == {
+        "language": "english",
+        "mood": "command",
+        "doubts": [{"said": "cup1 is not red", "by": "semmap"}],
+        "unknown_verbs": ["squonk"],
+    }
+    cup = {"text": "the cup", "head": "cup", "entities": ("cup1",), "description": {"class": "Cup"}}
+    assert steps == [
+        {"frame": "Taking", "verb": "take", "roles": {"Theme": (cup,)}, "condition": "if Ann leaves"}
     ]

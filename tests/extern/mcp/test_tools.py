@@ -47,7 +47,7 @@ def test_what_is_wrong_is_said_in_a_sentence(arguments, sentence):
 def test_an_unknown_tool_is_named_with_those_that_there_are():
     with pytest.raises(errors.UnknownVerb, match="unknown tool 'lst'; did you mean list"):
         tools().call("lst", {})
-    with pytest.raises(errors.UnknownVerb, match="available: overview, find, list"):
+    with pytest.raises(errors.UnknownVerb, match="available: overview, find, understand"):
         tools().call("x" * 5000, {})
 
 
@@ -84,7 +84,9 @@ def test_every_tool_is_described_and_has_a_schema_without_references():
             assert "description" in field or "enum" in field or "anyOf" in field or name, name
 
 
-@pytest.mark.parametrize("name", ["find", "list", "get", "relations", "explain", "history", "diff", "when"])
+@pytest.mark.parametrize(
+    "name", ["find", "understand", "list", "get", "relations", "explain", "history", "diff", "when"]
+)
 def test_arguments_are_named_as_the_fields_of_the_command(name):
     tool = next(tool for tool in READ_TOOLS if tool.name == name)
     fields = set(COMMANDS[name].__struct_encode_fields__)

@@ -99,6 +99,53 @@ def filler(understood, role, step=0):
             "Give me the name of the person at the sink",
             ['Telling(Addressee="me", Message="the name", Topic="of the person at the sink")'],
         ),
+        (
+            "get the kettle, the laptop and the red cup, and put them on the desk",
+            [
+                "Taking(Theme=kettle1, Theme=laptop1, Theme=redcup)",
+                "Placing(Theme=kettle1|laptop1|redcup, Goal=desk1)",
+            ],
+        ),
+        (
+            "fetch either the red cup or the blue one",
+            ["Taking(Theme=redcup|bluecup)"],
+        ),
+        (
+            "go to the kitchen find Nora give her the kettle",
+            [
+                "Motion(Goal=kitchen1)",
+                "Locating(Sought_entity=nora1)",
+                "Giving(Recipient=nora1, Theme=kettle1)",
+            ],
+        ),
+        (
+            "The kettle should be on the counter, bring it to Nora",
+            ["Being_located(Theme=kettle1, Location=counter1)", "Bringing(Theme=kettle1, Beneficiary=nora1)"],
+        ),
+        (
+            "the kettle on the counter, bring it to Nora",
+            ["Bringing(Theme=kettle1, Beneficiary=nora1)"],
+        ),
+        (
+            "Turn the oven off and then to follow Nora",
+            ["Change_operational_state(Device=oven1)", "Cotheme(Cotheme=nora1)"],
+        ),
+        (
+            "make sure the fridge is closed",
+            ['Inspecting(Ground=fridge1, Desired_state="is closed")'],
+        ),
+        (
+            "give one of the plates to Nora",
+            ["Giving(Theme=plate1|plate2, Recipient=nora1)"],
+        ),
+        (
+            "tell everyone in the kitchen that we are leaving",
+            ['Telling(Addressee=nora1, Message="that we are leaving")'],
+        ),
+        (
+            "leave the kitchen",
+            ["Motion(Source=kitchen1)"],
+        ),
     ],
 )
 def test_a_command_is_a_list_of_steps(read, text, steps):
@@ -162,6 +209,17 @@ def test_a_condition_holds_for_all_steps_of_its_sentence(read):
     assert [step.condition for step in understood.steps] == ["if Nora leaves", "if Nora leaves", ""]
 
 
+@pytest.mark.parametrize("word", ["if so", "otherwise", "in that case"])
+def test_a_condition_on_the_step_before_holds_from_there_on(read, word):
+    understood = read(f"look whether the oven is on, and {word}, bring Nora the kettle")
+    assert [step.condition for step in understood.steps] == ["", word]
+
+
+def test_whom_a_condition_mentions_is_whom_a_pronoun_means(read):
+    understood = read("in case you see Nora, give her the kettle")
+    assert filler(understood, "Recipient").entities == ("nora1",)
+
+
 def test_negation_is_of_its_own_clause(read):
     understood = read("don't take the red cup, take the blue one")
     assert texts(understood) == ["not Taking(Theme=redcup)", "Taking(Theme=bluecup)"]
@@ -177,12 +235,18 @@ def test_negation_is_of_its_own_clause(read):
         ("take the cups from the oven", "no cup is known on or in oven1"),
         ("take the kettle from the desk", "kettle1 is not on or in desk1"),
         ("take the three plates", "'the three plates': there are only 2"),
+        ("take the cup of Nora", "no cup is known that belongs to Nora"),
         ("take Nora's cup", "no cup is known that belongs to Nora"),
         ("take Gregor's cup", "'Gregor' is not known"),
         ("take my cup", "'my cup': the owner is not known"),
         ("bring the frobnicator", "'frobnicator' is not known"),
         ("take the violin", "violin"),
         ("go to the balcony", "balcony"),
+        ("take the umbrella that Nora likes", "no umbrella is known"),
+        ("take the kettle off", "off"),
+        ("take the kettle upstairs", "upstairs"),
+        ("take something shiny from the frobnicator", "frobnicator"),
+        ("the person at the sink would like a cup", "would like"),
         ("take it", "'it' refers to nothing that was mentioned"),
         ("go to the kitchen by helicopter", "by helicopter"),
         ("this morning was nice, take the kettle", "nice"),
@@ -244,6 +308,10 @@ def test_superlatives_stay_in_the_description(read, text, entities, superlative)
         ("is the kettle on the desk?", "no: kettle1 is on counter1"),
         ("is the kettle in the kitchen?", "yes: kettle1"),
         ("what is the name of the person in the kitchen?", "nora1: name Nora"),
+        ("what's on the desk?", "book1, cup1, lamp1, laptop1"),
+        ("find out what colour the fridge is", "fridge1: colour white"),
+        ("how many plates are lying on the table?", "2: plate1, plate2"),
+        ("which of the cups is the oldest?", "'of the cups is the oldest': the map cannot tell; look there"),
         ("tell me the pose of Nora", "'of Nora': the map does not have the pose; look there"),
         (
             "how many people in the kitchen are waving?",
@@ -267,3 +335,114 @@ def test_every_text_ends_in_steps_or_doubts(read):
         for second in words:
             understood = read(f"take {first} {second}")
             assert understood.steps or understood.doubts or understood.unknown
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        ("Vai in cucina e poi trova Nora.", ["Motion(Goal=kitchen1)", "Locating(Sought_entity=nora1)"]),
+        (
+            "Prendi la tazza rossa dal tavolo e portala a Nora.",
+            ["Taking(Theme=redcup, Source=table1)", "Bringing(Theme=redcup, Beneficiary=nora1)"],
+        ),
+        (
+            "Porta la tazza blu in cucina e mettila sulla scrivania.",
+            ["Bringing(Theme=bluecup, Goal=kitchen1)", "Placing(Theme=bluecup, Goal=desk1)"],
+        ),
+        ("Segui Nora dalla cucina allo studio.", ["Cotheme(Cotheme=nora1, Source=kitchen1, Goal=studio1)"]),
+        ("Accompagna Nora allo studio.", ["Guiding(Cotheme=nora1, Goal=studio1)"]),
+        ("Saluta Nora e poi seguila.", ["Greeting(Addressee=nora1)", "Cotheme(Cotheme=nora1)"]),
+        (
+            "Incontra Nora in cucina e accompagnala nello studio.",
+            ["Make_acquaintance(Individual_2=nora1)", "Guiding(Cotheme=nora1, Goal=studio1)"],
+        ),
+        ("Dammi il bollitore.", ['Giving(Recipient="mi", Theme=kettle1)']),
+        ("Dai il bollitore a Nora.", ["Giving(Theme=kettle1, Recipient=nora1)"]),
+        ("Portami il latte.", ['Bringing(Beneficiary="mi", Theme=milk1)']),
+        (
+            "Trova Nora in cucina e dille una barzelletta.",
+            ["Locating(Sought_entity=nora1, Ground=kitchen1)",
+             'Telling(Addressee=nora1, Message="una barzelletta")'],
+        ),
+        (
+            "Rispondi alla domanda di Nora.",
+            ['Communication_response(Trigger="alla domanda", Addressee=nora1)'],
+        ),
+        ("Presentati a Nora.", ['Introducing(Theme="ti", Addressee=nora1)']),
+        ("Chiedi a Nora come si chiama.", ['Questioning(Addressee=nora1, Message="come si chiama")']),
+        ("Non toccare il bollitore.", ["not Manipulation(Entity=kettle1)"]),
+        (
+            "Non prendere la tazza rossa, prendi quella blu.",
+            ["not Taking(Theme=redcup)", "Taking(Theme=bluecup)"],
+        ),
+        (
+            "Prendi due piatti e mettili sulla scrivania.",
+            ["Taking(Theme=plate1|plate2)", "Placing(Theme=plate1|plate2, Goal=desk1)"],
+        ),
+        ("Pulisci la cucina.", ["Cleaning(Theme=kitchen1)"]),
+        ("Apri il frigorifero e chiudi il forno.",
+         ["Closure(Containing_object=fridge1)", "Closure(Containing_object=oven1)"]),
+        ("Conta i piatti sul tavolo.", ["Counting(Theme=plate1|plate2)"]),
+        ("Versa il latte in una tazza.", ["Pouring(Theme=milk1, Goal=bluecup|cup1|redcup)"]),
+        ("Spegni il forno.", ["Change_operational_state(Device=oven1)"]),
+        ("Cerca il portatile nello studio.", ["Locating(Sought_entity=laptop1, Ground=studio1)"]),
+    ],
+)  # fmt: skip
+def test_an_italian_command_has_the_same_steps(read, text, steps):
+    understood = read(text)
+    assert understood.language == "italian"
+    assert texts(understood) == steps
+    assert (understood.doubts, understood.unknown, understood.question) == ((), (), "")
+
+
+@pytest.mark.parametrize(
+    ("text", "step", "doubt"),
+    [
+        (
+            "Se Nora è in cucina, portale il bollitore.",
+            "Bringing(Beneficiary=nora1, Theme=kettle1) [Se Nora è in cucina]",
+            "'Se Nora è in cucina' is a condition",
+        ),
+        (
+            "Tra cinque minuti spegni il forno.",
+            "Change_operational_state(Device=oven1) [Tra cinque minuti]",
+            "'Tra cinque minuti' is a time",
+        ),
+        (
+            "Domani mattina porta il bollitore a Nora.",
+            "Bringing(Theme=kettle1, Beneficiary=nora1) [Domani mattina]",
+            "'Domani mattina' is a time",
+        ),
+        (
+            "Porta il bollitore a Nora a meno che non sia vuoto.",
+            "Bringing(Theme=kettle1, Beneficiary=nora1) [a meno che non sia vuoto]",
+            "'a meno che non sia vuoto' is a condition",
+        ),
+        (
+            "Prendi il bollitore dal forno.",
+            'Taking(Theme="il bollitore", Source=oven1)',
+            "kettle1 is not on or in oven1",
+        ),
+        (
+            "Prendi la tazza di Nora.",
+            'Taking(Theme="la tazza di Nora")',
+            "no cup is known that belongs to Nora",
+        ),
+    ],
+)  # fmt: skip
+def test_nothing_of_an_italian_command_is_lost(read, text, step, doubt):
+    understood = read(text)
+    assert texts(understood) == [step]
+    assert doubt in " ".join(understood.doubts)
+
+
+@pytest.mark.parametrize(
+    ("text", "answer"),
+    [
+        ("Quanti piatti ci sono sul tavolo?", "2: plate1, plate2"),
+        ("Chi è in cucina?", "nora1"),
+        ("Dov'è il bollitore?", "kettle1 is on counter1"),
+    ],
+)
+def test_a_question_in_italian_is_answered(read, text, answer):
+    assert read(text).answer == answer

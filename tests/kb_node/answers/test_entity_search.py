@@ -8,13 +8,15 @@ from msgspec import structs
 from semmap.nodes.kb_node.answers.entity_search import EntitySearch, describe_missing, item, terms
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commands import Find
-from semmap.schemas.commits import NewEntity, Transaction
+from semmap.schemas.commits import NewEntity, Statement, Transaction
 from semmap.schemas.entities import Pose
+from tests.kb_node import home
 from tests.kb_node.reasoner.graphs import household
 from tests.kb_node.relations.entities import ROOM, TABLE
 
@@ -274,6 +276,57 @@ def test_a_superlative_reports_the_measurement_and_a_direction_needs_a_viewpoint
 )
 def test_neighbours_and_doors_between_places_are_found(flat, text, meant):
     assert names(EntitySearch(flat).find(Find(text=text)).found) == meant
+
+
+STACK = tuple(
+    NewEntity(
+        name=f"drawer{n}", class_iri=v.bare(v.dm("Drawer")), size=(0.5, 0.5, 0.2),
+        pose=Pose(position_m=(3.0, 3.0, 0.05 + 0.22 * n)),
+        set=(Statement(property="isOpen", values=(opened,)),),
+    )
+    for n, opened in enumerate(("false", "false", "true", "false", "false"))
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def room(tmp_path_factory):
+    """Five drawers, the middle one open, and an oven between the stove and the near one of two sinks."""
+    made = SemanticMap(home.new_household_journal(tmp_path_factory.mktemp("room")))
+    row = {"sink1": "Sink", "oven1": "Oven", "stove1": "Stove", "fridge1": "Fridge", "sink2": "Sink"}
+    things = [
+        NewEntity(
+            name=name, class_iri=v.bare(v.dm(cls)), pose=Pose(position_m=(x, 0.5, 0.0)), size=(0.6, 0.6, 0.9)
+        )
+        for x, (name, cls) in enumerate(row.items())
+    ]
+    made.commit(Transaction(id="1", source="operator", add=(*STACK, *things)))
+    yield made
+    home.close(made)
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("the drawer above the open one", {"drawer3"}),
+        ("the drawer below the open drawer", {"drawer1"}),
+        ("the drawers above the open one", {"drawer3", "drawer4"}),
+        ("the drawer that is not open above the open one", {"drawer3"}),
+        ("the appliance between the stove and the sink", {"oven1"}),
+        ("the appliance between the sink and the stove", {"oven1"}),
+        ("the fridge between the stove and the sink", set()),
+        ("the sinks not on the piano", set()),
+        ("the sinks not on the oven", {"sink1", "sink2"}),
+        ("i lavelli che non sono sul pianoforte", set()),
+    ],
+)
+def test_the_nearest_of_a_stack_or_row_is_meant_and_a_reference_must_exist(room, text, meant):
+    assert names(EntitySearch(room).find(Find(text=text)).found) == meant
+
+
+@pytest.mark.parametrize("text", ["my computer", "il mio computer", "the computer on my desk"])
+def test_my_requires_a_speaker(flat, text):
+    with pytest.raises(errors.BadRequest, match="'my' requires a speaker; add --for PERSON"):
+        EntitySearch(flat).find(Find(text=text))
 
 
 def test_an_unknown_viewer_or_asker_is_rejected(flat):

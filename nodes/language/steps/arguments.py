@@ -1,0 +1,383 @@
+"""The arguments of a verb: objects, prepositional phrases, particles and lists."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+from semmap.nodes.language.steps.clause import Clause, Role
+from semmap.nodes.language.steps.clause_boundaries import ClauseBoundaries
+from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
+from semmap.nodes.language.steps.times import starts_time
+
+_PLACED: Final = (
+    "Locating",
+    "Placing",
+    "Being_located",
+    "Motion",
+    "Arriving",
+    "Inspecting",
+    "Pouring",
+    "Perception_active",
+)
+"""Frames of which a place after the object is a role of its own."""
+
+
+class ArgumentReader(ClauseBoundaries):
+    """Reads the arguments of a clause."""
+
+    def _arguments(self, clause: Clause, i: int) -> int:
+        """Read the arguments of a clause; return where it ends."""
+        g, words = self._g, self._words
+        roles = g.frames[clause.frame].roles
+        objects: list[NounPhrase] = []
+        while i < len(words) and not self._ends_clause(i):
+            if (end := self._condition(i)) > i:
+                clause.conditions.append(self._t.between(i, end))
+                i = end
+            elif length := starts_time(g, words, i):
+                clause.times.append(self._t.between(i, i + length))
+                i += length
+            elif clause.frame == "Motion" and clause.role("Goal") is not None and (to := self._next_goal(i)):
+                further = Clause(
+                    clause.frame, clause.verb, to, conditions=clause.conditions, times=list(clause.times)
+                )
+                self.found.clauses.append(further)
+                return self._arguments(further, to)
+            elif words[i] == ",":
+                i += 1
+            elif (
+                self._excludes(i)
+                and objects
+                and (other := self._np.read(i + g.match("exclude", words, i))) is not None
+            ):
+                objects[-1].excluded.append(other)
+                i = other.end
+            elif (
+                g.is_a(words[i], "and")
+                and (phrase := self._np.read(i + 1)) is not None
+                and not self._t.is_mark(i + 1)
+            ):
+                i = self._coordinate(clause, i, phrase)
+            elif (length := g.match("here", words, i)) and (phrase := self._np.read(i)) is not None:
+                if "to" in roles or "place" in roles:
+                    role = roles.get("to") or roles["place"]
+                    clause.roles.append(Role(role, i, phrase.end, phrase.head, [phrase]))
+                i = phrase.end
+            elif (length := g.match("manner", words, i)) and not self._quantifies(i, length):
+                clause.roles.append(Role("Manner", i, i + length, i))
+                i += length
+            elif "direction" in roles and g.is_a(words[i], "direction"):
+                clause.roles.append(Role("Direction", i, i + 1, i))
+                i += 1
+            elif (found := self._prepositional(clause, i)) is not None:
+                i = found
+            elif (particle := self._particle(clause, i)) is not None:
+                i = particle
+            elif (phrase := self._object(clause, i)) is not None:
+                objects.append(phrase)
+                i = phrase.end
+                self._add_object(clause, objects, phrase)
+            elif length := max(
+                g.match("polite", words, i), g.match("then", words, i), g.match("loose_particle", words, i)
+            ):
+                i += length
+            else:
+                end = i + 1
+                while (
+                    end < len(words)
+                    and not self._ends_clause(end)
+                    and not g.match("place", words, end)
+                    and not g.match("to", words, end)
+                ):
+                    end += 1
+                self.found.unused.append(self._t.between(i, end))
+                i = end
+        self._finish(clause)
+        return i
+
+    def _quantifies(self, i: int, length: int) -> bool:
+        """Return whether an expression of manner at `i` is a determiner there: a little water."""
+        phrase = self._np.read(i) if self._g.match("determiner", self._words, i) else None
+        return phrase is not None and phrase.end > i + length
+
+    def _next_goal(self, i: int) -> int:
+        """Return the index of another goal after *then* at `i`, or 0: to the desk, then TO THE SHELF."""
+        j = i
+        while j < len(self._words) and (self._words[j] == "," or self._g.match("then", self._words, j)):
+            j += max(1, self._g.match("then", self._words, j))
+        return j if j > i and self._g.match("to", self._words, j) else 0
+
+    def _object(self, clause: Clause, i: int) -> NounPhrase | None:
+        phrase = self._np.read(i)
+        return None if phrase is None or phrase.end == i else phrase
+
+    def _add_object(self, clause: Clause, objects: list[NounPhrase], phrase: NounPhrase) -> None:
+        """Add an object: of two, the first is the receiver (bring me the cup)."""
+        roles = self._g.frames[clause.frame].roles
+        role = roles.get("object") or roles.get("place") or "Theme"
+        if (phrase.kind == "here" and "object" in roles and clause.role(role) is not None) or (
+            phrase.kind == "here" and "object" not in roles
+        ):
+            clause.roles.append(
+                Role(
+                    roles.get("to") or roles.get("place") or "Goal",
+                    phrase.first,
+                    phrase.end,
+                    phrase.head,
+                    [phrase],
+                )
+            )
+            return
+        if clause.verb.lower() == "show" and phrase.noun == "way":
+            return  # show Anna the way to the kitchen
+        first = clause.role(role)
+        if (
+            len(objects) == 2
+            and first is not None
+            and first.phrases[0].kind == "speaker"
+            and "receiver" not in roles
+        ):
+            clause.roles.remove(first)  # find me a cup
+        if clause.frame == "Motion" and self._is_person(phrase) and clause.verb.lower() in ("walk", "drive"):
+            clause.frame, role = "Guiding", "Cotheme"  # walk Anna to the sofa
+        if phrase.kind == "robot" and clause.frame not in ("Introducing",) and "object" in roles:
+            return
+        if (
+            len(objects) == 2
+            and "receiver" in roles
+            and (self._is_person(objects[0]) or objects[0].kind in ("pronoun", "speaker", "robot"))
+            and (first := clause.role(role)) is not None
+            and first.phrases[-1] is objects[0]
+        ):
+            first.role = roles["receiver"]
+            if clause.frame == "Taking":  # get me a drink
+                clause.frame = "Bringing"
+        if (first := clause.role(role)) is not None and len(objects) > 1:
+            first.phrases.append(phrase)  # a list without "and"
+            first.end = phrase.end
+            return
+        clause.roles.append(Role(role, phrase.first, phrase.end, phrase.head, [phrase]))
+
+    def _particle(self, clause: Clause, i: int) -> int | None:
+        """Read a particle apart from its verb: pick the cup up, turn it off."""
+        if not self._g.is_a(self._words[i], "particle"):
+            return None
+        both = (*clause.verb.lower().split(), self._words[i])
+        if (
+            both in self._g.verbs
+            and clause.role(self._g.frames[clause.frame].roles.get("object", "Theme")) is not None
+        ):
+            frame = self._g.verbs[both]
+            old, new = self._g.frames[clause.frame].roles, self._g.frames[frame].roles
+            for role in clause.roles:
+                if role.role == old.get("object", "Theme"):
+                    role.role = new.get("object", role.role)
+            clause.frame, clause.verb = frame, " ".join(both)
+            return i + 1
+        return None
+
+    def _coordinate(self, clause: Clause, i: int, phrase: NounPhrase) -> int:
+        """Read *and* with a noun phrase: one more thing, or a clause without its verb (and a fork in it)."""
+        self._finish(clause)
+        last = clause.roles[-1] if clause.roles else None
+        roles = self._g.frames[clause.frame].roles
+        if (
+            last is not None
+            and last.phrases
+            and last.role != roles.get("object")
+            and clause.role(roles.get("object", ""))
+        ):
+            is_gap = (
+                bool(phrase.places)
+                or self._g.match("to", self._words, phrase.end)
+                or self._g.match("from", self._words, phrase.end)
+            )
+            if is_gap or (
+                clause.frame in ("Giving", "Bringing") and self._g.match("place", self._words, phrase.end)
+            ):
+                other = Clause(
+                    clause.frame, clause.verb, i + 1, conditions=clause.conditions, times=clause.times
+                )
+                self.found.clauses.append(other)
+                return self._arguments(other, i + 1)
+        if phrase.kind == "name" and not self._t.tokens[phrase.head].is_capital:
+            return self._unread(i + 1)
+        if last is None or not last.phrases:
+            self.found.unused.append(self._t.between(i + 1, phrase.end))
+            return phrase.end
+        if self._words[i] == "or":
+            last.phrases[-1].alternatives.append(phrase)
+        else:
+            last.phrases.append(phrase)
+        last.end = phrase.end
+        return phrase.end
+
+    def _prepositional(self, clause: Clause, i: int) -> int | None:
+        """Read a phrase with a preposition as a role; return its end."""
+        g, words = self._g, self._words
+        roles = g.frames[clause.frame].roles
+        best = max(
+            (g.match(kind, words, i), kind)
+            for kind in ("to", "from", "place", "for", "about", "path", "with", "of")
+        )
+        length, kind = best
+        if not length or self._is_infinitive(i):
+            return None
+        phrase = self._np.read(i + length)
+        if phrase is None or phrase.end == i + length:
+            return None
+        if kind == "for" and clause.frame == "Perception_active":  # look in the kitchen for a cup
+            clause.frame = "Locating"
+            for other in clause.roles:
+                other.role = "Ground" if other.role in ("Location", "Phenomenon") else other.role
+            clause.roles.append(Role("Sought_entity", i, phrase.end, phrase.head, [phrase]))
+            return phrase.end
+        if kind == "for" and phrase.kind == "speaker" and "for" not in roles:
+            return phrase.end
+        role = self._role(clause, kind, roles, phrase)
+        object_role = clause.role(roles.get("object", "")) if "object" in roles else None
+        if phrase.excluded and object_role is not None and object_role.phrases:
+            object_role.phrases[-1].excluded += phrase.excluded  # any drink from the table but not the milk
+            phrase.excluded = []
+        if role is None:
+            if kind == "place" and object_role is not None and object_role.phrases:
+                object_role.phrases[-1].places.append(
+                    PlacePhrase(" ".join(words[i : i + length]), phrase, i, phrase.end)
+                )
+                object_role.end = max(object_role.end, phrase.end)
+                return phrase.end
+            self.found.unused.append(self._t.between(i, phrase.end))
+            return phrase.end
+        if (
+            kind == "for"
+            and clause.frame == "Locating"
+            and (first := clause.role("Sought_entity")) is not None
+        ):
+            first.role = "Ground"  # search the kitchen for a cup
+        both = [phrase]
+        end = phrase.end
+        if (
+            words[i] == "between"
+            and words[end : end + 1] == ("and",)
+            and (second := self._np.read(end + 1)) is not None
+        ):
+            both, end = [phrase, second], second.end
+        clause.roles.append(Role(role, i, end, phrase.head, both))
+        return end
+
+    def _role(self, clause: Clause, kind: str, roles: Mapping[str, str], phrase: NounPhrase) -> str | None:
+        is_person = self._is_person(phrase) or phrase.kind == "speaker"
+        if kind == "to" and "receiver" in roles and (is_person or "to" not in roles):
+            return roles["receiver"]
+        if kind == "for" and not is_person and clause.frame != "Locating":
+            return None
+        if kind == "path":
+            return "Path" if clause.frame in ("Motion", "Cotheme", "Guiding") else None
+        return roles.get(kind)
+
+    def _finish(self, clause: Clause) -> None:
+        """Give places after the object their role, and the frame its name for a person."""
+        roles = self._g.frames[clause.frame].roles
+        main = clause.role(roles.get("object", "")) if "object" in roles else None
+        if main is not None and main.phrases and clause.frame in _PLACED and "place" in roles:
+            phrase = main.phrases[-1]
+            is_last = phrase.places and phrase.end == phrase.places[-1].end and not phrase.places[-1].negated
+            if is_last and clause.role(roles["place"]) is None:
+                place = phrase.places.pop()
+                phrase.end = main.end = place.first
+                both = [place.other] if place.other.second is None else [place.other, place.other.second]
+                clause.roles.append(Role(roles["place"], place.first, place.end, place.other.head, both))
+        if self._t.is_translated and clause.frame in ("Bringing", "Guiding"):
+            self._move_goal(clause, main)
+        given = clause.role("Theme")
+        is_left = clause.verb.lower() == "leave" and given is not None and clause.role("Goal") is None
+        if is_left and given is not None and self._np.is_place(given.phrases[0]):  # leave the kitchen
+            clause.frame, given.role = "Motion", "Source"
+            return
+        if (
+            clause.frame == "Giving"
+            and given is not None
+            and given.phrases
+            and self._g.is_a(self._words[given.head], "property")
+        ):
+            self._tells(clause, given)
+        if clause.frame == "Taking" and clause.role("Goal") is not None:
+            clause.frame = "Bringing"
+        if clause.frame == "Taking" and clause.role("Beneficiary") is not None:
+            clause.frame = "Bringing"
+        theme = clause.role("Theme")
+        if (
+            clause.frame in self._g.persons
+            and theme is not None
+            and theme.phrases
+            and self._is_person(theme.phrases[0])
+        ):
+            clause.frame, theme.role = self._g.persons[clause.frame], "Cotheme"
+            for role in clause.roles:
+                role.role = "Goal" if role.role == "Beneficiary" else role.role
+        if (
+            clause.frame == "Closure"
+            and (opened := clause.role("Containing_object")) is not None
+            and opened.phrases
+        ) and (
+            any(name in ("Door", "Window") for name in self._nouns.classes.get(opened.phrases[0].key, ()))
+            or opened.phrases[0].noun.endswith("door")
+        ):
+            opened.role = "Container_portal"
+
+    def _move_goal(self, clause: Clause, main: Role | None) -> None:
+        """Make a Goal of the place after the object: Italian *in* is also *to*."""
+        phrase = main.phrases[-1] if main is not None and main.phrases else None
+        if main is None or phrase is None or not phrase.places or clause.role("Goal") is not None:
+            return
+        if self._np.is_place(phrase.places[-1].other) and not phrase.places[-1].negated:
+            place = phrase.places.pop()
+            phrase.end = main.end = min(phrase.end, place.first)
+            clause.roles.append(Role("Goal", place.first, place.end, place.other.head, [place.other]))
+
+    def _tells(self, clause: Clause, given: Role) -> None:
+        """Make Telling of *give me the name of the person*."""
+        of = given.phrases[0].of
+        clause.frame, given.role = "Telling", "Message"
+        for role in clause.roles:
+            role.role = "Addressee" if role.role == "Recipient" else role.role
+        if of is not None:
+            end, given.end, given.phrases = given.end, given.head + 1, []
+            clause.roles.append(Role("Topic", given.head + 1, end, of.head, [of]))
+
+    def _unread(self, i: int) -> int:
+        """Note the words of a clause that cannot be read; return where it ends."""
+        end = i + 1
+        while end < len(self._words) and not self._t.is_mark(end):
+            if (
+                self._g.is_a(self._words[end], "and") or self._g.match("then", self._words, end)
+            ) and self.starts_clause(end):
+                break
+            end += 1
+        text = self._t.between(i, end)
+        takes = self._opens_phrase(i + 1) or i + 1 == end or self._np.is_known(i + 1, i + 2)
+        is_verb = (
+            takes and not self._opens_phrase(i) and not self._np.is_known(i, i + 1) and not self._is_gerund(i)
+        )
+        if is_verb and not any(
+            self._g.match(kind, self._words, i) for kind in ("to", "from", "place", "with", "for")
+        ):
+            self.found.unknown.append(self._words[i])
+        if self._g.match("polite", self._words, i) < end - i:
+            self.found.unused.append(text)
+        self._mention_all(i, end)
+        return end
+
+    def _mention_all(self, i: int, end: int) -> None:
+        """Note the things and persons from `i` to before `end`, to which a later pronoun may refer."""
+        while i < end:
+            is_verb = self._g.verb(self._words, i)[0] and not self._np.is_known(i, i + 1)
+            phrase = None if is_verb else self._np.read(i)
+            if phrase is None or phrase.end <= i:
+                i += 1
+                continue
+            is_name = self._is_person(phrase) and self._t.tokens[phrase.head].is_capital
+            if phrase.kind == "person" or is_name or (phrase.key and phrase.determiner):
+                self.found.context.append((len(self.found.clauses), phrase))
+            i = phrase.end

@@ -1,0 +1,161 @@
+"""Clauses of telling, asking and answering."""
+
+from __future__ import annotations
+
+from semmap.nodes.language.steps.clause import Clause, Role
+from semmap.nodes.language.steps.questions import QuestionReader
+from semmap.nodes.language.steps.times import starts_time
+
+
+class MessageReader(QuestionReader):
+    """Reads clauses with a message."""
+
+    def _tell(self, clause: Clause, i: int) -> int:
+        """Read *tell me ...*: to whom, what, and of what."""
+        words = self._words
+        if clause.verb.lower() in ("inform", "notify") or not self._g.match("question", words, i):
+            phrase = self._np.read(i)
+            following = phrase is not None and phrase.end
+            if (
+                phrase is not None
+                and clause.verb.lower()
+                not in (
+                    "describe",
+                    "say",
+                    "report",
+                    "recite",
+                    "explain",
+                    "mention",
+                    "state",
+                    "announce",
+                    "name",
+                )
+                and (phrase.kind == "speaker" or self._is_person(phrase) or phrase.kind == "pronoun")
+                and phrase.kind != "robot"
+                and self._words[i : i + 1] not in (("what",), ("which",))
+            ):
+                clause.roles.append(Role("Addressee", i, phrase.end, phrase.head, [phrase]))
+                i = int(following or i)
+            elif words[i : i + 1] == ("to",) and (to := self._np.read(i + 1)) is not None:
+                clause.roles.append(Role("Addressee", i, to.end, to.head, [to]))
+                i = to.end
+        if clause.verb.lower() == "let" and words[i : i + 1] in (("know",), ("hear",)):
+            i += 1
+        while words[i : i + 1] == ("about",) or (words[i : i + 1] == ("know",)):
+            i += 1
+        return self._told(clause, i)
+
+    def _told(self, clause: Clause, i: int) -> int:
+        """Read what is to be told: a question, a property of a thing, a thing, or words."""
+        g, words = self._g, self._words
+        if i >= len(words) or self._ends_clause(i):
+            return i
+        if (end := self._condition(i)) > i and words[i] not in ("if", "whether", "when"):
+            clause.conditions.append(self._t.between(i, end))
+            return self._told(clause, end)
+        if words[i] == "," and not self.starts_clause(i):
+            return self._told(clause, i + 1)
+        if (length := starts_time(g, words, i)) and self._ends_clause(i + length):
+            clause.times.append(self._t.between(i, i + length))
+            return i + length
+        if g.match("question", words, i) or words[i] in ("if",):
+            return self._question(clause, i)
+        if words[i] == "to" and clause.role("Addressee") is not None and g.verb(words, i + 1)[0]:
+            clause.frame = "Request"  # tell Anna to come
+            end = self._message_end(i + 1)
+            clause.roles.append(Role("Message", i, end, i + 1))
+            return self._addressed(clause, end)
+        if words[i] == "back":
+            return self._told(clause, i + 1)
+        if words[i] == "to" and clause.role("Addressee") is None:
+            return self._addressed(clause, i)
+        if words[i] == "that":
+            end = self._message_end(i)
+            clause.roles.append(Role("Message", i, end, i))
+            return self._addressed(clause, end)
+        return self._told_of(clause, i)
+
+    def _ask(self, clause: Clause, i: int) -> int:
+        """Read *ask her to leave* as a Request and *ask her where she is from* as Questioning."""
+        words = self._words
+        if self._t.is_translated and words[i : i + 1] == ("to",):  # chiedi a Anna
+            i += 1
+        phrase = self._np.read(i)
+        if (
+            phrase is not None
+            and words[i : i + 1] != ("for",)
+            and (self._is_person(phrase) or phrase.kind in ("pronoun", "speaker"))
+        ):
+            clause.roles.append(Role("Addressee", i, phrase.end, phrase.head, [phrase]))
+            i = phrase.end
+        elif (
+            phrase is not None
+            and phrase.key == ""
+            and phrase.owner is not None
+            and self._is_person(phrase.owner)
+        ):
+            pass
+        if i >= len(words) or (self._ends_clause(i) and words[i] != ","):
+            return i
+        if words[i] in ("to", "not"):
+            clause.frame = "Request"
+        end = i + 1
+        while end < len(words) and not self._ends_clause(end):
+            if starts_time(self._g, words, end) and words[end] in ("at", "in"):
+                break
+            end += 1
+        head = i + 1 if words[i] == "to" and end > i + 1 else i
+        if (words[i] == "for" and (thing := self._np.read(i + 1)) is not None) or (
+            words[i] not in ("to",)
+            and not self._g.match("question", words, i)
+            and (thing := self._np.read(i)) is not None
+            and thing.end <= end
+        ):
+            head = thing.head
+        elif words[i : i + 1] == ("how",):
+            head = min(i + 1, end - 1)
+        clause.roles.append(Role("Message", i, end, head))
+        return self._addressed(clause, end)
+
+    def _answer(self, clause: Clause, i: int) -> int:
+        """Read *answer the question of Anna*, *answer her question*, *answer Anna's question*."""
+        words = self._words
+        if words[i : i + 1] == ("to",):  # answer to the question
+            i += 1
+        phrase = self._np.read(i, with_places=False)
+        if phrase is None:
+            return self._arguments(clause, i)
+        if (
+            self._is_person(phrase)
+            and not self._g.is_a(words[phrase.head], "asked")
+            and phrase.kind != "pronoun"
+        ):
+            full = self._np.read(i) or phrase
+            clause.roles.append(Role("Addressee", i, full.end, full.head, [full]))
+            return self._addressed(clause, full.end)
+        if phrase.owner is not None and phrase.owner.kind not in ("speaker", "pronoun"):
+            clause.roles.append(Role("Trigger", phrase.head, phrase.head + 1, phrase.head))
+            clause.roles.append(
+                Role("Addressee", phrase.owner.first, phrase.owner.end, phrase.owner.head, [phrase.owner])
+            )
+            return self._addressed(clause, phrase.end)
+        end = phrase.end if phrase.of is None else phrase.of.first - 1
+        if phrase.of is not None:
+            of = self._np.read(phrase.of.first) or phrase.of
+            clause.roles.append(Role("Trigger", i, end, phrase.head))
+            clause.roles.append(Role("Addressee", end, of.end, of.head, [of]))
+            return self._addressed(clause, of.end)
+        clause.roles.append(Role("Trigger", i, end, phrase.head))
+        if (
+            phrase.owner is not None
+            and phrase.owner.kind == "pronoun"
+            and phrase.owner.noun not in ("your", "its")
+        ):
+            clause.roles.append(Role("Addressee", i, i + 1, i, [phrase.owner]))
+        if (
+            words[end : end + 1] in (("from",), ("of",), ("by",))
+            and (asker := self._np.read(end + 1)) is not None
+        ):
+            clause.roles.append(Role("Addressee", end, asker.end, asker.head, [asker]))
+            end = asker.end
+        return self._addressed(clause, end)

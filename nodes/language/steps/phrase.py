@@ -1,0 +1,68 @@
+"""Noun phrases as read: the words of a thing, person or place and what they state."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+Kind = Literal["thing", "person", "name", "pronoun", "speaker", "robot", "here"]
+
+
+@dataclass(slots=True)
+class PlacePhrase:
+    """Where a described thing is: a preposition and the thing it relates to."""
+
+    preposition: str
+    other: NounPhrase
+    first: int
+    end: int
+    negated: bool = False
+    names: tuple[str, ...] = ()
+    """The entities of the other thing, if it is a pronoun that was resolved."""
+
+
+@dataclass(slots=True)
+class NounPhrase:
+    """A noun phrase: the indices of its words and what they say.
+
+    `noun` is the noun as written, `key` its base form, and `attributes` are qualities as written.
+    """
+
+    first: int
+    end: int = 0
+    head: int = 0
+    kind: Kind = "thing"
+    noun: str = ""
+    key: str = ""
+    name: str = ""
+    determiner: str = ""
+    attributes: list[str] = field(default_factory=list)
+    superlative: str = ""
+    quantity: int | None = None
+    all_of: bool = False
+    purpose: str = ""
+    is_plural: bool = False
+    places: list[PlacePhrase] = field(default_factory=list)
+    owner: NounPhrase | None = None
+    of: NounPhrase | None = None
+    second: NounPhrase | None = None
+    """The other thing after *between*."""
+    excluded: list[NounPhrase] = field(default_factory=list)
+    alternatives: list[NounPhrase] = field(default_factory=list)
+    """The other things after *or*, any of which will do as well."""
+
+    @property
+    def is_definite(self) -> bool:
+        """Return whether the phrase denotes one particular thing."""
+        return self.determiner in (
+            "the",
+            "this",
+            "that",
+            "my",
+            "your",
+            "his",
+            "her",
+            "their",
+            "its",
+            "our",
+        ) or (self.owner is not None)

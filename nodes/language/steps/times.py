@@ -1,0 +1,67 @@
+"""Expressions of time in a command: at ten o'clock, in five minutes, every evening."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from semmap.nodes.language.lexicon.commands import Grammar
+
+
+def starts_time(g: Grammar, words: Sequence[str], i: int) -> int:
+    """Return the number of words of an expression of time that begins at `i`, or 0."""
+    if i >= len(words):
+        return 0
+    if length := g.match("time", words, i):
+        return length
+    word, rest = words[i], words[i + 1 :]
+
+    def at(k: int) -> str:
+        return rest[k] if k < len(rest) else ""
+
+    def is_unit(text: str) -> bool:
+        return g.is_a(text.removesuffix("s"), "unit")
+
+    if word in ("at", "by", "around", "before", "after", "until", "from", "till", "about", "past"):
+        if (at(0) in ("half", "quarter", "a") and "past" in rest[1:3]) or (
+            "to" in rest[1:3] and at(0) == "quarter"
+        ):
+            k = 1 + (rest.index("past") if "past" in rest[1:3] else rest.index("to"))
+            if g.number(at(k)) is not None:
+                return k + 2
+        k = 1 if at(0) in ("about", "around", "exactly", "half", "quarter") else 0
+        if at(k) in ("noon", "midnight", "night", "lunchtime", "dinnertime"):
+            return k + 2
+        if ":" in at(k) or (at(k)[:1].isdigit() and "." in at(k)):
+            return k + 2 + g.is_a(at(k + 1), "clock")
+        if g.number(at(k)) is not None:
+            if g.is_a(at(k + 1), "clock"):
+                return k + 3
+            if at(k + 1) in ("", ",", ".", "!", "?", "and", "then", "please", "today", "tomorrow"):
+                return k + 2
+    if word in ("in", "for", "after", "within", "before", "during", "about"):
+        k = 1 if at(0) in ("about", "the", "next", "a", "an") else 0
+        k += at(k) in ("couple", "few", "next", "half", "of")
+        k += at(k) in ("of", "an", "a")
+        number = g.number(at(k)) is not None
+        if is_unit(at(k + number)) and (number or k):
+            return k + number + 2
+        if (
+            at(0) in ("the", "a")
+            and g.is_a(at(1), "day_part")
+            and word in ("in", "during")
+            and at(1) in ("morning", "evening", "afternoon", "night")
+        ):
+            return 3
+    if word in ("every", "each", "this", "next", "on") and at(0):
+        if word == "on" and not at(0).removesuffix("s").endswith("day"):
+            return 0
+        k = int(g.number(at(0)) is not None)
+        part = at(k).removesuffix("s")
+        if g.is_a(part, "day_part") and (word != "on" or part.endswith("day")):
+            extra = 1 if at(k + 1) in ("morning", "evening", "afternoon", "night") else 0
+            return k + 2 + extra
+    if g.number(word) is not None and at(0) == "times":
+        return 2
+    if word == "tomorrow" or word == "today":
+        return 1
+    return 0

@@ -1,0 +1,94 @@
+"""Commands in Italian as English words that keep their place in the Italian text."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Final
+
+from semmap.nodes.language.lexicon.commands import load as grammar
+from semmap.nodes.language.lexicon.italian import italian as lexicon
+from semmap.nodes.language.steps.tokens import Text, Token
+from semmap.nodes.language.understanding import italian
+from semmap.nodes.language.understanding.grounding import Scene
+from semmap.nodes.language.words import without_markup
+
+_ADJECTIVES: Final = frozenset(lexicon().adjectives.values())
+_ARTICLES: Final = frozenset(("the", "these", "a", "this", "that", "and", "from", "on", "in", ",", "."))
+_MARK: Final = re.compile(r"(?<!\d)[.,:]|[.,:](?!\d)|[;!?]")
+
+
+def translate(text: str, scene: Scene) -> Text:
+    """Return the English words of an Italian command; nouns are labels of the entities in `scene`.
+
+    Each part between punctuation marks is translated word by word. A word has the place of the Italian words
+    that it stands for.
+    """
+    plain = italian.normalise(without_markup(text))
+    tokens: list[Token] = []
+    start = 0
+    for mark in _MARK.finditer(plain):
+        tokens += _translated(plain, start, mark.start(), scene)
+        tokens.append(Token(mark[0], mark.start(), mark.end()))
+        start = mark.end()
+    tokens += _translated(plain, start, len(plain), scene)
+    tokens = _with_superlatives(_with_times(tokens))
+    return Text(plain, tokens, tuple(token.word for token in tokens), is_translated=True)
+
+
+def _with_times(tokens: list[Token]) -> list[Token]:
+    """Replace the prepositions of times: *tra cinque minuti* is in five minutes, *alle dieci* at ten."""
+    found: list[Token] = []
+    for token in tokens:
+        before = [other.word for other in found[-2:]]
+        if grammar().number(token.word) is not None or ":" in token.word:
+            if before[-1:] == ["between"]:
+                found[-1] = replace(found[-1], word="in")
+            elif before in (["to", "these"], ["to", "the"]):
+                found[-2:] = [replace(found[-2], word="at")]
+        found.append(token)
+    return found
+
+
+def _with_superlatives(tokens: list[Token]) -> list[Token]:
+    """Replace *more* and an adjective by a superlative before the noun: *il cuscino più grande*."""
+    found: list[Token] = []
+    i = 0
+    while i < len(tokens):
+        adjective = tokens[i + 1].word if i + 1 < len(tokens) else ""
+        if tokens[i].word == "most" and adjective in _ADJECTIVES:
+            word = replace(tokens[i], word=_superlative(adjective), end=tokens[i + 1].end)
+            k = len(found)
+            while k and found[k - 1].first < found[k - 1].end and found[k - 1].word not in _ARTICLES:
+                k -= 1
+            found.insert(k, word)
+            i += 2
+        else:
+            found.append(tokens[i])
+            i += 1
+    return found
+
+
+def _superlative(adjective: str) -> str:
+    if adjective.endswith("y"):
+        return f"{adjective[:-1]}iest"
+    is_short = len(adjective) == 3 and adjective[1] in "aeiou"
+    return f"{adjective}{adjective[-1] if is_short else ''}est".replace("eest", "est")
+
+
+def _translated(text: str, start: int, end: int, scene: Scene) -> Iterator[Token]:
+    """Yield the English words of a part of the text."""
+    gloss = italian.gloss(text[start:end], scene)
+    spans: list[tuple[int, int]] = []
+    lower, i = text.lower(), start
+    for word in gloss.original:
+        i = lower.index(word, i)
+        spans.append((i, i + len(word)))
+        i += len(word)
+    for glossed in gloss.words:
+        is_inserted = glossed.first > glossed.last
+        first, last = (end, end) if is_inserted else (spans[glossed.first - 1][0], spans[glossed.last - 1][1])
+        is_plural = glossed.is_plural and glossed.text == "the"
+        for word in ("these",) if is_plural else glossed.text.split():
+            yield Token(word, first, last, not is_inserted and text[first].isupper() and first > start)
