@@ -85,11 +85,23 @@ class SeenInFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     fit: Probability | None = None
 
 
+class DroppedInFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A part of a frame that is not reported as an object, and the reason.
+
+    `box_px`: as in `SeenInFrame`. `points`: the number of its points.
+    """
+
+    reason: str
+    box_px: tuple[int, int, int, int]
+    points: int
+
+
 class FrameRow(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The objects in one frame of a dataset, or an error."""
+    """The objects in one frame of a dataset, and what was dropped; or an error."""
 
     frame: str
     objects: tuple[SeenInFrame, ...] = ()
+    dropped: tuple[DroppedInFrame, ...] = ()
     error: str = ""
 
 

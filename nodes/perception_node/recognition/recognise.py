@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,10 +36,16 @@ _LEFT = 0.6
 _FEWEST = 60
 
 
+class Clutter(NamedTuple):
+    """A thing that is not reported, because it is a fragment with this probability."""
+
+    probability: float
+
+
 def recognise(
     things: Sequence[Thing], chances: Numbers, learnt: RecognitionModel, labels: LabelMap | None = None
-) -> list[Observation | None]:
-    """Return an observation of each thing, or None for clutter.
+) -> list[Observation | Clutter]:
+    """Return an observation of each thing that is not clutter.
 
     A free-standing thing is not clutter, but of unknown class. `chances`: (N, K) the probabilities of the
     leaves. `labels` maps labels of detectors to classes.
@@ -67,11 +74,11 @@ def _observation(
     expected_m: Numbers,
     detected: tuple[str, float] | None,
     learnt: RecognitionModel,
-) -> Observation | None:
+) -> Observation | Clutter:
     chances = dict(zip(learnt.classes, probabilities.tolist(), strict=True))
     clutter = chances.pop(CLUTTER)
     if clutter > _CLUTTER:
-        return None
+        return Clutter(clutter)
     chances = {leaf: chance / (1.0 - clutter) for leaf, chance in chances.items()}
     class_, probability = choose_class(chances, learnt.ancestors, learnt.sure)
     if detected is not None and detected[1] > (learnt.sure if class_ == UNKNOWN else probability):

@@ -46,7 +46,10 @@ def as_table(sight: SegmentedView, observations: Mapping[int, Observation | None
 
 def show_frame(row: FrameRow) -> None:
     """Print the objects of one frame of a dataset."""
-    console().print(f"{row.frame}: {row.error or wording.counted(len(row.objects), 'object')}", markup=False)
+    found = wording.counted(len(row.objects), "object") + (
+        f", {len(row.dropped)} dropped" if row.dropped else ""
+    )
+    console().print(f"{row.frame}: {row.error or found}", markup=False)
     if row.objects:
         rows = table(*_COLUMNS, fold=("class", "size [m]"))
         for n, seen in enumerate(row.objects, 1):

@@ -6,19 +6,29 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from semmap.nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud
-from semmap.nodes.perception_node.input.files import image_files, open3d_clouds, pcd, ply
+from semmap.nodes.perception_node.input.files import (
+    camera_files,
+    depth_files,
+    image_files,
+    open3d_clouds,
+    pcd,
+    ply,
+)
 from semmap.nodes.perception_node.input.files.columns import OtherVariant
 from semmap.schemas.errors import BadFile, BadRequest
 from semmap.schemas.wording import counted
 
 _DECODERS: dict[str, Callable[[bytes], Cloud]] = {".pcd": pcd.decode, ".ply": ply.decode}
-_PICTURES = (".png", ".tif", ".tiff")
+_PICTURES = (
+    *(".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp", ".webp", ".ppm", ".pgm"),
+    *depth_files.ARRAYS,
+)
 
 
 def read_frames(files: Sequence[Path], camera: Path | None = None) -> Iterator[tuple[Path, Cloud]]:
     """Yield each frame in the order of the files, with the file of its points.
 
-    A depth image is combined with the colour image before or after it; both need `camera`, a JSON file of
+    A depth image is combined with the colour image before or after it; both need `camera`, a file of
     intrinsics. Raises BadFile and BadRequest.
     """
     waiting: Path | None = None  # an image without its partner
@@ -41,7 +51,7 @@ def read_cloud(path: Path) -> Cloud:
         if path.is_dir():
             raise BadFile(f"{path} is a folder; for a dataset use: semmap perceive --frames {path}")
         supported = ", ".join((*_DECODERS, *open3d_clouds.SUFFIXES))
-        raise BadFile(f"{path} is not a supported cloud; supported are {supported} and .png images")
+        raise BadFile(f"{path} is not a supported cloud; supported are {supported} and images")
     try:
         cloud = _decoded(path, suffix)
     except OSError as error:
@@ -75,13 +85,13 @@ def checked(cloud: Cloud, path: Path) -> Cloud:
 def _frame(files: Sequence[Path], camera_file: Path | None) -> tuple[Path, Cloud]:
     """Return the frame of one depth image and at most one colour image."""
     if camera_file is None:
-        raise BadRequest(f"{files[0]} is an image; add the camera's intrinsics with --intrinsics FILE.json")
+        raise BadRequest(f"{files[0]} is an image; add the camera's intrinsics with --intrinsics FILE")
     of = camera_file
     try:
-        camera = image_files.read_camera(of)
+        camera = camera_files.read_camera(of)
         depths = []
         for of in files:
-            depths.append(image_files.is_depth(of))
+            depths.append(depth_files.is_depth(of))
         if sum(depths) != 1:
             count = "both are" if all(depths) else "none is" if len(files) > 1 else "it is not"
             raise BadFile(
