@@ -159,4 +159,5 @@ def _object(seen: Observation, box_px: tuple[int, int, int, int]) -> SeenInFrame
         box_px=box_px,
         points=seen.points,
         fit=seen.fit,
+        label=seen.label,
     )

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from semmap.nodes.perception_node.recognition.detector_labels import (
     LabelMap,
     detector_class,
+    unknown_label,
     with_detector_labels,
 )
 from semmap.nodes.perception_node.recognition.features import features_of
@@ -55,7 +56,10 @@ def recognise(
     chances = with_detector_labels(chances, things, learnt, labels)
     expected = expected_sizes(chances, learnt.sizes_m)
     detected = [detector_class(thing, learnt, labels) for thing in things]
-    return [_observation(*row, learnt) for row in zip(things, chances, expected, detected, strict=True)]
+    words = [unknown_label(thing, labels) for thing in things]
+    return [
+        _observation(*row, learnt) for row in zip(things, chances, expected, detected, words, strict=True)
+    ]
 
 
 def _no_clutter(chances: Numbers, alone: NDArray[np.bool_], learnt: RecognitionModel) -> Numbers:
@@ -73,6 +77,7 @@ def _observation(
     probabilities: Numbers,
     expected_m: Numbers,
     detected: tuple[str, float] | None,
+    label: str,
     learnt: RecognitionModel,
 ) -> Observation | Clutter:
     chances = dict(zip(learnt.classes, probabilities.tolist(), strict=True))
@@ -97,6 +102,7 @@ def _observation(
         points=thing.count,
         whole=thing.whole,
         shown=_as_shown(chances, class_, learnt),
+        label=label,
     )
 
 

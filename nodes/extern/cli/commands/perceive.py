@@ -77,7 +77,7 @@ def _path_option(name: str, metavar: str, help: str, *also: str) -> Callable[[An
 @_path_option(
     "--masks",
     "FILE",
-    "Masks of a detector (COCO JSON or label image); with --frames, their file name in each folder.",
+    "Masks of a detector (COCO, labelme, YOLO, label image, .npz); with --frames, their name in each folder.",
 )
 @_path_option(
     "--label-map", "FILE.json", 'With --masks: labels and their classes, as in {"coffee mug": "Cup"}.'
