@@ -35,6 +35,8 @@ class Observation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     """The quality of the model fit, if one was tried; `pose` is the model's then."""
     shown: bool = False
     """Whether the class comes from an exemplar instead of training."""
+    label: str = ""
+    """The label of an external detector that matches no class, in its own words."""
 
 
 class CameraView(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -83,13 +85,26 @@ class SeenInFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     box_px: tuple[int, int, int, int]
     points: int
     fit: Probability | None = None
+    label: str = ""
+
+
+class DroppedInFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A part of a frame that is not reported as an object, and the reason.
+
+    `box_px`: as in `SeenInFrame`. `points`: the number of its points.
+    """
+
+    reason: str
+    box_px: tuple[int, int, int, int]
+    points: int
 
 
 class FrameRow(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The objects in one frame of a dataset, or an error."""
+    """The objects in one frame of a dataset, and what was dropped; or an error."""
 
     frame: str
     objects: tuple[SeenInFrame, ...] = ()
+    dropped: tuple[DroppedInFrame, ...] = ()
     error: str = ""
 
 

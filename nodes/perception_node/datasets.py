@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 from collections import deque
 from collections.abc import Iterator, Sequence
@@ -16,9 +17,13 @@ from semmap.nodes.perception_node.detector import Detector
 from semmap.nodes.perception_node.fitting.fit_observations import fit_all
 from semmap.nodes.perception_node.fitting.model_surfaces import ClassSurfaces
 from semmap.nodes.perception_node.input.files.frame_folders import FileFrame, read_frame
-from semmap.nodes.perception_node.pipeline import RecognitionModel, observe_clouds
+from semmap.nodes.perception_node.input.masks import Masks
+from semmap.nodes.perception_node.pipeline import FrameResult, RecognitionModel, observe_clouds
+from semmap.nodes.perception_node.views.masked import FEWEST_POINTS
 from semmap.schemas.errors import SemmapError
-from semmap.schemas.perception import FrameRow, Observation, SeenInFrame
+from semmap.schemas.perception import DroppedInFrame, FrameRow, Observation, SeenInFrame
+
+log = logging.getLogger(__name__)
 
 _AHEAD = 2
 """Number of frames in progress per core."""
@@ -42,7 +47,9 @@ def perceive_folders(
     detector: Detector | None = None,
     surfaces: ClassSurfaces | None = None,
 ) -> Iterator[DatasetFrame]:
-    """Yield the observations of the frames in these folders, in order. An error of a frame is in its row.
+    """Yield the observations of the frames in these folders, in order.
+
+    An error of a frame is in its row, even an unexpected one, so that no frame ends the run.
 
     With `surfaces`, the models of classes are fitted to the things of each frame.
     """
@@ -61,22 +68,67 @@ def _perceive(
     folder: Path, learnt: RecognitionModel, detector: Detector | None, surfaces: ClassSurfaces | None
 ) -> DatasetFrame:
     try:
-        frame = read_frame(folder)
-        masks = None
-        if detector is not None:
-            masks = detector.masks_of(folder / detector.file, frame.shape).thinned(frame.step)
+        return _perceive_folder(folder, learnt, detector, surfaces)
     except SemmapError as error:
-        return DatasetFrame(FrameRow(frame=folder.name, error=error.text), None)
+        text = error.text
+    except Exception as error:
+        log.debug("processing of %s failed", folder, exc_info=True)
+        text = f"{folder.name}: processing failed: {type(error).__name__}: {error}; report it with this frame"
+    return DatasetFrame(FrameRow(frame=folder.name, error=text), None)
+
+
+def _perceive_folder(
+    folder: Path, learnt: RecognitionModel, detector: Detector | None, surfaces: ClassSurfaces | None
+) -> DatasetFrame:
+    frame = read_frame(folder)
+    masks = None
+    if detector is not None:
+        masks = detector.masks_of(folder / detector.file, frame.shape).thinned(frame.step)
     seen = observe_clouds([frame.cloud], learnt, [masks], None if detector is None else detector.labels)
     labels = _whole(seen.labels[0], frame)
     boxes = _boxes(labels, len(seen.observations.observations))
     observations = seen.observations.observations
     if surfaces is not None:
         observations = fit_all([frame.cloud], seen, surfaces)
-    rows = zip(observations, boxes, strict=True)
+    objects = tuple(_object(*row) for row in zip(observations, boxes, strict=True))
+    dropped = *_clutter(seen, frame), *_unused_masks(seen, masks, frame)
     return DatasetFrame(
-        FrameRow(frame=folder.name, objects=tuple(_object(*row) for row in rows)), labels, seen.unknown_labels
+        FrameRow(frame=folder.name, objects=objects, dropped=dropped), labels, seen.unknown_labels
     )
+
+
+def _clutter(seen: FrameResult, frame: FileFrame) -> Iterator[DroppedInFrame]:
+    """Yield the things that were classified as clutter."""
+    if frame.cloud.intrinsics is None:
+        return
+    height, width = frame.shape
+    pose = np.array(seen.observations.views[0].map_from_camera).reshape(4, 4)
+    for thing, clutter in seen.dropped:
+        points = np.concatenate([segment.points for segment in thing.segments])
+        pixels = ((points - pose[:3, 3]) @ pose[:3, :3]) @ frame.cloud.intrinsics.T
+        places = np.floor(pixels[:, :2] / pixels[:, 2:]).astype(int)
+        column, row = (places.min(axis=0) * frame.step).tolist()
+        end_column, end_row = ((places.max(axis=0) + 1) * frame.step).tolist()
+        yield DroppedInFrame(
+            reason=f"classified as clutter ({clutter.probability:.2f}): a fragment, or a part of furniture",
+            box_px=(max(0, column), max(0, row), min(width, end_column), min(height, end_row)),
+            points=thing.count,
+        )
+
+
+def _unused_masks(seen: FrameResult, masks: Masks | None, frame: FileFrame) -> Iterator[DroppedInFrame]:
+    """Yield the masks of a detector that cover no surface."""
+    if masks is None:
+        return
+    boxes = _boxes(_whole(masks.labels, frame), len(masks.detector_labels))
+    for number in seen.unused_masks[0]:
+        label = masks.detector_labels[number - 1]
+        name = f"mask {number}" if label is None else f"mask {number} ('{label.label}')"
+        yield DroppedInFrame(
+            reason=f"{name} covers fewer than {FEWEST_POINTS} points of one surface",
+            box_px=boxes[number - 1],
+            points=int(np.count_nonzero((masks.labels == number) & (frame.cloud.points_camera[..., 2] > 0))),
+        )
 
 
 def _whole(labels: NDArray[np.int32], frame: FileFrame) -> NDArray[np.int32]:
@@ -107,4 +159,5 @@ def _object(seen: Observation, box_px: tuple[int, int, int, int]) -> SeenInFrame
         box_px=box_px,
         points=seen.points,
         fit=seen.fit,
+        label=seen.label,
     )

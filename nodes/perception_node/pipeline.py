@@ -14,7 +14,7 @@ from semmap.nodes.perception_node.input.masks import Masks
 from semmap.nodes.perception_node.recognition.detector_labels import LabelMap
 from semmap.nodes.perception_node.recognition.features import features_of
 from semmap.nodes.perception_node.recognition.joining import join_parts
-from semmap.nodes.perception_node.recognition.recognise import recognise
+from semmap.nodes.perception_node.recognition.recognise import Clutter, recognise
 from semmap.nodes.perception_node.recognition.recognition_model import RecognitionModel, shipped
 from semmap.nodes.perception_node.recognition.vote import leaf_probabilities
 from semmap.nodes.perception_node.views.foot_supports import supports_at_feet
@@ -50,7 +50,8 @@ class FrameResult:
 
     In `labels`, 0 is background and n stands for `observations.observations[n - 1]`. `unknown_labels` are
     labels of a detector that match no class. `remembered` is the memory for the next frame. `things` are the
-    things of the observations, in the same order.
+    things of the observations, in the same order. `dropped` are the things that are not reported.
+    `unused_masks` are the numbers of a detector's masks in each cloud that cover no surface.
     """
 
     observations: Observations
@@ -58,6 +59,8 @@ class FrameResult:
     unknown_labels: tuple[str, ...] = ()
     remembered: SegmentMemory = _NOTHING
     things: tuple[Thing, ...] = ()
+    dropped: tuple[tuple[Thing, Clutter], ...] = ()
+    unused_masks: tuple[tuple[int, ...], ...] = ()
 
     @property
     def camera_moves(self) -> bool:
@@ -87,7 +90,11 @@ def observe_clouds(
     with ThreadPoolExecutor(max(1, len(clouds))) as threads:
         sights = list(threads.map(_segment_cloud, clouds, [*masks] or [None] * len(clouds)))
     labels = labels or LabelMap(learnt)
-    return replace(observe_views(sights, learnt, labels, before), unknown_labels=labels.unknown(masks))
+    return replace(
+        observe_views(sights, learnt, labels, before),
+        unknown_labels=labels.unknown(masks),
+        unused_masks=tuple(sight.unused_masks for sight in sights),
+    )
 
 
 def _segment_cloud(cloud: Cloud, masks: Masks | None) -> SegmentedView:
@@ -109,11 +116,11 @@ def observe_views(
     )
     things, chances, members = join_parts(parts.things, parts.same_thing_logits, learnt, parts.join)
     found = recognise(things, chances, learnt, labels)
-    kept = [n for n, observation in enumerate(found) if observation is not None]
+    kept = [n for n, one in enumerate(found) if isinstance(one, Observation)]
     observations = Observations(
         stamp_ns=max((sight.cloud.stamp_ns for sight in sights), default=0),
         views=tuple(_view(sight) for sight in sights),
-        observations=tuple(observation for observation in found if observation is not None),
+        observations=tuple(one for one in found if isinstance(one, Observation)),
     )
     numbers = np.zeros(len(parts.things) + 1, np.int32)
     for number, n in enumerate(kept, 1):
@@ -124,6 +131,7 @@ def observe_views(
         tuple(numbers[label] for label in parts.labels),
         remembered=before.after(sights, [thing.segments for thing in things], elsewhere),
         things=tuple(things[n] for n in kept),
+        dropped=tuple((things[n], one) for n, one in enumerate(found) if isinstance(one, Clutter)),
     )
 
 
@@ -136,7 +144,10 @@ def recognise_segments(
         return {}
     things = [thing_of([segment], sight.supports) for segment in segments]
     found = recognise(things, leaf_probabilities(learnt, features_of(things)), learnt, labels)
-    return {segment.label: observation for segment, observation in zip(segments, found, strict=True)}
+    return {
+        segment.label: one if isinstance(one, Observation) else None
+        for segment, one in zip(segments, found, strict=True)
+    }
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from semmap.nodes.perception_node.input.files.image_files import PinholeCamera, read_camera
+from semmap.nodes.perception_node.input.files.camera_files import PinholeCamera, read_camera
 from semmap.nodes.perception_node.input.projection import fits
 from semmap.schemas.errors import BadFile
 
@@ -16,7 +16,7 @@ _SAME_SHAPE = 0.02
 
 
 def read_pinhole(path: Path) -> PinholeCamera:
-    """Return the camera in a JSON file, as for `semmap perceive --intrinsics`. Raises BadFile."""
+    """Return the camera in a file, as for `semmap perceive --intrinsics`. Raises BadFile."""
     try:
         return read_camera(path)
     except OSError as error:

@@ -14,7 +14,7 @@ from semmap.nodes.extern.frame_folders.frames import RecordedFrame, Recording, r
 from semmap.nodes.extern.frame_folders.pairs import pairs
 from semmap.nodes.extern.frame_folders.pinhole import from_pixel_centres, read_pinhole, scale_intrinsics
 from semmap.nodes.extern.frame_folders.poses import Trajectory
-from semmap.nodes.perception_node.input.files.image_files import is_depth
+from semmap.nodes.perception_node.input.files.depth_files import is_depth
 from semmap.nodes.runtime.pictures import open_picture
 from semmap.schemas import errors
 from semmap.schemas.errors import BadFile, BadRequest, SemmapError

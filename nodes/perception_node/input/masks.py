@@ -52,6 +52,29 @@ def masks_from_runs(masks: Sequence[MaskRun], height: int, width: int) -> Masks:
     )
 
 
+def masks_from_stack(
+    stack: NDArray[np.bool_], names: Sequence[str] = (), scores: Sequence[float] = ()
+) -> Masks:
+    """Combine one mask for each thing (N, H, W); where they overlap, the higher score wins.
+
+    Raises ValueError if names or scores are not as many as the masks.
+    """
+    count, height, width = stack.shape
+    if count > _MOST:
+        raise ValueError(f"there are {count} masks; the maximum is {_MOST}")
+    for kind, given in (("names", names), ("scores", scores)):
+        if given and len(given) != count:
+            raise ValueError(f"there are {count} masks and {len(given)} {kind}; each mask needs one")
+    sure = scores or [1.0] * count
+    if not all(0.0 <= score <= 1.0 for score in sure):  # NaN is not
+        raise ValueError("scores must be from 0 to 1")
+    labels = np.zeros((height, width), np.int32)
+    for n in sorted(range(count), key=lambda n: sure[n]):
+        labels[np.asarray(stack[n])] = n + 1
+    found = zip(names or [""] * count, sure, strict=True)
+    return Masks(labels, tuple(DetectorLabel(name, score) if name else None for name, score in found))
+
+
 def masks_from_image(image: MaskImage, height: int, width: int) -> Masks:
     """Decode masks from an image of 16-bit numbers. Raises ValueError if its size differs."""
     if len(image.labels) != 2 * height * width:

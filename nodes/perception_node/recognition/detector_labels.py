@@ -14,6 +14,8 @@ from semmap.nodes.perception_node.views.merged_thing import Thing
 _SUREST = 0.98
 _LEAST = 1e-4
 """Minimum vote for each class, and votes count half: on unknown things they are overconfident."""
+_LONGEST = 100
+"""Number of characters of a label that are kept."""
 
 
 class LabelMap:
@@ -76,6 +78,17 @@ def detector_class(thing: Thing, learnt: RecognitionModel, labels: LabelMap) -> 
         and not _leaves_of(class_, learnt).any()
     ]
     return max(detected, key=lambda one: one[1], default=None)
+
+
+def unknown_label(thing: Thing, labels: LabelMap) -> str:
+    """Return the label with the best score that matches no class, in one line; empty if there is none."""
+    unknown = [
+        segment.detector_label
+        for segment in thing.segments
+        if segment.detector_label and labels.class_of(segment.detector_label.label) is None
+    ]
+    best = max(unknown, key=lambda one: one.score, default=None)
+    return "" if best is None else " ".join(best.label.split())[:_LONGEST]
 
 
 def _leaves_of(class_: str | None, learnt: RecognitionModel) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:

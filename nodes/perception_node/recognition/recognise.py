@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from semmap.nodes.perception_node.recognition.detector_labels import (
     LabelMap,
     detector_class,
+    unknown_label,
     with_detector_labels,
 )
 from semmap.nodes.perception_node.recognition.features import features_of
@@ -35,10 +37,16 @@ _LEFT = 0.6
 _FEWEST = 60
 
 
+class Clutter(NamedTuple):
+    """A thing that is not reported, because it is a fragment with this probability."""
+
+    probability: float
+
+
 def recognise(
     things: Sequence[Thing], chances: Numbers, learnt: RecognitionModel, labels: LabelMap | None = None
-) -> list[Observation | None]:
-    """Return an observation of each thing, or None for clutter.
+) -> list[Observation | Clutter]:
+    """Return an observation of each thing that is not clutter.
 
     A free-standing thing is not clutter, but of unknown class. `chances`: (N, K) the probabilities of the
     leaves. `labels` maps labels of detectors to classes.
@@ -48,7 +56,10 @@ def recognise(
     chances = with_detector_labels(chances, things, learnt, labels)
     expected = expected_sizes(chances, learnt.sizes_m)
     detected = [detector_class(thing, learnt, labels) for thing in things]
-    return [_observation(*row, learnt) for row in zip(things, chances, expected, detected, strict=True)]
+    words = [unknown_label(thing, labels) for thing in things]
+    return [
+        _observation(*row, learnt) for row in zip(things, chances, expected, detected, words, strict=True)
+    ]
 
 
 def _no_clutter(chances: Numbers, alone: NDArray[np.bool_], learnt: RecognitionModel) -> Numbers:
@@ -66,12 +77,13 @@ def _observation(
     probabilities: Numbers,
     expected_m: Numbers,
     detected: tuple[str, float] | None,
+    label: str,
     learnt: RecognitionModel,
-) -> Observation | None:
+) -> Observation | Clutter:
     chances = dict(zip(learnt.classes, probabilities.tolist(), strict=True))
     clutter = chances.pop(CLUTTER)
     if clutter > _CLUTTER:
-        return None
+        return Clutter(clutter)
     chances = {leaf: chance / (1.0 - clutter) for leaf, chance in chances.items()}
     class_, probability = choose_class(chances, learnt.ancestors, learnt.sure)
     if detected is not None and detected[1] > (learnt.sure if class_ == UNKNOWN else probability):
@@ -90,6 +102,7 @@ def _observation(
         points=thing.count,
         whole=thing.whole,
         shown=_as_shown(chances, class_, learnt),
+        label=label,
     )
 
 

@@ -27,7 +27,8 @@ def room_pose(points: Floats) -> Transform | None:
         return None
     pose = standing_on(level)
     pose[2, 3] += _DEEP_M  # before all planes are known, none is the floor
-    planes, _ = find_planes(points, pose, np.random.default_rng(0))
+    # a low table is above a larger support, like the top of a thing: the floor
+    planes, _ = find_planes(points, pose, np.random.default_rng(0), keep_tops=True)
     heights = sorted(-plane.offset_m for plane in planes if plane.kind == "support")
     if not heights or heights[-1] - heights[0] < _FURNITURE_M:
         return None

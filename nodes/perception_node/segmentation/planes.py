@@ -73,9 +73,16 @@ def _height(points: Floats, normal: Floats, offset: Floats | np.float32) -> Floa
 
 
 def find_planes(
-    points: Floats, map_from_camera: Transform | None, rng: np.random.Generator
+    points: Floats,
+    map_from_camera: Transform | None,
+    rng: np.random.Generator,
+    *,
+    keep_tops: bool = False,
 ) -> tuple[tuple[Plane, ...], Labels]:
-    """Return the planes of an image (3, h, w), and the plane of each cell from 1, 0 for none."""
+    """Return the planes of an image (3, h, w), and the plane of each cell from 1, 0 for none.
+
+    The tops of things on a larger support are no supports, unless `keep_tops` is set.
+    """
     of_plane = np.zeros(points.shape[1:], np.int32)
     thickness = thickness_m(points[2])
     free = np.isfinite(thickness)
@@ -107,7 +114,7 @@ def find_planes(
                 continue
             planes.append(Plane(normal.astype(np.float64), float(offset), kind, count, sides))
             of_plane[piece] = len(planes)
-    if map_from_camera is None:
+    if map_from_camera is None or keep_tops:
         return tuple(planes), of_plane
     tops = _tops_of_things(planes, of_plane, points, map_from_camera)
     kept = [n for n in range(1, len(planes) + 1) if n not in tops]

@@ -85,7 +85,7 @@ def split_into_patches(cloud: Cloud) -> Parts:
     thin = thin_things(grid.points, planes, of_plane)
     of_plane[thin > 0] = 0
     where = _candidates(grid.points, planes, of_plane, known=cloud.map_from_camera is not None)
-    window = _window(where)
+    window = _window(where | (thin > 0))  # thin things may be lower than all candidates
     points = grid.points[:, *window]
     surface = normals(points, where[window])
     of_patch = np.zeros_like(of_plane)

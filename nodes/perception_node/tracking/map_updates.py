@@ -63,7 +63,7 @@ def additions(tracks: Iterable[Track], taken: Set[str], classes: ClassHierarchy)
             at=pose.position_m,
             orientation=pose.orientation_wxyz,
             size=_to_millimetres(track.size_m),
-            ref=classes.label(class_name),
+            ref=track.label or classes.label(class_name),
             confidence=_confidence(track, class_name, classes),
         )
     return added
@@ -215,7 +215,9 @@ def _described(
     if class_name:
         changes["class_"] = class_name
         if entity.preferred_reference == classes.label(entity.class_):
-            changes["ref"] = classes.label(class_name)
+            changes["ref"] = track.label or classes.label(class_name)
+    elif track.label and entity.preferred_reference == classes.label(entity.class_):
+        changes["ref"] = track.label
     if (
         track.whole
         and (track.part or track.outsized or _was_front(entity, track) or track.frames >= config.nudge_frames)

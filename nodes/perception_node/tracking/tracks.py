@@ -46,7 +46,7 @@ class Track:
     State: `whole`: it was seen completely. `map_pose`: the map's pose at the last frame. `left`: that place
     is seen empty. `kept`: the part of it that would be left is filled. `part`: the map has a size that an
     image edge cuts. `outsized`: the map's size is too large. `fit`: the fitted model since it rests.
-    `rejected_class`: the class that a fit rejected.
+    `rejected_class`: the class that a fit rejected. `label`: the last label of a detector that is no class.
     """
 
     pose: Pose
@@ -69,6 +69,7 @@ class Track:
     outsized: bool = False
     fit: KnownFit | None = None
     rejected_class: str = ""
+    label: str = ""
 
     @property
     def reported_pose(self) -> Pose:
@@ -93,6 +94,8 @@ class Track:
 
     def see(self, seen: Observation, config: TrackingConfig) -> Track:
         """Return the track with one more observation."""
+        if seen.label and seen.label != self.label:
+            return replace(self, label=seen.label).see(seen, config)
         weight = _weight(seen)
         class_ = ANYTHING if seen.class_ == self.rejected_class else seen.class_
         votes = self.votes.cast(class_, seen.probability, weight)
@@ -169,6 +172,7 @@ class Track:
             map_pose=self.map_pose,
             part=self.part,
             rejected_class=self.rejected_class,
+            label=self.label,
         )
 
 

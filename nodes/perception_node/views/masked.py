@@ -13,7 +13,9 @@ from semmap.nodes.perception_node.views.segmented_view import SegmentedView, wit
 
 _GAP_M, _GAP_SHARE = 0.015, 0.012
 """Maximum depth step on one surface: in metres, and as a share of the depth."""
-_FEWEST = 20
+FEWEST_POINTS = 20
+"""A mask with fewer points on one surface is not used."""
+
 _LEFT = 0.5
 """A segment or mask that is covered by more than this share counts as covered."""
 
@@ -29,13 +31,15 @@ def with_masks(sight: SegmentedView, masks: Masks) -> SegmentedView:
     depth_m = sight.cloud.points_camera[..., 2]
     labels, count = np.zeros_like(sight.labels), 0
     found: dict[int, DetectorLabel] = {}
+    unused = []
     for number, label in enumerate(masks.detector_labels, 1):
         mask = masks.labels == number
         clear = mask & (sight.planes == 0)
         if np.count_nonzero(clear) < _LEFT * np.count_nonzero(mask):
             clear = mask  # it lies flat on a plane, or is one
         own = _of_one_surface(clear, depth_m)
-        if np.count_nonzero(own) < _FEWEST:
+        if np.count_nonzero(own) < FEWEST_POINTS:
+            unused.append(number)
             continue
         count += 1
         labels[own] = count
@@ -46,7 +50,7 @@ def with_masks(sight: SegmentedView, masks: Masks) -> SegmentedView:
         for old in range(1, int(sight.labels.max(initial=0)) + 1):
             where = sight.labels == old
             free = where & (labels == 0)
-            if np.count_nonzero(free) > max(_FEWEST, (1.0 - _LEFT) * np.count_nonzero(where)):
+            if np.count_nonzero(free) > max(FEWEST_POINTS, (1.0 - _LEFT) * np.count_nonzero(where)):
                 count += 1
                 labels[free] = count
                 if old in sight.carriers:
@@ -57,7 +61,7 @@ def with_masks(sight: SegmentedView, masks: Masks) -> SegmentedView:
         replace(segment, masked=segment.label <= masked, detector_label=found.get(segment.label))
         for segment in cut.segments
     )
-    return replace(cut, carriers=frozenset(carriers), segments=named)
+    return replace(cut, carriers=frozenset(carriers), segments=named, unused_masks=tuple(unused))
 
 
 def _of_one_surface(mask: NDArray[np.bool_], depth_m: NDArray[np.float32]) -> NDArray[np.bool_]:

@@ -24,7 +24,8 @@ class SegmentedView:
     `map_from_camera`: (4, 4); if unknown, the visible floor is z = 0, or the largest plane if there is only
     one. `labels`: (H, W) the segment of each pixel, 0 for none. `carriers`: segments on which others may
     stand. `planes`: (H, W) the plane of each pixel, 0 for none. `supports`: level planes. `same`: (N, N) the
-    probability that segments n + 1 and m + 1 are one thing, 0 if unknown.
+    probability that segments n + 1 and m + 1 are one thing, 0 if unknown. `unused_masks`: the numbers of a
+    detector's masks without a segment.
     """
 
     cloud: Cloud
@@ -35,6 +36,7 @@ class SegmentedView:
     supports: tuple[Support, ...]
     same: NDArray[np.float32]
     segments: tuple[Segment, ...] = ()
+    unused_masks: tuple[int, ...] = ()
 
 
 def segment_cloud(cloud: Cloud) -> SegmentedView:

@@ -9,6 +9,7 @@ import pytest
 from semmap.nodes.perception_node.recognition.detector_labels import (
     LabelMap,
     detector_class,
+    unknown_label,
     with_detector_labels,
 )
 from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN
@@ -130,3 +131,10 @@ def test_a_class_that_was_never_learnt_is_told_by_the_surest_detector():
     assert detector_class(told, LEARNT, LABELS) == ("Tea_Pot", 0.6)
     assert detector_class(thing(said("fork")), LEARNT, LABELS) is None
     assert detector_class(thing(), LEARNT, LABELS) is None
+
+
+def test_a_label_of_no_class_is_kept_in_one_line():
+    told = thing(said("saucer", 0.4), said("fork", 0.9), None, said(" power\n drill ", 0.6))
+    assert unknown_label(told, LABELS) == "power drill"
+    assert unknown_label(thing(said("fork")), LABELS) == ""
+    assert len(unknown_label(thing(said("x" * 5000)), LABELS)) == 100

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from semmap.nodes.perception_node.recognition.free_standing import are_free_standing
-from semmap.nodes.perception_node.recognition.recognise import recognise
+from semmap.nodes.perception_node.recognition.recognise import Clutter, recognise
 from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN, shipped
 from tests.perception_node.recognition.test_features import block
 
@@ -67,4 +67,4 @@ def test_what_stands_alone_is_an_object_however_much_it_looks_like_clutter():
     assert kept is not None
     assert kept.class_ == UNKNOWN
     assert kept.probability >= 0.95
-    assert dropped is None
+    assert dropped == Clutter(pytest.approx(0.95))

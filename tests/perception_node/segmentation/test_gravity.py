@@ -14,7 +14,7 @@ from semmap.nodes.perception_node.segmentation.planes import Plane
 from semmap.nodes.perception_node.segmentation.working_image import grid_of
 from semmap.nodes.perception_node.views.segmented_view import segment_cloud
 from tests.perception_node.scenes import KINDS, shot
-from tests.perception_node.segmentation.scenes import boxes_on_table
+from tests.perception_node.segmentation.scenes import boxes_on_table, camera_pose
 from tests.perception_node.segmentation.test_patches import SCENES
 
 
@@ -63,3 +63,14 @@ def test_a_wall_is_not_the_floor_however_large():
     assert level_plane(()) is None
     straight_down = plane((0.0, 0.0, -1.0), 10)
     assert level_plane((straight_down,)) is straight_down
+
+
+@pytest.mark.parametrize("height_m", [0.3, 0.45, 0.49, 0.75])
+def test_a_table_of_any_height_stands_on_the_floor(height_m):
+    table = ((-0.5, -0.35, height_m - 0.04), (0.5, 0.35, height_m))
+    box = ((-0.1, -0.1, height_m), (0.0, 0.0, height_m + 0.15))
+    pose = camera_pose((0.2, -1.1, height_m + 0.65), (0.0, 0.0, height_m))
+    seen = boxes_on_table(table, box, pose=pose, table=((-3, -3, -0.05), (3, 3, 0)))
+    found = room_pose(grid_of(seen.cloud).points)
+    assert found is not None
+    assert found[2, 3] == pytest.approx(pose[2, 3], abs=0.02)

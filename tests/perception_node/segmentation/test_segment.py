@@ -56,6 +56,14 @@ def test_the_same_cloud_gives_the_same_labels():
     np.testing.assert_array_equal(segment(cloud).labels, segment(cloud).labels)
 
 
+def test_a_plate_lower_than_all_other_things_is_found_beside_a_box():
+    plate, box = ((-0.35, -0.1, 0), (-0.2, 0.05, 0.006)), ((0.1, -0.1, 0), (0.2, 0, 0.1))
+    seen = boxes_on_table(plate, box)
+    found = segment(seen.cloud)
+    assert found.labels.max() == 2
+    assert min(overlaps(found.labels, seen.truth, seen.truth >= 0)) > 0.7
+
+
 @pytest.mark.parametrize("shape", [(1, 0), (0, 0), (1, 1), (1, 3), (2, 2), (480, 640)])
 @pytest.mark.parametrize("value", [np.nan, 0.0, -1.0])
 def test_clouds_with_nothing_in_them(shape, value):

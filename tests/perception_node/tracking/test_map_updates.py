@@ -24,7 +24,7 @@ from semmap.nodes.perception_node.tracking.votes import Votes
 from semmap.schemas.commands import Add, Remove, Undo, Update
 from semmap.schemas.entities import Provenance, orientation_from_yaw
 from semmap.schemas.perception import DISPLACED, MISSING
-from tests.perception_node.things import CLASSES, CONFIG, SIZES, at, entity
+from tests.perception_node.things import CLASSES, CONFIG, SIZES, at, entity, seen
 
 MARK = replace(CONFIG, when_gone="mark")
 
@@ -274,3 +274,20 @@ def test_what_is_no_move_takes_nothing_along():
 def test_a_leg_is_removed_with_the_reason():
     leg = removal_of_leg("leg1", "table1")
     assert (leg.names, leg.reason, leg.source) == (("leg1",), "leg1 is a leg of table1", "perception")
+
+
+def test_the_label_of_a_detector_is_kept_in_its_own_words():
+    (add,) = additions([track("Object", label="power drill")], set(), CLASSES).values()
+    assert (add.class_, add.ref) == ("Object", "power drill")
+    named = told(track(label="my mug"), cup(preferred_reference=CLASSES.label("Cup")))
+    assert isinstance(named, Update)
+    assert named.ref == "my mug"
+    assert told(track(label="other mug"), cup(preferred_reference="my mug")) is None
+
+
+def test_a_track_keeps_the_last_label():
+    observed = structs.replace(seen("Cup", at(1, 1)), label="mug")
+    first = track().see(observed, CONFIG)
+    assert first.label == "mug"
+    assert first.see(structs.replace(observed, label=""), CONFIG).label == "mug"
+    assert first.see(structs.replace(observed, label="tumbler"), CONFIG).label == "tumbler"

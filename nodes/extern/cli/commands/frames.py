@@ -49,9 +49,9 @@ def _or_folders(function: Callable[..., None]) -> Callable[..., None]:
     @click.option("--base", metavar="FRAME", help="Recording: frame on /tf for camera poses, z up.")
     @click.option(
         "--intrinsics",
-        metavar="FILE.json",
+        metavar="FILE",
         type=click.Path(path_type=Path),
-        help="Recording: camera with fx, fy, cx, cy [pixel] and, optionally, depth_scale [m].",
+        help="Recording: camera file, as for perceive (fx, fy, cx, cy, depth_scale ...).",
     )
     @functools.wraps(function)
     def chosen(name: str | None, folder: Path | None, format: str | None, **arguments: Any) -> None:

@@ -7,7 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
@@ -22,6 +22,9 @@ from semmap.schemas import errors, wording
 from semmap.schemas.perception import FrameRow
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from semmap.nodes.perception_node.detector import Detector
     from semmap.nodes.perception_node.recognition.recognition_model import RecognitionModel
 
@@ -56,13 +59,25 @@ def _path_option(name: str, metavar: str, help: str, *also: str) -> Callable[[An
 )
 @_path_option(
     "--intrinsics",
-    "FILE.json",
-    "JSON file with fx, fy, cx, cy [pixel] and, optionally, depth_scale [m] and map_from_camera.",
+    "FILE",
+    "JSON with fx, fy, cx, cy [pixel], depth_scale [m], map_from_camera; or camera_info YAML, or a matrix K.",
+)
+@click.option(
+    "--up",
+    type=click.Choice(["x", "y", "z"]),
+    help="Clouds are in a map's or robot's frame; this axis is up.",
+)
+@click.option(
+    "--pose",
+    type=float,
+    nargs=7,
+    metavar="X Y Z QW QX QY QZ",
+    help="Pose of the optical frame (z forward) in the map; with --up, in the frame of the cloud.",
 )
 @_path_option(
     "--masks",
     "FILE",
-    "Masks of a detector (COCO JSON or label image); with --frames, their file name in each folder.",
+    "Masks of a detector (COCO, labelme, YOLO, label image, .npz); with --frames, their name in each folder.",
 )
 @_path_option(
     "--label-map", "FILE.json", 'With --masks: labels and their classes, as in {"coffee mug": "Cup"}.'
@@ -77,6 +92,8 @@ def perceive(
     labels: Path | None,
     rows: Path | None,
     intrinsics: Path | None,
+    up: Literal["x", "y", "z"] | None,
+    pose: tuple[float, ...] | None,
     masks: Path | None,
     label_map: Path | None,
     masks_only: bool,
@@ -87,17 +104,17 @@ def perceive(
     """Find the objects in point clouds, depth images or datasets.
 
     Point clouds are PCD or PLY files and, with Open3D, .xyz, .xyzrgb and .pts files. Images are a colour and
-    a depth image (PNG). The labels are integers in the shape of the cloud: (height, width), or (1, points)
-    for unorganized clouds. 0 is the background, 1 to n are the objects.
+    a depth image (PNG, JPEG, TIFF, PGM, .npy). The labels are integers in the shape of the cloud: (height,
+    width), or (1, points) for unorganized clouds. 0 is the background, 1 to n are the objects.
     """
     extras.require("semmap perceive", "perception")
     if fit:
         _require_open3d()
     detector = _detector(masks, label_map, masks_only=masks_only)
     if frames is not None:
-        if files or intrinsics is not None:
+        if files or any(option is not None for option in (intrinsics, up, pose)):
             raise errors.BadRequest(
-                "--frames excludes FILE and --intrinsics; each frame has its own camera.json"
+                "--frames excludes FILE, --intrinsics, --up and --pose; each frame has its own camera.json"
             )
         _dataset(frames, labels, rows, detector, _learnt(data), format, fit=fit)
         return
@@ -119,7 +136,7 @@ def perceive(
     from semmap.nodes.perception_node.views.segmented_view import segment_cloud
 
     learnt = _learnt(data)
-    clouds = list(read_frames(files, intrinsics))
+    clouds = list(read_frames(files, intrinsics, up, None if pose is None else _pose(pose)))
     for option, value in (("--labels", labels), ("--masks", masks)):
         if value is not None and len(clouds) != 1:
             raise errors.BadRequest(f"{option} requires a single frame, not {len(clouds)}")
@@ -151,6 +168,19 @@ def perceive(
                 print(f"wrote {labels}")
     if format == "json":
         print_json(records)
+
+
+def _pose(numbers: tuple[float, ...]) -> NDArray[np.float64]:
+    """Return the (4, 4) pose of position [m] and quaternion (w first). Raises BadRequest."""
+    import numpy as np
+    from scipy.spatial.transform import Rotation
+
+    if not np.isfinite(numbers).all() or not np.isclose(np.linalg.norm(numbers[3:]), 1.0, atol=1e-3):
+        raise errors.BadRequest("--pose: QW QX QY QZ must be a unit quaternion, such as 1 0 0 0")
+    found = np.eye(4)
+    found[:3, :3] = Rotation.from_quat(numbers[3:], scalar_first=True).as_matrix()
+    found[:3, 3] = numbers[:3]
+    return found
 
 
 def _require_open3d() -> None:

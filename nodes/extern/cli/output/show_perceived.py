@@ -46,7 +46,10 @@ def as_table(sight: SegmentedView, observations: Mapping[int, Observation | None
 
 def show_frame(row: FrameRow) -> None:
     """Print the objects of one frame of a dataset."""
-    console().print(f"{row.frame}: {row.error or wording.counted(len(row.objects), 'object')}", markup=False)
+    found = wording.counted(len(row.objects), "object") + (
+        f", {len(row.dropped)} dropped" if row.dropped else ""
+    )
+    console().print(f"{row.frame}: {row.error or found}", markup=False)
     if row.objects:
         rows = table(*_COLUMNS, fold=("class", "size [m]"))
         for n, seen in enumerate(row.objects, 1):
@@ -58,7 +61,12 @@ def _cells(label: int, points: int, seen: Observation | SeenInFrame | None) -> l
     if seen is None:
         return [str(label), "?", "", str(points), *[""] * 5]
     return [
-        *(str(label), seen.class_, f"{seen.probability:.2f}", str(points)),
+        *(
+            str(label),
+            seen.class_ + (f" ({seen.label})" if seen.label else ""),
+            f"{seen.probability:.2f}",
+            str(points),
+        ),
         *(f"{value:.3f}" for value in seen.pose.position_m),
         f"{math.degrees(seen.pose.yaw_rad):.0f}°" + ("" if seen.pose.upright > _UPRIGHT else " lying"),
         " x ".join(f"{side:.3f}" for side in seen.size_m),

@@ -3,47 +3,78 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
-from semmap.nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud
-from semmap.nodes.perception_node.input.files import image_files, open3d_clouds, pcd, ply
+from semmap.nodes.perception_node.input.cloud import (
+    FARTHEST_M,
+    FEWEST_POINTS,
+    NEAREST_M,
+    Cloud,
+    Transform,
+)
+from semmap.nodes.perception_node.input.files import (
+    camera_files,
+    depth_files,
+    image_files,
+    open3d_clouds,
+    pcd,
+    ply,
+)
 from semmap.nodes.perception_node.input.files.columns import OtherVariant
+from semmap.nodes.perception_node.input.viewpoint import Placement, Up
 from semmap.schemas.errors import BadFile, BadRequest
 from semmap.schemas.wording import counted
 
-_DECODERS: dict[str, Callable[[bytes], Cloud]] = {".pcd": pcd.decode, ".ply": ply.decode}
-_PICTURES = (".png", ".tif", ".tiff")
+_DECODERS: dict[str, Callable[[bytes, Placement | None], Cloud]] = {".pcd": pcd.decode, ".ply": ply.decode}
+_PICTURES = (
+    *(".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp", ".webp", ".ppm", ".pgm"),
+    *depth_files.ARRAYS,
+)
 
 
-def read_frames(files: Sequence[Path], camera: Path | None = None) -> Iterator[tuple[Path, Cloud]]:
+def read_frames(
+    files: Sequence[Path],
+    camera: Path | None = None,
+    up: Up | None = None,
+    pose: Transform | None = None,
+) -> Iterator[tuple[Path, Cloud]]:
     """Yield each frame in the order of the files, with the file of its points.
 
-    A depth image is combined with the colour image before or after it; both need `camera`, a JSON file of
-    intrinsics. Raises BadFile and BadRequest.
+    A depth image is combined with the colour image before or after it; both need `camera`, a file of
+    intrinsics. `pose`: (4, 4) of the camera, by default the one in `camera`. `up`: the axis that points up,
+    if clouds are in the frame of a map or robot, and then the pose is in that frame. Raises BadFile and
+    BadRequest.
     """
+    if pose is None and camera is not None:
+        pose = camera_files.pose_of(_camera(camera).map_from_camera)
     waiting: Path | None = None  # an image without its partner
     for path in files:
         if path.suffix.lower() not in _PICTURES:
-            yield path, read_cloud(path)
+            cloud = read_cloud(path, None if up is None else Placement(up, pose))
+            yield path, cloud if up is not None else replace(cloud, map_from_camera=pose)
         elif waiting is None:
             waiting = path
         else:
             pair, waiting = (waiting, path), None
-            yield _frame(pair, camera)
+            yield _frame(pair, camera, pose)
     if waiting is not None:
-        yield _frame((waiting,), camera)
+        yield _frame((waiting,), camera, pose)
 
 
-def read_cloud(path: Path) -> Cloud:
-    """Return the cloud in a file. Other variants of PCD and PLY are read by Open3D. Raises BadFile."""
+def read_cloud(path: Path, placement: Placement | None = None) -> Cloud:
+    """Return the cloud in a file. Other variants of PCD and PLY are read by Open3D. Raises BadFile.
+
+    `placement`: the frame of the points, if they are not in that of a camera.
+    """
     suffix = path.suffix.lower()
     if suffix not in (*_DECODERS, *open3d_clouds.SUFFIXES):
         if path.is_dir():
             raise BadFile(f"{path} is a folder; for a dataset use: semmap perceive --frames {path}")
         supported = ", ".join((*_DECODERS, *open3d_clouds.SUFFIXES))
-        raise BadFile(f"{path} is not a supported cloud; supported are {supported} and .png images")
+        raise BadFile(f"{path} is not a supported cloud; supported are {supported} and images")
     try:
-        cloud = _decoded(path, suffix)
+        cloud = _decoded(path, suffix, placement)
     except OSError as error:
         raise BadFile(f"{path} cannot be read: {error.strerror}") from None
     except ValueError as error:
@@ -51,13 +82,13 @@ def read_cloud(path: Path) -> Cloud:
     return checked(cloud, path)
 
 
-def _decoded(path: Path, suffix: str) -> Cloud:
+def _decoded(path: Path, suffix: str, placement: Placement | None) -> Cloud:
     if suffix not in _DECODERS:
-        return open3d_clouds.read(path)
+        return open3d_clouds.read(path, placement=placement)
     try:
-        return _DECODERS[suffix](path.read_bytes())
+        return _DECODERS[suffix](path.read_bytes(), placement)
     except OtherVariant as error:
-        return open3d_clouds.read(path, str(error))
+        return open3d_clouds.read(path, str(error), placement)
 
 
 def checked(cloud: Cloud, path: Path) -> Cloud:
@@ -72,16 +103,24 @@ def checked(cloud: Cloud, path: Path) -> Cloud:
     return cloud
 
 
-def _frame(files: Sequence[Path], camera_file: Path | None) -> tuple[Path, Cloud]:
+def _camera(path: Path) -> camera_files.PinholeCamera:
+    try:
+        return camera_files.read_camera(path)
+    except OSError as error:
+        raise BadFile(f"{path} cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise BadFile(f"{path}: {error}") from None
+
+
+def _frame(files: Sequence[Path], camera_file: Path | None, pose: Transform | None) -> tuple[Path, Cloud]:
     """Return the frame of one depth image and at most one colour image."""
     if camera_file is None:
-        raise BadRequest(f"{files[0]} is an image; add the camera's intrinsics with --intrinsics FILE.json")
-    of = camera_file
+        raise BadRequest(f"{files[0]} is an image; add the camera's intrinsics with --intrinsics FILE")
+    camera, of = _camera(camera_file), camera_file
     try:
-        camera = image_files.read_camera(of)
         depths = []
         for of in files:
-            depths.append(image_files.is_depth(of))
+            depths.append(depth_files.is_depth(of))
         if sum(depths) != 1:
             count = "both are" if all(depths) else "none is" if len(files) > 1 else "it is not"
             raise BadFile(
@@ -89,7 +128,8 @@ def _frame(files: Sequence[Path], camera_file: Path | None) -> tuple[Path, Cloud
             )
         of = files[depths.index(True)]
         color = files[depths.index(False)] if len(files) > 1 else None
-        return of, checked(image_files.read_pictures(of, color, camera), of)
+        cloud = image_files.read_pictures(of, color, camera)
+        return of, replace(checked(cloud, of), map_from_camera=pose)
     except OSError as error:
         raise BadFile(f"{of} cannot be read: {error.strerror}") from None
     except ValueError as error:

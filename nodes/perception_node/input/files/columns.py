@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import FARTHEST_M, NEAREST_M, Cloud
 from semmap.nodes.perception_node.input.files import units
+from semmap.nodes.perception_node.input.viewpoint import Placement
 
 MAX_POINTS = 50_000_000
 """A header with more points is damaged."""
@@ -43,16 +44,25 @@ def columns_of_text(body: bytes, fields: Sequence[Field], points: int) -> dict[s
     return columns
 
 
-def cloud_of(columns: Mapping[str, Column], height: int, width: int) -> Cloud:
+def cloud_of(
+    columns: Mapping[str, Column], height: int, width: int, placement: Placement | None = None
+) -> Cloud:
     """Return the cloud of columns (height * width,): `x`, `y`, `z` [m], and optional colours.
 
     Colours are packed as 0xRRGGBB in `rgb` or `rgba` (integer or float bits), or in `red`, `green` and
-    `blue`. Points outside the range of depth cameras become NaN. Axes of other conventions are converted.
-    Raises ValueError for missing columns, unknown axes, and other units.
+    `blue`. Points outside the range of depth cameras become NaN. Axes of other conventions are converted, or
+    the points are in the frame of a map that `placement` describes. Raises ValueError for missing columns,
+    unknown axes, and other units.
     """
     if missing := [name for name in "xyz" if name not in columns]:
         raise ValueError(f"it has no field {', '.join(missing)}, only {', '.join(columns) or 'none'}")
-    points = _optical(np.stack([columns[name].astype(np.float32) for name in "xyz"], axis=-1))
+    points = np.stack([columns[name].astype(np.float32) for name in "xyz"], axis=-1)
+    pose = None
+    if placement is None:
+        points = _optical(points)
+    else:
+        placed, pose = placement.place(points.reshape(height, width, 3))
+        points = placed.reshape(-1, 3)
     depth = points[np.isfinite(points).all(axis=-1), 2]
     depth = depth[depth != 0.0]
     if len(depth) and np.median(depth) > FARTHEST_M:
@@ -67,6 +77,7 @@ def cloud_of(columns: Mapping[str, Column], height: int, width: int) -> Cloud:
     return Cloud(
         points_camera=points.reshape(height, width, 3),
         colors=None if colors is None else colors.reshape(height, width, 3),
+        map_from_camera=pose,
     )
 
 
@@ -88,8 +99,8 @@ def _optical(points: NDArray[np.float32]) -> NDArray[np.float32]:
         case False, True:
             return points[:, [0, 2, 1]] * np.array([1, -1, 1], np.float32)
     raise ValueError(
-        f"{behind:.0%} of its points are behind the camera; use a camera at the origin with x to the right,"
-        " y down, z forward"
+        f"{behind:.0%} of its points are behind the camera; if they are in the frame of a map or robot, name"
+        " the axis that points up: --up z"
     )
 
 

@@ -12,25 +12,25 @@ from msgspec import Struct
 from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud, Floats
-from semmap.nodes.perception_node.input.files import units
-from semmap.nodes.perception_node.input.files.image_files import pose_of
-from semmap.nodes.perception_node.input.projection import cloud_of, fits, thinned, thinning
+from semmap.nodes.perception_node.input.files.camera_files import pose_of, read_camera, require_fit
+from semmap.nodes.perception_node.input.files.depth_files import read_depth, to_metres
+from semmap.nodes.perception_node.input.projection import cloud_of, thinned, thinning
 from semmap.nodes.runtime.pictures import open_picture
 from semmap.schemas import codec
 from semmap.schemas.errors import BadFile
 from semmap.schemas.wording import few, sentence
 
 COLOUR, DEPTH, CAMERA = "rgb.png", "depth.png", "camera.json"
-_FILES = (COLOUR, DEPTH, CAMERA)
-
-_MM_M = 0.001
+_COLOURS = (COLOUR, "rgb.jpg", "rgb.jpeg")
+_DEPTHS = (DEPTH, "depth.npy", "depth.npz", "depth.pgm", "depth.tiff", "depth.tif")
 
 
 class FrameCamera(Struct, frozen=True, kw_only=True):
     """The content of `camera.json`: a pinhole [pixel] with the image corner at 0, and an optional pose.
 
-    `width` and `height`: the image size, if given. `depth_scale`: metres per unit of the depth image, if not
-    millimetres. `map_from_camera`: (4, 4), row by row, of the optical frame (x right, y down, z forward) [m].
+    `width` and `height`: the image size, if given. `depth_scale`: metres per unit of the depth image; by
+    default integers are millimetres and floats metres. `map_from_camera`: (4, 4), row by row, of the optical
+    frame (x right, y down, z forward) [m].
     """
 
     fx: float
@@ -76,33 +76,26 @@ def frames_in(folder: Path) -> list[Path]:
 
 def read_frame(folder: Path) -> FileFrame:
     """Read the frame in a folder. Raises BadFile with the reason."""
-    missing = [name for name in _FILES if not (folder / name).exists()]
-    if missing:
-        raise BadFile(f"{folder.name} lacks {few(missing)}")
-    of = CAMERA
+    colour, depth, of = (
+        next((name for name in names if (folder / name).exists()), "")
+        for names in (_COLOURS, _DEPTHS, (CAMERA,))
+    )
+    if not (colour and depth and of):
+        names = zip((colour, depth, of), (COLOUR, DEPTH, CAMERA), strict=True)
+        raise BadFile(f"{folder.name} lacks {few([name for found, name in names if not found])}")
     try:
         camera = _camera(folder / CAMERA)
-        of = COLOUR
-        with open_picture(folder / COLOUR) as image:
+        of = colour
+        with open_picture(folder / colour) as image:
             rgb = np.asarray(image.convert("RGB"))
-        of = DEPTH
-        with open_picture(folder / DEPTH) as image:
-            numbers = np.asarray(image) if image.mode in ("I;16", "I;16B", "I;16L", "I") else None
-            is_float = image.mode == "F"
-        if is_float:
-            raise ValueError("it has floats; it must have 16-bit integers in millimetres")
-        if numbers is None:
-            raise ValueError("it must have 16 bits in a single channel: millimetres, 0 for no measurement")
+        of = depth
+        numbers = read_depth(folder / depth)
         if rgb.shape[:2] != numbers.shape:
             (height, width), (rows, columns) = rgb.shape[:2], numbers.shape
             raise ValueError(f"colour is {width} x {height} pixels, depth {columns} x {rows}")
-        if not numbers.any():
-            raise ValueError("it has no depth: all values are 0")
-        if camera.depth_scale is None and (doubt := units.doubt(numbers, _MM_M)) is not None:
-            raise ValueError(f'{doubt}; use millimetres, or set "depth_scale": {doubt.scale_m:g} in {CAMERA}')
+        depth_m = to_metres(numbers, camera.depth_scale, CAMERA)
         of = CAMERA
-        scale_m = np.float32(camera.depth_scale or _MM_M)
-        return _to_frame(rgb, (numbers * scale_m).astype(np.float32), camera)
+        return _to_frame(rgb, depth_m, camera)
     except OSError as error:
         raise BadFile(f"{folder.name}/{of} cannot be read: {error.strerror}") from None
     except ValueError as error:
@@ -110,8 +103,14 @@ def read_frame(folder: Path) -> FileFrame:
 
 
 def _camera(path: Path) -> FrameCamera:
+    content = path.read_bytes()
+    if b'"fx"' not in content or b'"ppx"' in content:
+        other = read_camera(path)  # of another program, with the centre of the first pixel at 0
+        return msgspec.convert(
+            msgspec.structs.asdict(other) | {"cx": other.cx + 0.5, "cy": other.cy + 0.5}, FrameCamera
+        )
     try:
-        camera = msgspec.json.decode(path.read_bytes(), type=codec.prepared(FrameCamera))
+        camera = msgspec.json.decode(content, type=codec.prepared(FrameCamera))
     except msgspec.DecodeError as error:
         raise ValueError(sentence(error, FrameCamera)) from None
     if camera.depth_scale is not None and not camera.depth_scale > 0:
@@ -122,13 +121,10 @@ def _camera(path: Path) -> FrameCamera:
 def _to_frame(rgb: NDArray[np.uint8], depth_m: Floats, camera: FrameCamera) -> FileFrame:
     height, width = depth_m.shape
     intrinsics = np.array([[camera.fx, 0, camera.cx], [0, camera.fy, camera.cy], [0, 0, 1]])
-    declared = (camera.width or width, camera.height or height)
-    if declared != (width, height) or not fits(intrinsics, width, height):
-        of = f"{declared[0]} x {declared[1]}" if declared != (width, height) else "another size"
-        raise ValueError(f"the intrinsics are for images of {of}; this one has {width} x {height} pixels")
+    require_fit(intrinsics, width, height, (camera.width or width, camera.height or height))
     step = thinning(width, height)
     depth_m, colours, intrinsics = thinned(depth_m, rgb, intrinsics, step)
     cloud = cloud_of(depth_m, colours, intrinsics, pose_of(camera.map_from_camera))
     if cloud.measured < FEWEST_POINTS:
-        raise ValueError(f"{DEPTH} has no depth from {NEAREST_M:g} to {FARTHEST_M:g} m")
+        raise ValueError(f"the depth image has no depth from {NEAREST_M:g} to {FARTHEST_M:g} m")
     return FileFrame(cloud, step, (height, width))

@@ -10,13 +10,14 @@ import numpy as np
 
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.files.columns import MAX_POINTS, Column, cloud_of
+from semmap.nodes.perception_node.input.viewpoint import Placement
 from semmap.schemas.errors import BadFile
 
 SUFFIXES = (".xyz", ".xyzn", ".xyzrgb", ".pts")
 _FIRST_LINE = 80
 
 
-def read(path: Path, why: str = "") -> Cloud:
+def read(path: Path, why: str = "", placement: Placement | None = None) -> Cloud:
     """Return the points of a file in a single row, with colours if Open3D reads any.
 
     `why`: the reason why our reader failed, for the message without Open3D. Raises BadFile without Open3D,
@@ -30,7 +31,7 @@ def read(path: Path, why: str = "") -> Cloud:
     with path.open("rb") as file:  # without a file, Open3D only reports that there are no points
         if path.suffix.lower() == ".pts":
             _require_count(file)
-    return _decoded(path)
+    return _decoded(path, placement)
 
 
 def _require_count(file: BinaryIO) -> None:
@@ -43,7 +44,7 @@ def _require_count(file: BinaryIO) -> None:
         raise ValueError(f"truncated: {lines} of {int(header)} points")
 
 
-def _decoded(path: Path) -> Cloud:
+def _decoded(path: Path, placement: Placement | None) -> Cloud:
     import open3d
 
     with open3d.utility.VerbosityContextManager(open3d.utility.VerbosityLevel.Error):
@@ -55,4 +56,4 @@ def _decoded(path: Path) -> Cloud:
     if read.has_colors():
         shades = np.round(255.0 * np.asarray(read.colors))
         columns |= dict(zip(("red", "green", "blue"), shades.T, strict=True))
-    return cloud_of(columns, 1, len(points))
+    return cloud_of(columns, 1, len(points), placement)

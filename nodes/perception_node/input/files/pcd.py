@@ -17,6 +17,7 @@ from semmap.nodes.perception_node.input.files.columns import (
     cloud_of,
     columns_of_text,
 )
+from semmap.nodes.perception_node.input.viewpoint import Placement
 
 _KINDS = {"F": "f", "U": "u", "I": "i"}
 _LONGEST_HEADER = 4096
@@ -37,10 +38,10 @@ class Header:
         return self.width * self.height
 
 
-def decode(data: bytes) -> Cloud:
+def decode(data: bytes, placement: Placement | None = None) -> Cloud:
     """Return the cloud in a PCD file's bytes. Raises ValueError."""
     header, start = read_header(data)
-    return cloud_of(read_columns(header, data[start:]), header.height, header.width)
+    return cloud_of(read_columns(header, data[start:]), header.height, header.width, placement)
 
 
 def read_header(data: bytes) -> tuple[Header, int]:

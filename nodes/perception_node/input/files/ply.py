@@ -12,6 +12,7 @@ from semmap.nodes.perception_node.input.files.columns import (
     cloud_of,
     columns_of_text,
 )
+from semmap.nodes.perception_node.input.viewpoint import Placement
 
 _TYPES = {
     **{"char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1"},
@@ -23,7 +24,7 @@ _ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">"}
 _LONGEST_HEADER = 16384
 
 
-def decode(data: bytes) -> Cloud:
+def decode(data: bytes, placement: Placement | None = None) -> Cloud:
     """Return the vertices in a PLY file's bytes, in a single row.
 
     Raises ValueError, and OtherVariant if the vertices do not come first or have lists.
@@ -32,8 +33,8 @@ def decode(data: bytes) -> Cloud:
     body = data[start:]
     if encoding == "ascii":
         fields = [(name, np.dtype(kind), 1) for name, kind in properties]
-        return cloud_of(columns_of_text(body, fields, count), 1, count)
-    return cloud_of(_of_rows(body, count, properties), 1, count)
+        return cloud_of(columns_of_text(body, fields, count), 1, count, placement)
+    return cloud_of(_of_rows(body, count, properties), 1, count, placement)
 
 
 def _read_header(data: bytes) -> tuple[str, int, list[tuple[str, str]], int]:

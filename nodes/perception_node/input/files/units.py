@@ -19,6 +19,8 @@ _FAR_M = 6.0
 """In a room something is nearer; beyond this distance nothing is recognised."""
 _WITHIN_M = 0.1
 """An image contains something farther than this."""
+_STATED_M = (0.03, 20.0)
+"""The same limits for a unit that was stated: a close-up and a hall are possible."""
 
 
 class Doubt(NamedTuple):
@@ -32,21 +34,25 @@ class Doubt(NamedTuple):
         return f"{self.why}; the unit is probably {self.unit}"
 
 
-def doubt(numbers: NDArray[Any], scale_m: float) -> Doubt | None:
+def doubt(numbers: NDArray[Any], scale_m: float, *, stated: bool = False) -> Doubt | None:
     """Return the evidence against `scale_m` metres per unit of depth `numbers`; values <= 0 are ignored.
 
-    An image of near things only may be in any unit, so centimetres are detected only below 10 cm.
+    An image of near things only may be in any unit, so centimetres are detected only below 10 cm. A `stated`
+    unit is doubted only if it is impossible.
     """
     seen = numbers[np.isfinite(numbers) & (numbers > 0)]
     if not len(seen):
         return None
     near_m, end_m = float(np.quantile(seen, 0.05)) * scale_m, float(seen.max()) * scale_m
-    if near_m > _FAR_M:
+    within_m, far_m = _STATED_M if stated else (_WITHIN_M, _FAR_M)
+    if near_m > far_m:
         why = f"half of its depth is beyond {float(np.median(seen)) * scale_m:.0f} m"
-    elif end_m < _WITHIN_M:
-        why = f"its depth ends at {end_m:.3f} m"
+    elif end_m < within_m:
+        why = f"its depth ends at {end_m:.2g} m"
     else:
         return None
+    if scale_m > 1.0 and doubt(seen, 1.0 / scale_m) is None:  # units per metre, and not metres per unit
+        return Doubt(why, f"1/{scale_m:g} m", 1.0 / scale_m)
     scale = likely(seen)
     return Doubt(why, _UNITS[scale], scale)
 

@@ -7,9 +7,11 @@ import json
 import numpy as np
 import pytest
 from PIL import Image
+from scipy.spatial.transform import Rotation
 
 from semmap.nodes.extern.cli.app import execute
 from semmap.nodes.perception_node.fitting import fit
+from semmap.nodes.perception_node.views.segments import map_points
 from tests.perception_node.files.made import header
 from tests.perception_node.segmentation.scenes import boxes_on_table
 from tests.perception_node.segmentation.test_patches import SCENES
@@ -36,6 +38,31 @@ def test_labels_have_the_shape_of_the_cloud(tmp_path, capsys, organised):
     for box in (1, 2):
         assert np.bincount(SEEN.truth.ravel()[labels.ravel() == box]).argmax() > 0
     assert "2 objects" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("organised", [True, False])
+@pytest.mark.parametrize("posed", [True, False])
+def test_a_cloud_in_the_frame_of_a_map_gives_things_there(tmp_path, capsys, organised, posed):
+    seen = boxes_on_table(*SCENES["apart"], posed=True)
+    points = map_points(seen.cloud, seen.cloud.map_from_camera)
+    if not organised:
+        points = points.reshape(-1, 3)
+        points = np.random.default_rng(0).permutation(points[np.isfinite(points[:, 2])])[None]
+    height, width = points.shape[:2]
+    head = header("binary", fields="x y z", width=width, height=height)
+    (tmp_path / "map.pcd").write_bytes(head + points.astype(np.float32).tobytes())
+    w, x, y, z = Rotation.from_matrix(seen.cloud.map_from_camera[:3, :3]).as_quat(scalar_first=True)
+    pose = ["--pose", *map(str, (*seen.cloud.map_from_camera[:3, 3], w, x, y, z))] if posed else []
+    assert execute(["perceive", str(tmp_path / "map.pcd"), "--up", "z", "--format", "json", *pose]) == 0
+    (frame,) = json.loads(capsys.readouterr().out)
+    assert frame["frame"] == "map"
+    places = [
+        thing["observation"]["pose"]["position_m"] for thing in frame["objects"] if thing["observation"]
+    ]
+    for x, y in ((-0.15, -0.05), (0.15, -0.05)):
+        assert any(place == pytest.approx((x, y, 0.0), abs=0.035) for place in places)
+    assert execute(["perceive", str(tmp_path / "map.pcd"), "--up", "z", "--pose", *"0002000"]) == 2
+    assert "unit quaternion" in capsys.readouterr().err
 
 
 def test_json_is_for_programs(tmp_path, capsys):

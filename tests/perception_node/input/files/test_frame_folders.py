@@ -57,15 +57,17 @@ def test_a_large_picture_is_thinned(tmp_path):
     ("made", "said"),
     [
         ({"depth": np.full((24, 32), 900, np.uint16)}, "colour is 64 x 48 pixels, depth 32 x 24"),
-        ({"depth": np.full((48, 64), 2, np.uint16)}, "millimetres"),
-        ({"depth": np.full((48, 64), 15_000, np.uint16)}, 'or set "depth_scale": 0.0001 in camera.json'),
+        ({"depth": np.full((48, 64), 2, np.uint16)}, 'set "depth_scale": 1 in camera.json'),
+        ({"depth": np.full((48, 64), 15_000, np.uint16)}, 'set "depth_scale": 0.0001 in camera.json'),
+        ({"depth_scale": 5000}, 'set "depth_scale": 0.0002 in camera.json'),
         ({"depth_scale": 0}, "depth_scale must be positive"),
         ({"depth": np.full((48, 64), 200, np.uint8)}, "16 bits"),
         ({"depth": np.zeros((48, 64), np.uint16)}, "no depth"),
         ({"width": 640, "height": 480}, "images of 640 x 480; this one has 64 x 48 pixels"),
-        ({"cx": 320.0, "cy": 240.0, "fx": 600.0, "fy": 600.0}, "images of another size"),
+        ({"cx": 320.0, "cy": 240.0, "fx": 600.0, "fy": 600.0}, "do not fit an image of 64 x 48 pixels"),
         ({"map_from_camera": [[1, 2], [3]]}, "4 x 4 pose matrix"),
-        ({"cx": 16.0, "cy": 12.0, "fx": 30.0, "fy": 30.0}, "images of another size"),
+        ({"cx": 16.0, "cy": 12.0, "fx": 30.0, "fy": 30.0}, "cx is probably about 32, cy about 24"),
+        ({"fx": 6.0, "fy": 6.0}, "fx and fy are probably about 58"),
         ({"fx": "wide"}, "fx"),
     ],
 )
@@ -114,11 +116,25 @@ def test_a_folder_without_frames_is_refused(tmp_path):
         frames_in(tmp_path / "missing")
 
 
-def test_depth_in_floats_is_told_with_the_factor(tmp_path):
+def test_depth_in_floats_is_in_metres(tmp_path):
     folder = write_frame(tmp_path / "table7")
     Image.fromarray(np.full((48, 64), 1.5, np.float32)).save(folder / "depth.png", "TIFF")
-    with pytest.raises(BadFile, match=r"it has floats; it must have 16-bit integers"):
-        read_frame(folder)
+    assert (read_frame(folder).cloud.points_camera[..., 2] == 1.5).all()
+
+
+def test_a_frame_may_have_other_formats(tmp_path):
+    folder = write_frame(tmp_path / "table7")
+    whole = read_frame(folder).cloud
+    np.save(folder / "depth.npy", np.full((48, 64), 1.5))
+    with Image.open(folder / "rgb.png") as image:
+        image.save(folder / "rgb.jpg", quality=95)
+    by_column = [60.0, 0, 0, 0, 60.0, 0, 31.5, 23.5, 1]
+    (folder / "camera.json").write_text(json.dumps({"intrinsic_matrix": by_column}))
+    for name in ("rgb.png", "depth.png"):
+        (folder / name).unlink()
+    same = read_frame(folder).cloud
+    assert same.points_camera == pytest.approx(whole.points_camera)
+    assert np.abs(same.colors.astype(int) - whole.colors).max() < 10
 
 
 def test_a_recording_is_told_what_to_do_with_it(tmp_path):

@@ -1,18 +1,11 @@
-"""Images of depth and colour, and the camera file."""
-
-import json
+"""Images of depth and colour."""
 
 import numpy as np
 import pytest
 from PIL import Image
 
-from semmap.nodes.perception_node.input.files.image_files import (
-    PinholeCamera,
-    is_depth,
-    pose_of,
-    read_camera,
-    read_pictures,
-)
+from semmap.nodes.perception_node.input.files.camera_files import PinholeCamera
+from semmap.nodes.perception_node.input.files.image_files import read_pictures
 
 WIDTH, HEIGHT = 40, 30
 CAMERA = PinholeCamera(fx=50.0, fy=40.0, cx=19.5, cy=14.5)
@@ -28,12 +21,6 @@ def depth(folder, numbers=1500, dtype=np.uint16, name="depth.png"):
 def color(folder, size=(WIDTH, HEIGHT)):
     path = folder / "rgb.png"
     Image.new("RGB", size, (10, 20, 30)).save(path)
-    return path
-
-
-def camera(folder, **numbers):
-    path = folder / "camera.json"
-    path.write_text(json.dumps({"fx": 50, "fy": 40, "cx": 19.5, "cy": 14.5} | numbers))
     return path
 
 
@@ -76,38 +63,3 @@ def test_pictures_that_do_not_go_together_are_told(tmp_path):
     wrong = PinholeCamera(fx=50.0, fy=40.0, cx=1900.5, cy=14.5)
     with pytest.raises(ValueError, match=r"fx 50 fy 40 cx 1900\.5 cy 14\.5 do not fit an image of 40 x 30"):
         read_pictures(depth(tmp_path), None, wrong)
-
-
-def test_a_camera_is_for_pictures_of_its_size_where_both_sides_are_said():
-    assert PinholeCamera(fx=1, fy=1, cx=1, cy=1, width=4, height=3).size == (4, 3)
-    assert PinholeCamera(fx=1, fy=1, cx=1, cy=1, width=4).size is None
-    assert CAMERA.size is None
-
-
-def test_a_camera_is_read_from_json(tmp_path):
-    found = read_camera(camera(tmp_path, depth_scale=0.001, map_from_camera=POSE.tolist()))
-    assert (found.fx, found.fy, found.cx, found.cy, found.depth_scale) == (50, 40, 19.5, 14.5, 0.001)
-    assert pose_of(found.map_from_camera) == pytest.approx(POSE)
-
-
-@pytest.mark.parametrize(
-    "numbers", [{"fx": 0}, {"fy": -1}, {"depth_scale": 0}, {"fx": "wide"}, {"focal": 3}], ids=str
-)
-def test_an_impossible_camera_is_told(tmp_path, numbers):
-    with pytest.raises(ValueError, match="invalid intrinsics"):
-        read_camera(camera(tmp_path, **numbers))
-
-
-def test_a_pose_is_sixteen_numbers_or_four_rows():
-    assert pose_of(tuple(POSE.ravel())) == pytest.approx(POSE)
-    assert pose_of(tuple(POSE.tolist())) == pytest.approx(POSE)
-    assert pose_of(None) is None
-    for wrong in ((1.0,) * 15, (1.0,) * 16, ("a",) * 16, ([1.0], [1.0, 2.0]), tuple((2 * POSE).ravel())):
-        with pytest.raises(ValueError, match="not a 4 x 4 pose matrix"):
-            pose_of(wrong)
-
-
-def test_depth_is_a_single_channel_of_16_bits_or_more(tmp_path):
-    assert is_depth(depth(tmp_path))
-    assert is_depth(depth(tmp_path, 1.5, np.float32, "depth.tiff"))
-    assert not is_depth(color(tmp_path))

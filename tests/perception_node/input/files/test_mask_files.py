@@ -43,6 +43,61 @@ def test_polygons_hold_the_pixels_whose_middle_is_within(tmp_path, polygons, pix
     assert found.detector_labels == (DetectorLabel("cup", 1.0),)
 
 
+def test_shapes_of_labelme(tmp_path):
+    polygon = {"label": "mug", "points": [[0, 0], [1, 0], [1, 2], [0, 2]], "shape_type": "polygon"}
+    rectangle = {"label": "box", "points": [[3, 2], [1, 1]], "shape_type": "rectangle"}
+    (tmp_path / "a.json").write_text(json.dumps({"version": "5", "shapes": [polygon, rectangle]}))
+    found = read_masks(tmp_path / "a.json", 2, 3)
+    assert found.labels.tolist() == [[1, 0, 0], [1, 2, 2]]
+    assert [one.label for one in found.detector_labels] == ["mug", "box"]
+
+
+@pytest.mark.parametrize("place", [None, "frame", "."])
+def test_lines_of_yolo(tmp_path, place):
+    (tmp_path / "frame").mkdir()
+    if place is not None:
+        (tmp_path / place / "classes.txt").write_text("mug\npower drill\n")
+    path = tmp_path / "frame" / "a.txt"
+    path.write_text("0 0 0 0.34 0 0.34 1 0 1 0.8\n\n1 0.67 0.75 0.66 0.5\n")
+    found = read_masks(path, 2, 3)
+    assert found.labels.tolist() == [[1, 0, 0], [1, 2, 2]]
+    names = ("mug", "power drill") if place else ("0", "1")
+    assert found.detector_labels == (DetectorLabel(names[0], 0.8), DetectorLabel(names[1], 1.0))
+    path.write_text("")
+    assert read_masks(path, 2, 3).detector_labels == ()
+
+
+def test_a_mask_for_each_thing(tmp_path):
+    stack = np.array([LABELS > 0, LABELS == 2])
+    np.save(tmp_path / "a.npy", stack)
+    np.save(tmp_path / "b.npy", np.moveaxis(stack, 0, 2))
+    for name in ("a.npy", "b.npy"):
+        found = read_masks(tmp_path / name, 2, 3)
+        assert found.labels.tolist() == LABELS.tolist()
+        assert found.detector_labels == (None, None)
+    np.savez(tmp_path / "a.npz", masks=stack, names=["mug", "power drill"], scores=[0.9, 0.8])
+    found = read_masks(tmp_path / "a.npz", 2, 3)
+    assert found.labels.tolist() == (LABELS > 0).tolist()
+    assert found.detector_labels == (DetectorLabel("mug", 0.9), DetectorLabel("power drill", 0.8))
+    np.save(tmp_path / "c.npy", LABELS == 2)
+    assert read_masks(tmp_path / "c.npy", 2, 3).labels.tolist() == (LABELS == 2).tolist()
+
+
+@pytest.mark.parametrize(
+    ("arrays", "said"),
+    [
+        ({"masks": np.ones((2, 4, 3), bool)}, "an array N x 2 x 3; this one is 2 x 4 x 3"),
+        ({"masks": np.ones((2, 2, 3), bool), "names": ["mug"]}, "2 masks and 1 names"),
+        ({"masks": np.ones((1, 2, 3), bool), "scores": [9.0]}, "from 0 to 1"),
+        ({"segments": np.ones((1, 2, 3), bool)}, "no array named masks, only segments"),
+    ],
+)
+def test_masks_that_do_not_fit_are_told(tmp_path, arrays, said):
+    np.savez(tmp_path / "a.npz", **arrays)
+    with pytest.raises(BadFile, match=said):
+        read_masks(tmp_path / "a.npz", 2, 3)
+
+
 def test_label_images(tmp_path):
     np.save(tmp_path / "a.npy", LABELS)
     Image.fromarray(LABELS.astype(np.uint8)).save(tmp_path / "a.png")
@@ -74,7 +129,14 @@ def test_label_images(tmp_path):
         ("a.json", b'[{"segmentation": {"size": [2, 3], "counts": "%s0"}}]' % (b"o" * 40), "add up to"),
         ("a.npy", b"nothing", "a.npy"),
         ("a.npy", b"", "a.npy"),
-        ("a.txt", b"", "masks are"),
+        ("a.gif", b"", "masks are"),
+        ("a.txt", b"0 0.1 0.1 0.2", "line 1 is not a class, x and y"),
+        ("a.txt", b"0 0 0 1 0 1 1\ncup 0 0 1 0 1 1", "line 2 is not a class"),
+        ("a.txt", b"0 0 0 1 0 1 1 7", "line 1"),
+        ("a.json", b'{"shapes": [{"label": "cup"}]}', "each shape needs a label and points"),
+        ("a.json", b'{"shapes": [{"points": [[1, 2], 3, 4]}]}', "pairs of numbers"),
+        ("a.json", b'{"shapes": [{"points": [[1, 2]], "shape_type": "circle"}]}', "'circle'; use polygon"),
+        ("a.npz", b"PK no archive", "not an .npz archive"),
     ],
 )
 def test_what_is_wrong_is_said_with_the_file(tmp_path, name, content, said):

@@ -1,0 +1,69 @@
+"""Clouds in the frame of a map or robot."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from semmap.nodes.perception_node.input.viewpoint import Placement
+from semmap.nodes.perception_node.views.segments import map_points
+from tests.perception_node.segmentation.scenes import boxes_on_table, camera_pose
+from tests.perception_node.segmentation.test_patches import SCENES
+
+EYE = (0.3, -0.8, 0.6)
+TO_UP = {  # coordinates of the file from those of a frame whose z is up
+    "x": lambda p: np.stack([p[..., 2], p[..., 1], -p[..., 0]], axis=-1),
+    "y": lambda p: np.stack([p[..., 0], p[..., 2], -p[..., 1]], axis=-1),
+    "z": lambda p: p,
+}
+
+
+@pytest.fixture(scope="module")
+def scene():
+    """Return a cloud and its points in the map frame."""
+    seen = boxes_on_table(*SCENES["apart"], pose=camera_pose(EYE), posed=True)
+    return seen.cloud, map_points(seen.cloud, seen.cloud.map_from_camera)
+
+
+@pytest.mark.parametrize("up", TO_UP)
+def test_the_camera_of_an_organised_cloud_is_found(scene, up):
+    cloud, points = scene
+    placed, pose = Placement(up).place(TO_UP[up](points))
+    assert pose == pytest.approx(cloud.map_from_camera, abs=2e-3)
+    assert placed == pytest.approx(cloud.points_camera, abs=2e-3, nan_ok=True)
+
+
+@pytest.mark.parametrize("up", TO_UP)
+def test_a_cloud_without_order_is_seen_from_a_place_where_little_is_hidden(scene, up):
+    _, points = scene
+    points = points.reshape(-1, 3)
+    points = np.random.default_rng(0).permutation(points[np.isfinite(points[:, 2])])
+    placed, pose = Placement(up).place(TO_UP[up](points[None]))
+    assert (placed[..., 2] > 0).mean() > 0.99
+    assert pose[2, 3] > 0.2
+    assert pose[1, 3] < 0.0  # the sides that were seen face the camera
+    again = placed[0] @ pose[:3, :3].T + pose[:3, 3]
+    assert again == pytest.approx(points, abs=1e-4)
+
+
+def test_a_pose_in_the_frame_of_the_cloud_is_used(scene):
+    cloud, points = scene
+    placed, pose = Placement("z", cloud.map_from_camera).place(points)
+    assert pose == pytest.approx(cloud.map_from_camera)
+    assert placed == pytest.approx(cloud.points_camera, abs=1e-4, nan_ok=True)
+
+
+def test_a_floor_below_the_frame_becomes_zero(scene):
+    _, points = scene
+    sensor = points - np.float32([0.0, 0.0, 1.2])
+    placed, pose = Placement("z").place(sensor)
+    again = placed.reshape(-1, 3) @ pose[:3, :3].T + pose[:3, 3]
+    assert again == pytest.approx(points.reshape(-1, 3), abs=0.01, nan_ok=True)
+
+
+@pytest.mark.parametrize("value", [np.nan, 0.0, 1.0])
+@pytest.mark.parametrize("shape", [(1, 1), (1, 50), (20, 30)])
+def test_clouds_with_nothing_in_them_are_no_trouble(shape, value):
+    placed, pose = Placement("z").place(np.full((*shape, 3), value, np.float32))
+    assert placed.shape == (*shape, 3)
+    assert np.isfinite(pose).all()
