@@ -181,7 +181,7 @@ class Simulator:
 
     def _timed(self, reply: Timed) -> Timed:
         """Publish the poses, and add time stamp and pause state to the reply."""
-        stamp_ns = time.time_ns()  # later poses have newer stamps
+        stamp_ns = self._world.clock.stamp_ns()  # later poses have newer stamps
         return self._published(structs.replace(reply, paused=self._paused, stamp_ns=stamp_ns))
 
     def _snapshot(self, _: SceneQuery) -> Scene:

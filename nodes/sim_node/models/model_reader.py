@@ -1,6 +1,6 @@
 """Reads model files in a separate process: a few lines of MJCF may describe millions of bodies.
 
-The process is this module as a program.
+The process is this module as a program. What the two pickle comes from them, never from a file.
 """
 
 from __future__ import annotations
