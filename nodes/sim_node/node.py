@@ -14,6 +14,7 @@ from semmap.nodes import bus
 from semmap.nodes.runtime.class_names import ClassNames
 from semmap.nodes.runtime.loop import Node, open_node
 from semmap.nodes.sim_node.config import SimConfig
+from semmap.nodes.sim_node.models.model_reader import ModelReader
 from semmap.nodes.sim_node.models.sources import Models
 from semmap.nodes.sim_node.robots.base_controller import Outcome
 from semmap.nodes.sim_node.scene_state import FILENAME, SceneStore
@@ -75,7 +76,8 @@ class Simulator:
 
     def __init__(self, node: Node, config: SimConfig) -> None:
         self._node = node
-        models = Models(config.models, config.data)
+        self._reader = ModelReader()
+        models = Models(config.models, config.data, self._reader)
         classes = self._classes(config)
         if config.world is not None:
             node.describe(f"compiling the world {config.world.name}")
@@ -135,10 +137,11 @@ class Simulator:
         return ClassNames(found)
 
     def close(self) -> None:
-        """Store the scene, stop the renderer and close the window."""
+        """Store the scene, stop the renderer and the reader of models, and close the window."""
         if self._store is not None:
             self._store.write()
         self._renderer.close()
+        self._reader.close()
         if self._window is not None:
             self._window.close()
 
@@ -178,7 +181,7 @@ class Simulator:
 
     def _timed(self, reply: Timed) -> Timed:
         """Publish the poses, and add time stamp and pause state to the reply."""
-        stamp_ns = time.time_ns()  # later poses have newer stamps
+        stamp_ns = self._world.clock.stamp_ns()  # later poses have newer stamps
         return self._published(structs.replace(reply, paused=self._paused, stamp_ns=stamp_ns))
 
     def _snapshot(self, _: SceneQuery) -> Scene:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import math
-import time
 import uuid
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
@@ -24,6 +23,7 @@ from semmap.nodes.sim_node.physics.engine import Engine
 from semmap.nodes.sim_node.physics.walls import walls
 from semmap.nodes.sim_node.placement.settling import Settling
 from semmap.nodes.sim_node.robots.base_controller import ACTUATORS, Outcome, actuators
+from semmap.nodes.sim_node.scene_clock import SceneClock
 from semmap.nodes.sim_node.vision.view import bulk, camera_names, optical_pose, overview
 from semmap.schemas import wording
 from semmap.schemas.entities import Pose, relative
@@ -64,6 +64,7 @@ class World:
         models: ModelSource = library_model,
         while_waiting: Callable[[], None] = lambda: None,
         classes: BodyClasses | None = None,
+        clock: SceneClock | None = None,
     ) -> None:
         """Start from a scene that compiles, or from a bare floor.
 
@@ -83,6 +84,7 @@ class World:
         self._settling = Settling(self._engine)
         self._models, self._while_waiting = models, while_waiting
         self.name = name
+        self.clock = clock or SceneClock()
         self.run = uuid.uuid4().hex[:12]
         self._copied, self._copy = self._engine.revision, (copy.copy(self.model), self.body_names())
 
@@ -306,7 +308,7 @@ class World:
         return Poses(
             run=self.run,
             version=self._settling.version,
-            stamp_ns=time.time_ns(),
+            stamp_ns=self.clock.stamp_ns(),
             sim_time_s=float(engine.data.time),
             names=engine.index.names,
             poses=tuple(engine.poses().ravel().tolist()),
@@ -321,7 +323,7 @@ class World:
         return Scene(
             run=self.run,
             version=self._settling.version,
-            stamp_ns=time.time_ns(),
+            stamp_ns=self.clock.stamp_ns(),
             sim_time_s=float(self.data.time),
             world=self.name,
             bodies=self._bodies(self._engine.records),

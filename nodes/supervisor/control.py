@@ -22,6 +22,7 @@ from typing import Any
 
 from supervisor.xmlrpc import SupervisorTransport
 
+from semmap.nodes.runtime.isolated_process import CPU_S
 from semmap.nodes.runtime.notify import NOTIFY_VARIABLE
 from semmap.nodes.runtime.requests_in_work import IN_WORK_VARIABLE
 from semmap.nodes.supervisor import orphans, registry
@@ -148,6 +149,10 @@ class Supervisor:
                 except BaseException:
                     run.kill()
                     raise
+        if run.returncode == -signal.SIGXCPU:
+            raise errors.BadFile(
+                f"the world or the TBox takes longer than {CPU_S:g} s to read (CPU time); use smaller files"
+            )
         if run.returncode != 0:
             reason = stderr.strip().removeprefix("seed: ") or f"seeding failed with status {run.returncode}"
             raise (errors.BadFile if run.returncode == 2 else errors.Refused)(reason)

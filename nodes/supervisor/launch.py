@@ -45,22 +45,7 @@ def seed(settings: Settings) -> None:
     """
     from semmap.nodes.kb_node.storage.existing_map import describe_existing_map
 
-    if settings.sim and Path(settings.world) not in (FLAT_WORLD, EMPTY_WORLD):
-        from semmap.nodes.sim_node.models.sources import Models
-        from semmap.nodes.sim_node.world_file import require_world, write_world
-
-        models = Models(Path(settings.models) if settings.models else None, Path(settings.data))
-        require_world(Path(settings.world), models, _robot(settings))
-        write_world(Path(settings.world), models, _world_shapes(settings))
-    elif settings.sim and settings.robot is not None:
-        from semmap.nodes.sim_node.robots.robot import read
-
-        read(Path(settings.robot))
-    if settings.models is not None or _own_shapes(settings).is_file():
-        from semmap.nodes.sim_node.models.write_shapes import write_own
-
-        Path(settings.data).mkdir(parents=True, exist_ok=True)
-        write_own(None if settings.models is None else Path(settings.models), _own_shapes(settings))
+    _read_world(settings)
     if settings.reset_world:
         reset_world(settings)
     if "kb_node" not in settings.nodes:
@@ -88,6 +73,33 @@ def seed(settings: Settings) -> None:
         fresh=settings.fresh,
     )
     print(summary)
+
+
+def _read_world(settings: Settings) -> None:
+    """Validate the world and the robot, and write the shapes of the world's bodies and of the models."""
+    has_own_world = settings.sim and Path(settings.world) not in (FLAT_WORLD, EMPTY_WORLD)
+    if settings.sim and settings.robot is not None and not has_own_world:
+        from semmap.nodes.sim_node.robots.robot import read
+
+        read(Path(settings.robot))
+    if not has_own_world and settings.models is None and not _own_shapes(settings).is_file():
+        return
+    from semmap.nodes.runtime.isolated_process import limited
+    from semmap.nodes.sim_node.models.model_reader import ModelReader
+    from semmap.nodes.sim_node.models.sources import Models
+    from semmap.nodes.sim_node.models.write_shapes import write_own
+    from semmap.nodes.sim_node.world_file import require_world, write_world
+
+    folder = None if settings.models is None else Path(settings.models)
+    with ModelReader() as reader:
+        if has_own_world:
+            models = Models(folder, Path(settings.data), reader)
+            with limited():
+                require_world(Path(settings.world), models, _robot(settings))
+                write_world(Path(settings.world), models, _world_shapes(settings))
+        if folder is not None or _own_shapes(settings).is_file():
+            Path(settings.data).mkdir(parents=True, exist_ok=True)
+            write_own(folder, _own_shapes(settings), reader)
 
 
 def reset_world(settings: Settings) -> None:
@@ -254,6 +266,11 @@ def main(argv: list[str]) -> int:
     except errors.SemmapError as error:
         print(f"{name}: {error.text}", file=sys.stderr, flush=True)
         return error.exit_status
+    except MemoryError:
+        if name != "seed":
+            raise
+        print("seed: the world or the TBox needs too much memory to read; use smaller files", file=sys.stderr)
+        return errors.BadFile.exit_status
     return 0
 
 

@@ -304,7 +304,8 @@ class _Foreground:
         """Report files in `--models` that no class uses, and features of models that are not supported."""
         if self._settings.models is None or not self._settings.sim:
             return
-        from semmap.nodes.sim_node.models.sources import ignored_files  # and with it MuJoCo
+        from semmap.nodes.sim_node.models.model_reader import ModelReader  # and with it MuJoCo
+        from semmap.nodes.sim_node.models.sources import ignored_files
         from semmap.nodes.sim_node.models.write_shapes import own_notes
 
         folder = Path(self._settings.models)
@@ -317,8 +318,9 @@ class _Foreground:
             if strange := ignored_files(folder, names):
                 message = f"ignored, because no class has a model with this name: {', '.join(strange)}"
                 self._say(f"{'models':<{_COLUMN}} {message}")
-            for note in own_notes(folder, names):
-                self._say(f"{'models':<{_COLUMN}} {note}")
+            with ModelReader() as reader:
+                for note in own_notes(folder, names, reader):
+                    self._say(f"{'models':<{_COLUMN}} {note}")
 
     def _print_summary(self) -> None:
         usual = self._settings.reachable == bus.DEFAULT_ENDPOINT

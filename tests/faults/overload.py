@@ -6,16 +6,21 @@ import contextlib
 import threading
 import time
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 
 import zenoh
 
 from semmap.nodes import bus
-from semmap.schemas import codec, keys
+from semmap.ontology import vocabulary as v
+from semmap.schemas import codec, errors, keys
+from semmap.schemas.commands import Load
 from semmap.schemas.replies import Ack
 from tests.faults.ground import Ground, free_place, wait_for
 from tests.faults.table import Fault
 
 _PUTS = 5000
+_RESTRICTIONS = 3000
+"""Too many to be closed within the limit of time."""
 _STATUS_S = 5.0
 """Longest time of `status` on an overloaded machine."""
 
@@ -61,6 +66,27 @@ def flood_of_puts(ground: Ground) -> None:
         assert set(Counter(acks.values())) <= {"done", "busy"}
 
 
+def many_axioms(ground: Ground) -> None:
+    """A file of restrictions, whose pairs are all compared, is rejected; queries are answered meanwhile."""
+    axioms = "".join(
+        f"<http://o#A{n}> rdfs:subClassOf [ a owl:Restriction ; owl:onProperty <http://o#p> ;"
+        f" owl:someValuesFrom <http://o#A{n + 1}> ] .\n"
+        for n in range(_RESTRICTIONS)
+    )
+    content = f"@prefix owl: <{v.OWL}> . @prefix rdfs: <{v.RDFS}> .\n{axioms}".encode()
+    with ground.client() as loading, ground.client() as client, ThreadPoolExecutor(1) as thread:
+        loaded = thread.submit(loading.send, Load(content=content, filename="axioms.ttl"))
+        began_s = time.monotonic()
+        while not loaded.done():
+            asked_s = time.monotonic()
+            client.sparql("SELECT ?thing { ?thing a dm:Cup } LIMIT 1")
+            client.status()
+            assert time.monotonic() - asked_s < _STATUS_S, "queries are answered during a load"
+            time.sleep(0.1)
+        ground.observed_s += time.monotonic() - began_s
+        assert isinstance(loaded.exception(), errors.BadFile), loaded
+
+
 def _gaps(acks: dict[str, str], who: str) -> list[range]:
     """Return the numbers of the puts without acknowledgement."""
     gaps: list[range] = []
@@ -78,4 +104,7 @@ def _session(ground: Ground) -> contextlib.AbstractContextManager[bus.Session]:
     return bus.open_session(bus.Network(connect=(ground.endpoint,)))
 
 
-OVERLOADS: tuple[Fault, ...] = (Fault("10 000 puts from two senders", flood_of_puts, often=3, in_short=0),)
+OVERLOADS: tuple[Fault, ...] = (
+    Fault("10 000 puts from two senders", flood_of_puts, often=3, in_short=0),
+    Fault("a file of many axioms", many_axioms, often=1),
+)

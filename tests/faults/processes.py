@@ -9,16 +9,18 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 
 import psutil
 
 from semmap.nodes.supervisor.control import Supervisor
-from tests.faults.ground import Ground, wait_for
+from tests.faults.ground import PATIENCE_S, Ground, wait_for
 from tests.faults.table import Fault
 
 NOTICED_S = 5.0
+_QUERY = "SELECT ?thing { ?thing a dm:Cup } LIMIT 1"
 ALL = ("--abox", "none", "--world", "empty")
 
 
@@ -52,6 +54,41 @@ def kill_supervisord(ground: Ground) -> None:
     assert up.wait(30) not in (0, None)
     _require_gone(pids)
     ground.start()
+
+
+def stop_supervisord(ground: Ground) -> None:
+    """The same if it hangs."""
+    pids, up = all_pids_of(ground.data), ground.system.process
+    os.kill(_supervisord(ground), signal.SIGSTOP)
+    assert up.wait(60) not in (0, None)
+    _require_gone({**pids, "supervisord": _supervisord(ground)})
+    ground.start()
+
+
+def stop_sparql(ground: Ground) -> None:
+    """Changes and `status` go on, and the query that waits is answered when the process continues."""
+    with ground.client() as client, ThreadPoolExecutor(1) as thread:
+        client.sparql(_QUERY)
+        kb_node = psutil.Process(all_pids_of(ground.data)["kb_node"])
+        stopped = [p for p in kb_node.children(recursive=True) if "semmap.nodes.kb_node.sparql" in _words(p)]
+        assert stopped
+        try:
+            for process in stopped:
+                process.suspend()
+            waiting = thread.submit(client.sparql, _QUERY)
+            seen = len(ground.load.added)
+            ground.observe(NOTICED_S)
+            assert len(ground.load.added) > seen
+            assert ground.nodes()["kb_node"].pid == kb_node.pid
+            assert not waiting.done()
+        finally:
+            for process in stopped:
+                process.resume()
+        assert waiting.result(PATIENCE_S).rows
+
+
+def _words(process: psutil.Process) -> str:
+    return " ".join(process.cmdline())
 
 
 def kill_up(ground: Ground) -> None:
@@ -149,6 +186,8 @@ PROCESSES = (
     Fault("recorder stopped", _of(stop, "recorder"), words=ALL),
     Fault("semmap up stopped for 10 s", stop_up, often=1),
     Fault("supervisord killed", kill_supervisord, often=2, in_short=1),
+    Fault("supervisord stopped", stop_supervisord, often=1),
+    Fault("SPARQL process stopped", stop_sparql, often=2),
     Fault("semmap up killed", kill_up, often=2),
     Fault("semmap up killed while kb_node hangs, then up", kill_up_and_start_at_once, often=2),
     Fault("everybody above killed while kb_node hangs, then down", kill_everybody_above_and_go_down, often=1),

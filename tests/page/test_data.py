@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import time
 import uuid
 import xml.etree.ElementTree as ET
 
 from semmap.commands import Add, Remove
+from semmap.nodes import bus
+from semmap.schemas import codec, keys
+from semmap.schemas.health import Health
 from tests.conftest import until
 
 DM = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#"
@@ -126,18 +130,42 @@ def test_plan_graph_check_and_nodes_are_shown(tab):
     tab.get_by_text("consistent (").wait_for()
 
 
-def test_markup_in_labels_is_text_everywhere(tab, system):
-    name = fresh("cup")
+def test_markup_is_text_everywhere(tab, system):
+    """In labels, properties, reasons, names of clients and forged heartbeats."""
+    name, room = fresh("cup"), fresh("room")
     markup = "<img src=x onerror=\"document.title='run'\"><script>document.title='run'</script>"
     with system.client() as client:
-        client.send(Add(class_="Cup", name=name, at=(2.0, 3.0, 1.0), ref=markup))
-        for panel in ("Graph", "Plan", "System", "SPARQL"):
+        by = {"agent": markup, "reason": markup}
+        size = (3.0, 3.0, 2.5)
+        client.send(Add(class_="Kitchen", name=room, at=(20.0, 3.0, 0.0), size=size, ref=markup, **by))
+        client.send(Add(class_="Cup", name=name, at=(20.0, 3.0, 0.0), ref=markup, alt=(markup,), **by))
+        _forge_heartbeat(system, markup)
+        for panel in ("Graph", "Plan", "Check", "Files", "History", "System"):
             turn_to(tab, panel)
+        tab.get_by_role("row", name=markup).first.wait_for()
+        turn_to(tab, "SPARQL")
         written = "?thing dm:hasPreferredReference ?r . ?r dm:lexicalReference ?text"
         write_query(tab, f"SELECT ?thing ?text {{ {written} FILTER(CONTAINS(?text, 'onerror')) }}")
         tab.get_by_role("button", name="Run").click()
-        tab.get_by_role("cell", name="<img src=x").click()
+        tab.get_by_role("cell", name="<img src=x").first.click()
         tab.locator(".semmap-heading").get_by_text("<img src=x").wait_for()
-        client.send(Remove(names=(name,)))
+        client.send(Remove(names=(name, room)))
     assert tab.title() == "semmap"
     assert tab.locator("img[src=x]").count() == 0
+
+
+def _forge_heartbeat(system, text):
+    """Publish a heartbeat of the recorder, which this system does not have, with a text in each field."""
+    beat = Health(
+        node="recorder",
+        host=text,
+        pid=1,
+        started_ns=1,
+        stamp_ns=time.time_ns(),
+        state="ready",
+        detail=text,
+        last_error=text,
+        notes=(text,),
+    )
+    with bus.open_session(bus.Network(connect=(system.endpoint,))) as session:
+        session.put(keys.health_key("recorder"), codec.encode(beat))

@@ -1,37 +1,21 @@
 """The process that parses documents and closes TBoxes, within limits of memory and time.
 
-Started as `python -m semmap.nodes.kb_node.documents.parser_process`. It serves one request after another, and
-ends when its connection is closed.
+`isolated_parser.py` starts it.
 """
 
 from __future__ import annotations
 
-import math
-import os
-import resource
-import signal
-import sys
-import time
 from array import array
-from contextlib import suppress
-from multiprocessing.connection import Connection
-from pathlib import Path
-from typing import Final
 
 from msgspec import Struct, msgpack
 
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.explanations import Explanation
 from semmap.nodes.kb_node.reasoner.rules.facts import pack
+from semmap.nodes.runtime.isolated_process import serve
 from semmap.schemas import errors
 from semmap.schemas.explanations import Triple
-
-CPU_S: Final = 300.0
-"""Time limit of a request [s of CPU time]."""
-MEMORY_BYTES: Final = max(1 << 30, os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2)
-"""Limit of the memory of the process."""
-OUT_OF_MEMORY: Final = 77
-"""The exit status after a failed allocation that Python noticed."""
 
 
 class Request(Struct, frozen=True, tag=True):
@@ -75,37 +59,17 @@ class ClosureRequest(Struct, frozen=True, tag=True):
 
 
 class ClosureReply(Struct, frozen=True, tag=True):
-    """The closure, packed, or b"" if the TBox is inconsistent or not processed separately."""
+    """The closure, packed; b"" if it is not computed separately, or if the TBox is inconsistent."""
 
-    packed: bytes
-
-
-def serve(connection: Connection) -> None:
-    """Parse documents within the limits until the connection is closed."""
-    _limit_process()
-    try:
-        while True:
-            request = msgpack.decode(connection.recv_bytes(), type=Request | ClosureRequest)
-            connection.send_bytes(msgpack.encode(_answer(request)))
-    except EOFError:
-        pass
-    except MemoryError:
-        sys.exit(OUT_OF_MEMORY)
+    packed: bytes = b""
+    clash: Explanation | None = None
+    """Why the TBox is inconsistent."""
 
 
-def _limit_process() -> None:
-    """Limit the memory, write no core file, and let the kernel end this process before others."""
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    with suppress(OSError):  # only Linux has it
-        Path("/proc/self/oom_score_adj").write_text("1000")
-
-
-def _answer(request: Request | ClosureRequest) -> Reply | ClosureReply:
-    _, most = resource.getrlimit(resource.RLIMIT_CPU)
-    resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(time.process_time() + CPU_S), most))
-    return _parse(request) if isinstance(request, Request) else _close(request)
+def answer(content: bytes) -> bytes:
+    """Return the encoded reply to an encoded request."""
+    request = msgpack.decode(content, type=Request | ClosureRequest)
+    return msgpack.encode(_parse(request) if isinstance(request, Request) else _close(request))
 
 
 def _parse(request: Request) -> Reply:
@@ -118,10 +82,10 @@ def _parse(request: Request) -> Reply:
 def _close(request: ClosureRequest) -> ClosureReply:
     try:
         closed = Reasoner(request.triples).closed
-    except Inconsistent:
-        closed = None
-    return ClosureReply(b"" if closed is None else pack(closed))
+    except Inconsistent as error:
+        return ClosureReply(clash=error.explanation)
+    return ClosureReply() if closed is None else ClosureReply(pack(closed))
 
 
 if __name__ == "__main__":
-    serve(Connection(int(sys.argv[1])))
+    serve(answer)

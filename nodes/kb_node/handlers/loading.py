@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 import uuid
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from concurrent.futures import Future, ThreadPoolExecutor, wait
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import nullcontext
 from functools import partial
 from typing import Final, TypeVar
 
@@ -13,7 +14,7 @@ from semmap.nodes.kb_node.answers import dry_runs
 from semmap.nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf
 from semmap.nodes.kb_node.documents.isolated_parser import IsolatedParser
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
-from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, Report, ReportProgress, effects
+from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, ReportProgress, effects
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.semantic_map import SemanticMap
@@ -33,10 +34,9 @@ _MOST_READ: Final = 8
 """Documents that are read in the other process, or wait for it."""
 _AGAIN_S: Final = 5.0
 _MANY_AXIOMS: Final = 1000
-"""Triples of a map document with axioms that are applied without a trial."""
+"""Axioms of a map document whose closure the node computes itself."""
 _AXIOMS_S: Final = 30.0
-"""Time limit of the trial, during which the node serves no other requests."""
-_BEAT_S: Final = 0.2
+"""Time limit of the closure of more axioms."""
 _Progress = Callable[[int], None]
 T = TypeVar("T")
 
@@ -113,40 +113,64 @@ class LoadHandlers:
         self._aside.submit(work).add_done_callback(lambda done: self._run_soon(lambda: finish(done)))
         return loaded
 
-    def _load(self, load: LoadDocument, read: Callable[[_Progress], rdf.Document]) -> Loaded:
-        """Commit the document that `read(progress)` returns."""
+    def _load(
+        self,
+        load: LoadDocument,
+        read: Callable[[_Progress], rdf.Document],
+        closed: frozenset[Triple] = frozenset(),
+    ) -> Loaded | Future[Loaded]:
+        """Commit the document that `read(progress)` returns. `closed` are axioms whose closure is known."""
         before = self._map.seq
         try:
-            return self._commit_document(load, read)
+            return self._commit_document(load, read, closed)
         finally:
             if self._map.seq == before:
                 self._sparql.discard_prepared()
 
-    def _require_quick_axioms(self, triples: Iterable[Triple], filename: str, report: Report) -> None:
-        """Try very many axioms of a map document in another process. Raises BadFile if that takes long.
+    def _axioms_after(self, load: LoadDocument, triples: Iterable[Triple]) -> frozenset[Triple] | None:
+        """Return the axioms of the map with a document, or None if it does not add very many."""
+        axioms = self._map.reasoner.axioms
+        kept = axioms & self._map.tbox if load.replace else axioms
+        after = kept.union(filter(is_schema, triples))
+        return after if len(after) - len(kept) > _MANY_AXIOMS else None
 
-        The map must then be computed again with them, on the thread of the node.
+    def _load_with_axioms(
+        self, load: LoadDocument, document: rdf.Document, axioms: frozenset[Triple]
+    ) -> Future[Loaded]:
+        """Commit a document after another process has computed the closure of the axioms with it.
+
+        The map is then computed again with them, on the thread of the node, but that takes much less time.
         """
-        axioms = {triple for triple in triples if is_schema(triple)}.difference(self._map.tbox)
-        if len(axioms) <= _MANY_AXIOMS:
-            return
-        try:
-            with IsolatedParser(wall_s=_AXIOMS_S) as trial, ThreadPoolExecutor(1) as thread:
-                trying = thread.submit(trial.close_tbox, [*self._map.tbox, *axioms], filename)
-                while not wait([trying], _BEAT_S).done:
-                    report(f"{len(axioms):,} axioms to try")
-                trying.result()
-        except errors.BadFile:
-            raise errors.BadFile(
-                f"{filename or 'the file'}: its {len(axioms):,} axioms take too long to apply with a map;"
-                " to load them into the TBox use --tbox --extend"
-            ) from None
 
-    def _commit_document(self, load: LoadDocument, read: Callable[[_Progress], rdf.Document]) -> Loaded:
+        def close() -> Facts | None:
+            try:
+                known = axioms.union(self._map.tbox)  # its labels are in explanations
+                return self._parser.close_tbox(known, load.filename, wall_s=_AXIOMS_S)
+            except errors.BadFile:
+                added = len(axioms.difference(self._map.tbox))
+                raise errors.BadFile(
+                    f"{load.filename or 'the file'}: its {added:,} axioms take too long to apply with a map;"
+                    " to load them into the TBox use --tbox --extend"
+                ) from None
+
+        def commit(closed: Facts | None) -> Loaded | Future[Loaded]:
+            known = nullcontext() if closed is None else self._map.reasoner.knowing(axioms, closed)
+            with known:
+                return self._load(load, lambda _: document, axioms)
+
+        return self._run_aside(close, commit)
+
+    def _commit_document(
+        self, load: LoadDocument, read: Callable[[_Progress], rdf.Document], closed: frozenset[Triple]
+    ) -> Loaded | Future[Loaded]:
         with self._report_progress(f"loading {load.filename or 'a file'}") as report:
-            triples = read(lambda count: report(f"{count:,} triples read")).triples
+            document = read(lambda count: report(f"{count:,} triples read"))
+            axioms = self._axioms_after(load, document.triples)
+            if axioms is not None and axioms != closed:
+                return self._load_with_axioms(load, document, axioms)
+            triples = document.triples
+            del document
             report(f"{len(triples):,} triples to check and write")
-            self._require_quick_axioms(triples, load.filename, report)
             transaction, filtered, replaced = document_change.make_document_transaction(
                 self._map, load, triples
             )
@@ -215,7 +239,7 @@ class LoadHandlers:
                 return self._load_tbox(load, document)
             return self._replace_tbox(load, lambda: self._map.replace_tbox(transaction, tbox, closed=closed))
 
-        return self._run_aside(partial(self._parser.close_tbox, tbox, load.filename), replace)
+        return self._run_aside(partial(self._parser.close_tbox, tbox, load.filename, of="the TBox"), replace)
 
     def _replace_tbox(self, load: LoadTBox, replace: Callable[[], Commit]) -> Loaded:
         noted: list[str] = []

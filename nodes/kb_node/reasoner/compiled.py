@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Container, Iterable, Iterator, Sequence, Set
+from collections.abc import Collection, Container, Iterable, Iterator, Sequence, Set
 from itertools import chain
 
 from semmap.nodes.kb_node.reasoner.abox.abox import ABox
@@ -96,6 +96,11 @@ class CompiledEngine:
     def words(self) -> Words:
         """The words for terms in sentences."""
         return self._prover.words
+
+    @property
+    def axioms(self) -> Collection[Triple]:
+        """The asserted triples of the schema."""
+        return self._schema_triples
 
     @property
     def closed(self) -> Facts:

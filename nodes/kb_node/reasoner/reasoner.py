@@ -60,6 +60,8 @@ class Reasoner:
         rules are applied to every change, even if its consequences are known from a similar one.
         """
         self._fast = fast
+        self._closures: dict[frozenset[Triple], Facts] = {}
+        """Known closures of schemas, by their axioms."""
         self._engine: CompiledEngine | GeneralEngine = _engine_for(tbox, closed, scattered, fast)
         self._suppressed = SuppressedFacts()
 
@@ -95,6 +97,26 @@ class Reasoner:
     def closed(self) -> Facts | None:
         """The closure of the schema; None if the schema is not processed separately."""
         return self._engine.closed if isinstance(self._engine, CompiledEngine) else None
+
+    @property
+    def axioms(self) -> frozenset[Triple]:
+        """The asserted triples of the schema."""
+        if isinstance(self._engine, CompiledEngine):
+            return frozenset(self._engine.axioms)
+        return frozenset(filter(is_schema, self.asserted()))
+
+    @contextmanager
+    def knowing(self, axioms: frozenset[Triple], closed: Facts) -> Iterator[None]:
+        """Use `closed` as the closure of the schema whenever it has exactly these axioms, in this context.
+
+        Computing a closure takes most of the time of a change of the schema. That of the schema before is
+        kept meanwhile, for a rollback.
+        """
+        self._closures[axioms] = closed
+        try:
+            yield
+        finally:
+            self._closures.clear()
 
     def columns(self, schema: Container[Triple] | None = None) -> Columns | None:
         """Return the ABox with its conclusions as columns; None if columns cannot represent it.
@@ -195,8 +217,12 @@ class Reasoner:
         for triple in remove:
             computed.pop(triple, None)
         computed.update(dict.fromkeys(add))
-        engine = _engine_for(after, scattered=True, fast=self._fast, computed=computed)
+        known = self._closures if self.closed is None else {**self._closures, self.axioms: self.closed}
+        closed = known.get(frozenset(filter(is_schema, after)))
+        engine = _engine_for(after, closed, scattered=True, fast=self._fast, computed=computed)
         old, self._engine = self._engine, engine
+        if self._closures:
+            self._closures = known
         individuals = {s for s, _, _ in (*before, *after)} | {o for _, _, o in (*before, *after)}
         touched = {s for s, _, _ in before.keys() ^ after.keys()}
         touched |= {term for term in individuals if old.types(term) != engine.types(term)}

@@ -19,6 +19,7 @@ from semmap.nodes.kb_node.storage import closure_cache
 from semmap.nodes.kb_node.storage.existing_map import describe_existing_map
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 from semmap.nodes.kb_node.storage.journal.sqlite_file import InUse
+from semmap.nodes.runtime.isolated_process import limited
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors, wording
 from semmap.schemas.commits import Transaction
@@ -48,11 +49,12 @@ def seed(
         return notice  # an unreadable journal is reported before anything starts
     tboxes = (tbox,) if isinstance(tbox, Path) else tuple(tbox)
     name = ", ".join(map(str, tboxes))
-    gathered = ontology_files.gather(tboxes, imports)
-    tbox_triples = tbox_declarations.with_declarations(
-        gathered.triples, of_file=gathered.prefixes, spatial_root=spatial_root, files=tboxes
-    )
-    reasoner = tbox_validation.compile_tbox(tbox_triples, name)
+    with limited():
+        gathered = ontology_files.gather(tboxes, imports)
+        tbox_triples = tbox_declarations.with_declarations(
+            gathered.triples, of_file=gathered.prefixes, spatial_root=spatial_root, files=tboxes
+        )
+        reasoner = tbox_validation.compile_tbox(tbox_triples, name)
     closed = reasoner.closed  # before the ABox may add to the schema
     abox_triples = [
         (v.ABOX_ONTOLOGY, v.RDF_TYPE, v.OWL_ONTOLOGY),

@@ -25,13 +25,14 @@ from semmap.nodes.sim_node.models.parts import (
     mesh,
     rotation_matrix,
 )
+from semmap.nodes.sim_node.models.readable import LARGEST_FILE_BYTES
 from semmap.nodes.sim_node.physics import build
 
 MESHES = (".obj", ".stl", ".glb")
 SUFFIXES = (".xml", *MESHES)
 
 _GREY: Colour = (0.66, 0.66, 0.68)
-_LARGEST_FILE_BYTES = 64 << 20
+_MOST_PARTS = 2000
 
 
 @lru_cache(maxsize=256)
@@ -42,10 +43,12 @@ def read_model(path: Path, size_m: Vec3 | None, version: int) -> Model:
     collides as its hull, and has the default density. Raises ModelError, OSError.
     """
     check_size(size_m)
-    if path.stat().st_size > _LARGEST_FILE_BYTES:
-        raise ModelError(f"model file {path} is larger than {_LARGEST_FILE_BYTES >> 20} MB")
+    if path.stat().st_size > LARGEST_FILE_BYTES:
+        raise ModelError(f"model file {path} is larger than {LARGEST_FILE_BYTES >> 20} MB")
     try:
         parts, density, notes = _read_meshes(path) if path.suffix in MESHES else read_mjcf(path)
+        if len(parts) > _MOST_PARTS:
+            raise ModelError(f"it has {len(parts):,} geoms, and a model has {_MOST_PARTS:,} at most")
         if all(part.role is Role.VISUAL for part in parts):
             raise ModelError("it contains no colliding geometry")
         if size_m is not None:

@@ -14,6 +14,7 @@ from semmap.nodes.sim_node.models.library import ModelError
 from semmap.schemas.nesting import NotWellFormed, require_shallow_xml
 
 _FOLDERS = ("meshdir", "texturedir", "assetdir")
+LARGEST_FILE_BYTES = 64 << 20
 _DEEPEST = 20
 """Maximum number of files that include one another."""
 
@@ -40,6 +41,8 @@ def require_references(path: Path, roots: Sequence[Path]) -> None:
     for depth, file in enumerate(files):  # the list grows in the loop
         if depth > _DEEPEST:
             raise ModelError(f"model file {path} includes more than {_DEEPEST} files")
+        if file.stat().st_size > LARGEST_FILE_BYTES:
+            raise ModelError(f"model file {file} is larger than {LARGEST_FILE_BYTES >> 20} MB")
         content = file.read_bytes()
         try:
             require_shallow_xml(content)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +12,9 @@ from semmap.nodes.sim_node.models.model_files import MESHES, SUFFIXES, read_mode
 from semmap.nodes.sim_node.models.parts import Vec3
 from semmap.nodes.sim_node.models.readable import require_readable, require_references
 from semmap.schemas.errors import did_you_mean
+
+ReadModel = Callable[[Path, Vec3 | None, int], Model]
+"""Returns the model in a file at a size [m] or its own; the last argument identifies the file's content."""
 
 
 @dataclass(frozen=True)
@@ -26,6 +29,8 @@ class Models:
     folder: Path | None = None
     data: Path | None = None
     """The data folder of the system."""
+    read: ReadModel = read_model
+    """Reads a model file in this process; `ModelReader` does in another."""
 
     def __call__(self, name: str, size_m: Vec3 | None) -> Model:
         """Return the model `name` at `size_m`, or at its own size."""
@@ -37,7 +42,7 @@ class Models:
         try:
             if path.suffix not in MESHES:
                 require_references(path, roots)
-            return read_model(path, size_m, path.stat().st_mtime_ns)
+            return self.read(path, size_m, path.stat().st_mtime_ns)
         except OSError as error:
             raise ModelError(f"cannot read model file {path}: {error.strerror}") from None
 

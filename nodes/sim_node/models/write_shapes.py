@@ -14,8 +14,8 @@ import msgspec
 from msgspec import structs
 
 from semmap.nodes.sim_node.models.library import ModelError, build
-from semmap.nodes.sim_node.models.model_files import SUFFIXES
-from semmap.nodes.sim_node.models.sources import Models, is_one_of
+from semmap.nodes.sim_node.models.model_files import SUFFIXES, read_model
+from semmap.nodes.sim_node.models.sources import Models, ReadModel, is_one_of
 from semmap.nodes.sim_node.models.spaces import shape_of
 from semmap.nodes.sim_node.models.variety_table import KINDS, VARIETIES
 from semmap.ontology import MODEL_SHAPES_JSON
@@ -32,12 +32,12 @@ def library_shapes() -> dict[str, ModelShape]:
     return found
 
 
-def own_shapes(folder: Path) -> dict[str, ModelShape]:
-    """Return the shapes of the model files in a folder, by possible names in a TBox.
+def own_shapes(folder: Path, read: ReadModel = read_model) -> dict[str, ModelShape]:
+    """Return the shapes of the model files in a folder, by possible names in a TBox; `read` reads a file.
 
     An invalid file has none; the simulator reports the reason when it uses it.
     """
-    models = Models(folder)
+    models = Models(folder, read=read)
     found: dict[str, ModelShape] = {}
     for path in sorted(folder.iterdir()):
         if path.suffix not in SUFFIXES:
@@ -51,12 +51,12 @@ def own_shapes(folder: Path) -> dict[str, ModelShape]:
     return found
 
 
-def own_notes(folder: Path, names: Collection[str]) -> list[str]:
+def own_notes(folder: Path, names: Collection[str], read: ReadModel = read_model) -> list[str]:
     """Return notes on the model files in a folder: what is omitted or does not move, one line per file.
 
-    `names` are the classes' models; other files are ignored.
+    `names` are the classes' models; other files are ignored. `read` reads a file.
     """
-    models = Models(folder)
+    models = Models(folder, read=read)
     told: list[str] = []
     for path in sorted(folder.iterdir()):
         if is_one_of(path, names):
@@ -66,12 +66,12 @@ def own_notes(folder: Path, names: Collection[str]) -> list[str]:
     return told
 
 
-def write_own(folder: Path | None, target: Path) -> None:
-    """Write the shapes of the models in a folder; without a folder there are none."""
+def write_own(folder: Path | None, target: Path, read: ReadModel = read_model) -> None:
+    """Write the shapes of the models in a folder; without a folder there are none. `read` reads a file."""
     if folder is None:
         target.unlink(missing_ok=True)
     else:
-        target.write_text(as_json(own_shapes(folder)))
+        target.write_text(as_json(own_shapes(folder, read)))
 
 
 def as_json(shapes: dict[str, ModelShape]) -> str:

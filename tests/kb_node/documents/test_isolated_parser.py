@@ -2,7 +2,6 @@
 
 import os
 import signal
-import sys
 
 import pytest
 
@@ -74,43 +73,6 @@ def test_the_closure_of_a_tbox_is_that_of_a_reasoner(parser):
     assert closed.facts == Reasoner(tbox).closed.facts
     assert Reasoner(tbox, closed=closed).closed.facts == closed.facts
     nothing = [("<a:C>", "<http://www.w3.org/2002/07/owl#differentFrom>", "<a:C>")]
-    assert parser.close_tbox([*tbox, *nothing], "x") is None
-
-
-RECEIVE = """
-import os, signal, sys
-from multiprocessing.connection import Connection
-connection = Connection(int(sys.argv[1]))
-connection.recv_bytes()
-"""
-
-
-@pytest.mark.process
-@pytest.mark.parametrize(
-    ("end", "text"),
-    [
-        ("os.kill(os.getpid(), signal.SIGSEGV)", "x cannot be read: it ended the parser .status -11."),
-        ("os.kill(os.getpid(), signal.SIGABRT)", r"x needs more than \d+ MB of memory"),
-        ("os.kill(os.getpid(), signal.SIGXCPU)", r"x takes longer than \d+ s to read"),
-        ("signal.pause()", r"x takes longer than \d+ s to read"),
-    ],
-)
-def test_a_document_that_ends_its_process_is_rejected(end, text):
-    parser = IsolatedParser([sys.executable, "-c", RECEIVE + end], wall_s=1.0)
-    with parser, pytest.raises(errors.BadFile, match=text):
-        parser.read(FUNCTIONAL, "x")
-
-
-@pytest.mark.process
-def test_a_process_that_needs_more_memory_or_time_than_its_limit_ends():
-    program = (
-        "from semmap.nodes.kb_node.documents import parser_process as p, rdf\n"
-        "import sys\nfrom multiprocessing.connection import Connection\n"
-        "p.MEMORY_BYTES, p.CPU_S = 1 << 30, 1\n"
-        "def read(content, *_, **__):\n    {}\n"
-        "rdf.read = read\np.serve(Connection(int(sys.argv[1])))\n"
-    )
-    for work, text in (("x = bytearray(2 << 30)", "memory"), ("while True: pass", "takes longer")):
-        parser = IsolatedParser([sys.executable, "-P", "-c", program.format(work)])
-        with parser, pytest.raises(errors.BadFile, match=text):
-            parser.read(FUNCTIONAL, "x")
+    with pytest.raises(errors.Inconsistent, match="the TBox is inconsistent: ") as found:
+        parser.close_tbox([*tbox, *nothing], "x", of="the TBox")
+    assert found.value.explanation.support == tuple(nothing)

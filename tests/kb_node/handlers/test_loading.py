@@ -3,11 +3,13 @@
 from contextlib import nullcontext
 
 import pytest
+from msgspec import structs
 
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.handlers import loading as handlers_loading
 from semmap.nodes.kb_node.handlers.changes import ChangeHandlers
 from semmap.nodes.kb_node.handlers.loading import LoadHandlers
+from semmap.nodes.kb_node.reasoner.rules import closure
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -65,17 +67,40 @@ def test_a_load_counts_described_entities_and_not_those_with_changed_inferences(
     assert said[-1] == f"loading apple.nt: {len(star)} triples to check and write"
 
 
+SOME = "<http://o#A{}> rdfs:subClassOf [ a owl:Restriction ; owl:onProperty <http://o#p> ; {} ] ."
+HEAD = f"@prefix owl: <{v.OWL}> . @prefix rdfs: <{v.RDFS}> .\n"
+
+
+def restrictions(count):
+    """Return a load of restrictions of one property: every pair is compared."""
+    axioms = "\n".join(SOME.format(n, f"owl:someValuesFrom <http://o#A{n + 1}>") for n in range(count))
+    return LoadDocument(
+        id=str(count),
+        source="file",
+        content=(HEAD + axioms).encode(),
+        filename="f.ttl",
+        replace=False,
+        skip_unknown=False,
+    )
+
+
+@pytest.mark.process
+def test_very_many_axioms_are_closed_in_another_process(flat, monkeypatch):
+    monkeypatch.setattr(closure.Closure, "insert", None)  # in this process
+    loads = loading(flat, [])
+    for dry_run in (True, False):
+        loaded = loads.on_load(structs.replace(restrictions(260), dry_run=dry_run)).result(60)
+        assert flat.seq == (1 if dry_run else 2)
+    loads.close()
+    assert loaded.commit.seq == 2
+    assert len(flat.reasoner.axioms.difference(flat.tbox)) == 4 * 260
+
+
 @pytest.mark.process
 def test_axioms_that_take_long_are_rejected_with_a_map(flat, monkeypatch):
-    """Every pair of restrictions of a property is compared."""
     monkeypatch.setattr(handlers_loading, "_AXIOMS_S", 1.0)
-    some = "<http://o#A{}> rdfs:subClassOf [ a owl:Restriction ; owl:onProperty <http://o#p> ; {} ] ."
-    axioms = "\n".join(some.format(n, f"owl:someValuesFrom <http://o#A{n + 1}>") for n in range(2000))
-    head = f"@prefix owl: <{v.OWL}> . @prefix rdfs: <{v.RDFS}> .\n"
-    content = (head + axioms).encode()
-    load = LoadDocument(
-        id="1", source="file", content=content, filename="f.ttl", replace=False, skip_unknown=False
-    )
+    loads = loading(flat, [])
     with pytest.raises(errors.BadFile, match=r"f\.ttl: its 8,000 axioms take too long .* --tbox --extend"):
-        loading(flat, []).on_load(load)
+        loads.on_load(restrictions(2000)).result(60)
+    loads.close()
     assert flat.seq == 1

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import signal
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import click
@@ -17,7 +19,9 @@ from semmap.nodes.extern.cli.ontology_options import (
 )
 from semmap.nodes.extern.cli.output import show_tbox
 from semmap.nodes.runtime import extras
+from semmap.nodes.runtime.isolated_process import CPU_S, limited
 from semmap.schemas import errors
+from semmap.schemas.tbox_report import TBoxReport
 
 
 @group(example="semmap tbox check household.ttl")
@@ -44,10 +48,26 @@ def check(
         require_there(file)
     from semmap.nodes.kb_node.documents.tbox.tbox_check import check as check_files
 
-    report = check_files(files, dict(imports), spatial_root)
+    report = _check_limited(lambda: check_files(files, dict(imports), spatial_root))
     if format == "json":
         print_json(report)
     else:
         print_lines(show_tbox.report(report))
     if not report.is_sound:
         sys.exit(errors.Inconsistent.exit_status)
+
+
+def _check_limited(check: Callable[[], TBoxReport]) -> TBoxReport:
+    """Return the report of `check`. Raises BadFile if it takes too much time or memory."""
+
+    def end(*_: object) -> None:
+        raise errors.BadFile(f"checking the ontology takes longer than {CPU_S:g} s; check parts of it")
+
+    before = signal.signal(signal.SIGXCPU, end)
+    try:
+        with limited():
+            return check()
+    except MemoryError:
+        raise errors.BadFile("checking the ontology needs too much memory; check parts of it") from None
+    finally:
+        signal.signal(signal.SIGXCPU, before)

@@ -43,14 +43,18 @@ class RateHistory:
         self._before: tuple[float, int, int, dict[int, float]] | None = None
 
     def is_due(self, now_s: float) -> bool:
-        """Return whether the next sample is due."""
-        return self._before is None or now_s - self._before[0] >= EVERY_S
+        """Return whether the next sample is due. It is when the clock was set back, too."""
+        return self._before is None or not 0.0 <= now_s - self._before[0] < EVERY_S
 
     def add_sample(self, now_s: float, commit: int, poses: int, loads: Mapping[int, Load]) -> None:
         """Add a sample from the last commit, the number of received poses, and the loads by process id.
 
-        A new process, or a map with fewer commits, starts at 0.
+        A new process, or a map with fewer commits, starts at 0. After the clock was set back, the samples
+        start again.
         """
+        if self._before is not None and now_s < self._before[0]:
+            self.samples.clear()
+            self._before = None
         cpu = {pid: load.cpu_s for pid, load in loads.items()}
         if self._before is not None:
             was_s, last_commit, last_poses, last_cpu = self._before

@@ -29,6 +29,17 @@ def test_rates_are_differences_of_totals():
     assert sample.cpu_percent == pytest.approx(25.0)
 
 
+def test_samples_start_again_when_the_clock_was_set_back():
+    rates = RateHistory()
+    for at_s in (100.0, 102.0):
+        rates.add_sample(at_s, commit=1, poses=0, loads={})
+    assert rates.is_due(50.0)
+    rates.add_sample(50.0, commit=2, poses=0, loads={})
+    assert not rates.samples
+    rates.add_sample(52.0, commit=6, poses=0, loads={})
+    assert [(sample.at_s, sample.commits_hz) for sample in rates.samples] == [(52.0, 2.0)]
+
+
 def test_a_new_map_or_process_has_no_negative_rate():
     rates = RateHistory()
     rates.add_sample(0.0, commit=10, poses=5, loads={7: Load(50.0, 1)})
