@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from typing import Final
 from urllib.parse import unquote
 
-from semmap.schemas.entities import composed
+from semmap.schemas.entities import composed, name_of_text
 from semmap.schemas.explanations import Term, Triple
 
 TBOX: Final = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#"
@@ -56,14 +56,37 @@ def local_name(term: Term) -> str:
     return text.rpartition("#" if "#" in text else "/" if "/" in text else ":")[2]
 
 
+def last_part(term: Term) -> str:
+    """Return the local name of an IRI term, or the part before its end if it ends with `/`, `#` or `:`."""
+    if name := local_name(term):
+        return name
+    text = bare(term)
+    within = text.rstrip("/#:")
+    return text[len(within) - len(local_name(iri(within))) :]
+
+
 def entity_name(term: Term) -> str:
-    """Return the name of an individual: its local name, composed (NFC) and without percent escapes."""
+    """Return the name of an individual: the last part of its IRI, without percent escapes.
+
+    If that is not a valid name, `name_of_text` makes one from it. Other terms are returned as text.
+    """
     name = local_name(term)
-    if "%" not in name and name.isascii():
+    if name.isidentifier() and name.isascii() and len(name) <= _LONG:
         return name  # as most are
-    return composed(unquote(name))
+    if not term.startswith("<"):
+        return composed(unquote(name))
+    return name_of_text(_unescaped(last_part(term)))
 
 
+def _unescaped(name: str) -> str:
+    """Return a part of an IRI without percent escapes, or unchanged if these are not text."""
+    try:
+        return unquote(name, errors="strict") if "%" in name else name
+    except UnicodeDecodeError:
+        return name
+
+
+_LONG: Final = 128
 _ESCAPES: Final = {"\t": "\\t", "\b": "\\b", "\n": "\\n", "\r": "\\r", "\f": "\\f", '"': '\\"', "\\": "\\\\"}
 _UNESCAPES: Final = {escape[1]: char for char, escape in _ESCAPES.items()} | {"'": "'"}
 _TO_ESCAPE: Final = re.compile(r'[\x00-\x1f\x7f\ufffe\uffff"\\]')

@@ -14,6 +14,7 @@ from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors, wording
+from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Term, Triple
 
 _VOCABULARIES = (v.RDF, v.RDFS, v.OWL, v.XSD, SWRL, SHACL)
@@ -128,6 +129,15 @@ def undescribed_note(found: Mapping[Term, Triple]) -> str:
     return f"referenced but not described: {few}{more}"
 
 
+def name_notes(entities: Iterable[Entity]) -> list[str]:
+    """Return a note on the entities whose names differ from the last parts of their IRIs."""
+    made = {entity.name: entity.iri for entity in entities if not entity.iri.endswith(entity.name)}
+    if not made:
+        return []
+    few = wording.few([f"{name} (<{iri}>)" for name, iri in sorted(made.items())], _FEW)
+    return [f"{wording.counted(len(made), 'name')} made from IRIs, which stay as they are: {few}"]
+
+
 def _with_subclasses(roots: frozenset[Term], below: list[Triple]) -> set[Term]:
     """Return the classes and their subclasses by `rdfs:subClassOf` triples."""
     found, above = set(roots), [(s, o) for s, _, o in below]
@@ -231,7 +241,7 @@ def _incomplete_values(by_property: Mapping[Term, list[Triple]], triples: list[T
 
 
 def _display_name(individual: Term) -> str:
-    return "a blank node" if individual.startswith("_:") else v.local_name(individual)
+    return "a blank node" if individual.startswith("_:") else v.entity_name(individual)
 
 
 def is_built_in(term: Term) -> bool:

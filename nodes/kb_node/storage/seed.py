@@ -85,18 +85,19 @@ def seed(
         data.mkdir(parents=True, exist_ok=True)
         require_unused(path)
         new = path.with_name(f"new-{FILENAME}")
-        size = _make(new, tbox_triples, reasoner, transaction)
+        semantic_map = _make(new, tbox_triples, reasoner, transaction)
         install_journal(new, path)
         closure_cache.save(closed, tbox_triples, data)
     except (errors.Inconsistent, errors.BadRequest) as error:
         raise type(error)(f"{abox or name}: {error.text}", explanation=error.explanation) from None
     except OSError as error:
         raise errors.Refused(f"cannot create a map in {data}: {error.strerror}") from None
-    return "; note: ".join((f"{wording.entities(size)}{source}", *notes))
+    notes += abox_document.name_notes(semantic_map.entities())
+    return "; note: ".join((f"{wording.entities(len(semantic_map))}{source}", *notes))
 
 
-def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Transaction) -> int:
-    """Create a journal at `path` with one commit, and return the number of entities.
+def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Transaction) -> SemanticMap:
+    """Create a journal at `path` with one commit, and return its map. The journal is closed.
 
     Nothing is left after an error.
     """
@@ -112,7 +113,7 @@ def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Trans
     except errors.SemmapError:
         delete_journal(path)
         raise
-    return len(semantic_map)
+    return semantic_map
 
 
 def require_unused(path: Path) -> None:
