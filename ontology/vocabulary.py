@@ -120,10 +120,16 @@ def lexical(term: Term) -> str:
 
 
 def to_words(triple: Triple, names: Mapping[Term, str] | None = None) -> str:
-    """Return a readable triple with local names; `names` disambiguates equal ones."""
+    """Return a readable triple with the names of individuals; `names` disambiguates equal local names."""
     apart = names or {}
+    s, p, o = triple
+    value = local_name(o) if p == RDF_TYPE else entity_name(o)
     return " ".join(
-        lexical(term) if term.startswith('"') else apart.get(term) or local_name(term) for term in triple
+        (
+            apart.get(s) or entity_name(s),
+            apart.get(p) or local_name(p),
+            lexical(o) if o.startswith('"') else apart.get(o) or value,
+        )
     )
 
 

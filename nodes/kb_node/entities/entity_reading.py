@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import suppress
-from itertools import islice, product
+from itertools import chain, islice, product
 
 from msgspec import structs
 
@@ -23,6 +23,7 @@ from semmap.schemas.entities import REACH_M, Entity, Pose, Provenance, Size, Sta
 from semmap.schemas.explanations import Term, Triple
 from semmap.schemas.joints import OPENING, SWITCHING
 
+_EQUALITY = frozenset((v.OWL_SAME_AS,))
 _FEW = 16
 _MANY_TRIPLES = 100
 """Triples per subject beyond which looking it up is faster than scanning."""
@@ -72,6 +73,8 @@ def read_entity(
     asserted = about(iri)
     if classes.alignments and iri.startswith("_:"):
         return None  # an unnamed part, which clients cannot refer to
+    if _is_only_a_name(reasoner, iri, asserted):
+        return None
     kind = classes.kind(types, frozenset(asserted.get(v.RDF_TYPE, ())))
     if kind is None:
         raise errors.InternalError(f"{iri} is a spatial individual without a class")
@@ -91,6 +94,16 @@ def read_entity(
         model=stated_model(asserted),
         properties=classes.property_table.read_values(asserted),
     )
+
+
+def _is_only_a_name(reasoner: Reasoner, iri: Term, asserted: Objects) -> bool:
+    """Return whether all that is asserted of an individual is `owl:sameAs` another one that has a class."""
+    if not asserted.keys() <= _EQUALITY:
+        return False
+    others = chain(
+        asserted.get(v.OWL_SAME_AS, ()), (s for s, _, _ in reasoner.asserted(None, v.OWL_SAME_AS, iri))
+    )
+    return any(any(reasoner.asserted(other, v.RDF_TYPE, None)) for other in others)
 
 
 def read_place(about: About, classes: ClassTable, iri: Term) -> tuple[Pose | None, Size | None]:

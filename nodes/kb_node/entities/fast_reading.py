@@ -26,7 +26,7 @@ Places = tuple[int, ...]
 _Star = tuple[Sequence[Term], Sequence[Term]]
 """The individuals of a run, the entity first, and its other objects."""
 
-_RARE = (v.CONFLICTING_OBSERVATION, v.TRACKED_FROM, v.MODEL)
+_RARE = (v.CONFLICTING_OBSERVATION, v.TRACKED_FROM, v.MODEL, v.OWL_SAME_AS)
 
 
 class _Text(NamedTuple):
@@ -187,7 +187,7 @@ class _RunContent:
 
     @property
     def is_unusual(self) -> bool:
-        """Return whether it has rare parts: a conflict, tracking or a model."""
+        """Return whether it has rare parts: a conflict, tracking, a model or an equal."""
         return any((0, p) in by for p in _RARE for by in (self._nodes, self._places))
 
     def uses(self, words: Set[Term]) -> bool:

@@ -34,14 +34,16 @@ def seed(
     *,
     imports: Mapping[str, Path] = MappingProxyType({}),
     spatial_root: Sequence[str] = (),
+    skip_unknown: bool = False,
     fresh: bool = False,
 ) -> str:
     """Create the journal of folder `data` from a TBox and an ABox file, and return a summary.
 
     The TBox may consist of several files and folders. `imports` maps imported ontologies to files.
-    `spatial_root` names the classes of spatial things, if they cannot be detected. An existing journal is
-    kept and used, unless `fresh`: then it is moved to `data/kept/<time>/`. Raises BadFile, UnknownClass or
-    Inconsistent, with existing data unchanged.
+    `spatial_root` names the classes of spatial things, if they cannot be detected. With `skip_unknown`, the
+    individuals of unknown classes are left out. An existing journal is kept and used, unless `fresh`: then it
+    is moved to `data/kept/<time>/`. Raises BadFile, UnknownClass or Inconsistent, with existing data
+    unchanged.
     """
     path = data / FILENAME
     if not fresh and (notice := describe_existing_map(data)) is not None:
@@ -62,16 +64,20 @@ def seed(
     if abox is not None:
         document = ontology_files.read(abox, "a")
         try:
-            filtered = abox_document.filter_document(document, ClassTable(reasoner), skip_unknown=False)
+            filtered = abox_document.filter_document(
+                document, ClassTable(reasoner), skip_unknown=skip_unknown
+            )
         except errors.UnknownClass as error:
-            text = error.text.removesuffix(errors.SKIP_UNKNOWN)
             raise type(error)(
-                f"{abox}: {text}; other classes are given with --tbox FILE, another map with --abox FILE|none"
+                f"{abox}: {error.text}; other classes are given with --tbox FILE, another map with"
+                " --abox FILE|none"
             ) from None
         except errors.BadRequest as error:
             raise type(error)(f"{abox}: {error.text}") from None
         abox_triples += filtered.triples
         notes = filtered.notes
+        if filtered.skipped:
+            notes.append(f"left out {len(filtered.skipped)}: {wording.few(filtered.skipped, 5)}")
         if found := abox_document.find_undescribed(filtered.triples, reasoner):
             notes.append(abox_document.undescribed_note(found))
     source = f" from {abox.name}" if abox is not None else ""

@@ -296,3 +296,14 @@ def test_new_aliases_replace_labels_and_a_new_label_does_not(semantic_map):
     assert edit(1, alt=("frigo", "icebox")) == ("fridge", ("icebox", "frigo"))
     assert edit(2, ref="big fridge") == ("big fridge", ("icebox", "fridge", "frigo"))
     assert edit(3, alt=()) == ("big fridge", ())
+
+
+def test_another_name_of_an_entity_elsewhere_is_not_an_entity(semantic_map):
+    link = turtle(":c owl:sameAs <http://dbpedia.org/resource/Mug_(cup)> .")
+    semantic_map.commit(transaction(1, [*turtle(":c a dm:Chair ."), *link]))
+    assert [entity.name for entity in semantic_map.entities()] == ["c"]
+    semantic_map.commit(transaction(2, turtle("<http://dbpedia.org/resource/Mug_(cup)> a dm:Seat .")))
+    assert len(semantic_map) == 2
+    semantic_map.commit(transaction(3, turtle("<http://o.org/1> owl:sameAs :c .")))
+    semantic_map.commit(Transaction(id="4", source="file", remove=("c",)))
+    assert [entity.class_ for entity in semantic_map.entities()] == ["Seat"]
