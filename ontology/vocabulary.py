@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Final
 from urllib.parse import unquote
 
@@ -73,8 +74,12 @@ def entity_name(term: Term) -> str:
     name = local_name(term)
     if name.isidentifier() and name.isascii() and len(name) <= _LONG:
         return name  # as most are
-    if not term.startswith("<"):
-        return composed(unquote(name))
+    return _other_name(term) if term.startswith("<") else composed(unquote(term))
+
+
+@lru_cache(maxsize=1 << 16)
+def _other_name(term: Term) -> str:
+    """Return the name that an IRI term stands for; cached, as a map may have very many such names."""
     return name_of_text(_unescaped(last_part(term)))
 
 
