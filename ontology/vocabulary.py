@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Final
 from urllib.parse import unquote
 
-from semmap.schemas.entities import composed
+from semmap.schemas.entities import composed, name_of_text
 from semmap.schemas.explanations import Term, Triple
 
 TBOX: Final = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#"
@@ -56,14 +57,41 @@ def local_name(term: Term) -> str:
     return text.rpartition("#" if "#" in text else "/" if "/" in text else ":")[2]
 
 
+def last_part(term: Term) -> str:
+    """Return the local name of an IRI term, or the part before its end if it ends with `/`, `#` or `:`."""
+    if name := local_name(term):
+        return name
+    text = bare(term)
+    within = text.rstrip("/#:")
+    return text[len(within) - len(local_name(iri(within))) :]
+
+
 def entity_name(term: Term) -> str:
-    """Return the name of an individual: its local name, composed (NFC) and without percent escapes."""
+    """Return the name of an individual: the last part of its IRI, without percent escapes.
+
+    If that is not a valid name, `name_of_text` makes one from it. Other terms are returned as text.
+    """
     name = local_name(term)
-    if "%" not in name and name.isascii():
+    if name.isidentifier() and name.isascii() and len(name) <= _LONG:
         return name  # as most are
-    return composed(unquote(name))
+    return _other_name(term) if term.startswith("<") else composed(unquote(term))
 
 
+@lru_cache(maxsize=1 << 16)
+def _other_name(term: Term) -> str:
+    """Return the name that an IRI term stands for; cached, as a map may have very many such names."""
+    return name_of_text(_unescaped(last_part(term)))
+
+
+def _unescaped(name: str) -> str:
+    """Return a part of an IRI without percent escapes, or unchanged if these are not text."""
+    try:
+        return unquote(name, errors="strict") if "%" in name else name
+    except UnicodeDecodeError:
+        return name
+
+
+_LONG: Final = 128
 _ESCAPES: Final = {"\t": "\\t", "\b": "\\b", "\n": "\\n", "\r": "\\r", "\f": "\\f", '"': '\\"', "\\": "\\\\"}
 _UNESCAPES: Final = {escape[1]: char for char, escape in _ESCAPES.items()} | {"'": "'"}
 _TO_ESCAPE: Final = re.compile(r'[\x00-\x1f\x7f\ufffe\uffff"\\]')
@@ -97,10 +125,16 @@ def lexical(term: Term) -> str:
 
 
 def to_words(triple: Triple, names: Mapping[Term, str] | None = None) -> str:
-    """Return a readable triple with local names; `names` disambiguates equal ones."""
+    """Return a readable triple with the names of individuals; `names` disambiguates equal local names."""
     apart = names or {}
+    s, p, o = triple
+    value = local_name(o) if p == RDF_TYPE else entity_name(o)
     return " ".join(
-        lexical(term) if term.startswith('"') else apart.get(term) or local_name(term) for term in triple
+        (
+            apart.get(s) or entity_name(s),
+            apart.get(p) or local_name(p),
+            lexical(o) if o.startswith('"') else apart.get(o) or value,
+        )
     )
 
 

@@ -6,6 +6,7 @@ they cannot form cycles, and scanning a hundred thousand of them takes longer th
 
 from __future__ import annotations
 
+import hashlib
 import math
 import re
 import unicodedata
@@ -27,6 +28,9 @@ _MARKS = (
 NAME_PATTERN = rf"^[^\W\d][\w.\-{_MARKS}]{{0,127}}$(?!\n)"
 """A name is the local part of an IRI, a chunk of a key and the name of a body. It has letters of any script,
 digits, `_`, `.` and `-`, and begins with a letter or `_`. (`$` alone would accept a line feed at the end.)"""
+
+_NOT_OF_NAMES = re.compile(rf"[^\w.\-{_MARKS}]")
+_LONGEST_NAME: Final = 128
 
 REACH_M = 10_000.0
 """Larger coordinates are rejected."""
@@ -151,6 +155,25 @@ def is_name(text: str) -> bool:
 def composed(name: str) -> str:
     """Return a name in Unicode's composed form (NFC), in which names are stored and compared."""
     return name if name.isascii() else unicodedata.normalize("NFC", name)
+
+
+def name_of_text(text: str) -> str:
+    """Return the valid name that stands for any text. A valid name stands for itself.
+
+    A character that names cannot have becomes its code in hexadecimal between `_x` and `_`: `a$` is `a_x24_`.
+    If the first character is only valid further on, such as a digit, `_` precedes it. The end of a name that
+    is too long is replaced by a digest.
+    """
+    name = composed(text)
+    if is_name(name):
+        return name
+    name = _NOT_OF_NAMES.sub(lambda found: f"_x{ord(found[0]):X}_", name)
+    if not is_name(name[:1]):
+        name = f"_{name}"
+    if len(name) > _LONGEST_NAME:
+        digest = hashlib.blake2b(text.encode(), digest_size=8).hexdigest()
+        name = f"{name[: _LONGEST_NAME - 1 - len(digest)]}_{digest}"
+    return name
 
 
 _ANGLE: Final = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(deg|°|rad)?\s*")

@@ -70,6 +70,7 @@ def seed(settings: Settings) -> None:
         abox,
         imports=imports,
         spatial_root=settings.spatial_root,
+        skip_unknown=settings.skip_unknown,
         fresh=settings.fresh,
     )
     print(summary)

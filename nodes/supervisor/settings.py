@@ -55,6 +55,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Classes of the TBox whose instances are spatial, where that is not known automatically."""
     abox: str | None
     """None for an empty map."""
+    skip_unknown: bool = False
+    """Whether individuals of the ABox file whose classes are unknown are left out."""
     world: str
     truth: Literal["map", "scene", "perceived", "replayed"] = "map"
     threshold_m: Annotated[float, Meta(gt=0.0)] = 0.05

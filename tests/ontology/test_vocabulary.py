@@ -97,3 +97,9 @@ def test_datatype_and_language() -> None:
 )
 def test_local_name(term: str, name: str) -> None:
     assert v.local_name(term) == name
+
+
+def test_a_triple_in_words_has_the_names_of_individuals():
+    triple = ("<http://x#9a>", "<http://x#2p>", "<http://x#my%20cup>")
+    assert v.to_words(triple) == "_9a 2p my_x20_cup"
+    assert v.to_words(("<http://x#a>", v.RDF_TYPE, v.THREE_DIM_SIZE)) == "a type 3Three_Dim_Size"

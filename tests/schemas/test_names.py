@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from semmap.ontology import vocabulary as v
 from semmap.schemas import codec, errors, keys
 from semmap.schemas.commands import Add, Get, Remove
-from semmap.schemas.entities import NAME_PATTERN, composed, free_name
+from semmap.schemas.entities import NAME_PATTERN, composed, free_name, is_name, name_of_text
 from semmap.schemas.scene_files import Described
 
 GOOD = ["chair1", "_", "A.b-c_9", "tazzinà", "杯子", "кружка_2", "फूल", "कुर्सी", "كوب", "ถ้วย", "x" * 128]
@@ -78,6 +78,42 @@ def test_any_name_of_a_class_is_one_chunk_of_a_key(class_name, name):
 
 def test_a_plain_prefix_is_readable_in_a_key():
     assert keys.entity_key("soma:Color", "杯子") == "semmap/jena/entity/soma:Color/杯子"
+
+
+@given(st.text(st.characters(exclude_categories=["Cs"]), max_size=12))
+def test_every_text_has_a_name_from_which_it_can_be_read(text):
+    name = name_of_text(text)
+    assert is_name(name)
+    assert name_of_text(name) == name
+    decoded = re.sub("_x([0-9A-F]+)_", lambda code: chr(int(code[1], 16)), name)
+    assert composed(text) in (decoded, decoded.removeprefix("_")) or "_x" in text
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("chair1", "chair1"),
+        ("_x24_", "_x24_"),
+        ("0$aB", "_0_x24_aB"),
+        ("-a", "_-a"),
+        ("😀", "_x1F600_"),
+        ("a/b", "a_x2F_b"),
+        ("", "_"),
+    ],
+)
+def test_the_name_of_a_text(text, name):
+    assert name_of_text(text) == name
+
+
+def test_long_texts_with_the_same_beginning_have_different_names():
+    one, other = (name_of_text("x" * 200 + end) for end in "ab")
+    assert one != other
+    assert is_name(one)
+    assert is_name(other)
+
+
+def test_escapes_that_are_not_text_stay():
+    assert v.entity_name("<http://x#a%FF>") == "a_x25_FF"
 
 
 def test_escapes_of_an_iri_are_not_part_of_the_name():

@@ -85,13 +85,22 @@ class CurrentState:
     def entity(self, query: Get) -> Described:
         """Return one entity, with its location and wrong assertions about it if `where`.
 
-        Raises UnknownName; BadRequest for an ambiguous word.
+        Its properties include those that the TBox does not declare, and the equal individuals. Raises
+        UnknownName; BadRequest for an ambiguous word.
         """
         entity = self._map.resolve(query.name)
         if not query.where:
-            return Described.of(entity)
-        found = self._with_where(entity)
+            return self._with_all_properties(Described.of(entity))
+        found = self._with_all_properties(self._with_where(entity))
         return structs.replace(found, on_nothing=_on_nothing(self._map.places.space(), entity))
+
+    def _with_all_properties(self, found: Described) -> Described:
+        reasoner, iri = self._map.reasoner, v.iri(found.iri)
+        others = self._map.classes.property_table.read_others(reasoner.about, iri)
+        equal = (*reasoner.asserted(iri, v.OWL_SAME_AS, None), *reasoner.inferred(iri, v.OWL_SAME_AS, None))
+        if names := sorted({v.entity_name(o) for _, _, o in equal if o != iri}):
+            others[v.local_name(v.OWL_SAME_AS)] = tuple(names)
+        return structs.replace(found, properties={**found.properties, **others}) if others else found
 
     def describe(self, name: str) -> Described | None:
         """Return the entity of that name with its location, or None."""

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from itertools import chain
+from itertools import chain, count
 from operator import itemgetter
 from typing import NamedTuple
 
+from semmap.nodes.kb_node.documents import blank_nodes
+from semmap.nodes.kb_node.documents.blank_nodes import is_blank
 from semmap.nodes.kb_node.documents.inert_statements import SHACL, SWRL, count_inert, inert_note
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.entities.property_values import retype
@@ -14,6 +17,7 @@ from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors, wording
+from semmap.schemas.entities import Entity, name_stem
 from semmap.schemas.explanations import Term, Triple
 
 _VOCABULARIES = (v.RDF, v.RDFS, v.OWL, v.XSD, SWRL, SHACL)
@@ -22,10 +26,14 @@ _TBOX = f"<{v.TBOX}"
 _OF_STARS = (v.COORDINATES, v.THREE_DIM_SIZE, v.PREFERRED_REFERENCE, v.ALTERNATIVE_REFERENCE)
 """Classes of the individuals that describe an entity. semmap writes them with any TBox."""
 _FEW = 5
+_DEPTH = 8
+"""Depth to which the parts of a blank node are compared."""
 _WHOLES = (v.COORDINATE_XYZ, v.ORIENTATION_WXYZ, v.SIZE_XYZ)
 _FLOATS = frozenset(chain(*_WHOLES))
 _BITS = {p: 1 << i for i, p in enumerate(chain(*_WHOLES))}
 _CLASSES = frozenset((v.OWL_CLASS, v.RDFS_CLASS))
+_OF_INDIVIDUALS = frozenset((v.OWL_NAMED_INDIVIDUAL, v.OWL_THING))
+"""Classes that do not tell what an individual is."""
 _NUMBERS = tuple(f"^^{v.iri(v.XSD + kind)}" for kind in ("integer", "decimal", "double", "float"))
 
 
@@ -43,10 +51,11 @@ def filter_document(
     """Return the triples of a document that the map accepts. Numbers may be of any numeric datatype.
 
     A literal outside the range of its property gets a datatype of the range if its text is a value of that.
+    Blank nodes of spatial classes get IRIs, except with alignments, where they are unnamed parts.
 
     Raises UnknownClass with all individuals of unknown classes, unless `skip_unknown`. In that case
     individuals that have only unknown classes are left out, with the triples that describe only them, and the
-    others lose the unknown classes. Raises BadFile for a TBox.
+    others, such as properties, lose the unknown classes. Raises BadFile for a TBox.
     """
     triples = list(triples)
     by_property = entity_triples.group_by_property(triples)
@@ -70,10 +79,21 @@ def filter_document(
         users.setdefault(name, []).append(_display_name(s))
     if unknown and not skip_unknown:
         raise errors.UnknownClass(classes.index.unknown_classes(users))
+    named: list[str] = []
+    if not classes.alignments and (
+        nameless := {s: o for s, _, o in types_said if is_blank(s) and o in spatial}
+    ):
+        labels = _make_iris(triples, nameless)
+        triples = list(blank_nodes.relabel(triples, labels))
+        by_property = entity_triples.group_by_property(triples)
+        types_said = by_property[v.RDF_TYPE]
+        unknown = [(labels.get(s, s), o) for s, o in unknown]
+        few = wording.few(sorted(map(v.entity_name, labels.values())), _FEW)
+        named.append(f"{wording.counted(len(labels), 'blank node')} stored with names: {few}")
     words = [f"{name} (unknown class '{c}')" for c, names in users.items() for name in names]
     kept = triples
     if unknown:
-        described = own & known
+        described = (own & known).union(c for c in used - _OF_INDIVIDUALS if is_built_in(c))
         removed = {s for s, _ in unknown} - {s for s, _, o in types_said if o in described}
         doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
         kept = _without(removed, [t for t in triples if t not in doubtful])
@@ -81,12 +101,42 @@ def filter_document(
     inert = inert_note(count_inert(kept)) if any(c.startswith(_INERT) for c in used) else ""
     notes = (
         *retyped,
+        *named,
         *filter(None, (inert,)),
         *_unknown_properties(by_property, classes),
         *_own_classes(declared, classes),
         *_incomplete_values(by_property, kept),
     )
     return FilteredDocument(kept, words, list(notes))
+
+
+def _make_iris(triples: Iterable[Triple], nodes: Mapping[Term, Term]) -> dict[Term, Term]:
+    """Return IRIs for blank nodes with these classes.
+
+    They depend on what the document states about the nodes, so a file that is loaded again gives the same.
+    """
+    about: dict[Term, list[Triple]] = {}
+    for triple in triples:
+        if is_blank(triple[0]):
+            about.setdefault(triple[0], []).append(triple)
+    digests: dict[tuple[Term, int], str] = {}
+
+    def digest(node: Term, depth: int) -> str:
+        if (node, depth) not in digests:
+            content = (
+                f"{p} {(digest(o, depth - 1) if depth else '') if is_blank(o) else o}"
+                for _, p, o in about.get(node, ())
+            )
+            text = "\n".join(sorted(content)).encode()
+            digests[node, depth] = hashlib.blake2b(text, digest_size=4).hexdigest()
+        return digests[node, depth]
+
+    names: dict[str, Term] = {}
+    for node in (s for s in about if s in nodes):
+        name = f"{name_stem(v.local_name(nodes[node]))}_{digest(node, _DEPTH)}"
+        alike = (name if number == 1 else f"{name}_{number}" for number in count(1))
+        names[next(free for free in alike if free not in names)] = node
+    return {node: v.entity_iri(name) for name, node in names.items()}
 
 
 def undeclared_classes(triples: Iterable[Triple], classes: ClassTable) -> set[Term]:
@@ -126,6 +176,15 @@ def undescribed_note(found: Mapping[Term, Triple]) -> str:
     )
     more = f" and {len(found) - _FEW} more" if len(found) > _FEW else ""
     return f"referenced but not described: {few}{more}"
+
+
+def name_notes(entities: Iterable[Entity]) -> list[str]:
+    """Return a note on the entities whose names differ from the last parts of their IRIs."""
+    made = {entity.name: entity.iri for entity in entities if not entity.iri.endswith(entity.name)}
+    if not made:
+        return []
+    few = wording.few([f"{name} (<{iri}>)" for name, iri in sorted(made.items())], _FEW)
+    return [f"{wording.counted(len(made), 'name')} made from IRIs, which stay as they are: {few}"]
 
 
 def _with_subclasses(roots: frozenset[Term], below: list[Triple]) -> set[Term]:
@@ -231,7 +290,7 @@ def _incomplete_values(by_property: Mapping[Term, list[Triple]], triples: list[T
 
 
 def _display_name(individual: Term) -> str:
-    return "a blank node" if individual.startswith("_:") else v.local_name(individual)
+    return "a blank node" if individual.startswith("_:") else v.entity_name(individual)
 
 
 def is_built_in(term: Term) -> bool:

@@ -39,7 +39,7 @@ def make_document_transaction(
             filtered.triples, semantic_map.reasoner, semantic_map.classes, semantic_map.tbox
         )
     if replaced.retract and load.add_only:
-        names = sorted(v.local_name(owner) for owner in replaced.retract)
+        names = sorted(v.entity_name(owner) for owner in replaced.retract)
         raise errors.NameTaken(
             f"{load.filename or 'the file'} has other values for {wording.few(names, 5)}; to replace those of"
             " the map, load it without --add-only"

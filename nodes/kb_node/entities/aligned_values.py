@@ -1,4 +1,4 @@
-"""Poses, sizes and names of entities that are expressed in other vocabularies."""
+"""Poses, sizes and labels of entities that are expressed in other vocabularies."""
 
 from __future__ import annotations
 
@@ -15,6 +15,9 @@ from semmap.schemas.explanations import Term, Triple
 About = Callable[[Term], Mapping[Term, Sequence[Term]]]
 """A lookup of the asserted objects of a subject by predicate."""
 
+_LABELS = (v.SKOS_PREF_LABEL, v.RDFS_LABEL)
+LABELS = (*_LABELS, v.SKOS_ALT_LABEL)
+"""The properties by which any ontology may name individuals."""
 _BETWEEN = re.compile(r"[\s,;\[\]()]+")
 
 
@@ -59,11 +62,29 @@ def size(alignments: Iterable[Alignment], about: About, iri: Term) -> Size | Non
     return None if asserted is None else asserted.size_m
 
 
-def names(alignments: Iterable[Alignment], about: About, iri: Term) -> list[str]:
-    """Return the names of an entity, best first: those of the vocabularies, then its labels."""
-    asserted = about(iri)
-    properties = (*(p for known in alignments for p in known.names), v.RDFS_LABEL)
-    return [v.lexical(o) for p in properties for o in sorted(asserted.get(p, ())) if o.startswith('"')]
+def labels(alignments: Iterable[Alignment], asserted: Mapping[Term, Sequence[Term]]) -> list[str]:
+    """Return the texts that name an entity, best first: names of the vocabularies, `prefLabel`, `label`.
+
+    Of several languages English comes first, then texts without a language, then the others.
+    """
+    return _texts(asserted, (*(p for known in alignments for p in known.names), *_LABELS))
+
+
+def aliases(asserted: Mapping[Term, Sequence[Term]]) -> list[str]:
+    """Return the texts that also name an entity (`skos:altLabel`)."""
+    return _texts(asserted, (v.SKOS_ALT_LABEL,))
+
+
+def _texts(asserted: Mapping[Term, Sequence[Term]], properties: Iterable[Term]) -> list[str]:
+    """Return the texts of some properties, each once."""
+    found = (o for p in properties for o in sorted(asserted.get(p, ()), key=_language_order))
+    return list(dict.fromkeys(v.lexical(o) for o in found if o.startswith('"')))
+
+
+def _language_order(term: Term) -> tuple[bool, str, Term]:
+    """Return the key by which texts are sorted: English, no language, other languages."""
+    language = v.language_of(term) or ""
+    return not (language == "en" or language.startswith("en-")), language, term
 
 
 def find_pose(alignments: Iterable[Alignment], about: About, iri: Term) -> AlignedPose | None:

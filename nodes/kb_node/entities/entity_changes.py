@@ -88,11 +88,11 @@ def add_effects(
         if was is not None:
             entity = entity_reading.inherit_provenance(entity, was, concerned=iri in owners)
         if (other := changed.setdefault(entity.name, entity)) is not entity:
-            raise _name_taken(other)
+            raise _name_taken(other, entity)
     removed_names = {departed.name for departed in removed}
     for name, entity in changed.items():
         if name not in removed_names and (holder := before.get(name, entity)).iri != entity.iri:
-            raise _name_taken(holder)
+            raise _name_taken(holder, entity)
     return structs.replace(
         commit,
         changed=tuple(e for name, e in changed.items() if e != before.get(name)),
@@ -143,5 +143,7 @@ def _read_regular(
     return read, seen, unseen
 
 
-def _name_taken(holder: Entity) -> errors.NameTaken:
-    return errors.NameTaken(f"the name '{holder.name}' is taken by <{holder.iri}>")
+def _name_taken(holder: Entity, other: Entity) -> errors.NameTaken:
+    return errors.NameTaken(
+        f"the name '{holder.name}' is taken by <{holder.iri}>; give <{other.iri}> another last part"
+    )

@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import suppress
-from itertools import islice, product
+from itertools import chain, islice, product
 
 from msgspec import structs
 
@@ -19,11 +19,11 @@ from semmap.ontology.model_choice import chosen
 from semmap.schemas import errors, polygons
 from semmap.schemas.attachments import GRASPING
 from semmap.schemas.commits import Star
-from semmap.schemas.entities import NAME_PATTERN, REACH_M, Entity, Pose, Provenance, Size, Stated, Tracked
+from semmap.schemas.entities import REACH_M, Entity, Pose, Provenance, Size, Stated, Tracked
 from semmap.schemas.explanations import Term, Triple
 from semmap.schemas.joints import OPENING, SWITCHING
 
-_NAME = re.compile(NAME_PATTERN)
+_EQUALITY = frozenset((v.OWL_SAME_AS,))
 _FEW = 16
 _MANY_TRIPLES = 100
 """Triples per subject beyond which looking it up is faster than scanning."""
@@ -64,7 +64,7 @@ def read_entity(
     """Return the entity that the triples about `iri` describe, or None if it is not an entity.
 
     All of it gets `provenance`. `about` is a lookup to use in place of the reasoner. Raises BadRequest for an
-    entity without a valid name, or with an invalid number or size.
+    entity without an IRI that can be its name, or with an invalid number or size.
     """
     types = reasoner.types(iri)
     if types.isdisjoint(classes.spatial):
@@ -73,26 +73,37 @@ def read_entity(
     asserted = about(iri)
     if classes.alignments and iri.startswith("_:"):
         return None  # an unnamed part, which clients cannot refer to
+    if _is_only_a_name(reasoner, iri, asserted):
+        return None
     kind = classes.kind(types, frozenset(asserted.get(v.RDF_TYPE, ())))
     if kind is None:
         raise errors.InternalError(f"{iri} is a spatial individual without a class")
     pose, size_m = read_place(about, classes, iri)
-    preferred = _references(about, asserted.get(v.HAS_PREFERRED_REFERENCE, ()))
-    if classes.alignments:
-        preferred = preferred or aligned_values.names(classes.alignments, about, iri)[:1]
     return make_entity(
         iri,
         kind,
         provenance,
         pose=pose,
         size_m=size_m,
-        preferred=preferred,
+        preferred=_references(about, asserted.get(v.HAS_PREFERRED_REFERENCE, ())),
         alternatives=_references(about, asserted.get(v.HAS_ALTERNATIVE_REFERENCE, ())),
+        labels=aligned_values.labels(classes.alignments, asserted),
+        aliases=aligned_values.aliases(asserted),
         conflict="; ".join(sorted(map(_text, asserted.get(v.CONFLICTING_OBSERVATION, ())))),
         tracked=_tracked(iri, asserted.get(v.TRACKED_FROM, ())),
         model=stated_model(asserted),
         properties=classes.property_table.read_values(asserted),
     )
+
+
+def _is_only_a_name(reasoner: Reasoner, iri: Term, asserted: Objects) -> bool:
+    """Return whether all that is asserted of an individual is `owl:sameAs` another one that has a class."""
+    if not asserted.keys() <= _EQUALITY:
+        return False
+    others = chain(
+        asserted.get(v.OWL_SAME_AS, ()), (s for s, _, _ in reasoner.asserted(None, v.OWL_SAME_AS, iri))
+    )
+    return any(any(reasoner.asserted(other, v.RDF_TYPE, None)) for other in others)
 
 
 def read_place(about: About, classes: ClassTable, iri: Term) -> tuple[Pose | None, Size | None]:
@@ -128,7 +139,7 @@ def require_one_place(about: About, classes: ClassTable, iri: Term) -> None:
             both = " and ".join(
                 "({})".format(", ".join(f"{x:g}" for x in one)) for one in (vectors[0], other)
             )
-            raise errors.BadRequest(f"{v.local_name(iri)} has two {what}: {both}; state one")
+            raise errors.BadRequest(f"{v.entity_name(iri)} has two {what}: {both}; state one")
 
 
 def _find_vectors(about: About, nodes: Sequence[Term], properties: Sequence[Term]) -> list[tuple[float, ...]]:
@@ -155,7 +166,7 @@ def _around(iri: Term, extents: Sequence[Term], pose: Pose | None, size_m: Size 
     try:
         polygon = polygons.read_wkt(v.lexical(text) if text.startswith('"') else text)
     except errors.BadRequest as error:
-        raise errors.BadRequest(f"{v.local_name(iri)}: {error.text}") from None
+        raise errors.BadRequest(f"{v.entity_name(iri)}: {error.text}") from None
     floor_m = pose.position_m[2] if pose is not None else 0.0
     height_m = size_m[2] if size_m is not None else polygons.HEIGHT_M
     at, size = polygons.box_around(polygon, floor_m, height_m)
@@ -171,6 +182,8 @@ def make_entity(
     size_m: Size | None,
     preferred: Iterable[str],
     alternatives: Iterable[str],
+    labels: Sequence[str] = (),
+    aliases: Sequence[str] = (),
     conflict: str = "",
     tracked: Tracked = "",
     model: str = "",
@@ -178,11 +191,16 @@ def make_entity(
 ) -> Entity:
     """Return an entity with these values, all with `provenance`.
 
-    Of several labels the first in the alphabet is used. `model` is the stated model, or "" if it follows from
-    class, name and size. Raises BadRequest for an invalid name.
+    Of several preferred references the first in the alphabet is used, and without any the first of `labels`.
+    The other labels are aliases. `model` is the stated model, or "" if it follows from class, name and size.
+    Raises BadRequest for an IRI that cannot be a name.
     """
     name = _name(iri, kind.class_name)
     stated = properties or {}
+    label = min(preferred, default=None) or next(iter(labels), None)
+    called = list(alternatives)
+    if labels or aliases:
+        called += [text for text in dict.fromkeys((*labels, *aliases)) if text not in (label, *called)]
     return Entity(
         name=name,
         class_=kind.class_name,
@@ -190,8 +208,8 @@ def make_entity(
         types=kind.types,
         pose=pose,
         size_m=size_m,
-        preferred_reference=min(preferred, default=None),
-        alternative_references=tuple(alternatives),
+        preferred_reference=label,
+        alternative_references=tuple(called),
         conflict=conflict,
         tracked=tracked,
         properties=stated,
@@ -292,18 +310,12 @@ def inherit_provenance(entity: Entity, known: Entity, *, concerned: bool) -> Ent
 
 
 def _name(iri: Term, class_name: str) -> str:
-    """Return the name at the end of an entity's IRI (http, https, urn or file). Raises BadRequest."""
+    """Return the name that the IRI of an entity (http, https, urn or file) stands for. Raises BadRequest."""
     if not iri.startswith("<"):
         raise errors.BadRequest(f"a {class_name} is a blank node; an entity needs an IRI")
     if not _IRI.match(iri):
         raise errors.BadRequest(f"the {class_name} {iri} needs an IRI of http, https, urn or file")
-    name = v.entity_name(iri)
-    if not _NAME.match(name):
-        raise errors.BadRequest(
-            f"the {class_name} {iri} needs an IRI that ends in a valid name: up to 128 letters, digits, '_',"
-            " '.' and '-', beginning with a letter or '_'"
-        )
-    return name
+    return v.entity_name(iri)
 
 
 def find_owners(reasoner: Reasoner, classes: ClassTable, subject: Term) -> set[Term]:
@@ -353,7 +365,7 @@ def find_entity_triples(
     """
     own = list(reasoner.asserted(iri))
     if not tbox.isdisjoint(own):
-        raise errors.Refused(f"{v.local_name(iri)} is part of the TBox, which commands cannot change")
+        raise errors.Refused(f"{v.entity_name(iri)} is part of the TBox, which commands cannot change")
     nodes = {o for _, p, o in own if p in entity_triples.DESCRIPTION_PROPERTIES} - leaving
     for node in sorted(nodes):
         if all(user in leaving for user in find_users(reasoner, node)):
@@ -403,7 +415,7 @@ def _pose(about: About, iri: Term, nodes: Sequence[Term]) -> Pose | None:
     try:
         return Pose(position_m=position, orientation_wxyz=orientation)  # type: ignore[arg-type]
     except ValueError as error:
-        raise errors.BadRequest(f"{v.local_name(iri)}: {error}") from None
+        raise errors.BadRequest(f"{v.entity_name(iri)}: {error}") from None
 
 
 def _size(about: About, iri: Term, nodes: Sequence[Term]) -> tuple[float, float, float] | None:
@@ -411,7 +423,7 @@ def _size(about: About, iri: Term, nodes: Sequence[Term]) -> tuple[float, float,
         return None
     size = _numbers(iri, v.SIZE_XYZ, about(min(nodes)))
     if size is not None and min(size) <= 0:
-        raise errors.BadRequest(f"{v.local_name(iri)}: the size {size} must be positive")
+        raise errors.BadRequest(f"{v.entity_name(iri)}: the size {size} must be positive")
     return size  # type: ignore[return-value]
 
 
@@ -431,7 +443,7 @@ def _numbers(iri: Term, predicates: Sequence[Term], asserted: Objects) -> tuple[
             value = math.nan
         if not abs(value) <= REACH_M:
             raise errors.BadRequest(
-                f"{v.local_name(iri)}: {v.local_name(predicate)} is {_text(term)}; it must be a number"
+                f"{v.entity_name(iri)}: {v.local_name(predicate)} is {_text(term)}; it must be a number"
                 f" from -{REACH_M:g} to {REACH_M:g}"
             )
         found.append(value)
@@ -448,7 +460,7 @@ def _tracked(iri: Term, terms: Sequence[Term]) -> Tracked:
     if source == "stream":
         return "stream"
     raise errors.BadRequest(
-        f"{v.local_name(iri)}: trackedFrom is '{source}'; live poses come from sim or stream"
+        f"{v.entity_name(iri)}: trackedFrom is '{source}'; live poses come from sim or stream"
     )
 
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from semmap.nodes.kb_node.entities import aligned_values, entity_reading, implied_values
+from semmap.nodes.kb_node.entities.aligned_values import LABELS
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.entities.entity_reading import Objects
 from semmap.nodes.kb_node.entities.property_table import Property
@@ -125,10 +126,12 @@ class Draft:
             (node,) = self._references(entity, v.HAS_PREFERRED_REFERENCE, nodes, ["preferred_reference"])
             self._insert(entity_triples.preferred_reference(iri, node, edit.ref))
         if edit.alt is not None and edit.alt != entity.alternative_references:
+            kept = self._keep_labels(entity, asserted, edit.alt)
+            alt = [text for text in edit.alt if text not in kept]
             nodes = asserted.get(v.HAS_ALTERNATIVE_REFERENCE, ())
-            names = [f"alternative_reference_{i}" for i in range(1, len(edit.alt) + 1)]
+            names = [f"alternative_reference_{i}" for i in range(1, len(alt) + 1)]
             found = self._references(entity, v.HAS_ALTERNATIVE_REFERENCE, nodes, names)
-            for node, text in zip(found, edit.alt, strict=True):
+            for node, text in zip(found, alt, strict=True):
                 self._insert(entity_triples.alternative_reference(iri, node, text))
         if edit.conflict is not None and edit.conflict != entity.conflict:
             known = asserted.get(v.CONFLICTING_OBSERVATION, ())
@@ -142,13 +145,23 @@ class Draft:
         if edit.rename is not None and edit.rename != entity.name:
             self._rename(entity, edit.rename)
 
+    def _keep_labels(self, entity: Entity, asserted: Objects, aliases: Sequence[str]) -> set[str]:
+        """Remove labels (`rdfs:label` and the like) that are not among `aliases`, and return the others.
+
+        The preferred label stays.
+        """
+        labels = [(p, o) for p in LABELS for o in asserted.get(p, ()) if o.startswith('"')]
+        stay = {entity.preferred_reference, *aliases}
+        self._retract((v.iri(entity.iri), p, o) for p, o in labels if v.lexical(o) not in stay)
+        return {v.lexical(o) for _, o in labels}.intersection(aliases)
+
     def _rename(self, entity: Entity, name: str) -> None:
-        """Replace the local name of an entity's IRI in all triples about it and all that refer to it.
+        """Replace the last part of an entity's IRI in all triples about it and all that refer to it.
 
         The individuals that hold its pose, size and labels keep their names.
         """
         iri = v.iri(entity.iri)
-        new = f"{iri[: -1 - len(v.local_name(iri))]}{name}>"
+        new = f"{iri[: -1 - len(v.last_part(iri))]}{name}>"
         if name in self._entities:
             raise errors.NameTaken(f"the name '{name}' is taken; see: semmap get {name}")
         if new in self._new or self._is_described(new):

@@ -6,11 +6,13 @@ belong only to it. Anything else, or an invalid run, is left to `entity_reading.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Iterable, Iterator, Sequence, Set
 from itertools import count
 from typing import Final, NamedTuple
 from weakref import WeakKeyDictionary
 
+from semmap.nodes.kb_node.entities import aligned_values
+from semmap.nodes.kb_node.entities.aligned_values import LABELS
 from semmap.nodes.kb_node.entities.class_table import ClassTable, Kind
 from semmap.nodes.kb_node.entities.entity_reading import make_entity
 from semmap.nodes.kb_node.reasoner import Form, Reasoner, UniformRuns
@@ -24,7 +26,7 @@ Places = tuple[int, ...]
 _Star = tuple[Sequence[Term], Sequence[Term]]
 """The individuals of a run, the entity first, and its other objects."""
 
-_RARE = (v.CONFLICTING_OBSERVATION, v.TRACKED_FROM, v.MODEL)
+_RARE = (v.CONFLICTING_OBSERVATION, v.TRACKED_FROM, v.MODEL, v.OWL_SAME_AS)
 
 
 class _Text(NamedTuple):
@@ -51,6 +53,7 @@ class Pattern(NamedTuple):
     size: Places | None
     preferred: tuple[_Text, ...]
     alternatives: tuple[_Text, ...]
+    labels: tuple[_Stated, ...]
     stated: tuple[_Stated, ...]
 
 
@@ -76,7 +79,7 @@ class Patterns:
 def read_regular(pattern: Pattern, star: _Star, provenance: Provenance, classes: ClassTable) -> Entity | None:
     """Return the entity that a run describes, or None if it is not regular.
 
-    Raises BadRequest for an invalid name.
+    Raises BadRequest for an IRI that cannot be a name.
     """
     names, others = star
     try:
@@ -92,6 +95,7 @@ def read_regular(pattern: Pattern, star: _Star, provenance: Provenance, classes:
             return None
     except ValueError:
         return None
+    labels = _terms(pattern.labels, star) if pattern.labels else {}
     return make_entity(
         names[0],
         pattern.kind,
@@ -100,15 +104,21 @@ def read_regular(pattern: Pattern, star: _Star, provenance: Provenance, classes:
         size_m=size,  # type: ignore[arg-type]
         preferred=_texts(pattern.preferred, names, others),
         alternatives=_texts(pattern.alternatives, names, others),
-        properties=classes.property_table.read_values(
-            {
-                content.property: [names[i] for i in content.nodes] + [others[i] for i in content.places]
-                for content in pattern.stated
-            }
-        )
+        labels=aligned_values.labels((), labels) if labels else (),
+        aliases=aligned_values.aliases(labels) if labels else (),
+        properties=classes.property_table.read_values(_terms(pattern.stated, star))
         if pattern.stated
         else None,
     )
+
+
+def _terms(stated: Sequence[_Stated], star: _Star) -> dict[Term, list[Term]]:
+    """Return the values by property."""
+    names, others = star
+    return {
+        content.property: [names[i] for i in content.nodes] + [others[i] for i in content.places]
+        for content in stated
+    }
 
 
 def _numbers(places: Places | None, others: Sequence[Term]) -> tuple[float, ...] | None:
@@ -150,7 +160,8 @@ def _pattern(form: Form, star: _Star, reasoner: Reasoner, classes: ClassTable) -
             size=content.numbers(size, v.SIZE_XYZ),
             preferred=tuple(content.texts(v.HAS_PREFERRED_REFERENCE)),
             alternatives=tuple(content.texts(v.HAS_ALTERNATIVE_REFERENCE)),
-            stated=tuple(content.stated(classes)),
+            labels=tuple(content.stated(LABELS)),
+            stated=tuple(content.stated(classes.property_table.by_iri)),
         )
     except _Irregular:
         return None
@@ -176,7 +187,7 @@ class _RunContent:
 
     @property
     def is_unusual(self) -> bool:
-        """Return whether it has rare parts: a conflict, tracking or a model."""
+        """Return whether it has rare parts: a conflict, tracking, a model or an equal."""
         return any((0, p) in by for p in _RARE for by in (self._nodes, self._places))
 
     def uses(self, words: Set[Term]) -> bool:
@@ -213,9 +224,9 @@ class _RunContent:
             if place is not None:
                 yield _Text(node, place)
 
-    def stated(self, classes: ClassTable) -> Iterator[_Stated]:
-        """Yield the other properties of the entity."""
-        for predicate in classes.property_table.by_iri:
+    def stated(self, properties: Iterable[Term]) -> Iterator[_Stated]:
+        """Yield those of some properties that the entity has."""
+        for predicate in properties:
             nodes, places = (by.get((0, predicate), []) for by in (self._nodes, self._places))
             if nodes or places:
                 yield _Stated(predicate, tuple(nodes), tuple(places))

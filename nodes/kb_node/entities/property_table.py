@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Set
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
 from functools import cached_property
 from types import MappingProxyType
 from typing import NamedTuple
 
 from semmap.nodes.kb_node.entities import property_values
+from semmap.nodes.kb_node.entities.aligned_values import LABELS
 from semmap.nodes.kb_node.entities.property_names import PropertyNames
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.reasoner.data_ranges import DataRange, read_common
@@ -15,10 +16,16 @@ from semmap.nodes.kb_node.sparql.queries.text import query_prefixes
 from semmap.ontology import vocabulary as v
 from semmap.ontology.model_choice import require_model
 from semmap.schemas import errors
-from semmap.schemas.entities import PropertyInfo
+from semmap.schemas.changes import value_in_words
+from semmap.schemas.entities import PropertyInfo, Value
 from semmap.schemas.explanations import Term
 
 _FEW = 12
+_DEEPEST = 3
+"""Depth to which the parts of a nameless value are shown."""
+
+About = Callable[[Term], Mapping[Term, Sequence[Term]]]
+"""A lookup of the asserted objects of a subject by predicate."""
 STRUCTURAL: Mapping[Term, str] = {
     v.HAS_POSITION: "update {name} --at X Y Z",
     v.HAS_SIZE: "update {name} --size X Y Z",
@@ -78,6 +85,7 @@ class PropertyTable:
         }
         if v.MODEL in names.names:
             declared[v.MODEL] = True
+        self._structural = STRUCTURAL.keys() | edges | frozenset(LABELS) | {v.HAS_EXTENT, v.MODEL}
         self.by_iri: dict[Term, Property] = {}
         for p, is_data in sorted(declared.items()):
             if p in STRUCTURAL or p in edges:
@@ -98,6 +106,21 @@ class PropertyTable:
         if not known:
             return {}
         return dict(sorted(_shown(self.by_iri[p], asserted[p]) for p in known))
+
+    def read_others(self, about: About, subject: Term) -> dict[str, property_values.Stated]:
+        """Return the asserted values of the properties that are not in the table, by name.
+
+        These are annotations, and properties that only the map declares or uses. The properties that have
+        commands of their own are not included. A nameless value is written with its content.
+        """
+        others = about(subject).keys() - self.by_iri.keys() - self._structural
+        found: dict[str, property_values.Stated] = {}
+        for p in sorted(others):
+            name = v.local_name(p)
+            if name in found or name in self._taken:
+                name = p
+            found[name] = tuple(sorted((_content(about, o, ()) for o in about(subject)[p]), key=str))
+        return found
 
     def find(self, word: str, name: str = "NAME") -> Property:
         """Return the property that `word` means: a name, an IRI in <>, a prefixed name or a label.
@@ -194,6 +217,11 @@ class PropertyTable:
             return set()
         return self._of_the_tbox.intersection(*(self._reasoner.instances(c) for c in prop.ranges))
 
+    @cached_property
+    def _taken(self) -> frozenset[str]:
+        """The names of the properties."""
+        return frozenset(prop.name for prop in self.by_iri.values())
+
     def _is_known(self, p: Term) -> bool:
         return p in self.by_iri or p in STRUCTURAL
 
@@ -234,6 +262,28 @@ class PropertyTable:
                 if o not in found and not found.add(o)  # type: ignore[func-returns-value]
             ]
         return found
+
+
+def _content(about: About, value: Term, above: tuple[Term, ...]) -> Value:
+    """Return a value as JSON; a nameless one as text: `[width 0.05]`, or `(cup1 cup2)` for a list."""
+    if not value.startswith("_:"):
+        return property_values.to_json_value(value)
+    if value in above or len(above) == _DEEPEST:
+        return "[...]"
+
+    def text(node: Term) -> str:
+        return value_in_words(_content(about, node, (*above, value)))
+
+    items: list[str] = []
+    rest = value
+    while (first := about(rest).get(v.RDF_FIRST)) and len(items) < _FEW:
+        items.append(text(first[0]))
+        rest = next(iter(about(rest).get(v.RDF_REST, ())), v.RDF_NIL)
+    if items:
+        return f"({' '.join(items)}{'' if rest == v.RDF_NIL else ' ...'})"
+    edges = [(p, o) for p, objects in sorted(about(value).items()) for o in objects]
+    parts = sorted(f"{v.local_name(p)} {text(o)}" for p, o in edges[:_FEW])
+    return f"[{', '.join(parts)}{', ...' if edges[_FEW:] else ''}]"
 
 
 def _shown(prop: Property, terms: Iterable[Term]) -> tuple[str, property_values.Stated]:

@@ -95,7 +95,7 @@ def is_same_value(one: Term, other: Term) -> bool:
 def to_json_value(term: Term) -> Value:
     """Return a term as JSON: a boolean, a number, a text (with @ and language) or a name."""
     if not term.startswith('"'):
-        return v.local_name(term)
+        return v.entity_name(term)
     text, datatype, language = v.lexical(term), v.datatype_of(term), v.language_of(term)
     if language is not None:
         return f"{text}@{language}"

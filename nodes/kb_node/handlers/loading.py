@@ -11,7 +11,7 @@ from functools import partial
 from typing import Final, TypeVar
 
 from semmap.nodes.kb_node.answers import dry_runs
-from semmap.nodes.kb_node.documents import blank_nodes, document_change, load_parts, rdf
+from semmap.nodes.kb_node.documents import abox_document, blank_nodes, document_change, load_parts, rdf
 from semmap.nodes.kb_node.documents.isolated_parser import IsolatedParser
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
 from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, ReportProgress, effects
@@ -188,7 +188,7 @@ class LoadHandlers:
                     names=names,
                     counts=_count(known, _described(tried) if tried is not None else (), after),
                     skipped=tuple(filtered.skipped),
-                    notes=tuple(filtered.notes),
+                    notes=(*filtered.notes, *abox_document.name_notes(after.values())),
                 )
             skipped, notes = tuple(filtered.skipped), filtered.notes
             del triples, filtered, replaced  # for very many triples each list takes much memory
@@ -196,6 +196,7 @@ class LoadHandlers:
             commit = partial(self._commit, told=load.told)
             commits = load_parts.commit_each(parts, commit, report if load.parts else lambda _: None)
             names = tuple(dict.fromkeys(name for commit in commits for name in _described(commit)))
+            notes += abox_document.name_notes(entity for commit in commits for entity in commit.changed)
             return Loaded(
                 commit=effects(commits[-1] if commits else None),
                 parts=len(commits),

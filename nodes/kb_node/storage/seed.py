@@ -35,14 +35,16 @@ def seed(
     *,
     imports: Mapping[str, Path] = MappingProxyType({}),
     spatial_root: Sequence[str] = (),
+    skip_unknown: bool = False,
     fresh: bool = False,
 ) -> str:
     """Create the journal of folder `data` from a TBox and an ABox file, and return a summary.
 
     The TBox may consist of several files and folders. `imports` maps imported ontologies to files.
-    `spatial_root` names the classes of spatial things, if they cannot be detected. An existing journal is
-    kept and used, unless `fresh`: then it is moved to `data/kept/<time>/`. Raises BadFile, UnknownClass or
-    Inconsistent, with existing data unchanged.
+    `spatial_root` names the classes of spatial things, if they cannot be detected. With `skip_unknown`, the
+    individuals of unknown classes are left out. An existing journal is kept and used, unless `fresh`: then it
+    is moved to `data/kept/<time>/`. Raises BadFile, UnknownClass or Inconsistent, with existing data
+    unchanged.
     """
     path = data / FILENAME
     if not fresh and (notice := describe_existing_map(data)) is not None:
@@ -64,16 +66,20 @@ def seed(
     if abox is not None:
         document = ontology_files.read(abox, "a")
         try:
-            filtered = abox_document.filter_document(document, ClassTable(reasoner), skip_unknown=False)
+            filtered = abox_document.filter_document(
+                document, ClassTable(reasoner), skip_unknown=skip_unknown
+            )
         except errors.UnknownClass as error:
-            text = error.text.removesuffix(errors.SKIP_UNKNOWN)
             raise type(error)(
-                f"{abox}: {text}; other classes are given with --tbox FILE, another map with --abox FILE|none"
+                f"{abox}: {error.text}; other classes are given with --tbox FILE, another map with"
+                " --abox FILE|none"
             ) from None
         except errors.BadRequest as error:
             raise type(error)(f"{abox}: {error.text}") from None
         abox_triples += filtered.triples
         notes = filtered.notes
+        if filtered.skipped:
+            notes.append(f"left out {len(filtered.skipped)}: {wording.few(filtered.skipped, 5)}")
         if found := abox_document.find_undescribed(filtered.triples, reasoner):
             notes.append(abox_document.undescribed_note(found))
     source = f" from {abox.name}" if abox is not None else ""
@@ -87,18 +93,19 @@ def seed(
         data.mkdir(parents=True, exist_ok=True)
         require_unused(path)
         new = path.with_name(f"new-{FILENAME}")
-        size = _make(new, tbox_triples, reasoner, transaction)
+        semantic_map = _make(new, tbox_triples, reasoner, transaction)
         install_journal(new, path)
         closure_cache.save(closed, tbox_triples, data)
     except (errors.Inconsistent, errors.BadRequest) as error:
         raise type(error)(f"{abox or name}: {error.text}", explanation=error.explanation) from None
     except OSError as error:
         raise errors.Refused(f"cannot create a map in {data}: {error.strerror}") from None
-    return "; note: ".join((f"{wording.entities(size)}{source}", *notes))
+    notes += abox_document.name_notes(semantic_map.entities())
+    return "; note: ".join((f"{wording.entities(len(semantic_map))}{source}", *notes))
 
 
-def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Transaction) -> int:
-    """Create a journal at `path` with one commit, and return the number of entities.
+def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Transaction) -> SemanticMap:
+    """Create a journal at `path` with one commit, and return its map. The journal is closed.
 
     Nothing is left after an error.
     """
@@ -114,7 +121,7 @@ def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Trans
     except errors.SemmapError:
         delete_journal(path)
         raise
-    return len(semantic_map)
+    return semantic_map
 
 
 def require_unused(path: Path) -> None:

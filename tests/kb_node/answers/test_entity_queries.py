@@ -248,3 +248,39 @@ def test_get_reports_the_height_of_an_unsupported_object(own):
     ]
     assert told == [text]
     assert not entity_queries.CurrentState(own).entity(Get(name="milk1")).on_nothing
+
+
+def test_get_shows_every_asserted_property_and_the_equal_individuals(semantic_map):
+    text = """
+        :c a dm:Chair , owl:NamedIndividual ; rdfs:label 'mine' ; rdfs:comment 'old'@en ; dm:isLocatedIn :k .
+        :c <http://o.org/serial> '00123' ; <http://o.org/near> :d , :e ; <http://o.org/isLocatedIn> :d .
+        :c <http://o.org/grasp> [ <http://o.org/width> 0.05 ; <http://o.org/of> [ <http://o.org/z> true ] ] .
+        :c <http://o.org/route> ( :d :e ) ; owl:sameAs <http://o.org/7> . <http://o.org/8> owl:sameAs :c .
+        :c dm:hasPosition [ a dm:Coordinates ] . :k a dm:Kitchen . :d a dm:Chair . :e a dm:Chair .
+    """
+    semantic_map.commit(home.transaction(1, home.turtle(text)))
+    now = entity_queries.CurrentState(semantic_map)
+    expected = {
+        "comment": ("old@en",),
+        "isLocatedIn": ("k",),
+        "<http://o.org/isLocatedIn>": ("d",),
+        "grasp": ("[of [z true], width 0.05]",),
+        "near": ("d", "e"),
+        "route": ("(d e)",),
+        "sameAs": ("_7", "_8"),
+        "serial": ("00123",),
+    }
+    assert now.entity(Get(name="c")).properties == expected
+    assert now.entity(Get(name="c", where=True)).properties == expected
+    assert now.entity(Get(name="d")).properties == {}
+
+
+def test_get_ends_with_values_that_contain_themselves(semantic_map):
+    text = (
+        "_:a <http://o.org/p> _:a , _:b . _:b <http://o.org/p> _:a . :c a dm:Chair ; <http://o.org/p> _:a ."
+    )
+    endless = f":c <http://o.org/q> _:l . _:l <{v.RDF}first> :c ; <{v.RDF}rest> _:l ."
+    semantic_map.commit(home.transaction(1, home.turtle(f"{text} {endless}")))
+    shown = entity_queries.CurrentState(semantic_map).entity(Get(name="c")).properties
+    assert shown["p"] == ("[p [...], p [p [...]]]",)
+    assert shown["q"] == (f"({'c ' * 12}...)",)

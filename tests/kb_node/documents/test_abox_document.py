@@ -156,3 +156,42 @@ def test_literals_outside_a_range_get_a_datatype_of_it():
         "3 values stored with the datatype of the property: mass (float), seats (nonNegativeInteger),"
         " serial (string)"
     ]
+
+
+def filtered_names(classes, text):
+    filtered = abox_document.filter_document(turtle(text), classes, skip_unknown=False)
+    return sorted({v.entity_name(s) for s, p, o in filtered.triples if o == v.dm("Chair")}), filtered
+
+
+def test_blank_nodes_of_spatial_classes_get_names_that_stay(classes):
+    text = ":k a dm:Kitchen . [] a dm:Chair ; dm:near :k ; dm:hasPosition [ dm:float_coordinates_x '1' ] ."
+    names, filtered = filtered_names(classes, text)
+    (name,) = names
+    assert name.startswith("chair_")
+    assert filtered.notes[0] == f"1 blank node stored with names: {name}"
+    assert (v.entity_iri(name), v.dm("near"), v.entity_iri("k")) in filtered.triples
+    assert len(filtered.triples) == len(turtle(text))
+    assert filtered_names(classes, text)[0] == names
+    assert filtered_names(classes, text.replace("'1'", "'2'"))[0] != names
+
+
+def test_blank_nodes_that_are_alike_get_different_names(classes):
+    names, _ = filtered_names(
+        classes, "[] a dm:Chair . [] a dm:Chair . [] a dm:Chair ; dm:near [ a dm:Chair ] ."
+    )
+    assert len(names) == 4
+    assert [name.count("_") for name in names].count(2) == 2
+
+
+def test_a_circle_of_blank_nodes_gets_names(classes):
+    names, _ = filtered_names(classes, "_:a a dm:Chair ; dm:near _:b . _:b a dm:Chair ; dm:near _:a , _:b .")
+    assert len(names) == 2
+
+
+def test_a_property_with_an_unknown_class_is_kept(classes):
+    triples = turtle(
+        ":p a owl:ObjectProperty , :Kind . :c a dm:Chair ; :p :c . :x a owl:NamedIndividual , :Kind ."
+    )
+    kept, words, _ = abox_document.filter_document(triples, classes, skip_unknown=True)
+    assert set(kept) == set(turtle(":p a owl:ObjectProperty . :c a dm:Chair ; :p :c ."))
+    assert words == ["p (unknown class 'Kind')", "x (unknown class 'Kind')"]

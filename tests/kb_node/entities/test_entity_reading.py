@@ -4,6 +4,7 @@ from semmap.nodes.kb_node.entities import entity_reading
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
+from semmap.schemas.commits import Edit, Transaction
 from semmap.schemas.entities import Pose
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
@@ -101,15 +102,50 @@ def test_a_label_that_is_not_text_is_ignored(semantic_map):
     ("iri", "fault"),
     [
         ("_:b", "a Chair is a blank node; an entity needs an IRI"),
-        ("<http://a.org/x#1chair>", "needs an IRI that ends in a valid name: up to 128 letters, digits"),
-        ("<http://a.org/x#my%20chair>", "needs an IRI that ends in a valid name: up to 128 letters, digits"),
-        ("<http://a.org/x#>", "needs an IRI that ends in a valid name: up to 128 letters, digits"),
         ("<javascript:x#chair>", "needs an IRI of http, https, urn or file"),
     ],
 )
 def test_an_entity_needs_a_name(semantic_map, iri, fault):
     with pytest.raises(errors.BadRequest, match=fault):
         semantic_map.commit(transaction(1, [(iri, v.RDF_TYPE, v.dm("Chair"))]))
+
+
+@pytest.mark.parametrize(
+    ("iri", "name"),
+    [
+        ("<http://a.org/x#1chair>", "_1chair"),
+        ("<https://a.org/walls/9499a8c6-2e95-4531>", "_9499a8c6-2e95-4531"),
+        ("<http://a.org/x#my%20chair>", "my_x20_chair"),
+        ("<http://a.org/r/chair/>", "chair_x2F_"),
+        ("<http://a.org/x#>", "x_x23_"),
+        ("<http://dbpedia.org/resource/Mug_(cup)>", "Mug__x28_cup_x29_"),
+    ],
+)
+def test_an_entity_whose_iri_does_not_end_in_a_name_is_found_by_one_and_keeps_its_iri(
+    semantic_map, iri, name
+):
+    semantic_map.commit(transaction(1, [(iri, v.RDF_TYPE, v.dm("Chair"))]))
+    assert [entity.name for entity in semantic_map.entities()] == [name]
+    assert semantic_map.find_by_iri(iri) is semantic_map.entity(name)
+    assert (iri, v.RDF_TYPE, v.dm("Chair")) in semantic_map.abox()
+    semantic_map.commit(Transaction(id="2", source="file", edit=(Edit(name=name, ref="my chair"),)))
+    assert semantic_map.entity(name).preferred_reference == "my chair"
+    semantic_map.commit(Transaction(id="3", source="file", edit=(Edit(name=name, rename="chair7"),)))
+    assert v.local_name(v.iri(semantic_map.entity("chair7").iri)) == "chair7"
+    assert not [t for t in semantic_map.abox() if iri in t]
+
+
+def test_two_iris_with_one_name_are_rejected(semantic_map):
+    both = [(f"<http://a.org/x#{name}>", v.RDF_TYPE, v.dm("Chair")) for name in ("_1", "1")]
+    with pytest.raises(errors.NameTaken, match=r"the name '_1' is taken by <http://a.org/x#"):
+        semantic_map.commit(transaction(1, both))
+
+
+def test_the_value_of_a_property_is_the_name_of_its_entity(semantic_map):
+    entity = entity_of(
+        semantic_map, ":a a dm:Chair ; dm:isLocatedIn <http://a.org/r/1> . <http://a.org/r/1> a dm:Kitchen ."
+    )
+    assert entity.properties["isLocatedIn"] == ("_1",)
 
 
 def test_the_most_specific_asserted_class_is_the_class_of_the_entity(semantic_map):
@@ -225,3 +261,49 @@ def test_owners_are_the_entity_and_those_that_refer_to_it(semantic_map):
     semantic_map.commit(transaction(1, chair()))
     node = v.entity_iri("chair1_coordinates")
     assert entity_reading.find_owners(semantic_map.reasoner, semantic_map.classes, node) == {node, CHAIR1}
+
+
+SKOS = "http://www.w3.org/2004/02/skos/core#"
+
+
+@pytest.mark.parametrize(
+    ("text", "label", "aliases"),
+    [
+        ("rdfs:label 'mug'", "mug", ()),
+        ("rdfs:label 'zeta fridge'@en , 'alpha frigo'@it", "zeta fridge", ("alpha frigo",)),
+        ("rdfs:label 'zeta'@en-GB , 'alpha' , 'beta'@it", "zeta", ("alpha", "beta")),
+        ("rdfs:label 'zeta' , 'alpha'@de", "zeta", ("alpha",)),
+        (f"rdfs:label 'a' ; <{SKOS}prefLabel> 'b'@it ; <{SKOS}altLabel> 'c' , 'a'", "b", ("a", "c")),
+        (f"<{SKOS}altLabel> 'c'", None, ("c",)),
+        ("rdfs:label 'a' ; dm:hasPreferredReference [ dm:lexicalReference 'z' ]", "z", ("a",)),
+        ("rdfs:label 'a' ; dm:hasPreferredReference [ dm:lexicalReference 'a' ]", "a", ()),
+        ("rdfs:label 'a' ; dm:hasAlternativeReference [ dm:lexicalReference 'b' ]", "a", ("b",)),
+    ],
+)
+def test_labels_of_every_language_are_references(semantic_map, text, label, aliases):
+    entity = entity_of(semantic_map, f":a {text} .")
+    assert (entity.preferred_reference, entity.alternative_references) == (label, aliases)
+
+
+def test_new_aliases_replace_labels_and_a_new_label_does_not(semantic_map):
+    def edit(number, **fields):
+        edits = (Edit(name="a", **fields),)
+        semantic_map.commit(Transaction(id=f"e{number}", source="operator", edit=edits))
+        entity = semantic_map.entity("a")
+        return entity.preferred_reference, entity.alternative_references
+
+    entity_of(semantic_map, ":a rdfs:label 'fridge'@en , 'frigo'@it , 'frigorifero'@it .")
+    assert edit(1, alt=("frigo", "icebox")) == ("fridge", ("icebox", "frigo"))
+    assert edit(2, ref="big fridge") == ("big fridge", ("icebox", "fridge", "frigo"))
+    assert edit(3, alt=()) == ("big fridge", ())
+
+
+def test_another_name_of_an_entity_elsewhere_is_not_an_entity(semantic_map):
+    link = turtle(":c owl:sameAs <http://dbpedia.org/resource/Mug_(cup)> .")
+    semantic_map.commit(transaction(1, [*turtle(":c a dm:Chair ."), *link]))
+    assert [entity.name for entity in semantic_map.entities()] == ["c"]
+    semantic_map.commit(transaction(2, turtle("<http://dbpedia.org/resource/Mug_(cup)> a dm:Seat .")))
+    assert len(semantic_map) == 2
+    semantic_map.commit(transaction(3, turtle("<http://o.org/1> owl:sameAs :c .")))
+    semantic_map.commit(Transaction(id="4", source="file", remove=("c",)))
+    assert [entity.class_ for entity in semantic_map.entities()] == ["Seat"]

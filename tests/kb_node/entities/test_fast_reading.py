@@ -142,9 +142,20 @@ def test_the_usual_run_is_regular(semantic_map, monkeypatch):
     assert entity.class_ == "Chair"
 
 
-def test_a_known_shape_with_an_invalid_name_is_rejected(semantic_map):
-    for name in ("e0", "e1"):
+def test_labels_are_read_alike(semantic_map, monkeypatch):
+    def named(name):
+        iri = v.entity_iri(name)
+        label = (iri, v.RDFS_LABEL, v.literal(f"{name} it", lang="it"))
+        return [*star(name), label, (iri, v.SKOS_ALT_LABEL, v.literal("b"))]
+
+    semantic_map.commit(transaction(1, named("e0")))
+    monkeypatch.delattr(entity_reading, "read_entity")
+    semantic_map.commit(transaction(2, [*named("e1"), *named("e2")]))
+    entity = semantic_map.entity("e2")
+    assert (entity.preferred_reference, entity.alternative_references) == ("e2 it", ("b",))
+
+
+def test_an_entity_of_a_known_shape_gets_a_name_by_the_same_rule(semantic_map):
+    for name in ("e0", "e1", "1e"):
         semantic_map.commit(transaction(name, star(name)))
-    with pytest.raises(errors.BadRequest, match="needs an IRI that ends in a valid name"):
-        semantic_map.commit(transaction("bad", star("1e")))
-    assert len(semantic_map) == 2
+    assert semantic_map.entity("_1e").iri == v.bare(v.entity_iri("1e"))

@@ -96,6 +96,27 @@ def test_very_many_axioms_are_closed_in_another_process(flat, monkeypatch):
     assert len(flat.reasoner.axioms.difference(flat.tbox)) == 4 * 260
 
 
+CUPS = f"""@prefix dm: <{v.TBOX}> . @prefix owl: <{v.OWL}> .
+<https://ex.org/cups/9499a8c6-2e95> a dm:Cup .
+<http://ex.org/m#cup_z> a dm:Cup .
+""".encode()
+
+
+@pytest.mark.parametrize("dry_run", [True, False])
+def test_names_that_are_made_from_iris_are_noted_once(flat, dry_run):
+    def load(number):
+        fields = {"replace": False, "skip_unknown": False, "dry_run": dry_run}
+        return LoadDocument(id=number, source="file", content=CUPS, filename="cups.ttl", **fields)
+
+    handlers = loading(flat, [])
+    loaded = handlers.on_load(load("1"))
+    assert set(loaded.names) == {"cup_z", "_9499a8c6-2e95"}
+    assert loaded.notes == (
+        "1 name made from IRIs, which stay as they are: _9499a8c6-2e95 (<https://ex.org/cups/9499a8c6-2e95>)",
+    )
+    assert bool(handlers.on_load(load("2")).notes) == dry_run
+
+
 @pytest.mark.process
 def test_axioms_that_take_long_are_rejected_with_a_map(flat, monkeypatch):
     monkeypatch.setattr(handlers_loading, "_AXIOMS_S", 1.0)

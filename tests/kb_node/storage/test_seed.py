@@ -112,7 +112,12 @@ def test_a_journal_in_use_is_not_changed(data, files):
             errors.UnknownClass,
             "'Xylophone' .*; other classes are given with --tbox FILE, another map with --abox FILE",
         ),
-        (TBOX_TURTLE, ABOX + "[] a dm:Chair .", errors.BadRequest, "my abox.ttl: a Chair is a blank node"),
+        (
+            TBOX_TURTLE + "dm:isOn rdfs:domain dm:Object .",
+            ABOX + "[] dm:isOn :chair1 .",
+            errors.BadRequest,
+            "my abox.ttl: a Object is a blank node",
+        ),
     ],
 )
 @pytest.mark.parametrize("fresh", [False, True])
@@ -127,6 +132,15 @@ def test_invalid_files_leave_the_old_data_unchanged(data, files, tbox, abox, err
     with pytest.raises(error, match=text):
         seed(data, *files, fresh=fresh)
     assert contents(data) == before
+
+
+def test_individuals_of_unknown_classes_are_left_out_on_request(data, files):
+    files[1].write_text(ABOX + ":x a dm:Xylophone . <http://o.org/1> a dm:Chair .")
+    assert seed(data, *files, skip_unknown=True) == (
+        "2 entities from my abox.ttl; note: left out 1: x (unknown class 'Xylophone'); note: 1 name made from"
+        " IRIs, which stay as they are: _1 (<http://o.org/1>)"
+    )
+    assert read(data)[0] == ["_1", "chair1"]
 
 
 def test_a_write_error_does_not_blame_the_files(data, files, monkeypatch):
