@@ -52,6 +52,8 @@ def find_room(space: Space, query: FindRoom, entity: Entity | None, contents: It
     `entity` is the object in the map, if it is there; where it stands, it takes up no room, and neither do
     its `contents`. Raises Refused if there is no room, with the reason.
     """
+    if query.alone:
+        space, entity, contents = Space(limits=space.limits), None, ()
     model, size, joints = _find_shape(query, entity)
     if size is None:
         raise errors.Refused(f"the size of {query.name} is unknown, so no room can be found; give a size")
