@@ -37,7 +37,8 @@ class Interior(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """An interior that can contain things: its box in the model's frame [m]; `open` at the top, or closed.
 
     `behind` are the joints whose leaves close it: it is closed while all of them are closed. `carried_by` is
-    the joint that it moves with, such as that of a drawer; "" for a static interior.
+    the joint that it moves with, such as that of a drawer; "" for a static interior. A `filled` one is solid
+    in the simulator, such as that of a cup, so nothing can be placed in it there.
     """
 
     low: Corner
@@ -46,6 +47,17 @@ class Interior(Struct, frozen=True, kw_only=True, omit_defaults=True):
     open: bool = True
     behind: tuple[str, ...] = ()
     carried_by: str = ""
+    filled: bool = False
+
+    @property
+    def is_sealed(self) -> bool:
+        """Return whether nothing can get in from outside, such as into a can."""
+        return self.filled and not self.open
+
+    @property
+    def is_round(self) -> bool:
+        """Return whether it is a cylinder or a ball instead of the whole box."""
+        return self.fill < 0.9
 
 
 class ConvexPart(Struct, frozen=True, kw_only=True, omit_defaults=True):

@@ -119,9 +119,9 @@ class FindRoom(Call[Room], frozen=True, kw_only=True, forbid_unknown_fields=True
     """Request a free pose for an object `name` on, in or next to `target`.
 
     Without an `orientation` it is aligned with the target. `model` and `size_m` replace those of an entity of
-    this name. With `carry`, its contents take up no room. `others` are objects that are not in the map yet.
-    With `stays`, an object for which the relation holds already keeps its pose. Raises Refused without room,
-    with the reason.
+    this name. With `carry`, its contents take up no room. `others` are objects that are not in the map yet;
+    with `alone`, they replace the map. With `stays`, an object for which the relation holds already keeps its
+    pose. Raises Refused without room, with the reason.
     """
 
     VERB: ClassVar[str] = "find-room"
@@ -134,6 +134,7 @@ class FindRoom(Call[Room], frozen=True, kw_only=True, forbid_unknown_fields=True
     target: str
     carry: bool = False
     others: tuple[PlacedObject, ...] = ()
+    alone: bool = False
     stays: bool = False
 
 

@@ -11,8 +11,9 @@ from PIL import Image, ImageDraw, ImageFont
 
 from benchmarks.relations.situations import SITUATIONS, Said, Situation
 from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
+from semmap.nodes.sim_node.models.forms import column, hollow_box, ring, shifted
 from semmap.nodes.sim_node.models.library import build
-from semmap.nodes.sim_node.models.parts import Colour, Part, Role, ball, box
+from semmap.nodes.sim_node.models.parts import Colour, Part, Role, Shape, ball, box
 from semmap.nodes.sim_node.physics.build import add_part
 from semmap.nodes.sim_node.vision.raycast import raycast
 from semmap.nodes.sim_node.vision.view import FROM_THE_FRONT, View, overview
@@ -236,8 +237,11 @@ def _parts(entity: Entity, solid: Solid, opened: set[str], colour: Colour) -> li
         return [ball((0.08, 0.08, 0.08), (0.0, 0.0, 0.04), _NOWHERE)]
     if not entity.model:
         return [box(solid.size, (0.0, 0.0, solid.size[2] / 2), colour)]
-    parts = [part for part in build(entity.model, entity.size_m).parts if part.role is not Role.COLLISION]
+    built = build(entity.model, entity.size_m).parts
+    parts = [part for part in built if part.role is not Role.COLLISION]
     interiors = shapes()[entity.model].interiors
+    if entity.name in opened and (vessel := next((part for part in built if part.cavity), None)):
+        return _cut_vessel(vessel, parts)
     if entity.name in opened and interiors and not any(inner.open for inner in interiors):
         return _cut_open(entity)
     return [part for part in parts if entity.name not in opened or not _fills(part, entity.model)]
@@ -251,6 +255,22 @@ def _fills(part: Part, model: str) -> bool:
         if np.all((low < middle) & (middle < high)) and np.all(reach[:2] > 0.3 * (high - low)[:2]):
             return True
     return False
+
+
+def _cut_vessel(body: Part, parts: list[Part]) -> list[Part]:
+    """Return the floor and back of a solid body with a cavity, and the parts beside and behind it."""
+    (cx, cy, cz), (rx, ry, rz) = body.centre, (float(reach) for reach in body.reach())
+    wall, floor_m = 0.05 * min(rx, ry), 2.0 * rz * (body.cavity.floor if body.cavity else 0.0)
+    if body.shape is Shape.BOX:
+        walls = hollow_box(2 * rx, 2 * ry, 2 * rz - floor_m, wall, body.colour)
+    else:
+        walls = [
+            column(rx, 0.0, wall, body.colour),
+            *ring((rx, rx), 0.0, 2 * rz - floor_m, wall, body.colour),
+        ]
+    back = [part for part in walls if part.centre[0] <= 0.0]
+    beside = [part for part in parts if abs(part.centre[1] - cy) > ry or part.centre[0] < cx - rx]
+    return [*shifted(back, x=cx, y=cy, z=cz - rz + floor_m), *beside]
 
 
 def _cut_open(entity: Entity) -> list[Part]:
@@ -276,8 +296,8 @@ def sheet() -> Image.Image:
     made = Image.new("RGB", (_COLUMNS * _WIDTH, sum(row[0].height for row in rows)), _PAPER)
     top = 0
     for tiles in rows:
-        for column, one in enumerate(tiles):
-            made.paste(one, (column * _WIDTH, top))
+        for k, one in enumerate(tiles):
+            made.paste(one, (k * _WIDTH, top))
         top += tiles[0].height
     return made
 

@@ -77,7 +77,7 @@ def _load_described(view: MapView, command: Load, described: Iterable[Described]
         known, skipped, notes = _sort_out(view.classes, described, skip_unknown=command.skip_unknown)
         items = _name_all(known, there, command.filename or "the file")
     if any(placing_of(item) is not None for _, item, _ in items):
-        items, shut = yield from place_described(view, items, there)
+        items, shut = yield from place_described(items, there, replace=command.replace)
         notes = (*notes, *shut)
     with memory.uncollected():
         new: list[NewEntity] = []

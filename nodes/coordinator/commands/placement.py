@@ -115,12 +115,12 @@ def _orientation(command: Placeable, entity: Entity | None) -> Quaternion | None
 
 
 def place_described(
-    view: MapView, items: Sequence[Named], there: Mapping[str, Entity]
+    items: Sequence[Named], there: Mapping[str, Entity], *, replace: bool
 ) -> KbCoroutine[tuple[list[Named], tuple[str, ...]]]:
     """Return the entities of a scene with positions, in their order, and notes.
 
     Those with `on`, `in` or `next_to` are placed; entities before them in the file take up room. `there` are
-    the entities of the map that stay. Raises BadRequest, UnknownName and Refused.
+    the entities of the map that stay; with `replace` there are none. Raises BadRequest, UnknownName, Refused.
     """
     placed: list[Named] = []
     others: dict[str, PlacedObject] = {}
@@ -143,6 +143,7 @@ def place_described(
                 placing=wanted.placing,
                 target=target,
                 others=tuple(others.values()),
+                alone=replace,
                 stays=True,
             )
             room = yield from ask(request)

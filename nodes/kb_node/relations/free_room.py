@@ -52,6 +52,8 @@ def find_room(space: Space, query: FindRoom, entity: Entity | None, contents: It
     `entity` is the object in the map, if it is there; where it stands, it takes up no room, and neither do
     its `contents`. Raises Refused if there is no room, with the reason.
     """
+    if query.alone:
+        space, entity, contents = Space(limits=space.limits), None, ()
     model, size, joints = _find_shape(query, entity)
     if size is None:
         raise errors.Refused(f"the size of {query.name} is unknown, so no room can be found; give a size")
@@ -138,7 +140,8 @@ class _Search:
             yield from sorted(levels, key=lambda level: (-round(area(level.outline), 2), -level.height))
         elif self._placing == "in":
             for hollow in target.hollows if target.is_upright else ():
-                yield from _levels_in(target, hollow)
+                if not hollow.filled:
+                    yield from _levels_in(target, hollow)
         else:
             yield from self._levels_beside()
 
@@ -200,6 +203,11 @@ class _Search:
             return f"the size of {name} is unknown; set it with: semmap update {name} --size X Y Z"
         if not self._target.is_upright:
             return f"{name} is tilted, so nothing can be placed {placing_words(self._placing)} it"
+        if self._placing == "in" and self._target.hollows:
+            return (
+                f"{name} is solid in the simulator, so nothing can be placed in it;"
+                f" state it with: semmap set {self._name} isInside {name}"
+            )
         return f"{name} has no {'interior' if self._placing == 'in' else 'level surface'}"
 
     def describe_failure(self, size: Size) -> str:

@@ -141,10 +141,14 @@ def _explain_not_inside(space: Space, solid: Solid, other: Solid) -> str:
     made = measures.inside(solid, other, space.limits)
     if made is None or made.share == 0.0:
         apart = measures.gap(solid, other)
+        if apart == 0.0 and all(hollow.is_sealed for hollow in other.hollows):
+            return f"not all of it is within the hollow of {other.name}, which is closed"
         return f"none of its volume is within a hollow of {other.name}; they are {format_length(apart)} apart"
-    if not made.holds:
+    if made.share < made.limit:
         least = f"isInside requires at least {space.limits.inside_share:.0%}"
         return f"{explain_location('isInside', solid, other, made)} ({least})"
+    if not made.holds:
+        return f"it is too large for the hollow of {other.name}"
     return (
         _explain_crowd(space, solid, other)
         or f"it {describe_support(space, solid)}, which is the smaller hollow"

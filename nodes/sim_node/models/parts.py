@@ -66,6 +66,17 @@ class Joint:
 
 
 @dataclass(frozen=True)
+class Cavity:
+    """The interior of a part that is solid in the simulator, such as a pot; `is_open` at the top, or closed.
+
+    Its floor is at the share `floor` of the height of the part, above the thickness of a wall.
+    """
+
+    is_open: bool
+    floor: float = 0.0
+
+
+@dataclass(frozen=True)
 class Part:
     """One primitive or mesh of a model; `centre` and `half` in metres, `turn` a unit quaternion wxyz.
 
@@ -80,6 +91,7 @@ class Part:
     role: Role = Role.BOTH
     mesh: Mesh | None = None
     joint: Joint | None = None
+    cavity: Cavity | None = None
 
     @property
     def volume(self) -> float:
@@ -146,6 +158,11 @@ def mesh(vertices: Floats, faces: NDArray[np.int32], colour: Colour, role: Role 
     middle, half = (low + high) / 2.0, (high - low) / 2.0
     triangles = Mesh("", vertices - middle, np.asarray(faces, dtype=np.int32))
     return Part(Shape.MESH, _vec3(half), _vec3(middle), colour, role=role, mesh=triangles)
+
+
+def with_cavity(part: Part, *, is_open: bool, floor: float = 0.0) -> Part:
+    """Return the part with an interior for relations. It remains solid in the simulator."""
+    return replace(part, cavity=Cavity(is_open, floor))
 
 
 def visual(parts: Part | Iterable[Part]) -> Parts:

@@ -4,7 +4,8 @@ Vertical lines through a grid over the footprint are intersected with every part
 intervals above each cell. A *support surface* is a patch of neighbouring cells whose solids end at one height
 with free space above. An *interior* is a set of free cells with a floor below and walls on all four sides;
 its top may be open, as of a bowl. Surfaces use colliding parts. Interiors also use visible parts, since a cup
-collides as a solid but looks hollow, and a fridge the other way round.
+collides as a solid but looks hollow, and a fridge the other way round. A part that looks and collides as a
+solid, such as the body of a pot, declares its interior as its `cavity`.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from scipy import ndimage
 
 from semmap.nodes.sim_node.models.convex_parts import convex_part
 from semmap.nodes.sim_node.models.library import Model
-from semmap.nodes.sim_node.models.parts import Floats, Part, Role, Shape, rotation_matrix
+from semmap.nodes.sim_node.models.parts import Cavity, Floats, Part, Role, Shape, rotation_matrix
 from semmap.ontology.model_shapes import Interior, LeafShape, ModelShape, Surface
 from semmap.schemas import errors
 
@@ -40,6 +41,8 @@ LEAST_VOLUME = 0.03
 """Share of the bounding box."""
 LEAST_TRAY = 0.004
 """The same, for a drawer."""
+VESSEL_WALL_M, VESSEL_WALL = 0.006, 0.1
+"""Maximum thickness of the walls around a cavity, also as a share of the least half extent of its part."""
 
 Intervals = list[tuple[Floats, Floats]]
 """For each part both ends of its intersection with each cell's vertical line: (nx, ny), nan for none."""
@@ -62,7 +65,8 @@ def shape_of(model: Model) -> ModelShape:
         seen, colliding = (
             [cut for role, cut in some if role is not out] for out in (Role.COLLISION, Role.VISUAL)
         )
-        return _together(*(_interiors(one, xs, ys, step, z, least) for one in (seen, colliding)))
+        found = _together(*(_interiors(one, xs, ys, step, z, least) for one in (seen, colliding)))
+        return [structs.replace(room, filled=_is_filled(room, colliding, xs, ys)) for room in found]
 
     names = [leaf.joint.name for leaf in model.leaves]
     interiors = hollows([None, *names])
@@ -72,6 +76,7 @@ def shape_of(model: Model) -> ModelShape:
             room if _is_among(room, without) else structs.replace(room, behind=(*room.behind, name))
             for room in interiors
         ]
+    interiors += [_cavity(part, part.cavity) for part in model.parts if part.cavity]
     surfaces = _surfaces([_cut(part, xs, ys) for part in solid], xs, ys, step)
     leaves = []
     for leaf in model.leaves:
@@ -100,12 +105,34 @@ def shape_of(model: Model) -> ModelShape:
     )
 
 
+def _cavity(part: Part, cavity: Cavity) -> Interior:
+    """Return the interior of a solid part, between its walls."""
+    centre, reach = np.asarray(part.centre), part.reach()
+    wall = min(VESSEL_WALL_M, VESSEL_WALL * float(reach.min()))
+    low, high = centre - reach + wall, centre + reach - wall
+    low[2] += 2.0 * cavity.floor * reach[2]
+    if cavity.is_open:
+        high[2] += wall
+    (x0, y0, z0), (x1, y1, z1) = low.tolist(), high.tolist()
+    fill = part.volume / float(np.prod(2.0 * reach))
+    return Interior(low=(x0, y0, z0), high=(x1, y1, z1), fill=fill, open=cavity.is_open, filled=True)
+
+
 def _as_thick_as(step: float, part: Part) -> Part:
     """Return a thin wall made so thick that a line of the grid intersects it."""
     if part.shape is not Shape.BOX or min(part.half) > step / 2.0:
         return part
     x, y, z = (max(extent, 0.51 * step) for extent in part.half)
     return replace(part, half=(x, y, z))
+
+
+def _is_filled(room: Interior, colliding: Intervals, xs: Floats, ys: Floats) -> bool:
+    """Return whether one colliding part fills the middle of an interior, nearly from its floor to its top."""
+    x, y, _ = np.add(room.low, room.high) / 2
+    i, j = np.abs(xs - x).argmin(), np.abs(ys - y).argmin()
+    (_, _, floor), (_, _, top) = room.low, room.high
+    spare = 0.1 * (top - floor)
+    return any(low[i, j] < floor + spare and high[i, j] > top - spare for low, high in colliding)
 
 
 def _is_among(room: Interior, others: Iterable[Interior]) -> bool:

@@ -5,6 +5,7 @@ import math
 from itertools import combinations
 
 import pytest
+from msgspec import structs
 
 from semmap.nodes.coordinator.commands.placement import at_room, make_request, placing_of
 from semmap.schemas import commands as c
@@ -126,6 +127,17 @@ def test_a_scene_that_is_loaded_again_leaves_placed_objects_where_they_are(dispa
     dispatcher.change(file)
     assert dispatcher.map.entity("toy2").pose.position_m[2] == pytest.approx(0.7)
     assert dispatcher.map.seq == before + 2
+
+
+def test_in_a_scene_that_replaces_the_map_the_old_objects_take_up_no_room(dispatcher):
+    wide = toy("toy1", on="table1")
+    wide["size"] = [1.1, 0.7, 0.2]
+    dispatcher.change(scene(BENCH, wide))
+    middle = dispatcher.map.entity("toy1").pose
+    other = {**wide, "name": "toy2"}
+    dispatcher.change(structs.replace(scene(BENCH, other), replace=True))
+    assert set(dispatcher.map.entities) == {"table1", "toy2"}
+    assert dispatcher.map.entity("toy2").pose == middle
 
 
 @pytest.mark.parametrize(

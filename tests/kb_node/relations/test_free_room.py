@@ -11,6 +11,8 @@ from semmap.nodes.kb_node.relations.free_room import find_room
 from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.arrangement import measure_next_to
 from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.sim_node.models.library import build
+from semmap.nodes.sim_node.models.variety_table import KINDS
 from semmap.ontology import MODEL_SHAPES_JSON
 from semmap.schemas.bridge import FindRoom
 from semmap.schemas.errors import Refused
@@ -148,17 +150,25 @@ def test_an_object_without_a_size_is_refused():
 _TINY = (0.02, 0.02, 0.01)
 
 
-SOLID = {"cup", "espresso_cup", "glass", "small_glass", "tall_glass", "tumbler"}
-"""Drinking vessels: their collision geometry fills their interior."""
+SOLID = {"cup", "espresso_cup", "glass", "small_glass", "tall_glass", "tumbler"} | {
+    name for name in KINDS if any(part.cavity for part in build(name, None).parts)
+}
+"""Models whose colliding parts fill their interior: drinking vessels, and those with a cavity."""
+HOLLOW = [name for name, shape in SHAPES.items() if shape.get("interiors")]
 
 
-@pytest.mark.parametrize(
-    "model", [n for n, shape in SHAPES.items() if shape.get("interiors") and n not in SOLID]
-)
+@pytest.mark.parametrize("model", [name for name in HOLLOW if name not in SOLID])
 def test_every_model_with_an_interior_takes_a_small_object(model):
     space = Space([thing("holder1", (1.0, 1.0, 0.0), model, yaw=0.4)])
     put(space, "in", "holder1", "tiny1", "", size_m=_TINY)
     assert relations(space, "tiny1")[0] == "holder1"
+
+
+@pytest.mark.parametrize("model", sorted(SOLID))
+def test_a_model_that_is_solid_in_the_simulator_takes_nothing(model):
+    space = Space([thing("holder1", (1.0, 1.0, 0.0), model, yaw=0.4)])
+    with pytest.raises(Refused, match="holder1 is solid in the simulator, so nothing can be placed in it"):
+        put(space, "in", "holder1", "tiny1", "", size_m=_TINY)
 
 
 @pytest.mark.parametrize(

@@ -27,6 +27,10 @@ MAP = [
     thing("box1", (0.0, 0.0, 0.0)),
     thing("shelf1", (-2.0, 0.0, 0.0), "bookshelf"),
     thing("thing1", (1.0, 1.0, 0.0), "unheard of"),
+    thing("can1", (-1.0, -1.0, 0.0)),
+    thing("egg1", (-1.0, -1.0, 0.0)),
+    thing("bucket1", (-2.0, -2.0, 0.0)),
+    thing("board1", (-2.0, -2.0, 0.05), "", size=(0.02, 0.4, 0.1)),
 ]
 
 
@@ -47,6 +51,9 @@ def told(name, relation, other):
         ("thing1", "isOn", "table1", "the size of thing1 is unknown"),
         ("apple1", "isInside", "table1", "table1 has no known hollow"),
         ("cup1", "isInside", "bowl1", "none of its volume is within a hollow of bowl1"),
+        ("egg1", "isInside", "can1", "not all of it is within the hollow of can1, which is closed"),
+        ("apple1", "isInside", "can1", "none of its volume is within a hollow of can1"),
+        ("board1", "isInside", "bucket1", "it is too large for the hollow of bucket1"),
         ("cup1", "isLocatedIn", "table1", "table1 is not a place"),
         ("cup1", "isLocatedIn", "corner1", "m from it"),
         ("cup1", "isAttachedTo", "table1", "it is on tray1, so it is not attached to a side"),

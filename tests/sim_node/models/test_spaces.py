@@ -8,7 +8,18 @@ import pytest
 
 from semmap.nodes.sim_node.models.forms import hollow_box, slab
 from semmap.nodes.sim_node.models.library import assemble, build
-from semmap.nodes.sim_node.models.parts import UPRIGHT, about, ball, box, mesh, pill, product, rod, visual
+from semmap.nodes.sim_node.models.parts import (
+    UPRIGHT,
+    about,
+    ball,
+    box,
+    mesh,
+    pill,
+    product,
+    rod,
+    visual,
+    with_cavity,
+)
 from semmap.nodes.sim_node.models.spaces import _cut, shape_of
 from semmap.nodes.sim_node.models.variety_table import KINDS
 from semmap.nodes.sim_node.models.write_shapes import as_json, library_shapes
@@ -28,7 +39,20 @@ def test_the_file_is_what_the_models_say():
 def test_the_file_is_what_some_models_of_each_kind_say():
     text = MODEL_SHAPES_JSON.read_text()
     assert json.loads(text).keys() == {"", *KINDS}
-    for name in ("", "table", "bookshelf", "fridge", "chair", "bowl", "cup", "apple", "door", "clock"):
+    for name in (
+        "",
+        "table",
+        "bookshelf",
+        "fridge",
+        "chair",
+        "bowl",
+        "cup",
+        "apple",
+        "door",
+        "clock",
+        "pot",
+        "can",
+    ):
         (row,) = as_json({name: shape_of(build(name, None))}).splitlines()[1:-1]
         assert row in text, "make shapes"
 
@@ -73,6 +97,62 @@ def test_a_plain_box_carries_with_all_of_its_top():
 )
 def test_a_hollow_says_what_closes_it(model, behind):
     assert {room.behind for room in shape_of(build(model, None)).interiors} == behind
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        "bag", "bowl", "bucket", "cup", "flower_pot", "glass", "jar", "pitcher", "pot", "small_glass",
+        "toilet", "vase", "wine_glass",
+    ],
+)  # fmt: skip
+def test_an_open_vessel_has_an_open_interior(model):
+    (room,) = shape_of(build(model, None)).interiors
+    assert room.open
+    assert not room.behind
+    assert room.filled == (model not in ("bowl", "bucket"))
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        "backpack", "bottle", "can", "carton", "case", "drink_can", "flat_bottle", "flat_can", "kettle",
+        "spray_bottle", "teapot", "wide_can", "wine_bottle",
+    ],
+)  # fmt: skip
+def test_a_closed_vessel_has_a_sealed_interior(model):
+    (room,) = shape_of(build(model, None)).interiors
+    assert room.is_sealed
+    assert not room.behind
+
+
+@pytest.mark.parametrize("name", sorted(KINDS))
+def test_a_cavity_is_within_its_part(name):
+    model = build(name, None)
+    rooms = shape_of(model).interiors if any(part.cavity for part in model.parts) else ()
+    for part in (part for part in model.parts if part.cavity):
+        low, high = np.asarray(part.centre) - part.reach(), np.asarray(part.centre) + part.reach()
+        (room,) = rooms
+        assert (np.less(low, room.low)).all()
+        assert (np.less_equal(room.high, high)).all()
+        assert (np.less(room.low, room.high)).all()
+
+
+def test_a_cavity_leaves_a_wall_and_the_surface_of_its_part():
+    solid = rod(0.1, 0.3, (0.0, 0.0, 0.15), RED)
+    (open_room,) = shape(with_cavity(solid, is_open=True)).interiors
+    assert open_room.open
+    assert open_room.low == pytest.approx((-0.094, -0.094, 0.006))
+    assert open_room.high == pytest.approx((0.094, 0.094, 0.3))
+    assert open_room.fill == pytest.approx(math.pi / 4)
+    (closed,) = shape(with_cavity(solid, is_open=False)).interiors
+    assert not closed.open
+    assert closed.high[2] == pytest.approx(0.294)
+    (shallow,) = shape(with_cavity(solid, is_open=True, floor=0.5)).interiors
+    assert shallow.low[2] == pytest.approx(0.156)
+    (thin,) = shape(with_cavity(rod(0.01, 0.3, (0.0, 0.0, 0.15), RED), is_open=True)).interiors
+    assert thin.low[0] == pytest.approx(-0.009)
+    assert shape(with_cavity(solid, is_open=True)).surfaces == shape(solid).surfaces
 
 
 @pytest.mark.parametrize("model", ["drawer", "desk"])

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from typing import Final, NamedTuple
 
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.arrangement import find_attachments
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.survey import NO_ROW, Survey
@@ -113,8 +114,7 @@ def _may_support(space: Space, solid: Solid, other: Solid) -> bool:
     gap = limits.gap_m + _ROUNDING
     if other.bottom > solid.top + gap or other.top < solid.bottom - gap:
         return False
-    may_hold = solid.hollows and (other.volume < solid.volume or other.bottom > solid.bottom)
-    if may_hold or not (other.is_level and solid.is_level):
+    if measures.may_be_inside(other, solid, limits) or not (other.is_level and solid.is_level):
         return True
     return other.bottom >= solid.bottom - limits.contact_m and other.highest_bottom >= solid.lowest_top - gap
 

@@ -64,8 +64,10 @@ class Hollows:
     centre: Floats
     u: Floats
     v: Floats
+    is_sealed: Floats
+    """(K,) 1 or 0."""
 
-    SHAPES: ClassVar = ((), (), (2,), (2,), (2,))
+    SHAPES: ClassVar = ((), (), (2,), (2,), (2,), ())
 
 
 class Extents:
@@ -325,4 +327,6 @@ def _hollows(shape: ModelShape, stretch: Floats, rotation: Floats) -> list[Float
     high = stretch[:, None, :] * np.array([hollow.high for hollow in shape.interiors])
     middle, half = (low + high) / 2, (high - low) / 2
     vectors = (middle * [1.0, 1.0, 0.0], half * [1.0, 0.0, 0.0], half * [0.0, 1.0, 0.0])
-    return [low[:, :, 2], high[:, :, 2], *(_turned(vector, rotation)[:, :, :2] for vector in vectors)]
+    walls = [_turned(vector, rotation)[:, :, :2] for vector in vectors]
+    is_sealed = np.zeros_like(low[:, :, 2]) + [float(hollow.is_sealed) for hollow in shape.interiors]
+    return [low[:, :, 2], high[:, :, 2], *walls, is_sealed]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import lru_cache
+from itertools import product
 from typing import Final
 
 from semmap.nodes.geometry.polygons import Point, area, hull
@@ -134,6 +135,24 @@ class Form:
         half_x = (abs(a) * x + abs(b) * y + abs(c) * z) / 2
         half_y = (abs(d) * x + abs(e) * y + abs(f) * z) / 2
         return mid_x - half_x, mid_y - half_y, mid_x + half_x, mid_y + half_y
+
+    @lazy_property
+    def hollow_bounds(self) -> tuple[Vector, Vector] | None:
+        """Return the lowest and highest corner of the box around its hollows, or None without one."""
+        corners = [
+            self.turned((x, y, z))
+            for hollow in self.shape.interiors
+            for x, y, z in product(*zip(hollow.low, hollow.high, strict=True))
+        ]
+        if not corners:
+            return None
+        xs, ys, zs = zip(*corners, strict=True)
+        return (min(xs), min(ys), min(zs)), (max(xs), max(ys), max(zs))
+
+    @lazy_property
+    def is_sealed(self) -> bool:
+        """Return whether nothing can get into it from outside, although it has a hollow."""
+        return all(hollow.is_sealed for hollow in self.shape.interiors)
 
     @lazy_property
     def is_square(self) -> bool:

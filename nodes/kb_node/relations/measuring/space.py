@@ -15,7 +15,7 @@ from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
 from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.broad_phase import add_to_grid, find_nearby
 from semmap.nodes.kb_node.relations.measuring.grid import Grid
-from semmap.nodes.kb_node.relations.measuring.measures import Measure
+from semmap.nodes.kb_node.relations.measuring.measures import Measure, may_be_inside
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.schemas.entities import Entity
 
@@ -219,9 +219,10 @@ class Space:
                 continue
             if other.top < least or not self._may_support_attached(other, solid):
                 continue
-            made = measures.inside(solid, other, limits) if other.hollows else None
-            if made and made.holds and (container is None or _volume(other) < _volume(container[0])):
-                container = (other, made)
+            if other.form.hollow_bounds and may_be_inside(solid, other, limits):
+                made = measures.inside(solid, other, limits)
+                if made and made.holds and (container is None or _volume(other) < _volume(container[0])):
+                    container = (other, made)
             made = measures.on(solid, other, limits)
             if made is not None:
                 below.append((other, made))

@@ -198,8 +198,13 @@ class Survey:
         covers = planar.are_within(*planar.compute_extents(columns.position[i, :2] - middle, a, b, u, v))
         is_exact = forms.is_square[form] & forms.is_square[its]
         least = np.where(is_exact, most, np.where(covers, area * deep, 0.0))
+        is_sealed = forms.hollows.is_sealed[hollow] > 0.0
+        walls = 2.0 * np.sort([np.hypot(*u.T), np.hypot(*v.T)], axis=0)
+        spare = measures.FIT * walls - np.sort(forms.size[form, :2], axis=1).T
+        least[is_sealed | (spare.min(axis=0) < GUARD)] = 0.0
         above = columns.bottom[i] - base
         stands = (above > measures.FLOOR_M - GUARD) & (above < (floor + lid) / 2 + GUARD) & (shared > 0.0)
+        stands &= ~is_sealed
         begins = np.cumsum(count) - count
         most, least = np.maximum.reduceat(most, begins), np.maximum.reduceat(least, begins)
         may_stand = np.logical_or.reduceat(stands, begins)

@@ -36,6 +36,7 @@ from semmap.nodes.sim_node.models.parts import (
     pill,
     rod,
     visual,
+    with_cavity,
 )
 
 
@@ -204,7 +205,7 @@ def kettle(x: float, y: float, z: float, colour: Colour) -> Parts:
     return [
         column(0.95 * radius, 0, 0.06 * z, BLACK),
         *body,
-        *collision(column(0.86 * radius, 0.06 * z, 0.85 * z, colour)),
+        *collision(with_cavity(column(0.86 * radius, 0.06 * z, 0.85 * z, colour), is_open=False)),
         *visual(column(0.7 * radius, 0.85 * z, 0.92 * z, BLACK)),
         *visual(ball((0.03, 0.03, 0.1 * z), (0, 0, 0.95 * z), BLACK)),
         *visual(box((0.25 * radius, 0.5 * radius, 0.09 * z), (0, radius, 0.72 * z), colour, about("x", 0.7))),

@@ -30,6 +30,7 @@ from semmap.nodes.sim_node.models.parts import (
     pill,
     rod,
     visual,
+    with_cavity,
 )
 
 
@@ -71,7 +72,7 @@ def bag(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A shopping bag with two handles."""
     body = 0.74 * z
     return [
-        slab(x, y, 0, body, colour),
+        with_cavity(slab(x, y, 0, body, colour), is_open=True),
         *visual(slab(0.86 * x, 0.94 * y, body, body + 0.004, shade(colour, 0.5))),
         *visual(
             part
@@ -88,7 +89,7 @@ def bag(x: float, y: float, z: float, colour: Colour) -> Parts:
 def backpack(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A rounded sack with a pocket in front and straps behind."""
     return [
-        box((0.55 * x, 0.96 * y, 0.82 * z), (-0.05 * x, 0, 0.41 * z), colour),
+        with_cavity(box((0.55 * x, 0.96 * y, 0.82 * z), (-0.05 * x, 0, 0.41 * z), colour), is_open=False),
         *visual(ball((0.55 * x, 0.96 * y, 0.4 * z), (-0.05 * x, 0, 0.8 * z), colour)),
         *visual(box((0.24 * x, 0.72 * y, 0.36 * z), (0.34 * x, 0, 0.25 * z), shade(colour, 0.75))),
         *visual(box((0.01, 0.6 * y, 0.012), (0.23 * x, 0, 0.62 * z), BRASS)),
@@ -142,7 +143,7 @@ def case(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A briefcase, upright, with a grip and two locks."""
     body = 0.84 * z
     return [
-        slab(x, y, 0, body, colour),
+        with_cavity(slab(x, y, 0, body, colour), is_open=False),
         *visual(box((1.02 * x, 1.002 * y, 0.02), (0, 0, 0.6 * body), shade(colour, 0.6))),
         *visual(box((0.01, 0.05 * y, 0.06 * z), (x / 2, 0.3 * y * s, 0.62 * body), BRASS) for s in (-1, 1)),
         *visual(box((0.25 * x, 0.03, z - body), (0, 0.15 * y * s, (z + body) / 2), DARK) for s in (-1, 1)),

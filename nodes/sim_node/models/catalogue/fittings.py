@@ -29,6 +29,7 @@ from semmap.nodes.sim_node.models.parts import (
     collision,
     rod,
     visual,
+    with_cavity,
 )
 
 
@@ -284,8 +285,9 @@ def toilet(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A bowl with an oval seat, and a cistern behind."""
     seat, tank = 0.52 * z, 0.26 * x
     length = x - tank
+    foot = box((0.7 * length, 0.6 * y, seat - 0.05), (tank / 2 - 0.1 * length, 0, (seat - 0.05) / 2), colour)
     return [
-        box((0.7 * length, 0.6 * y, seat - 0.05), (tank / 2 - 0.1 * length, 0, (seat - 0.05) / 2), colour),
+        with_cavity(foot, is_open=True, floor=0.5),
         *visual(ball((length, 0.94 * y, 0.7 * seat), (tank / 2, 0, 0.7 * seat), colour)),
         rod(0.45 * y, 0.03, (tank / 2 + 0.02, 0, seat - 0.015), shade(colour, 0.93)),
         *visual(

@@ -22,6 +22,7 @@ from semmap.nodes.sim_node.models.parts import (
     collision,
     rod,
     visual,
+    with_cavity,
 )
 
 GREEN: Colour = (0.30, 0.55, 0.20)
@@ -216,7 +217,7 @@ def carton(x: float, y: float, z: float, colour: Colour) -> Parts:
         for i in range(6)
     )
     return [
-        slab(x, y, 0, body, colour),
+        with_cavity(slab(x, y, 0, body, colour), is_open=False),
         *roof,
         *visual(box((0.06 * x, y, 0.1 * z), (0, 0, 0.95 * z), WHITE)),
         *visual(box((x + 0.002, 0.75 * y, 0.3 * z), (0, 0, 0.4 * z), WHITE)),

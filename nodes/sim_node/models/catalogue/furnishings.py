@@ -30,6 +30,7 @@ from semmap.nodes.sim_node.models.parts import (
     product,
     rod,
     visual,
+    with_cavity,
 )
 
 LEAF: Colour = (0.25, 0.50, 0.20)
@@ -149,7 +150,7 @@ def flower_pot(x: float, y: float, z: float, colour: Colour) -> Parts:
     radius = min(x, y) / 2
     return [
         *turned([(0.68 * radius, 0), (0.92 * radius, 0.8 * z)], colour, steps=6),
-        *collision(column(0.72 * radius, 0, 0.8 * z, colour)),
+        *collision(with_cavity(column(0.72 * radius, 0, 0.8 * z, colour), is_open=True)),
         column(radius, 0.8 * z, z, shade(colour, 0.9)),
         *visual(column(0.88 * radius, z, z + 0.002, (0.25, 0.17, 0.1))),
     ]

@@ -24,6 +24,7 @@ from semmap.nodes.sim_node.models.parts import (
     pill,
     rod,
     visual,
+    with_cavity,
 )
 
 
@@ -92,7 +93,7 @@ def flat_bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
         max(sides * along[1], y - 2 * rounded * along[1]),
     )
     return [
-        slab(*middle, 0.0, body, colour),
+        with_cavity(slab(*middle, 0.0, body, colour), is_open=False),
         *(part for end in ends for part in end),
         *visual(ball((0.9 * x, 0.9 * y, 0.34 * z), (0.0, 0.0, 0.70 * z), colour)),
         column(cap, body, z, shade(colour, 0.5)),
@@ -105,7 +106,7 @@ def spray_bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
     neck, dark = 0.35 * radius, shade(colour, 0.4)
     return shifted(
         [
-            column(radius, 0.0, 0.55 * z, colour),
+            with_cavity(column(radius, 0.0, 0.55 * z, colour), is_open=False),
             *turned([(radius, 0.55 * z), (neck, 0.78 * z)], colour, steps=6),
             *collision(column(neck, 0.55 * z, 0.8 * z, colour)),
             column(neck, 0.76 * z, 0.86 * z, dark),
@@ -130,7 +131,7 @@ def drink_can(x: float, y: float, z: float, colour: Colour) -> Parts:
         column(radius, 0.06 * z, 0.9 * z, colour),
         *turned([(0.8 * radius, 0.0), (radius, 0.06 * z)], colour, steps=3),
         *turned([(radius, 0.9 * z), (0.8 * radius, z)], colour, steps=3),
-        *collision(column(0.9 * radius, 0.0, z, colour)),
+        *collision(with_cavity(column(0.9 * radius, 0.0, z, colour), is_open=False)),
     ]
 
 
@@ -149,7 +150,7 @@ def wine_glass(x: float, y: float, z: float, colour: Colour) -> Parts:
         column(0.9 * radius, 0.0, 0.02 * z, colour),
         column(0.1 * radius, 0.0, 0.5 * z, colour),
         *turned(bowl, colour, steps=6),
-        *collision(column(0.9 * radius, 0.5 * z, z, colour)),
+        *collision(with_cavity(column(0.9 * radius, 0.5 * z, z, colour), is_open=True)),
     ]
 
 
@@ -158,7 +159,7 @@ def teapot(x: float, y: float, z: float, colour: Colour) -> Parts:
     radius = min(x, 0.62 * y) / 2
     body = (2 * radius, 2 * radius, 0.82 * z)
     return [
-        ball(body, (0.0, 0.0, 0.41 * z), colour),
+        with_cavity(ball(body, (0.0, 0.0, 0.41 * z), colour), is_open=False),
         *visual(pill(0.16 * radius, 0.24 * y, (0.0, 0.5 * y - 0.1 * y, 0.55 * z), colour, about("x", -0.7))),
         *visual(pill(0.12 * radius, 0.45 * z, (0.0, 0.1 * radius - 0.5 * y, 0.5 * z), colour)),
         *visual(rod(0.1 * radius, 0.2 * y, (0.0, -0.38 * y, 0.66 * z), colour, about("x", math.pi / 2))),

@@ -25,6 +25,7 @@ from semmap.nodes.sim_node.models.parts import (
     pill,
     rod,
     visual,
+    with_cavity,
 )
 
 
@@ -89,7 +90,7 @@ def can(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A tin with a shining rim at both ends and a label."""
     radius = min(x, y) / 2
     return [
-        column(radius, 0, z, STEEL),
+        with_cavity(column(radius, 0, z, STEEL), is_open=False),
         *visual(column(1.015 * radius, 0.1 * z, 0.9 * z, colour)),
         *visual(column(0.85 * radius, z, z + 0.001, shade(STEEL, 0.8))),
     ]
@@ -100,7 +101,7 @@ def bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
     radius = min(x, y) / 2
     neck = 0.36 * radius
     return [
-        column(radius, 0, 0.58 * z, colour),
+        with_cavity(column(radius, 0, 0.58 * z, colour), is_open=False),
         *visual(column(1.01 * radius, 0.16 * z, 0.46 * z, WHITE)),
         *turned([(radius, 0.58 * z), (neck, 0.78 * z), (neck, 0.94 * z)], colour, steps=8),
         *visual(column(1.25 * neck, 0.92 * z, z, shade(colour, 0.5))),
@@ -113,7 +114,7 @@ def jar(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A stout glass with a screw lid."""
     radius = min(x, y) / 2
     return [
-        column(radius, 0, 0.78 * z, colour),
+        with_cavity(column(radius, 0, 0.78 * z, colour), is_open=True),
         *turned([(radius, 0.78 * z), (0.82 * radius, 0.84 * z)], colour, steps=3),
         column(0.88 * radius, 0.82 * z, z, (0.75, 0.2, 0.15)),
         *visual(column(1.01 * radius, 0.2 * z, 0.6 * z, WHITE)),
@@ -144,7 +145,7 @@ def pot(x: float, y: float, z: float, colour: Colour) -> Parts:
     """A cooking pot with two ears and a lid."""
     radius = min(x / 2, 0.4 * y)
     return [
-        column(radius, 0, 0.78 * z, colour),
+        with_cavity(column(radius, 0, 0.78 * z, colour), is_open=True),
         *visual(column(1.03 * radius, 0.76 * z, 0.82 * z, shade(colour, 0.8))),
         *visual(ball((1.96 * radius, 1.96 * radius, 0.24 * z), (0, 0, 0.8 * z), shade(colour, 1.15))),
         *visual(ball((0.03, 0.03, 0.12 * z), (0, 0, 0.94 * z), BLACK)),
@@ -177,7 +178,7 @@ def pitcher(x: float, y: float, z: float, colour: Colour) -> Parts:
         *turned(
             [(0.7 * radius, 0), (radius, 0.35 * z), (0.6 * radius, 0.78 * z), (0.72 * radius, z)], colour
         ),
-        *collision(column(0.75 * radius, 0, z, colour)),
+        *collision(with_cavity(column(0.75 * radius, 0, z, colour), is_open=True)),
         *visual(
             box((0.5 * radius, 0.5 * radius, 0.1 * z), (0, 0.75 * radius, 0.94 * z), colour, about("x", 0.5))
         ),
@@ -193,7 +194,8 @@ def vase(x: float, y: float, z: float, colour: Colour) -> Parts:
     """Narrow foot, wide belly, narrow neck, flaring lip."""
     radius = min(x, y) / 2
     profile = [(0.55 * radius, 0), (radius, 0.4 * z), (0.35 * radius, 0.8 * z), (0.65 * radius, z)]
-    return [*turned(profile, colour, steps=9), *collision(column(0.6 * radius, 0, z, colour))]
+    body = with_cavity(column(0.6 * radius, 0, z, colour), is_open=True)
+    return [*turned(profile, colour, steps=9), *collision(body)]
 
 
 def wine_bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
@@ -201,7 +203,7 @@ def wine_bottle(x: float, y: float, z: float, colour: Colour) -> Parts:
     radius = min(x, y) / 2
     neck = 0.36 * radius
     return [
-        column(radius, 0, 0.6 * z, colour),
+        with_cavity(column(radius, 0, 0.6 * z, colour), is_open=False),
         *turned([(radius, 0.6 * z), (neck, 0.72 * z), (neck, 0.9 * z)], colour, steps=8),
         *visual(column(1.15 * neck, 0.86 * z, z, (0.45, 0.08, 0.12))),
         *visual(column(1.01 * radius, 0.15 * z, 0.42 * z, (0.92, 0.88, 0.75))),
