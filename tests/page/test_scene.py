@@ -17,50 +17,23 @@ from semmap.nodes.extern.web.scene.gizmo import arm_m
 from semmap.nodes.extern.web.scene.sensor_overlay import wxyz_of
 from semmap.schemas import keys
 from semmap.schemas.scenes import Scene, SceneQuery
-from tests.page.conftest import START_MS, chromium_path
+from tests.page.conftest import START_MS
 from tests.page.waiting import settle
 
-_GL = (
-    "--no-sandbox",
-    "--no-first-run",
-    "--use-gl=angle",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-)
-_WIDTH, _HEIGHT = 640, 480
+_WIDTH, _HEIGHT = 480, 360
 _RING, _ARROW = 0.65, 0.7
 """Positions of the ring and of an arrow along an arm of the gizmo, as fractions of its length."""
 _DRAWN_S = 90.0
 
 
-@pytest.fixture(scope="module")
-def seeing(chromium):
-    """A Chromium with WebGL; other tests use one without it, which is faster."""
-    browser = chromium.browser_type.launch(executable_path=chromium_path(), args=[*_GL])
-    yield browser
-    browser.close()
-
-
-@pytest.fixture(scope="module")
-def narrow(seeing):
-    """A profile for tabs so narrow that they show the scene only; the assets are loaded once."""
-    context = seeing.new_context(viewport={"width": _WIDTH, "height": _HEIGHT})
-    yield context
-    context.close()
-
-
 @pytest.fixture
-def tab(narrow, web):
-    """The page in a narrow tab."""
-    page = narrow.new_page()
-    complained = []
-    page.on("pageerror", lambda error: complained.append(str(error)))
-    page.on("console", lambda said: said.type == "error" and complained.append(said.text))
-    page.goto(web.url, timeout=2 * START_MS)
-    page.wait_for_selector("body.semmap-ready", timeout=2 * START_MS)
-    yield page
-    page.close()
-    assert not complained
+def tab(open_tab, web):
+    """The page in a tab so narrow that it shows the scene only."""
+    return open_narrow(open_tab, web)
+
+
+def open_narrow(open_tab, web):
+    return open_tab(web, width=_WIDTH, height=_HEIGHT, scene=True)
 
 
 @pytest.fixture
@@ -138,7 +111,7 @@ def test_panels_of_viser_are_hidden(tab):
     panel = tab.frame_locator("iframe").get_by_text("Scene tree")
     for width in (480, 900):  # it has one for phones, and one for all others
         tab.set_viewport_size({"width": width, "height": 320})
-        panel.wait_for(state="attached", timeout=2 * START_MS)
+        panel.wait_for(state="attached", timeout=START_MS)
         assert not panel.is_visible()
 
 
@@ -261,7 +234,7 @@ def test_the_vertical_arrow_lifts_an_entity(tab, system, chair):
         until(lambda: height(client, chair) < 0.05, "it has come down again")
 
 
-def test_closing_a_tab_during_a_drag_moves_nothing(narrow, tab, web, system, chair):
+def test_closing_a_tab_during_a_drag_moves_nothing(open_tab, tab, web, system, chair):
     with system.client() as client:
         view, entity = looking(tab, client), client.get(chair)
         select(tab, view, entity)
@@ -270,10 +243,7 @@ def test_closing_a_tab_during_a_drag_moves_nothing(narrow, tab, web, system, cha
         drag_along(tab, view, *((x + grip + 0.2 * step, y, z) for step in range(6)))
         before = client.status().commit
         tab.close()
-        page = narrow.new_page()
-        page.goto(web.url, timeout=2 * START_MS)
-        page.wait_for_selector("body.semmap-ready", timeout=2 * START_MS)
-        page.close()
+        open_narrow(open_tab, web)
         assert client.get(chair).pose == entity.pose
         assert height(client, chair) == pytest.approx(z, abs=0.02)
         assert client.status().commit == before

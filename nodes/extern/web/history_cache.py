@@ -37,6 +37,8 @@ _ROWS: Final = 500
 _MOST_ROWS: Final = 50_000
 """Maximum number of cached rows; of a longer history the newest are kept."""
 _TIMEOUT_S: Final = 30.0
+_RETRY_S: Final = 2.0
+"""Time after which a request without a reply is repeated."""
 
 T = TypeVar("T")
 
@@ -123,6 +125,9 @@ class HistoryCache:
                 self.rows[:0] = older
                 self._notify()
                 await self._read_newest()
+        except errors.NoAnswer as error:
+            log.info("cannot read the history: %s; it is requested again", error)
+            asyncio.get_running_loop().call_later(_RETRY_S, self.start_reading)
         except errors.SemmapError as error:
             log.info("cannot read the history: %s", error)
 

@@ -102,6 +102,28 @@ def test_read_waits_for_the_newest_commit():
     assert run(grown()).seq == 21
 
 
+def test_a_request_without_a_reply_is_repeated_although_no_commit_follows(monkeypatch):
+    monkeypatch.setattr(history_cache_module, "_RETRY_S", 0.0)
+
+    async def run():
+        live = Map(5)
+        reply, live.ask = live.ask, _no_reply
+        history = HistoryCache(live)
+        await history.read()
+        assert history.rows == []
+        live.ask = reply
+        has_rows = asyncio.Event()
+        history.listen(has_rows.set)
+        await asyncio.wait_for(has_rows.wait(), 60.0)
+        assert [row.seq for row in history.rows] == [1, 2, 3, 4, 5]
+
+    asyncio.run(run())
+
+
+async def _no_reply(command, timeout_s):
+    raise errors.NoAnswer("no response from the knowledge base")
+
+
 def test_every_snapshot_equals_the_map_at_that_commit():
     live = Map(350)
 

@@ -70,7 +70,6 @@ _MODIFIERS: Final = (None, "shift", "cmd/ctrl", "cmd/ctrl+shift")
 _POSE_DELAY_S: Final = 0.2
 """Time after which the new pose of a moved body has been received."""
 _NO_ROOM: Final = "{name}: no free space, the position overlaps {other}; {name} was moved back"
-_RENDER_S: Final = (0.3, 1.0, 3.0, 8.0)
 _MEASURES: Final = 8
 """Maximum number of relation labels, for the nearest entities."""
 _HANDLES: Final = "handles"
@@ -108,7 +107,6 @@ class TabScene:
         self._picking: asyncio.Future[Place | None] | None = None
         self._labelling: asyncio.TimerHandle | None = None
         self._drawing: asyncio.TimerHandle | None = None
-        self._rendering: list[asyncio.TimerHandle] = []
         self._is_stale = False
         """Whether something has changed while the scene was hidden."""
         self.is_in_view: Callable[[], bool] = lambda: True
@@ -145,7 +143,6 @@ class TabScene:
         self._differences = Lines(scene, "/differences/lines", width=2.5)
         self._difference_labels = Labels(scene, "/differences/names")
         self._dragged = Bodies(scene, self._glb_of, "/dragged")
-        self._nudge = scene.add_frame("/nudge", show_axes=False)
         self._gizmo = Gizmo(scene, self._on_loop(self._on_drag), lambda: self._is_open(client.client_id))
         self._sensors = SensorOverlay(scene, self.page.live)
         self._listen(client)
@@ -162,7 +159,7 @@ class TabScene:
         """Detach a frame that has disconnected, and cancel picking and dragging."""
         if self._client is not None and self._client.client_id == client_id:
             self._client = None
-            _cancel(self._drawing, self._labelling, *self._rendering)
+            _cancel(self._drawing, self._labelling)
             self._drawing = self._labelling = None
             self._dragging = ""
             self._sensors.close()
@@ -397,13 +394,6 @@ class TabScene:
         self._difference_labels.show({key: marked[key] for key in chosen if key in marked})
         self._labels.show({key: others[key] for key in chosen if key in others and key not in selected})
         self._strong_labels.show({**{key: rooms[key] for key in chosen if key in rooms}, **selected})
-        _cancel(*self._rendering)
-        self._rendering = [self._loop.call_later(delay_s, self._render) for delay_s in _RENDER_S]
-
-    def _render(self) -> None:
-        """Have the browser draw again. It draws after changes only, and fonts may be loaded later."""
-        if self._client is not None:
-            self._nudge.visible = not self._nudge.visible
 
     def _named(self, name: str) -> LabelText:
         thing = self._things[name]
