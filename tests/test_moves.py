@@ -9,8 +9,9 @@ from semmap.nodes import bus
 from semmap.schemas import errors, keys
 from semmap.schemas.scenes import Scene, SceneQuery
 from tests.conftest import running
+from tests.depth import tries
 
-TIMES = 20
+TIMES = tries(12)
 PLACE = "(2, 1.2,"
 
 
@@ -90,7 +91,7 @@ def test_doors_are_committed_when_the_reply_comes(client):
 
 
 def test_a_robot_is_committed_where_it_was_driven_and_an_undo_takes_that_back(client):
-    for turn in range(3):
+    for turn in range(tries(6)):
         before = placed(client, "robot1")
         driven = client.drive("robot1", to=((7.4, 1.6 - 0.4 * (turn % 2)),))
         assert driven.text.startswith("robot1 is at (7.4")

@@ -13,7 +13,7 @@ def client(tmp_path_factory):
     world = folder / "stove.xml"
     world.write_text(STOVE.replace('<text name="semmap-off:lever" data="upper"/>', ""))
     with (
-        running(folder / "data", "--abox", "none", "--world", str(world)) as system,
+        running(folder / "data", "--abox", "none", "--world", str(world), "--no-record") as system,
         system.client() as client,
     ):
         client.add("Oven", "stove", at=(0.0, 0.0, 0.0), wait=True)

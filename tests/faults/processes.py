@@ -177,7 +177,7 @@ def _of(what: Callable[[str, Ground], None], node: str) -> Callable[[Ground], No
 
 
 PROCESSES = (
-    Fault("coordinator killed", _of(kill, "coordinator"), often=20, in_short=2),
+    Fault("coordinator killed", _of(kill, "coordinator"), often=20, in_short=1),
     Fault("kb_node killed", _of(kill, "kb_node"), often=20, in_short=1),
     Fault("sim_node killed", _of(kill, "sim_node"), words=ALL),
     Fault("coordinator stopped", _of(stop, "coordinator"), words=ALL, in_short=1),

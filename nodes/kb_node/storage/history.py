@@ -16,8 +16,8 @@ from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
 from semmap.nodes.kb_node.entities import entity_reading
 from semmap.nodes.kb_node.entities.class_table import ClassTable
-from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.relations.selection import find_single
+from semmap.nodes.kb_node.storage import closure_cache
 from semmap.nodes.kb_node.storage.changelog import Changelog
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.ontology.entity_triples import find_earlier_names
@@ -236,7 +236,7 @@ class HistoryReader:
         tbox = rdf.parse(self._journal.tbox(0), "the first TBox")
         if not tbox_validation.has_individuals(tbox):
             return ()
-        reasoner = Reasoner(tbox)
+        reasoner = closure_cache.load_reasoner(tbox, self._journal.path.parent, of_the_past=True)
         return entity_reading.read_tbox_entities(reasoner, ClassTable(reasoner))
 
     def commit_at(self, when: When) -> int:

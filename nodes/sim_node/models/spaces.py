@@ -17,7 +17,6 @@ from typing import NamedTuple
 import numpy as np
 from msgspec import structs
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from semmap.nodes.sim_node.models.convex_parts import convex_part
 from semmap.nodes.sim_node.models.library import Model
@@ -246,6 +245,8 @@ def _tops(cuts: Intervals) -> dict[tuple[int, int], list[_Top]]:
 def _interiors(
     cuts: Intervals, xs: Floats, ys: Floats, step: float, height: float, least: float
 ) -> list[Interior]:
+    from scipy import ndimage  # slow to import, and a start needs it for own models only
+
     rise = height / LEVELS
     levels = (np.arange(LEVELS) + 0.5) * rise
     solid = np.zeros((len(xs), len(ys), LEVELS), dtype=bool)

@@ -7,8 +7,8 @@ from typing import Final
 
 import mujoco
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
+from semmap.nodes.geometry import polygons
 from semmap.nodes.sim_node.bodies import Floats
 from semmap.schemas.plans import Outline
 
@@ -59,13 +59,11 @@ def _points(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> Floats:
 
 def _outline(points: Floats) -> Outline | None:
     """Return the outline seen from above; None if it has no area."""
-    try:
-        hull = ConvexHull(points[:, :2])
-    except QhullError:
+    corners = polygons.hull([(x, y) for x, y, _ in (np.round(points, _DIGITS) + 0.0).tolist()])
+    if polygons.area(corners) == 0.0:
         return None
-    corners = np.round(points[hull.vertices, :2], _DIGITS) + 0.0
     return Outline(
-        corners=tuple((float(x), float(y)) for x, y in corners),
+        corners=tuple(corners),
         low=round(float(points[:, 2].min()), _DIGITS),
         high=round(float(points[:, 2].max()), _DIGITS),
     )

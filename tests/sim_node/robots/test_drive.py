@@ -10,7 +10,8 @@ from semmap.schemas import errors
 from tests.conftest import running, until
 
 
-@pytest.fixture(scope="module", params=["map", "perceived"])
+# What the truth changes is decided in `test_reconcile.py` and `test_agreement.py`.
+@pytest.fixture(scope="module", params=["map", pytest.param("perceived", marks=pytest.mark.long)])
 def system(request, tmp_path_factory):
     words = ("--no-record", "--robot", "porter", "--robot-at", "7.4", "2", "0", "--truth", request.param)
     with running(tmp_path_factory.mktemp("robot"), *words) as system:

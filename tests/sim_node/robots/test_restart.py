@@ -69,7 +69,8 @@ def furniture(client) -> list[float]:
     return [*there["cup_1"].pose.position_m[:2], there["cabinet_1"].joints[0].position]
 
 
-@pytest.mark.parametrize("truth", ["map", "scene"])
+# Where a robot is placed is decided in the same way for each truth: see `test_reconcile_robots.py`.
+@pytest.mark.parametrize("truth", [pytest.param("map", marks=pytest.mark.long), "scene"])
 def test_it_begins_where_it_last_stood(tmp_path, truth):
     (tmp_path / "world.xml").write_text(FURNISHED)
     world = ("--world", str(tmp_path / "world.xml")) if truth == "scene" else ()
