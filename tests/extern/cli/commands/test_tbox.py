@@ -1,8 +1,12 @@
 import json
+import os
+import signal
 
 import pytest
 
 from semmap.nodes.extern.cli.app import execute
+from semmap.nodes.extern.cli.commands import tbox
+from semmap.schemas import errors
 
 pytestmark = pytest.mark.process  # files other than Turtle are parsed in a process
 
@@ -78,3 +82,17 @@ def test_without_classes_of_things_in_space_the_next_step_is_shown(file, capsys)
     ) in capsys.readouterr().out
     assert execute(["tbox", "check", file(SOUND), "--spatial-root", "A"]) == 0
     assert "spatial  " not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("work", "text"),
+    [
+        (lambda: os.kill(os.getpid(), signal.SIGXCPU), "checking the ontology takes longer than 300 s"),
+        (lambda: bytearray(1 << 40), "checking the ontology needs too much memory"),
+    ],
+)
+def test_checking_has_limits(work, text):
+    before = signal.getsignal(signal.SIGXCPU)
+    with pytest.raises(errors.BadFile, match=text):
+        tbox._check_limited(work)
+    assert signal.getsignal(signal.SIGXCPU) == before
