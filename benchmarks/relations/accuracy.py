@@ -100,7 +100,7 @@ def inside_against_samples(pairs: int) -> Counts:
     """Compare `isInside` with random points of a thing, of which half must be in an interior.
 
     For a thing that sticks out of the top of an interior, half of the points of its base suffice, if these
-    are in the lower half.
+    are in the lower half. A sealed interior must contain all points.
     """
     rng = random.Random(3)
     points = np.random.default_rng(3)
@@ -123,7 +123,13 @@ def inside_against_samples(pairs: int) -> Counts:
             else 0.0
             for h in outer.hollows
         )
-        if share >= 0.5 or (base > 0.5 and any(map(measures.is_holder, outer.hollows))):
+        if any(h.is_sealed for h in outer.hollows):
+            (h,) = outer.hollows
+            ends = (own - np.add(h.low, h.high) / 2) / (np.subtract(h.high, h.low) / 2)
+            is_out = np.hypot(ends[:, 0], ends[:, 1]) > 1.0 if h.is_round else np.abs(ends).max(axis=1) > 1.0
+            if share == 1.0 and not is_out.any():
+                true.add(pair)
+        elif share >= 0.5 or (base > 0.5 and any(map(measures.is_holder, outer.hollows))):
             true.add(pair)
     return Counts.of(found, true)
 
