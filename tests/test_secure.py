@@ -25,7 +25,7 @@ from tests.conftest import running, until
 from tests.depth import tries
 
 NAMES = {"vera": "viewer", "bob": "operator", "eye": "perception", "spot": "robot", "root": "admin"}
-COUNT = tries(90)
+COUNT = tries(135)
 
 
 @pytest.fixture(scope="module")

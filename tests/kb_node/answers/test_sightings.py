@@ -6,6 +6,7 @@ import time
 import pytest
 
 from semmap.nodes.kb_node.answers.sightings import Sightings, describe_closed, find_closed_container
+from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -97,7 +98,7 @@ def test_an_old_observation_is_not_reported_as_current(sightings, semantic_map, 
 @pytest.fixture
 def kitchen(tmp_path):
     """Milk in a fridge, and a cup on the floor next to it."""
-    made = home.new_map(tmp_path, home.household())
+    made = SemanticMap(home.new_household_journal(tmp_path))
     at = {"fridge1": (0.0, 0.0, 0.0), "carton1": (-0.1, 0.0, 0.645), "cup1": (2.0, 0.0, 0.0)}
     classes = {"fridge1": "Fridge", "carton1": "Milk", "cup1": "Cup"}
     new = tuple(
@@ -151,7 +152,7 @@ def test_an_open_door_shows_only_what_is_behind_it(kitchen):
 
 
 def test_only_the_contents_of_an_open_drawer_of_a_chest_are_observable(tmp_path):
-    made = home.new_map(tmp_path, home.household())
+    made = SemanticMap(home.new_household_journal(tmp_path))
     at = {"chest1": (0.0, 0.0, 0.0), "apple1": (0.05, 0.0, 0.72), "apple2": (0.05, 0.0, 0.51)}
     classes = {"chest1": "Drawer", "apple1": "Apple", "apple2": "Apple"}
     new = tuple(
