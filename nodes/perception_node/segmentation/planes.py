@@ -81,7 +81,7 @@ def find_planes(
 ) -> tuple[tuple[Plane, ...], Labels]:
     """Return the planes of an image (3, h, w), and the plane of each cell from 1, 0 for none.
 
-    The tops of things on a larger support are no supports, unless `keep_tops` is set.
+    The tops of things on a larger support are not supports, unless `keep_tops` is set.
     """
     of_plane = np.zeros(points.shape[1:], np.int32)
     thickness = thickness_m(points[2])

@@ -1,7 +1,7 @@
 """The number of the last acknowledged commit, in a small file beside the journal.
 
 It is written through shared memory, without a wait for the disk, so it outlives the process but not a power
-failure. It shows whether a transaction that SQLite did not finish was one that somebody relied on.
+failure. It shows whether a transaction that SQLite did not finish was acknowledged.
 """
 
 from __future__ import annotations

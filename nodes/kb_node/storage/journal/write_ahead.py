@@ -51,7 +51,7 @@ class Log(NamedTuple):
         """Return whether there are finished transactions after the `recovered` frames and commit `last`.
 
         SQLite writes the head of a frame before its page. An interruption between the two leaves a last
-        transaction that looks finished. It is not lost if it is known that nobody was told of it.
+        transaction that looks finished. It is not lost if it was certainly not acknowledged.
         """
         behind = [end for end in self.ends if end > recovered]
         is_unacknowledged = self.acknowledged is not None and self.acknowledged <= last

@@ -51,7 +51,7 @@ ALL = {f"chair{number}" for number in range(1, 9)}
     ("is_before_boot", "acknowledged", "allowed"),
     [(False, None, 0), (True, None, 1), (False, 7, 1), (False, 8, 0), (True, 8, 1), (True, 7, 1)],
 )
-def test_one_unfinished_transaction_is_accepted_after_a_power_failure_or_if_nobody_was_told_of_it(
+def test_one_unfinished_transaction_is_accepted_after_a_power_failure_or_if_it_was_not_acknowledged(
     is_before_boot, acknowledged, allowed, recovered
 ):
     log = Log(Path("journal"), io.BytesIO(), (3, 6, 9), is_before_boot, acknowledged)
