@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.viewpoint import Placement
 from semmap.nodes.perception_node.views.segments import map_points
 from tests.perception_node.segmentation.scenes import boxes_on_table, camera_pose
@@ -20,9 +21,10 @@ TO_UP = {  # coordinates of the file from those of a frame whose z is up
 
 @pytest.fixture(scope="module")
 def scene():
-    """Return a cloud and its points in the map frame."""
-    seen = boxes_on_table(*SCENES["apart"], pose=camera_pose(EYE), posed=True)
-    return seen.cloud, map_points(seen.cloud, seen.cloud.map_from_camera)
+    """Return a cloud of a small picture and its points in the map frame."""
+    whole = boxes_on_table(*SCENES["apart"], pose=camera_pose(EYE), posed=True).cloud
+    cloud = Cloud(whole.points_camera[::3, ::3], map_from_camera=whole.map_from_camera)
+    return cloud, map_points(cloud, cloud.map_from_camera)
 
 
 @pytest.mark.parametrize("up", TO_UP)
