@@ -83,4 +83,5 @@ def outer_points(points: Floats) -> Floats:
     for (x, y), (along_x, along_y) in zip(corners.tolist(), edges.tolist(), strict=True):
         if along_x or along_y:
             is_within &= along_x * (points[:, 1] - y) > along_y * (points[:, 0] - x)
-    return points[~is_within]
+    outer: Floats = points[~is_within]
+    return outer
