@@ -53,8 +53,8 @@
     if (Math.hypot(event.clientX - x, event.clientY - y) < STILL_PX) element.click();
   }
 
-  // Quasar adds the options of a list with the next frame. If this frame is late, for example without a GPU, Quasar does
-  // not place the list again, and it remains hidden. Quasar also places lists when the window scrolls.
+  // Quasar adds the options of a list with the next frame. If this frame is late, for example without a GPU, the
+  // list is not placed again and remains hidden. Quasar also places lists when the window scrolls.
   function placeLists() {
     requestAnimationFrame(() => requestAnimationFrame(() => window.dispatchEvent(new Event("scroll"))));
   }
