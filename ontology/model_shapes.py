@@ -59,6 +59,11 @@ class Interior(Struct, frozen=True, kw_only=True, omit_defaults=True):
         """Return whether it is a cylinder or a ball instead of the whole box."""
         return self.fill < 0.9
 
+    @property
+    def is_round_vessel(self) -> bool:
+        """Return whether it is the round hollow of a vessel that is open and solid in the simulator."""
+        return self.filled and self.open and self.is_round
+
 
 class ConvexPart(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """A convex collision part in the model's frame [m]: the Minkowski sum of its components.

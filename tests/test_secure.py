@@ -62,8 +62,8 @@ def raw(system, folder):
 
 
 def test_a_stranger_sees_nothing(system, monkeypatch):
-    monkeypatch.setattr(connection, "_START_S", 1.0)  # the system has started
     assert "--identity DIR/NAME" in system.cli("status", "--connect", bus.to_tls(system.endpoint), status=3)
+    monkeypatch.setattr(connection, "_START_S", 1.0)  # the system has started
     system.cli("status", status=3)  # without TLS
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Iterable
 from itertools import combinations
@@ -100,7 +101,7 @@ def inside_against_samples(pairs: int) -> Counts:
     """Compare `isInside` with random points of a thing, of which half must be in an interior.
 
     For a thing that sticks out of the top of an interior, half of the points of its base suffice, if these
-    are in the lower half. A sealed interior must contain all points.
+    are in the lower half. A sealed interior must contain all points, and a round vessel the middle.
     """
     rng = random.Random(3)
     points = np.random.default_rng(3)
@@ -116,7 +117,16 @@ def inside_against_samples(pairs: int) -> Counts:
         if made is not None and made.holds:
             found.add(pair)
         own = points.uniform((-0.5, -0.5, 0.0), (0.5, 0.5, 1.0), (_SAMPLES, 3)) * inner.size + at
-        share = max(np.all((own >= h.low) & (own <= h.high), axis=1).mean() for h in outer.hollows)
+        share = max(
+            0.0
+            if h.is_round_vessel
+            and math.hypot(
+                *(np.array(at) - np.add(h.low, h.high) / 2)[:2] / (np.subtract(h.high, h.low) / 2)[:2]
+            )
+            > 1.0
+            else np.all((own >= h.low) & (own <= h.high), axis=1).mean()
+            for h in outer.hollows
+        )
         base = max(
             np.all((own[:, :2] >= h.low[:2]) & (own[:, :2] <= h.high[:2]), axis=1).mean()
             if h.low[2] - 0.05 < at[2] <= (h.low[2] + h.high[2]) / 2 and at[2] + inner.size[2] > h.high[2]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Final
 
 from semmap.schemas.entities import Size
@@ -47,6 +47,21 @@ class SurfaceCache:
     def take(self, kind: Kind, surface: Surface) -> None:
         """Store a surface from the simulator."""
         self._known[kind] = surface
+
+    def take_reply(self, kinds: Mapping[str, Kind], surfaces: Mapping[str, Surface]) -> bool:
+        """Store the surfaces of a reply, by body, and return whether it is complete.
+
+        A body that was removed before the reply has no surface; another body of its kind is wanted then. A
+        body with neither model nor digest may be invisible.
+        """
+        missing = []
+        for name, kind in kinds.items():
+            if name in surfaces:
+                self.take(kind, surfaces[name])
+            elif not kind[0].startswith(_OWN):
+                missing.append(kind)
+        self.reset_requests(missing)
+        return not missing
 
     def reset_requests(self, kinds: Iterable[Kind]) -> None:
         """Mark kinds whose request failed as not requested."""

@@ -33,6 +33,8 @@ _SCENE_LOST_S = 10.0
 """A simulator that sends no poses for this long is gone. Creating thousands of bodies takes seconds."""
 _COMMITS_A_REQUEST = 20
 _SURFACES_A_REQUEST = 50
+_RETRY_S = 2.0
+"""Time after which surfaces that did not arrive are requested again."""
 
 
 class Recorder:
@@ -204,9 +206,10 @@ class Recorder:
         def on_surfaces(future: Future[Surfaces]) -> None:
             if future.exception() is not None:
                 self._drawn.surfaces.reset_requests(kinds.values())
+                self._node.later(_RETRY_S, self._fetch_surfaces)
                 return
-            for name, surface in future.result().surfaces.items():
-                self._drawn.surfaces.take(kinds[name], surface)
+            if not self._drawn.surfaces.take_reply(kinds, future.result().surfaces):
+                self._node.later(_RETRY_S, self._fetch_surfaces)
             self._set_time(time.time_ns())
             self._show_all()
 

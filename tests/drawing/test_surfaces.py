@@ -26,6 +26,18 @@ def test_what_was_asked_for_in_vain_is_asked_for_again():
     assert cache.of(table) is SURFACE
 
 
+def test_a_kind_whose_body_was_removed_before_the_reply_is_requested_with_another_body():
+    cache = SurfaceCache()
+    cups, box = [body("cup1", surface="a"), body("cup2", surface="a")], body("box1")
+    kinds = cache.wanted([*cups, box])
+    assert list(kinds) == ["cup1", "box1"]
+    assert not cache.take_reply(kinds, {"unknown": SURFACE})
+    kinds = cache.wanted([cups[1], box])
+    assert list(kinds) == ["cup2"]
+    assert cache.take_reply(kinds, {"cup2": SURFACE})
+    assert cache.of(cups[0]) is SURFACE
+
+
 def test_each_body_of_the_world_s_own_looks_like_itself():
     cache = SurfaceCache()
     robots = [body("robot1"), body("robot2")]

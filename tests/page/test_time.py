@@ -85,6 +85,15 @@ def test_the_past_is_compared_with_now_and_is_read_only(tab, cup, system):
         assert client.status().commit == before
 
 
+def test_the_options_of_a_list_are_shown_although_frames_are_late(tab):
+    tab.evaluate(
+        "() => { const draw = requestAnimationFrame.bind(window);"
+        " window.requestAnimationFrame = (call) => setTimeout(() => draw(call), 500); }"
+    )
+    tab.get_by_label("Compare with").click()
+    tab.get_by_role("option", name="now", exact=True).wait_for()
+
+
 def test_playback_runs_to_the_end(tab, cup):
     _, added, *_ = cup
     tab.get_by_role("tab", name="History").click()

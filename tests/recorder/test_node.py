@@ -8,6 +8,7 @@ from contextlib import contextmanager, suppress
 import pytest
 
 from semmap.nodes import bus
+from semmap.nodes.recorder import node as recorder_node
 from semmap.nodes.recorder.node import Recorder
 from semmap.nodes.recorder.recorded_commits import read_commits
 from semmap.nodes.recorder.recording import open_recording
@@ -73,6 +74,7 @@ class World:
             },
         )
         self.asked = []
+        self.refuses = False
         self.node.serve(
             keys.SIM, {"snapshot": (SceneQuery, self._scene), "surfaces": (SurfaceQuery, self._surfaces)}
         )
@@ -105,6 +107,9 @@ class World:
 
     def _surfaces(self, query):
         self.asked.append(query.names)
+        if self.refuses:
+            self.refuses = False
+            raise errors.Refused("the simulator is busy")
         modelled = {body.name for body in self.scene.bodies if body.model}
         return Surfaces(surfaces={name: surface() for name in query.names if name in modelled})
 
@@ -210,6 +215,16 @@ def test_bodies_are_drawn_as_they_look_each_kind_asked_for_once(world, tmp_path)
         world.simulate({"chair1": pose()}, version=2)
         wait_for(lambda: column(path, "/map/bodies/chair2", "Clear:is_recursive"))
     assert world.asked == [("chair1",)]
+
+
+def test_surfaces_that_did_not_arrive_are_requested_again(world, tmp_path, monkeypatch):
+    monkeypatch.setattr(recorder_node, "_RETRY_S", 0.05)
+    path = tmp_path / "a.rrd"
+    world.scene, world.refuses = scene(body("chair1", model="chair")), True
+    with recorder(world, path):
+        world.simulate({"chair1": pose()})
+        wait_for(lambda: column(path, "/map/bodies/chair1", "Mesh3D:vertex_positions"))
+    assert world.asked == [("chair1",), ("chair1",)]
 
 
 def test_new_bodies_are_drawn_and_gone_ones_erased(world, tmp_path):

@@ -36,6 +36,8 @@ _GREETING_S: Final = (0.0, 1.0, 4.0)
 _FLOOR_S: Final = 2.0
 _CELL_M: Final = 0.05
 _SURFACES_AT_ONCE: Final = 50
+_RETRY_S: Final = 2.0
+"""Time after which surfaces that did not arrive are requested again."""
 
 
 class Topics(NamedTuple):
@@ -149,9 +151,10 @@ class Bridge:
         def on_surfaces(done: Future[Surfaces]) -> None:
             if done.exception() is not None:
                 cache.reset_requests(kinds.values())
+                self._node.later(_RETRY_S, self._fetch_surfaces)
                 return
-            for name, surface in done.result().surfaces.items():
-                cache.take(kinds[name], surface)
+            if not cache.take_reply(kinds, done.result().surfaces):
+                self._node.later(_RETRY_S, self._fetch_surfaces)
             self._resend_planning_scene()
 
         self._node.ask_later(keys.SIM, SurfaceQuery(names=tuple(kinds))).add_done_callback(on_surfaces)

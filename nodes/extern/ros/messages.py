@@ -8,6 +8,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from semmap.nodes.drawing.articulation import articulated
 from semmap.nodes.drawing.palette import colour_of
 from semmap.nodes.extern.ros.things import Thing, header, middle, pose_of, time_of, transform_of, vector
 from semmap.nodes.extern.ros.types import new
@@ -136,8 +137,8 @@ def planning_scene(
 ) -> Any | None:
     """Return a `moveit_msgs/PlanningScene` with the added, moved and removed objects; None without changes.
 
-    The id of an object is its name, and the `type` its class. Its shape is the mesh in `surfaces`, or its
-    bounding box. Places and objects without a size are not obstacles.
+    The id of an object is its name, and the `type` its class. Its shape is the mesh in `surfaces` with its
+    joints moved, or its bounding box. Places and objects without a size are not obstacles.
     """
     solid = {name: thing for name, thing in now.items() if _is_solid(thing)}
     was = {name: thing for name, thing in before.items() if _is_solid(thing)}
@@ -172,7 +173,10 @@ def _obstacle(thing: Thing, surface: Surface | None, at: Moment) -> Any:
         own = Pose(position_m=(0.0, 0.0, thing.size_m[2] / 2.0))
         shape = {"primitives": [box], "primitive_poses": [pose_of(own)]}
     else:
-        shape = {"meshes": [_mesh(surface)], "mesh_poses": [new("geometry_msgs/msg/Pose")]}
+        shape = {
+            "meshes": [_mesh(articulated(surface, thing.joint_positions))],
+            "mesh_poses": [new("geometry_msgs/msg/Pose")],
+        }
     return _object(thing.name, at, _ADD, pose=pose_of(thing.pose), type=what, **shape)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any, Final, NamedTuple
 
+from semmap.nodes.drawing.articulation import JointPositions, joint_positions_of
 from semmap.nodes.extern.ros.types import new
 from semmap.schemas.entities import IDENTITY, Entity, Pose, Size, carried
 from semmap.schemas.scenes import Body
@@ -26,6 +27,7 @@ class Thing(NamedTuple):
     model: str
     place: bool
     resting: bool
+    joint_positions: JointPositions = ()
 
     def has_same_shape(self, other: Thing) -> bool:
         """Return whether it differs only in its pose."""
@@ -58,6 +60,7 @@ def located_things(
             model="" if body is None else body.model,
             place=entity.place,
             resting=body is None or body.resting,
+            joint_positions=() if body is None else joint_positions_of(body.joints),
         )
     return found
 

@@ -53,6 +53,12 @@
     if (Math.hypot(event.clientX - x, event.clientY - y) < STILL_PX) element.click();
   }
 
+  // Quasar adds the options of a list with the next frame. If this frame is late, for example without a GPU, the
+  // list is not placed again and remains hidden. Quasar also places lists when the window scrolls.
+  function placeLists() {
+    requestAnimationFrame(() => requestAnimationFrame(() => window.dispatchEvent(new Event("scroll"))));
+  }
+
   function reportAppearance() {
     emitEvent("semmap_appearance", {
       dark: document.body.classList.contains("body--dark"),
@@ -91,6 +97,8 @@
   document.addEventListener("keydown", leaveTable, true);
   window.semmapStart = () => {
     new MutationObserver(reportAppearance).observe(document.body, { attributeFilter: ["class"] });
+    new MutationObserver(placeLists) // NiceGUI sets a class while a list is open
+      .observe(document.documentElement, { attributeFilter: ["class"] });
     window.matchMedia("(max-width: 960px)").addEventListener("change", reportAppearance);
     reportAppearance();
     setTimeout(semmapBeginScene, 5000);

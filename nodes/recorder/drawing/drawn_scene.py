@@ -8,7 +8,7 @@ from dataclasses import replace
 from semmap.nodes.drawing.figures import Figure, figure_of, is_still, pose_of
 from semmap.nodes.drawing.neighbourhood import Neighbourhood
 from semmap.nodes.drawing.surfaces import SurfaceCache
-from semmap.nodes.recorder.drawing.geometry import leaf_paths_of
+from semmap.nodes.recorder.drawing.geometry import drawn_surface_of
 from semmap.nodes.recorder.recording import Recording
 from semmap.schemas.entities import Entity, Pose
 from semmap.schemas.scenes import Body
@@ -91,7 +91,7 @@ class DrawnScene:
                 return now[0], before[1]
             self._recording.move(name, *now)
             return now
-        if not set(leaf_paths_of(before[0])) <= set(leaf_paths_of(now[0])):
+        if drawn_surface_of(before[0]) not in (None, drawn_surface_of(now[0])):  # parts may be missing now
             self._recording.erase(name, before[0])
         self._recording.draw(name, *now)
         return now

@@ -29,9 +29,13 @@ def shape_of(figure: Figure) -> tuple[rr.AsComponents, ...]:
     """
     if figure.appearance == "place":
         return _sheet(figure)
-    if figure.surface is None or figure.appearance == "ghost":
-        return (_box(figure),)
-    return _box(figure), *_mesh(figure.surface, _FIXED)
+    surface = drawn_surface_of(figure)
+    return (_box(figure),) if surface is None else (_box(figure), *_mesh(surface, _FIXED))
+
+
+def drawn_surface_of(figure: Figure) -> Surface | None:
+    """Return the surface with which a figure is drawn; None for a box or sheet."""
+    return None if figure.appearance in ("ghost", "place") else figure.surface
 
 
 def leaf_paths_of(figure: Figure) -> list[tuple[str, ...]]:
@@ -39,9 +43,8 @@ def leaf_paths_of(figure: Figure) -> list[tuple[str, ...]]:
 
     A leaf is an entity of the recording below the one that holds it, so a motion is only a transform.
     """
-    if figure.surface is None or figure.appearance in ("ghost", "place"):
-        return []
-    leaves = figure.surface.leaves
+    surface = drawn_surface_of(figure)
+    leaves = () if surface is None else surface.leaves
     return [tuple(leaves[number].joint for number in path) for path in paths_of(leaves)]
 
 

@@ -16,6 +16,7 @@ _FLOORS: Final = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HF
 _ROUND: Final = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_CYLINDER))
 _SIDES: Final = 16
 _DIGITS: Final = 6
+_DIRECTIONS: Final = 32
 
 
 def walls(model: mujoco.MjModel, data: mujoco.MjData, bodies: Collection[int]) -> tuple[Outline, ...]:
@@ -59,7 +60,8 @@ def _points(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> Floats:
 
 def _outline(points: Floats) -> Outline | None:
     """Return the outline seen from above; None if it has no area."""
-    corners = polygons.hull([(x, y) for x, y, _ in (np.round(points, _DIGITS) + 0.0).tolist()])
+    flat = outer_points(np.round(points[:, :2], _DIGITS) + 0.0)
+    corners = polygons.hull([(x, y) for x, y in flat.tolist()])
     if polygons.area(corners) == 0.0:
         return None
     return Outline(
@@ -67,3 +69,19 @@ def _outline(points: Floats) -> Outline | None:
         low=round(float(points[:, 2].min()), _DIGITS),
         high=round(float(points[:, 2].max()), _DIGITS),
     )
+
+
+def outer_points(points: Floats) -> Floats:
+    """Return the points (M, 2) of (N, 2) that can be on the hull, because the hull of all is slow for a mesh.
+
+    Points within the polygon of the farthest points in some directions are dropped.
+    """
+    angle = np.arange(_DIRECTIONS) * (2.0 * np.pi / _DIRECTIONS)
+    corners = points[(points @ np.stack([np.cos(angle), np.sin(angle)])).argmax(axis=0)]
+    edges = np.roll(corners, -1, axis=0) - corners
+    is_within = np.full(len(points), edges.any())
+    for (x, y), (along_x, along_y) in zip(corners.tolist(), edges.tolist(), strict=True):
+        if along_x or along_y:
+            is_within &= along_x * (points[:, 1] - y) > along_y * (points[:, 0] - x)
+    outer: Floats = points[~is_within]
+    return outer

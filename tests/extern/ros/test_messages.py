@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 
 from semmap.nodes.extern.ros import messages
+from semmap.nodes.extern.ros.things import located_things
 from semmap.nodes.extern.ros.types import decode, encode
-from semmap.schemas.scenes import Surface
+from semmap.schemas.joints import Joint
+from semmap.schemas.scenes import Leaf, Surface
 from tests.extern.ros.made import AT, by_name, thing
+from tests.recorder.messages import body, entity
 
 ADD, REMOVE, MOVE = 0, 1, 3
 
@@ -69,6 +72,26 @@ def test_an_obstacle_has_its_class_and_its_box(scene_of):
 def test_an_entity_without_a_size_and_a_place_are_not_obstacles(scene_of):
     assert scene_of([thing(size_m=None), thing("k", place=True)]) is None
     assert scene_of([thing(size_m=None)], [thing()]).world.collision_objects[0].operation == REMOVE
+
+
+def test_a_door_that_moves_is_sent_again_where_it_is(scene_of):
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 0, 1]], "<f4")
+    leaf = Leaf(joint="door", kind="hinge", axis=(0, 0, 1), anchor=(0, 0, 0), first=0, count=3)
+    door = Surface(
+        points=corners.tobytes(),
+        normals=corners.tobytes(),
+        colours=b"",
+        triangles=np.arange(3, dtype="<u4").tobytes(),
+        leaves=(leaf,),
+    )
+    opened = thing(joint_positions=(("door", math.pi / 2),))
+    (said,) = scene_of([opened], [thing()], {"cup1": door}).world.collision_objects
+    assert said.operation == ADD
+    vertices = sorted((v.x, v.y, v.z) for v in said.meshes[0].vertices)
+    assert np.array(vertices) == pytest.approx(np.array([(0, 0, 0), (0, 0, 1), (0, 1, 0)]), abs=1e-6)
+    assert scene_of([opened], [opened], {"cup1": door}) is None
+    jointed = body("c", joints=(Joint(name="door", kind="hinge", position=1.0),))
+    assert located_things([entity("c")], {"c": jointed}, {})["c"].joint_positions == (("door", 1.0),)
 
 
 def test_an_obstacle_may_be_what_it_looks_like(scene_of):

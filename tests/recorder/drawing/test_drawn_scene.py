@@ -91,6 +91,18 @@ def test_moves_are_told_when_they_are_moves(stage, told):
     assert told.take() == [("move", "c")]
 
 
+def test_a_body_that_loses_its_surface_is_erased_first(stage, told):
+    chair = body("c", model="chair")
+    stage.show_all({}, {"c": chair}, simulated=True)
+    stage.surfaces.take(("chair", chair.size_m), surface())
+    stage.show_all({}, {"c": chair}, simulated=True)
+    assert told.take() == [("draw", "c"), ("draw", "c")]
+    stage.show_all({}, {"c": structs.replace(chair, ghost=True)}, simulated=True)
+    assert told.take() == [("erase", "c"), ("draw", "c")]
+    stage.show_all({}, {"c": chair}, simulated=True)
+    assert told.take() == [("draw", "c")]
+
+
 def cupboard(**others):
     """Return a body with a door in a frame, and a handle on the door, which turns and slides."""
     kinds = {"door": "hinge", "handle": "hinge", "latch": "slide"}

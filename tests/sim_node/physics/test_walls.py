@@ -6,7 +6,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from semmap.nodes.sim_node.physics.walls import walls
+from semmap.nodes.geometry import polygons
+from semmap.nodes.sim_node.physics.walls import outer_points, walls
 
 TETRAHEDRON = "0 0 0  1 0 0  0 1 0  0 0 2"
 
@@ -61,6 +62,23 @@ def test_a_mesh_is_the_hull_of_its_corners():
     )  # MuJoCo moves a mesh to its middle and turns it
     assert wedge.high - wedge.low <= 2.0 + 1e-6
     assert sides[0] > 0.5
+
+
+@pytest.mark.parametrize("form", ["cloud", "line", "circle", "grid", "point"])
+def test_only_points_that_are_not_on_the_hull_are_dropped(form):
+    points = np.random.default_rng(1).normal(size=(5000, 2))
+    match form:
+        case "line":
+            points[:, 1] = 2.0 * points[:, 0]
+        case "circle":
+            points /= np.linalg.norm(points, axis=1)[:, None]
+        case "grid":
+            points = np.round(points)
+        case "point":
+            points[:] = 1.0
+    outer = outer_points(points)
+    assert polygons.hull(list(map(tuple, outer.tolist()))) == polygons.hull(list(map(tuple, points.tolist())))
+    assert len(outer) < 100 or form in ("line", "circle", "point")
 
 
 @pytest.mark.parametrize(

@@ -47,33 +47,42 @@ class Assets:
             self._glbs[key] = made
         return made
 
-    async def fetch(self) -> None:
-        """Request the surfaces that are not known, and those of the world if the simulator is another one."""
-        while (scene := self._live.scene) is not self._fetched:
-            await self._fetch(scene)
-            self._fetched = scene
+    async def fetch(self) -> bool:
+        """Request the surfaces that are not known, and those of the world if the simulator is another one.
 
-    async def _fetch(self, scene: Scene | None) -> None:
+        Return whether all have arrived; otherwise they can be requested again.
+        """
+        while (scene := self._live.scene) is not self._fetched:
+            if not await self._fetch(scene):
+                return False
+            self._fetched = scene
+        return True
+
+    async def _fetch(self, scene: Scene | None) -> bool:
         if scene is None:
-            return
+            return True
         wanted = list(self._surfaces.wanted(scene.bodies).items())
-        is_changed = bool(wanted)
+        is_changed, is_complete = bool(wanted), True
         for start in range(0, len(wanted), _PER_REQUEST):
-            await self._fetch_some(dict(wanted[start : start + _PER_REQUEST]))
+            is_complete &= await self._fetch_some(dict(wanted[start : start + _PER_REQUEST]))
         if scene.run != self._run:
-            self._run, is_changed = scene.run, True
+            before, self.walls = self.walls, None
             try:
                 self.walls = await self._live.query(keys.SIM, WorldQuery())
+                self._run = scene.run
+            except errors.NoAnswer:
+                is_complete = False
             except errors.SemmapError:  # an older simulator, or not permitted for this role
-                self.walls = None
+                self._run = scene.run
+            is_changed |= self.walls is not before
         if is_changed:
             self._changed()
+        return is_complete
 
-    async def _fetch_some(self, kinds: dict[str, Kind]) -> None:
+    async def _fetch_some(self, kinds: dict[str, Kind]) -> bool:
         try:
             reply = await self._live.query(keys.SIM, SurfaceQuery(names=tuple(kinds)))
-        except errors.SemmapError:
+        except errors.SemmapError as error:
             self._surfaces.reset_requests(kinds.values())
-            return
-        for name, surface in reply.surfaces.items():
-            self._surfaces.take(kinds[name], surface)
+            return not isinstance(error, errors.NoAnswer)
+        return self._surfaces.take_reply(kinds, reply.surfaces)

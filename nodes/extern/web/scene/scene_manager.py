@@ -17,6 +17,8 @@ from semmap.nodes.extern.web.scene.assets import Assets
 from semmap.nodes.extern.web.scene.tab import SWITCHES, Switch, TabScene
 from semmap.nodes.extern.web.scene.viser_server import SceneServer
 
+_RETRY_S: Final = 2.0
+"""Time after which surfaces that did not arrive are requested again."""
 _ICONS: Final[dict[Switch, str]] = {
     "names": "label",
     "walls": "border_style",
@@ -85,7 +87,11 @@ class SceneManager:
 
     def _fetch(self) -> None:
         if self._tabs and (self._fetching is None or self._fetching.done()):
-            self._fetching = asyncio.get_running_loop().create_task(self._assets.fetch())
+            self._fetching = asyncio.get_running_loop().create_task(self._fetch_assets())
+
+    async def _fetch_assets(self) -> None:
+        while self._tabs and not await self._assets.fetch():
+            await asyncio.sleep(_RETRY_S)
 
     def _refresh(self) -> None:
         for tab in self._tabs.values():

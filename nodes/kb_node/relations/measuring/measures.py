@@ -296,16 +296,27 @@ def _is_enclosed(inner: Solid, outer: Solid, hollow: Interior) -> bool:
         x, y, z = outer.to_own((px + dx, py + dy, pz + dz))
         if not (x0 - e <= x <= x1 + e and y0 - e <= y <= y1 + e and z0 - e <= z <= z1 + e):
             return False
-        across, along = (2 * x - x0 - x1) / (x1 - x0), (2 * y - y0 - y1) / (y1 - y0)
-        if hollow.is_round and across * across + along * along > 1.0:
+        if hollow.is_round and not _is_in_cylinder(x, y, hollow):
             return False
     return True
 
 
+def _is_in_cylinder(x: float, y: float, hollow: Interior) -> bool:
+    """Return whether a point is in the cylinder within the box of a hollow, in the same frame."""
+    (x0, y0, _), (x1, y1, _) = hollow.low, hollow.high
+    across, along = (2 * x - x0 - x1) / (x1 - x0), (2 * y - y0 - y1) / (y1 - y0)
+    return across * across + along * along <= 1.0
+
+
 def _compute_share_in(inner: Solid, outer: Solid, hollow: Interior) -> float:
-    """Return the share of a volume in a hollow. In a sealed one it is all or nothing."""
+    """Return the share of a volume in a hollow. In a sealed one it is all or nothing.
+
+    It is 0 beside a round vessel, although the corners of its box are there.
+    """
     if hollow.is_sealed:
         return float(_is_enclosed(inner, outer, hollow))
+    if hollow.is_round_vessel and not _is_in_cylinder(*outer.to_own(inner.centre)[:2], hollow):
+        return 0.0
     (x0, y0, z0), (x1, y1, z1) = hollow.low, hollow.high
     if not (inner.is_level and outer.is_level):
         points = inner.samples

@@ -201,7 +201,8 @@ class Survey:
         is_sealed = forms.hollows.is_sealed[hollow] > 0.0
         walls = 2.0 * np.sort([np.hypot(*u.T), np.hypot(*v.T)], axis=0)
         spare = measures.FIT * walls - np.sort(forms.size[form, :2], axis=1).T
-        least[is_sealed | (spare.min(axis=0) < GUARD)] = 0.0
+        is_round = forms.hollows.is_round_vessel[hollow] > 0.0
+        least[is_sealed | is_round | (spare.min(axis=0) < GUARD)] = 0.0
         above = columns.bottom[i] - base
         stands = (above > measures.FLOOR_M - GUARD) & (above < (floor + lid) / 2 + GUARD) & (shared > 0.0)
         stands &= ~is_sealed

@@ -55,13 +55,16 @@ def test_models_that_arrive_during_a_request_are_requested_too(made):
 def test_failed_requests_are_repeated_and_a_new_simulator_has_new_walls(made):
     assets, live, _ = made
     live.refuses = True
-    asyncio.run(assets.fetch())
+    assert not asyncio.run(assets.fetch())
     assert assets.surface_of("chair", (0.5, 0.5, 1.0)) is None
     assert assets.walls is None
-    live.refuses, live.scene = False, scene(body("chair1"), run="2")
-    asyncio.run(assets.fetch())
+    live.refuses = False
+    assert asyncio.run(assets.fetch())
     assert assets.surface_of("chair", (0.5, 0.5, 1.0)) is not None
-    assert assets.walls is not None
+    assert (walls := assets.walls) is not None
+    live.scene = scene(body("chair1"), run="2")
+    assert asyncio.run(assets.fetch())
+    assert assets.walls is not walls
 
 
 def test_files_are_cached_by_appearance(made):

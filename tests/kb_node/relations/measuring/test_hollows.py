@@ -11,6 +11,7 @@ from tests.kb_node.relations.facts.test_many_at_once import require_alike
 
 SEALED = sorted(name for name, shape in shapes().items() if any(room.is_sealed for room in shape.interiors))
 OPEN = sorted(name for name, shape in shapes().items() if any(room.open for room in shape.interiors))
+VESSELS = sorted(name for name, shape in shapes().items() if any(r.is_round_vessel for r in shape.interiors))
 LYING = (math.sqrt(0.5), 0.0, math.sqrt(0.5), 0.0)
 
 
@@ -80,3 +81,18 @@ def test_an_open_hollow_contains_what_fits_in_it(model):
     assert is_inside(outer, thing("thing1", middle, "", size=small))
     wide = (1.2 * (x1 - x0), 1.2 * (y1 - y0), 0.3 * (z1 - z0))
     assert not is_inside(outer, thing("thing1", middle, "", size=wide))
+
+
+@pytest.mark.parametrize("model", VESSELS)
+def test_an_object_beside_a_round_vessel_is_not_in_it(model):
+    """It stands in a corner of the box around the hollow."""
+    (room,) = (room for room in model_shape(model).interiors if room.is_round_vessel)
+    (x0, y0, z0), (x1, y1, z1) = room.low, room.high
+    vessel, wide = thing("outer1", (0.0, 0.0, TOP), model), 0.07 * (x1 - x0)
+
+    def at(share, bottom, height):
+        x, y = ((low + high + share * (high - low)) / 2 for low, high in ((x0, x1), (y0, y1)))
+        return thing("thing1", (x, y, TOP + bottom), "", size=(wide, wide, height))
+
+    assert not is_inside(vessel, at(0.85, 0.0, z1))
+    assert is_inside(vessel, at(0.5, z0, 0.5 * (z1 - z0)))
