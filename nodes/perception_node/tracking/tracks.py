@@ -46,7 +46,7 @@ class Track:
     State: `whole`: it was seen completely. `map_pose`: the map's pose at the last frame. `left`: that place
     is seen empty. `kept`: the part of it that would be left is filled. `part`: the map has a size that an
     image edge cuts. `outsized`: the map's size is too large. `fit`: the fitted model since it rests.
-    `rejected_class`: the class that a fit rejected. `label`: the last label of a detector that is not a class.
+    `rejected_class`: the class that a fit rejected. `label`: a detector's last label that is not a class.
     """
 
     pose: Pose
