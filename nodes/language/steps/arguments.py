@@ -53,6 +53,12 @@ class ArgumentReader(ClauseBoundaries):
             ):
                 objects[-1].excluded.append(other)
                 i = other.end
+            elif words[i] == "but" and (other := self._np.read(i + 1)) is not None:
+                if objects and (objects[-1].all_of or g.is_a(objects[-1].noun, "anything")):
+                    objects[-1].excluded.append(other)  # all cups but the red one
+                else:
+                    self.found.unused.append(self._t.between(i, other.end))
+                i = other.end
             elif (
                 g.is_a(words[i], "and")
                 and (phrase := self._np.read(i + 1)) is not None

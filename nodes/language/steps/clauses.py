@@ -39,7 +39,9 @@ class ClauseReader(MessageReader):
             elif length := starts_time(self._g, self._words, i):
                 times.append(self._t.between(i, i + length))
                 i += length
-            elif length := self._g.match("negation", self._words, i):
+            elif (length := self._g.match("negation", self._words, i)) and (
+                length >= self._g.match("polite", self._words, i)  # do n't forget to
+            ):
                 negated = True
                 i += length
             elif self._words[i : i + 2] == ("there", "you"):
@@ -53,6 +55,7 @@ class ClauseReader(MessageReader):
                 i = topic.end + 1
             elif wish := self._wish(i):
                 i = self._wished(i, wish)
+                self.found.clauses[-1].negated = negated
                 self.found.clauses[-1].times += times
                 times, negated = [], False
             elif self._asks(i) or self._found_at(i):
@@ -79,6 +82,7 @@ class ClauseReader(MessageReader):
                     self._add_front(self.found.clauses[before], *front)
                 times, negated, front = [], False, None
             else:
+                negated = negated and self._t.is_mark(i - 1)  # not the red one, take the blue one
                 i = self._unread(i)
         self._close(first_of_sentence, conditions)
         if front is not None:

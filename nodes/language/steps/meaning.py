@@ -373,13 +373,16 @@ class Meanings:
         return f"no {attribute} {self._noun(phrase)} is known"
 
     def _of(self, names: list[str], phrase: NounPhrase, meaning: Meaning) -> list[str]:
-        """Return the things that belong to another, or the content of a container: a bottle of water."""
+        """Return the things that belong to another, or the other: a bottle of water, the door of the fridge."""
         if phrase.of is None:
             return names
         other = self.of(phrase.of)
         meaning.doubts += other.doubts
         fitting = [name for name in names if any(self._belongs(name, whole) for whole in other.names)]
-        if other.is_person and not fitting:
+        is_content = self._nouns.describing.base(phrase.noun) in self._nouns.describing.content
+        is_part = not other.is_place and all(self._is_of_class(name, "Door") for name in names)
+        stands_for = not other.is_person and (is_content or is_part)
+        if not fitting and not stands_for:
             text = self._t.between(phrase.of.first, phrase.of.end)
             meaning.doubts.append(f"no {self._noun(phrase)} is known that belongs to {text}")
             return []

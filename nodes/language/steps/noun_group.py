@@ -41,6 +41,7 @@ _ADVERBS: Final = frozenset(
         "maybe",
         "perhaps",
         "as",
+        "but",
     )
 )
 _SEVERAL: Final = frozenset(("these", "those", "several", "a few", "both", "a pair of", "a couple of"))

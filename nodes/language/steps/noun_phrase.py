@@ -132,7 +132,7 @@ class NounPhraseReader(NounGroupReader):
         """Read what follows the noun: places, relative clauses, participles, purposes, exceptions."""
         g, words = self._g, self._words
         while (i := phrase.end) < len(words):
-            if length := g.match("exclude", words, i):
+            if (length := g.match("exclude", words, i)) and not self._is_verb(i + length):
                 other = self.read(i + length, with_places=False)
                 if other is None:
                     return
@@ -182,6 +182,10 @@ class NounPhraseReader(NounGroupReader):
                 phrase.end = place.end
             else:
                 return
+
+    def _is_verb(self, i: int) -> bool:
+        """Return whether a verb is at `i`: the kitchen, but not ENTER the studio."""
+        return self._g.verb(self._words, i)[0] > 0 and not self.is_known(i, i + 1)
 
     def _counted_from(self, i: int) -> int:
         """Return the number of words of *from the left* at `i`, or 0."""

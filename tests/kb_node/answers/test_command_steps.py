@@ -146,6 +146,19 @@ def filler(understood, role, step=0):
             "leave the kitchen",
             ["Motion(Source=kitchen1)"],
         ),
+        ("Never mind, bring me the milk", ['Bringing(Beneficiary="me", Theme=milk1)']),
+        ("Please don't forget to close the fridge", ["Closure(Containing_object=fridge1)"]),
+        (
+            "take the milk and the kettle and bring both to Nora",
+            ["Taking(Theme=milk1, Theme=kettle1)", "Bringing(Theme=milk1|kettle1, Beneficiary=nora1)"],
+        ),
+        ("take all cups but the red one", ["Taking(Theme=bluecup|cup1)"]),
+        (
+            "go to the kitchen but do not enter the studio",
+            ["Motion(Goal=kitchen1)", "not Arriving(Goal=studio1)"],
+        ),
+        ("open the door of the fridge", ["Closure(Container_portal=fridge1)"]),
+        ("take a glass of water", ["Taking(Theme=water1)"]),
     ],
 )
 def test_a_command_is_a_list_of_steps(read, text, steps):
@@ -236,6 +249,10 @@ def test_negation_is_of_its_own_clause(read):
         ("take the kettle from the desk", "kettle1 is not on or in desk1"),
         ("take the three plates", "'the three plates': there are only 2"),
         ("take the cup of Nora", "no cup is known that belongs to Nora"),
+        ("take the plate of the desk", "no plate is known that belongs to the desk"),
+        ("clean the window of the bathroom", "no window is known that belongs to the bathroom"),
+        ("Do not take the red cup but the blue one", "but the blue one"),
+        ("Not the red cup, take the blue one", "the red cup"),
         ("take Nora's cup", "no cup is known that belongs to Nora"),
         ("take Gregor's cup", "'Gregor' is not known"),
         ("take my cup", "'my cup': the owner is not known"),
@@ -385,6 +402,11 @@ def test_every_text_ends_in_steps_or_doubts(read):
         ("Conta i piatti sul tavolo.", ["Counting(Theme=plate1|plate2)"]),
         ("Versa il latte in una tazza.", ["Pouring(Theme=milk1, Goal=bluecup|cup1|redcup)"]),
         ("Spegni il forno.", ["Change_operational_state(Device=oven1)"]),
+        ("Non voglio il latte.", ['not Bringing(Beneficiary="voglio", Theme=milk1)']),
+        (
+            "Vai in cucina ma non entrare nello studio.",
+            ["Motion(Goal=kitchen1)", "not Arriving(Goal=studio1)"],
+        ),
         ("Cerca il portatile nello studio.", ["Locating(Sought_entity=laptop1, Ground=studio1)"]),
     ],
 )  # fmt: skip
@@ -446,3 +468,15 @@ def test_nothing_of_an_italian_command_is_lost(read, text, step, doubt):
 )
 def test_a_question_in_italian_is_answered(read, text, answer):
     assert read(text).answer == answer
+
+
+@pytest.mark.parametrize(
+    "text", ["Not the red cup, take the blue one", "Don't just stand there, take the blue cup"]
+)
+def test_a_negation_holds_only_for_its_own_words(read, text):
+    assert texts(read(text)) == ["Taking(Theme=bluecup)"]
+
+
+def test_a_negation_before_an_insertion_is_kept(read):
+    (step,) = read("Do not, under any circumstances, open the oven").steps
+    assert step.negated
