@@ -373,7 +373,7 @@ class Meanings:
         return f"no {attribute} {self._noun(phrase)} is known"
 
     def _of(self, names: list[str], phrase: NounPhrase, meaning: Meaning) -> list[str]:
-        """Return the things that belong to another, or the other: a bottle of water, the door of the fridge."""
+        """Return the things that belong to another, or that one: a bottle of water, the fridge's door."""
         if phrase.of is None:
             return names
         other = self.of(phrase.of)

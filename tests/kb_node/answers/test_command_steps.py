@@ -222,6 +222,32 @@ def test_a_condition_holds_for_all_steps_of_its_sentence(read):
     assert [step.condition for step in understood.steps] == ["if Nora leaves", "if Nora leaves", ""]
 
 
+@pytest.mark.parametrize(
+    ("text", "first", "second"),
+    [
+        ("go to the studio, and if the lamp is on, turn it off", "", "if the lamp is on"),
+        ("go to the studio and if the lamp is on turn it off", "", "if the lamp is on"),
+        ("take the milk, but only if it is there, and bring it to Nora", *["only if it is there"] * 2),
+        ("take the milk and bring it to Nora if she is there", *["if she is there"] * 2),
+    ],
+)
+def test_a_condition_between_and_and_its_clause_is_only_its_own(read, text, first, second):
+    assert [step.condition for step in read(text).steps] == [first, second]
+
+
+@pytest.mark.parametrize(
+    ("text", "first", "second"),
+    [
+        ("at ten o'clock go to the kitchen and take the milk", *["at ten o'clock"] * 2),
+        ("at ten o'clock go to the kitchen. Take the milk", "at ten o'clock", ""),
+        ("in five minutes open the fridge and in ten minutes close it", "in five minutes", "in ten minutes"),
+        ("go to the kitchen and take the milk, tomorrow. Thanks.", "", "tomorrow"),
+    ],
+)
+def test_a_time_before_the_verb_is_that_of_all_clauses_after_it(read, text, first, second):
+    assert [step.time for step in read(text).steps] == [first, second]
+
+
 @pytest.mark.parametrize("word", ["if so", "otherwise", "in that case"])
 def test_a_condition_on_the_step_before_holds_from_there_on(read, word):
     understood = read(f"look whether the oven is on, and {word}, bring Nora the kettle")
@@ -253,6 +279,7 @@ def test_negation_is_of_its_own_clause(read):
         ("clean the window of the bathroom", "no window is known that belongs to the bathroom"),
         ("Do not take the red cup but the blue one", "but the blue one"),
         ("Not the red cup, take the blue one", "the red cup"),
+        ("Tomorrow. Take the milk.", "Tomorrow"),
         ("take Nora's cup", "no cup is known that belongs to Nora"),
         ("take Gregor's cup", "'Gregor' is not known"),
         ("take my cup", "'my cup': the owner is not known"),
