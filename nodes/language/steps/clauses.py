@@ -106,7 +106,7 @@ class ClauseReader(MessageReader):
     def _holds_from(self, i: int, end: int) -> bool:
         """Return whether a condition from `i` to before `end` is only one of the clauses after it.
 
-        It is one of what was said before (otherwise), or between *and* and its clause (and, if it is off, start it).
+        It is one of what was said before (otherwise), or stands after *and* and before its clause.
         """
         if self._g.match("anaphoric", self._words, i):
             return True

@@ -239,6 +239,7 @@ def test_a_condition_between_and_and_its_clause_is_only_its_own(read, text, firs
     ("text", "first", "second"),
     [
         ("at ten o'clock go to the kitchen and take the milk", *["at ten o'clock"] * 2),
+        ("at ten go to the kitchen and take the milk", *["at ten"] * 2),
         ("at ten o'clock go to the kitchen. Take the milk", "at ten o'clock", ""),
         ("in five minutes open the fridge and in ten minutes close it", "in five minutes", "in ten minutes"),
         ("go to the kitchen and take the milk, tomorrow. Thanks.", "", "tomorrow"),
@@ -429,6 +430,16 @@ def test_every_text_ends_in_steps_or_doubts(read):
         ("Conta i piatti sul tavolo.", ["Counting(Theme=plate1|plate2)"]),
         ("Versa il latte in una tazza.", ["Pouring(Theme=milk1, Goal=bluecup|cup1|redcup)"]),
         ("Spegni il forno.", ["Change_operational_state(Device=oven1)"]),
+        ("Dai a Nora il latte.", ["Giving(Recipient=nora1, Theme=milk1)"]),
+        ("Da' il latte a Nora.", ["Giving(Theme=milk1, Recipient=nora1)"]),
+        (
+            "Di' a Nora che il latte è finito.",
+            ['Telling(Addressee=nora1, Message="che il latte è finito")'],
+        ),
+        ("Non aprire il frigorifero né il forno.", ["not Closure(Containing_object=fridge1|oven1)"]),
+        ("Non toccare mai la tazza rossa.", ["not Manipulation(Entity=redcup)"]),
+        ("Evita di aprire il forno.", ["not Closure(Containing_object=oven1)"]),
+        ("Non dimenticare di chiudere il frigorifero.", ["Closure(Containing_object=fridge1)"]),
         ("Non voglio il latte.", ['not Bringing(Beneficiary="voglio", Theme=milk1)']),
         (
             "Vai in cucina ma non entrare nello studio.",
@@ -461,6 +472,26 @@ def test_an_italian_command_has_the_same_steps(read, text, steps):
             "Domani mattina porta il bollitore a Nora.",
             "Bringing(Theme=kettle1, Beneficiary=nora1) [Domani mattina]",
             "'Domani mattina' is a time",
+        ),
+        (
+            "Alle 10:30 porta il bollitore a Nora.",
+            "Bringing(Theme=kettle1, Beneficiary=nora1) [Alle 10:30]",
+            "'Alle 10:30' is a time",
+        ),
+        (
+            "Alle dieci porta il bollitore a Nora.",
+            "Bringing(Theme=kettle1, Beneficiary=nora1) [Alle dieci]",
+            "'Alle dieci' is a time",
+        ),
+        (
+            "Ogni mattina apri il frigorifero.",
+            "Closure(Containing_object=fridge1) [Ogni mattina]",
+            "'Ogni mattina' is a time",
+        ),
+        (
+            "Prendi il bollitore solo se è vuoto.",
+            "Taking(Theme=kettle1) [solo se è vuoto]",
+            "'solo se è vuoto' is a condition",
         ),
         (
             "Porta il bollitore a Nora a meno che non sia vuoto.",
