@@ -265,8 +265,10 @@ class Meanings:
             names = self._of(names, phrase, meaning)
         names = self._owned(names, phrase, owner, meaning)
         for other in phrase.excluded:
-            excluded = set(self.of(other, may_be_none=True).names)
-            names = [name for name in names if name not in excluded]
+            excluded = self.of(other, may_be_none=True)
+            if not excluded.names and (excluded.alike or not other.key):
+                is_open = True  # the map cannot tell which one is broken
+            names = [name for name in names if name not in excluded.names]
         before = names
         for place, others in relations[: len(phrase.places)]:
             names, is_open = self._placed(names, place, others, is_open)

@@ -116,17 +116,24 @@ class NounPhraseReader(NounGroupReader):
         return self._place(i)
 
     def continue_phrase(self, phrase: NounPhrase, *, after_be: bool) -> None:
-        """Add to a phrase what follows it after a verb: are WEARING RED SHIRTS, are OPEN."""
+        """Add to a phrase what follows it after a verb: are WEARING RED SHIRTS, are ON."""
         i = phrase.end
         self._after_the_noun(phrase, True)
         if phrase.end == i and after_be and not self._t.is_mark(i):
             start = i + self._g.match("determiner", self._words, i)
             end = self._group_end(start)
+            state = i + self._g.match("negation", self._words, i)
+            if end == start and self._is_last_particle(state):
+                end = state + 1
             if end > start and (length := self._superlative(start, end + 1)):
                 phrase.superlative = " ".join(self._words[start : start + length])
             elif end > i:
                 phrase.attributes.append(self._t.between(i, end))
             phrase.end = max(end, i)
+
+    def _is_last_particle(self, i: int) -> bool:
+        """Return whether a particle ends the clause at `i`: is the oven ON."""
+        return not self._t.is_mark(i) and self._g.is_a(self._words[i], "particle") and self._t.is_mark(i + 1)
 
     def _after_the_noun(self, phrase: NounPhrase, with_places: bool) -> None:
         """Read what follows the noun: places, relative clauses, participles, purposes, exceptions."""

@@ -157,6 +157,15 @@ def filler(understood, role, step=0):
             "go to the kitchen but do not enter the studio",
             ["Motion(Goal=kitchen1)", "not Arriving(Goal=studio1)"],
         ),
+        (
+            "close all doors except the one of the kitchen",
+            ["Closure(Container_portal=door1|door2|door4|door5|door6)"],
+        ),
+        ("take all plates except the broken one", ['Taking(Theme="all plates except the broken one")']),
+        (
+            "take everything from the table except the wine",
+            ["Taking(Theme=apple1|bluecup|bowl1|glass1|plate1|plate2|redcup|water1, Source=table1)"],
+        ),
         ("open the door of the fridge", ["Closure(Container_portal=fridge1)"]),
         ("take a glass of water", ["Taking(Theme=water1)"]),
     ],
@@ -281,6 +290,7 @@ def test_negation_is_of_its_own_clause(read):
         ("Do not take the red cup but the blue one", "but the blue one"),
         ("Not the red cup, take the blue one", "the red cup"),
         ("Tomorrow. Take the milk.", "Tomorrow"),
+        ("bring me the one on the desk", "'one' refers to nothing that was mentioned"),
         ("take Nora's cup", "no cup is known that belongs to Nora"),
         ("take Gregor's cup", "'Gregor' is not known"),
         ("take my cup", "'my cup': the owner is not known"),
@@ -538,3 +548,9 @@ def test_a_negation_holds_only_for_its_own_words(read, text):
 def test_a_negation_before_an_insertion_is_kept(read):
     (step,) = read("Do not, under any circumstances, open the oven").steps
     assert step.negated
+
+
+@pytest.mark.parametrize("text", ["Is the oven on?", "Is the oven not on?", "How many lamps are off?"])
+def test_a_state_that_the_map_does_not_have_is_not_confirmed(read, text):
+    assert "yes" not in read(text).answer
+    assert "lamp1" not in read(text).answer
