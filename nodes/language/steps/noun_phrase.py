@@ -61,6 +61,11 @@ class NounPhraseReader(NounGroupReader):
             if not self._is_determiner(i, length) and g.match("determiner", words, i) <= length:
                 phrase.kind, phrase.head, phrase.end = "pronoun", i + length - 1, i + length
                 phrase.noun = " ".join(words[i : i + length])
+                is_all = g.is_a(word, "several_pronoun") and words[phrase.end : phrase.end + 1] in (
+                    ("both",),
+                    ("all",),
+                )
+                phrase.end += is_all and self._group_end(phrase.end + 1) == phrase.end + 1  # them both
                 return True
         elif word in (
             "everyone",

@@ -187,6 +187,9 @@ class _Glossing:
         if english == "the" and self._known.expressions.get((following,)) in _POSSESSIVES:
             self._say(self._known.expressions[(following,)], i, i + 1, "det")
             return 2
+        if english == "all" and self._pieces[i].text == "tutto" and not self._is_determiner(following):
+            self._say("everything", i, i, "pron")
+            return 1
         if english == "never" and any(word.text == "not" for word in self._found):
             return length  # "non toccare mai" has one negation
         if english == "a" and self._ends(i):
@@ -194,6 +197,9 @@ class _Glossing:
             return 1
         self._say(english, i, i + length - 1, "det" if english in _DETERMINERS else None)
         return length
+
+    def _is_determiner(self, text: str) -> bool:
+        return self._known.expressions.get((text,), "") in _DETERMINERS
 
     def _counts(self, i: int) -> bool:
         """Return whether piece i is a number."""

@@ -288,6 +288,7 @@ def test_negation_is_of_its_own_clause(read):
         ("take the plate of the desk", "no plate is known that belongs to the desk"),
         ("clean the window of the bathroom", "no window is known that belongs to the bathroom"),
         ("Do not take the red cup but the blue one", "but the blue one"),
+        ("Do not bring the kettle to Nora but to me", "but to me"),
         ("Not the red cup, take the blue one", "the red cup"),
         ("Tomorrow. Take the milk.", "Tomorrow"),
         ("bring me the one on the desk", "'one' refers to nothing that was mentioned"),
@@ -440,6 +441,23 @@ def test_every_text_ends_in_steps_or_doubts(read):
         ("Conta i piatti sul tavolo.", ["Counting(Theme=plate1|plate2)"]),
         ("Versa il latte in una tazza.", ["Pouring(Theme=milk1, Goal=bluecup|cup1|redcup)"]),
         ("Spegni il forno.", ["Change_operational_state(Device=oven1)"]),
+        ("Vai da Nora.", ["Motion(Goal=nora1)"]),
+        (
+            "Prendi il latte e il bollitore e portali entrambi a Nora.",
+            ["Taking(Theme=milk1, Theme=kettle1)", "Bringing(Theme=milk1|kettle1, Beneficiary=nora1)"],
+        ),
+        (
+            "Non prendere niente dalla scrivania.",
+            ["not Taking(Theme=book1|cup1|lamp1|laptop1, Source=desk1)"],
+        ),
+        (
+            "Prendi tutto dalla scrivania tranne il libro.",
+            ["Taking(Theme=cup1|lamp1|laptop1, Source=desk1)"],
+        ),
+        (
+            "Prima apri il frigorifero, poi prendi il latte.",
+            ["Closure(Containing_object=fridge1)", "Taking(Theme=milk1)"],
+        ),
         ("Dai a Nora il latte.", ["Giving(Recipient=nora1, Theme=milk1)"]),
         ("Da' il latte a Nora.", ["Giving(Theme=milk1, Recipient=nora1)"]),
         (
