@@ -50,16 +50,16 @@ class ArgumentReader(ClauseBoundaries):
             elif (
                 self._excludes(i)
                 and objects
-                and (other := self._np.read(i + g.match("exclude", words, i))) is not None
+                and (excluded := self._np.read_excluded(i + g.match("exclude", words, i)))
             ):
-                objects[-1].excluded.append(other)
-                i = other.end
-            elif words[i] == "but" and (other := self._np.read(i + 1)) is not None:
+                objects[-1].excluded += excluded
+                i = excluded[-1].end
+            elif words[i] == "but" and (excluded := self._np.read_excluded(i + 1)):
                 if objects and (objects[-1].all_of or g.is_a(objects[-1].noun, "anything")):
-                    objects[-1].excluded.append(other)  # all cups but the red one
+                    objects[-1].excluded += excluded  # all cups but the red one
                 else:
-                    self.found.unused.append(self._t.between(i, other.end))
-                i = other.end
+                    self.found.unused.append(self._t.between(i, excluded[-1].end))
+                i = excluded[-1].end
             elif words[i] == "but" and any(g.match(kind, words, i + 1) for kind in ("to", "from", "place")):
                 end = self._clause_end(i + 1)  # not to Nora but to me
                 self.found.unused.append(self._t.between(i, end))

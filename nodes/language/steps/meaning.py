@@ -268,6 +268,9 @@ class Meanings:
             excluded = self.of(other, may_be_none=True)
             if not excluded.names and (excluded.alike or not other.key):
                 is_open = True  # the map cannot tell which one is broken
+            if other is not phrase.excluded[0] and set(excluded.names).isdisjoint(meaning.alike):
+                text = self._t.between(other.first, other.end)
+                meaning.doubts.append(f"'{text}' is read as an exception")
             names = [name for name in names if name not in excluded.names]
         before = names
         for place, others in relations[: len(phrase.places)]:

@@ -120,6 +120,28 @@ class NounPhraseReader(NounGroupReader):
         """Return the place phrase that begins at `i`, such as *in the kitchen*, or None."""
         return self._place(i)
 
+    def read_excluded(self, i: int) -> list[NounPhrase]:
+        """Return the phrases of an exception at `i`: the milk and the bread, the one on the desk.
+
+        A place after a noun belongs to all of the things: all cups except the red cup on the table.
+        """
+        found: list[NounPhrase] = []
+        while (other := self.read(i, with_places=False)) is not None:
+            if other.noun in ("one", "ones"):
+                other = self.read(i) or other
+            found.append(other)
+            i = other.end + 1
+            if not self._joins(other.end) or self._starts_clause(other.end) or self._starts_clause(i):
+                break
+        return found
+
+    def _joins(self, i: int) -> bool:
+        """Return whether a list goes on at `i`: a comma only before a determiner."""
+        word = self._words[i] if i < len(self._words) else ""
+        return self._g.is_a(word, "and") or (
+            word == "," and self._g.match("determiner", self._words, i + 1) > 0
+        )
+
     def continue_phrase(self, phrase: NounPhrase, *, after_be: bool) -> None:
         """Add to a phrase what follows it after a verb: are WEARING RED SHIRTS, are ON."""
         i = phrase.end
@@ -145,11 +167,11 @@ class NounPhraseReader(NounGroupReader):
         g, words = self._g, self._words
         while (i := phrase.end) < len(words):
             if (length := g.match("exclude", words, i)) and not self._is_verb(i + length):
-                other = self.read(i + length, with_places=False)
-                if other is None:
+                excluded = self.read_excluded(i + length)
+                if not excluded:
                     return
-                phrase.excluded.append(other)
-                phrase.end = other.end
+                phrase.excluded += excluded
+                phrase.end = excluded[-1].end
             elif words[i] in ("called", "named") and not self._t.is_mark(i + 1):
                 end = self._group_end(i + 1)
                 phrase.name, phrase.end = self._t.between(i + 1, end), max(end, i + 1)
@@ -192,6 +214,9 @@ class NounPhraseReader(NounGroupReader):
             elif with_places and (place := self._place(i)) is not None:
                 phrase.places.append(place)
                 phrase.end = place.end
+                if not place.other.all_of and place.other.determiner != "any":
+                    phrase.excluded += place.other.excluded  # everything on the desk except the lamp
+                    place.other.excluded = []
             else:
                 return
 
