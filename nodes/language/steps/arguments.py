@@ -21,6 +21,7 @@ _PLACED: Final = (
     "Perception_active",
 )
 """Frames of which a place after the object is a role of its own."""
+_MOVING: Final = ("Motion", "Arriving", "Guiding", "Bringing")
 
 
 class ArgumentReader(ClauseBoundaries):
@@ -49,10 +50,20 @@ class ArgumentReader(ClauseBoundaries):
             elif (
                 self._excludes(i)
                 and objects
-                and (other := self._np.read(i + g.match("exclude", words, i))) is not None
+                and (excluded := self._np.read_excluded(i + g.match("exclude", words, i)))
             ):
-                objects[-1].excluded.append(other)
-                i = other.end
+                objects[-1].excluded += excluded
+                i = excluded[-1].end
+            elif words[i] == "but" and (excluded := self._np.read_excluded(i + 1)):
+                if objects and (objects[-1].all_of or g.is_a(objects[-1].noun, "anything")):
+                    objects[-1].excluded += excluded  # all cups but the red one
+                else:
+                    self.found.unused.append(self._t.between(i, excluded[-1].end))
+                i = excluded[-1].end
+            elif words[i] == "but" and any(g.match(kind, words, i + 1) for kind in ("to", "from", "place")):
+                end = self._clause_end(i + 1)  # not to Nora but to me
+                self.found.unused.append(self._t.between(i, end))
+                i = end
             elif (
                 g.is_a(words[i], "and")
                 and (phrase := self._np.read(i + 1)) is not None
@@ -268,6 +279,8 @@ class ArgumentReader(ClauseBoundaries):
 
     def _role(self, clause: Clause, kind: str, roles: Mapping[str, str], phrase: NounPhrase) -> str | None:
         is_person = self._is_person(phrase) or phrase.kind == "speaker"
+        if kind == "from" and is_person and self._t.is_translated and clause.frame in _MOVING:
+            kind = "to"  # vai da Anna
         if kind == "to" and "receiver" in roles and (is_person or "to" not in roles):
             return roles["receiver"]
         if kind == "for" and not is_person and clause.frame != "Locating":

@@ -36,6 +36,8 @@ class ClauseBoundaries:
             if words[j] == "you" or g.verb(words, j)[0] >= length:
                 break
             j += length
+        if j > i and not self._t.is_mark(j + starts_time(g, words, j)):
+            j += starts_time(g, words, j)  # and in ten minutes close it
         if j > i and self._is_infinitive(j):  # and then to follow Anna
             return True
         if self._t.is_mark(j):

@@ -20,26 +20,30 @@ class ClauseReader(MessageReader):
         i, first_of_sentence = 0, 0
         negated = False
         conditions: list[str] = []
-        times: list[str] = []
+        times: list[str] = []  # of the clauses after it, up to the next time
+        has_time = False
         front: tuple[str, PlacePhrase] | None = None
         while i < len(self._words):
             if self._t.ends_sentence(i):
                 self._close(first_of_sentence, conditions)
+                self._keep_times(first_of_sentence, [] if has_time else times)
                 first_of_sentence, conditions, times, negated = len(self.found.clauses), [], [], False
                 i += 1
             elif self._t.is_mark(i):
                 i += 1
             elif (end := self._condition(i)) > i:
-                if self._g.match("anaphoric", self._words, i) and first_of_sentence < len(self.found.clauses):
-                    self._close(first_of_sentence, conditions)  # of what was said before
+                if first_of_sentence < len(self.found.clauses) and self._holds_from(i, end):
+                    self._close(first_of_sentence, conditions)
                     first_of_sentence = len(self.found.clauses)
                 conditions.append(self._t.between(i, end))
                 self._mention_all(i + self._g.match("condition", self._words, i), end)
                 i = end
             elif length := starts_time(self._g, self._words, i):
-                times.append(self._t.between(i, i + length))
+                times, has_time = [*([] if has_time else times), self._t.between(i, i + length)], False
                 i += length
-            elif length := self._g.match("negation", self._words, i):
+            elif (length := self._g.match("negation", self._words, i)) and (
+                length >= self._g.match("polite", self._words, i)  # do n't forget to
+            ):
                 negated = True
                 i += length
             elif self._words[i : i + 2] == ("there", "you"):
@@ -53,10 +57,13 @@ class ClauseReader(MessageReader):
                 i = topic.end + 1
             elif wish := self._wish(i):
                 i = self._wished(i, wish)
+                self.found.clauses[-1].negated = negated
                 self.found.clauses[-1].times += times
-                times, negated = [], False
+                has_time, negated = True, False
             elif self._asks(i) or self._found_at(i):
+                before = len(self.found.clauses)
                 i = self._special(i, conditions, times)
+                has_time = has_time or len(self.found.clauses) > before
             elif (
                 length := max(self._g.match(kind, self._words, i) for kind in _SKIPPED)
             ) and length >= self._g.verb(self._words, i)[0]:
@@ -77,19 +84,36 @@ class ClauseReader(MessageReader):
                     clause.times += times
                 if front is not None:
                     self._add_front(self.found.clauses[before], *front)
-                times, negated, front = [], False, None
+                has_time, negated, front = True, False, None
             else:
+                negated = negated and self._t.is_mark(i - 1)  # not the red one, take the blue one
                 i = self._unread(i)
         self._close(first_of_sentence, conditions)
         if front is not None:
             self.found.unused.append(self._t.between(front[1].first, front[1].end))
-        if times and self.found.clauses:
-            self.found.clauses[-1].times += times
-        elif times:
-            self.found.unused += times
+        self._keep_times(first_of_sentence, [] if has_time else times)
         if conditions and not self.found.clauses:
             self.found.unused += conditions
         return self.found
+
+    def _keep_times(self, first: int, times: list[str]) -> None:
+        """Give times at the end of a sentence to its last clause."""
+        if self.found.clauses[first:]:
+            self.found.clauses[-1].times += times
+        else:
+            self.found.unused += times
+
+    def _holds_from(self, i: int, end: int) -> bool:
+        """Return whether a condition from `i` to before `end` is only one of the clauses after it.
+
+        It is one of what was said before (otherwise), or stands after *and* and before its clause.
+        """
+        if self._g.match("anaphoric", self._words, i):
+            return True
+        before = i - 1 - (self._words[i - 1] == ",")
+        is_next = self._g.is_a(self._words[before], "and") or self._words[before] == "then"
+        j = end + (self._words[end : end + 1] in ((",",), ("then",)))
+        return is_next and not self._t.is_mark(j) and self._g.verb(self._words, j)[0] > 0
 
     def _dislocated(self, i: int) -> NounPhrase | None:
         """Return the object before its clause, which has a pronoun for it: the towel, bring IT to Anna."""

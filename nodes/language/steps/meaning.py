@@ -265,8 +265,13 @@ class Meanings:
             names = self._of(names, phrase, meaning)
         names = self._owned(names, phrase, owner, meaning)
         for other in phrase.excluded:
-            excluded = set(self.of(other, may_be_none=True).names)
-            names = [name for name in names if name not in excluded]
+            excluded = self.of(other, may_be_none=True)
+            if not excluded.names and (excluded.alike or not other.key):
+                is_open = True  # the map cannot tell which one is broken
+            if other is not phrase.excluded[0] and set(excluded.names).isdisjoint(meaning.alike):
+                text = self._t.between(other.first, other.end)
+                meaning.doubts.append(f"'{text}' is read as an exception")
+            names = [name for name in names if name not in excluded.names]
         before = names
         for place, others in relations[: len(phrase.places)]:
             names, is_open = self._placed(names, place, others, is_open)
@@ -373,13 +378,16 @@ class Meanings:
         return f"no {attribute} {self._noun(phrase)} is known"
 
     def _of(self, names: list[str], phrase: NounPhrase, meaning: Meaning) -> list[str]:
-        """Return the things that belong to another, or the content of a container: a bottle of water."""
+        """Return the things that belong to another, or that one: a bottle of water, the fridge's door."""
         if phrase.of is None:
             return names
         other = self.of(phrase.of)
         meaning.doubts += other.doubts
         fitting = [name for name in names if any(self._belongs(name, whole) for whole in other.names)]
-        if other.is_person and not fitting:
+        is_content = self._nouns.describing.base(phrase.noun) in self._nouns.describing.content
+        is_part = not other.is_place and all(self._is_of_class(name, "Door") for name in names)
+        stands_for = not other.is_person and (is_content or is_part)
+        if not fitting and not stands_for:
             text = self._t.between(phrase.of.first, phrase.of.end)
             meaning.doubts.append(f"no {self._noun(phrase)} is known that belongs to {text}")
             return []

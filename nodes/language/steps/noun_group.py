@@ -41,6 +41,7 @@ _ADVERBS: Final = frozenset(
         "maybe",
         "perhaps",
         "as",
+        "but",
     )
 )
 _SEVERAL: Final = frozenset(("these", "those", "several", "a few", "both", "a pair of", "a couple of"))
@@ -89,7 +90,7 @@ class NounGroupReader:
             if every and every >= length:
                 phrase.all_of, phrase.is_plural, phrase.determiner = True, True, phrase.determiner or "all"
                 i += every
-            elif length:
+            elif length and not (phrase.determiner and words[i] == "one"):  # the ONE OF THE kitchen
                 text = " ".join(words[i : i + length])
                 phrase.determiner = phrase.determiner or text
                 phrase.is_plural = phrase.is_plural or text in _SEVERAL
@@ -144,7 +145,7 @@ class NounGroupReader:
                 break
             if seen and word == "left" and self._t.is_mark(i + 1):
                 break
-            if i > start and word == "one":
+            if word == "one" and (i > start or self._is_the_one(i)):
                 return i + 1
             if any(g.is_a(word, kind) for kind in _ONLY_FIRST) and not self.is_known(i, i + 1):
                 break
@@ -162,6 +163,9 @@ class NounGroupReader:
             seen = seen or g.is_a(self._bases[i], "anything") or self._t.tokens[i].is_capital
             i += 1
         return i
+
+    def _is_the_one(self, i: int) -> bool:
+        return i > 0 and self._words[i - 1] == "the" and not self.is_known(i + 1, i + 2)
 
     def _follows_article(self, i: int) -> bool:
         return i > 0 and self._g.is_a(self._words[i - 1], "determiner")

@@ -61,6 +61,11 @@ class NounPhraseReader(NounGroupReader):
             if not self._is_determiner(i, length) and g.match("determiner", words, i) <= length:
                 phrase.kind, phrase.head, phrase.end = "pronoun", i + length - 1, i + length
                 phrase.noun = " ".join(words[i : i + length])
+                is_all = g.is_a(word, "several_pronoun") and words[phrase.end : phrase.end + 1] in (
+                    ("both",),
+                    ("all",),
+                )
+                phrase.end += is_all and self._group_end(phrase.end + 1) == phrase.end + 1  # them both
                 return True
         elif word in (
             "everyone",
@@ -115,29 +120,58 @@ class NounPhraseReader(NounGroupReader):
         """Return the place phrase that begins at `i`, such as *in the kitchen*, or None."""
         return self._place(i)
 
+    def read_excluded(self, i: int) -> list[NounPhrase]:
+        """Return the phrases of an exception at `i`: the milk and the bread, the one on the desk.
+
+        A place after a noun belongs to all of the things: all cups except the red cup on the table.
+        """
+        found: list[NounPhrase] = []
+        while (other := self.read(i, with_places=False)) is not None:
+            if other.noun in ("one", "ones"):
+                other = self.read(i) or other
+            found.append(other)
+            i = other.end + 1
+            if not self._joins(other.end) or self._starts_clause(other.end) or self._starts_clause(i):
+                break
+        return found
+
+    def _joins(self, i: int) -> bool:
+        """Return whether a list goes on at `i`: a comma only before a determiner."""
+        word = self._words[i] if i < len(self._words) else ""
+        return self._g.is_a(word, "and") or (
+            word == "," and self._g.match("determiner", self._words, i + 1) > 0
+        )
+
     def continue_phrase(self, phrase: NounPhrase, *, after_be: bool) -> None:
-        """Add to a phrase what follows it after a verb: are WEARING RED SHIRTS, are OPEN."""
+        """Add to a phrase what follows it after a verb: are WEARING RED SHIRTS, are ON."""
         i = phrase.end
         self._after_the_noun(phrase, True)
         if phrase.end == i and after_be and not self._t.is_mark(i):
             start = i + self._g.match("determiner", self._words, i)
             end = self._group_end(start)
+            state = i + self._g.match("negation", self._words, i)
+            if end == start and self._is_last_particle(state):
+                end = state + 1
             if end > start and (length := self._superlative(start, end + 1)):
                 phrase.superlative = " ".join(self._words[start : start + length])
             elif end > i:
                 phrase.attributes.append(self._t.between(i, end))
             phrase.end = max(end, i)
 
+    def _is_last_particle(self, i: int) -> bool:
+        """Return whether a particle ends the clause at `i`: is the oven ON."""
+        return not self._t.is_mark(i) and self._g.is_a(self._words[i], "particle") and self._t.is_mark(i + 1)
+
     def _after_the_noun(self, phrase: NounPhrase, with_places: bool) -> None:
         """Read what follows the noun: places, relative clauses, participles, purposes, exceptions."""
         g, words = self._g, self._words
         while (i := phrase.end) < len(words):
-            if length := g.match("exclude", words, i):
-                other = self.read(i + length, with_places=False)
-                if other is None:
+            if (length := g.match("exclude", words, i)) and not self._is_verb(i + length):
+                excluded = self.read_excluded(i + length)
+                if not excluded:
                     return
-                phrase.excluded.append(other)
-                phrase.end = other.end
+                phrase.excluded += excluded
+                phrase.end = excluded[-1].end
             elif words[i] in ("called", "named") and not self._t.is_mark(i + 1):
                 end = self._group_end(i + 1)
                 phrase.name, phrase.end = self._t.between(i + 1, end), max(end, i + 1)
@@ -180,8 +214,15 @@ class NounPhraseReader(NounGroupReader):
             elif with_places and (place := self._place(i)) is not None:
                 phrase.places.append(place)
                 phrase.end = place.end
+                if not place.other.all_of and place.other.determiner != "any":
+                    phrase.excluded += place.other.excluded  # everything on the desk except the lamp
+                    place.other.excluded = []
             else:
                 return
+
+    def _is_verb(self, i: int) -> bool:
+        """Return whether a verb is at `i`: the kitchen, but not ENTER the studio."""
+        return self._g.verb(self._words, i)[0] > 0 and not self.is_known(i, i + 1)
 
     def _counted_from(self, i: int) -> int:
         """Return the number of words of *from the left* at `i`, or 0."""

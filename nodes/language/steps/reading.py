@@ -201,6 +201,8 @@ class _StepReader:
             )
             if (like := next(before, None)) is not None:
                 self._take_noun(phrase, like)
+            else:
+                self._found.doubts.append(f"'{phrase.noun}' refers to nothing that was mentioned")
 
     def _take_noun(self, phrase: NounPhrase, like: NounPhrase) -> None:
         """Give a phrase the noun of another one: of *red cup* only *cup*."""

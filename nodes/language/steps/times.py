@@ -38,6 +38,12 @@ def starts_time(g: Grammar, words: Sequence[str], i: int) -> int:
                 return k + 3
             if at(k + 1) in ("", ",", ".", "!", "?", "and", "then", "please", "today", "tomorrow"):
                 return k + 2
+            if (
+                word == "at"
+                and (i == 0 or words[i - 1] in (",", ".", "and", "then"))
+                and g.verb(words, i + k + 2)[0]
+            ):
+                return k + 2  # at ten go to the kitchen
     if word in ("in", "for", "after", "within", "before", "during", "about"):
         k = 1 if at(0) in ("about", "the", "next", "a", "an") else 0
         k += at(k) in ("couple", "few", "next", "half", "of")

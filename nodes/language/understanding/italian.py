@@ -12,8 +12,9 @@ from semmap.nodes.language.understanding.grounding import Scene
 from semmap.nodes.language.vocabulary import to_words
 from semmap.nodes.language.words import PartOfSpeech, plain
 
-_WORD: Final = re.compile(r"[^\W\d_]+'(?=\w)|po'|\d+(?:[.,]\d+)?|[^\W_]+(?:-[^\W_]+)*")
+_WORD: Final = re.compile(r"[^\W\d_]+'(?=\w)|po'|\d+(?:[.,:]\d+)?|[^\W_]+(?:-[^\W_]+)*")
 _IS: Final = re.compile(r"(?<!\w)e'(?!\w)")  # è, typed without the accent key
+_IMPERATIVE: Final = re.compile(r"(?<!\w)(d[ai])'(?!\w)", re.IGNORECASE)  # di' and da' are also dì and dà
 _LONGEST: Final = 5  # words of an expression or a label
 _FIRST: Final = ("me", "te", "ce", "ve", "glie", "se")
 _SECOND: Final = ("lo", "la", "li", "le", "ne")
@@ -26,18 +27,22 @@ _DETERMINERS: Final = ("the", "a", "this", "that", "my", "your", "his", "our", "
 _POSSESSIVES: Final = ("my", "your", "his", "our", "their")
 _PLURAL: Final = ("i", "gli", "le")
 _GIVING: Final = ("give", "hand", "offer")
-_NUMBERS: Final = ("two", "three", "four", "five", "ten", "thirty", "ninety")
+_NUMBERS: Final = (
+    *("two", "three", "four", "five", "seven", "eight", "nine", "ten"),
+    *("eleven", "twelve", "thirty", "ninety"),
+)
 _ENDING: Final = ("and", "then", "please", "to", "from", "in", "on", "with", "near", "for", "here", "there")
 _OPENING: Final = (
     *("and", "or", "but", "then", "please", "robot", "sorry", "hey", "hello", "you", "not", "to", "okay"),
     *("would", "should", "while", "thanks", "now", "tomorrow", "morning", "evening", "tonight", "later"),
-    *("minutes", "seconds", "hours", "otherwise", "so"),
+    *("afternoon", "night", "day", "minutes", "seconds", "hours", "otherwise", "so"),
 )  # a clause begins after these
 
 
 def normalise(text: str) -> str:
     """Return a text with uniform apostrophes and accents."""
-    return _IS.sub("è", text.replace("’", "'"))
+    text = _IS.sub("è", text.replace("’", "'"))
+    return _IMPERATIVE.sub(lambda found: found[1][0] + ("ì" if found[1][1] in "iI" else "à"), text)
 
 
 def split(text: str) -> list[str]:
@@ -118,10 +123,11 @@ class _Glossing:
                 yield _Piece(token, n)
 
     def _gives(self, n: int) -> bool:
-        """Return whether a word is `dai` (give) and not `da i` (from the): an article or clitic follows."""
+        """Return whether a word is `dai` (give) and not `da i` (from the): no noun follows, but `a Nora`."""
         following = self._tokens[n + 1] if n + 1 < len(self._tokens) else ""
-        article = self._known.expressions.get((following,), "") in _DETERMINERS
-        return self._tokens[n] in self._known.verbs and (following.startswith("-") or article)
+        first = ARTICULATED.get(following, (following,))[0]
+        begins = self._known.expressions.get((first,), "") in (*_DETERMINERS, "to")
+        return self._tokens[n] in self._known.verbs and (following.startswith("-") or begins)
 
     def _read(self, i: int) -> int:
         """Translate the next words. Returns the number of pieces."""
@@ -181,11 +187,19 @@ class _Glossing:
         if english == "the" and self._known.expressions.get((following,)) in _POSSESSIVES:
             self._say(self._known.expressions[(following,)], i, i + 1, "det")
             return 2
+        if english == "all" and self._pieces[i].text == "tutto" and not self._is_determiner(following):
+            self._say("everything", i, i, "pron")
+            return 1
+        if english == "never" and any(word.text == "not" for word in self._found):
+            return length  # "non toccare mai" has one negation
         if english == "a" and self._ends(i):
             self._say("one", i, i, "pron")
             return 1
         self._say(english, i, i + length - 1, "det" if english in _DETERMINERS else None)
         return length
+
+    def _is_determiner(self, text: str) -> bool:
+        return self._known.expressions.get((text,), "") in _DETERMINERS
 
     def _counts(self, i: int) -> bool:
         """Return whether piece i is a number."""
@@ -261,7 +275,7 @@ class _Glossing:
         if text not in self._known.verbs or (i and self._pieces[i - 1].token == self._pieces[i].token):
             return False
         before = self._found[-1] if self._found else None
-        opens = before is None or bool(self._before_verb) or before.text in _OPENING
+        opens = before is None or bool(self._before_verb) or before.text in _OPENING or self._follows_hour()
         if before is not None and before.kind in ("det", "adj"):
             return False
         following = self._pieces[i + 1] if i + 1 < len(self._pieces) else None
@@ -277,6 +291,11 @@ class _Glossing:
             )
             return opens or (takes and self._follows("noun"))
         return True
+
+    def _follows_hour(self) -> bool:
+        """Return whether the last words are an hour: `alle dieci`."""
+        words = [word.text for word in self._found[-3:]]
+        return words[:2] == ["to", "the"] and (words[-1] in _NUMBERS or words[-1][:1].isdigit())
 
     def _follows(self, kind: PartOfSpeech) -> bool:
         return bool(self._found) and self._found[-1].kind == kind

@@ -64,9 +64,8 @@ class Placement:
 
 def _floor_m(heights: NDArray[np.floating]) -> float:
     """Return the height of the lowest level with many points, 0 if it is not clearly below 0."""
-    level = np.floor(heights / _LEVEL_M).astype(int)
-    counts = np.bincount(level - level.min())
-    lowest = float(np.argmax(counts >= _FLOOR_SHARE * len(heights)) + level.min() + 0.5) * _LEVEL_M
+    levels, counts = np.unique(np.floor(heights.astype(float) / _LEVEL_M), return_counts=True)
+    lowest = float(levels[np.argmax(counts >= _FLOOR_SHARE * len(heights))] + 0.5) * _LEVEL_M
     near = np.abs(heights - lowest) < _LEVEL_M
     floor = float(np.median(heights[near])) if near.any() else 0.0
     return floor if floor < -_BELOW_M else 0.0

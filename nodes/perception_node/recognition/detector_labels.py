@@ -81,11 +81,16 @@ def detector_class(thing: Thing, learnt: RecognitionModel, labels: LabelMap) -> 
 
 
 def unknown_label(thing: Thing, labels: LabelMap) -> str:
-    """Return the label with the best score that matches no class, in one line; empty if there is none."""
+    """Return the label with the best score that matches no class, in one line; empty if there is none.
+
+    The number of a class, which a detector gives without its names, is not a label.
+    """
     unknown = [
         segment.detector_label
         for segment in thing.segments
-        if segment.detector_label and labels.class_of(segment.detector_label.label) is None
+        if segment.detector_label
+        and not segment.detector_label.label.strip().isdecimal()
+        and labels.class_of(segment.detector_label.label) is None
     ]
     best = max(unknown, key=lambda one: one.score, default=None)
     return "" if best is None else " ".join(best.label.split())[:_LONGEST]

@@ -32,7 +32,10 @@ def with_masks(sight: SegmentedView, masks: Masks) -> SegmentedView:
     labels, count = np.zeros_like(sight.labels), 0
     found: dict[int, DetectorLabel] = {}
     unused = []
+    present = set(np.unique(masks.labels).tolist())
     for number, label in enumerate(masks.detector_labels, 1):
+        if label is None and number not in present:
+            continue  # a label image may skip numbers
         mask = masks.labels == number
         clear = mask & (sight.planes == 0)
         if np.count_nonzero(clear) < _LEFT * np.count_nonzero(mask):

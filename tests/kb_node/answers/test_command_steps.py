@@ -146,6 +146,34 @@ def filler(understood, role, step=0):
             "leave the kitchen",
             ["Motion(Source=kitchen1)"],
         ),
+        ("Never mind, bring me the milk", ['Bringing(Beneficiary="me", Theme=milk1)']),
+        ("Please don't forget to close the fridge", ["Closure(Containing_object=fridge1)"]),
+        (
+            "take the milk and the kettle and bring both to Nora",
+            ["Taking(Theme=milk1, Theme=kettle1)", "Bringing(Theme=milk1|kettle1, Beneficiary=nora1)"],
+        ),
+        ("take all cups but the red one", ["Taking(Theme=bluecup|cup1)"]),
+        (
+            "go to the kitchen but do not enter the studio",
+            ["Motion(Goal=kitchen1)", "not Arriving(Goal=studio1)"],
+        ),
+        (
+            "close all doors except the one of the kitchen",
+            ["Closure(Container_portal=door1|door2|door4|door5|door6)"],
+        ),
+        ("take all plates except the broken one", ['Taking(Theme="all plates except the broken one")']),
+        (
+            "take everything from the table except the wine",
+            ["Taking(Theme=apple1|bluecup|bowl1|glass1|plate1|plate2|redcup|water1, Source=table1)"],
+        ),
+        ("take all cups except for the one on the table", ["Taking(Theme=cup1)"]),
+        (
+            "clean all rooms except the kitchen and the bathroom and go to Nora",
+            ["Cleaning(Theme=bedroom1|livingroom1|studio1)", "Motion(Goal=nora1)"],
+        ),
+        ("take everything on the desk except the lamp, the book and the laptop", ["Taking(Theme=cup1)"]),
+        ("open the door of the fridge", ["Closure(Container_portal=fridge1)"]),
+        ("take a glass of water", ["Taking(Theme=water1)"]),
     ],
 )
 def test_a_command_is_a_list_of_steps(read, text, steps):
@@ -209,6 +237,33 @@ def test_a_condition_holds_for_all_steps_of_its_sentence(read):
     assert [step.condition for step in understood.steps] == ["if Nora leaves", "if Nora leaves", ""]
 
 
+@pytest.mark.parametrize(
+    ("text", "first", "second"),
+    [
+        ("go to the studio, and if the lamp is on, turn it off", "", "if the lamp is on"),
+        ("go to the studio and if the lamp is on turn it off", "", "if the lamp is on"),
+        ("take the milk, but only if it is there, and bring it to Nora", *["only if it is there"] * 2),
+        ("take the milk and bring it to Nora if she is there", *["if she is there"] * 2),
+    ],
+)
+def test_a_condition_between_and_and_its_clause_is_only_its_own(read, text, first, second):
+    assert [step.condition for step in read(text).steps] == [first, second]
+
+
+@pytest.mark.parametrize(
+    ("text", "first", "second"),
+    [
+        ("at ten o'clock go to the kitchen and take the milk", *["at ten o'clock"] * 2),
+        ("at ten go to the kitchen and take the milk", *["at ten"] * 2),
+        ("at ten o'clock go to the kitchen. Take the milk", "at ten o'clock", ""),
+        ("in five minutes open the fridge and in ten minutes close it", "in five minutes", "in ten minutes"),
+        ("go to the kitchen and take the milk, tomorrow. Thanks.", "", "tomorrow"),
+    ],
+)
+def test_a_time_before_the_verb_is_that_of_all_clauses_after_it(read, text, first, second):
+    assert [step.time for step in read(text).steps] == [first, second]
+
+
 @pytest.mark.parametrize("word", ["if so", "otherwise", "in that case"])
 def test_a_condition_on_the_step_before_holds_from_there_on(read, word):
     understood = read(f"look whether the oven is on, and {word}, bring Nora the kettle")
@@ -236,6 +291,14 @@ def test_negation_is_of_its_own_clause(read):
         ("take the kettle from the desk", "kettle1 is not on or in desk1"),
         ("take the three plates", "'the three plates': there are only 2"),
         ("take the cup of Nora", "no cup is known that belongs to Nora"),
+        ("take the plate of the desk", "no plate is known that belongs to the desk"),
+        ("clean the window of the bathroom", "no window is known that belongs to the bathroom"),
+        ("Do not take the red cup but the blue one", "but the blue one"),
+        ("Do not bring the kettle to Nora but to me", "but to me"),
+        ("take all cups except the red one and the plates", "'the plates' is read as an exception"),
+        ("Not the red cup, take the blue one", "the red cup"),
+        ("Tomorrow. Take the milk.", "Tomorrow"),
+        ("bring me the one on the desk", "'one' refers to nothing that was mentioned"),
         ("take Nora's cup", "no cup is known that belongs to Nora"),
         ("take Gregor's cup", "'Gregor' is not known"),
         ("take my cup", "'my cup': the owner is not known"),
@@ -385,6 +448,38 @@ def test_every_text_ends_in_steps_or_doubts(read):
         ("Conta i piatti sul tavolo.", ["Counting(Theme=plate1|plate2)"]),
         ("Versa il latte in una tazza.", ["Pouring(Theme=milk1, Goal=bluecup|cup1|redcup)"]),
         ("Spegni il forno.", ["Change_operational_state(Device=oven1)"]),
+        ("Vai da Nora.", ["Motion(Goal=nora1)"]),
+        (
+            "Prendi il latte e il bollitore e portali entrambi a Nora.",
+            ["Taking(Theme=milk1, Theme=kettle1)", "Bringing(Theme=milk1|kettle1, Beneficiary=nora1)"],
+        ),
+        (
+            "Non prendere niente dalla scrivania.",
+            ["not Taking(Theme=book1|cup1|lamp1|laptop1, Source=desk1)"],
+        ),
+        (
+            "Prendi tutto dalla scrivania tranne il libro.",
+            ["Taking(Theme=cup1|lamp1|laptop1, Source=desk1)"],
+        ),
+        (
+            "Prima apri il frigorifero, poi prendi il latte.",
+            ["Closure(Containing_object=fridge1)", "Taking(Theme=milk1)"],
+        ),
+        ("Dai a Nora il latte.", ["Giving(Recipient=nora1, Theme=milk1)"]),
+        ("Da' il latte a Nora.", ["Giving(Theme=milk1, Recipient=nora1)"]),
+        (
+            "Di' a Nora che il latte è finito.",
+            ['Telling(Addressee=nora1, Message="che il latte è finito")'],
+        ),
+        ("Non aprire il frigorifero né il forno.", ["not Closure(Containing_object=fridge1|oven1)"]),
+        ("Non toccare mai la tazza rossa.", ["not Manipulation(Entity=redcup)"]),
+        ("Evita di aprire il forno.", ["not Closure(Containing_object=oven1)"]),
+        ("Non dimenticare di chiudere il frigorifero.", ["Closure(Containing_object=fridge1)"]),
+        ("Non voglio il latte.", ['not Bringing(Beneficiary="voglio", Theme=milk1)']),
+        (
+            "Vai in cucina ma non entrare nello studio.",
+            ["Motion(Goal=kitchen1)", "not Arriving(Goal=studio1)"],
+        ),
         ("Cerca il portatile nello studio.", ["Locating(Sought_entity=laptop1, Ground=studio1)"]),
     ],
 )  # fmt: skip
@@ -412,6 +507,26 @@ def test_an_italian_command_has_the_same_steps(read, text, steps):
             "Domani mattina porta il bollitore a Nora.",
             "Bringing(Theme=kettle1, Beneficiary=nora1) [Domani mattina]",
             "'Domani mattina' is a time",
+        ),
+        (
+            "Alle 10:30 porta il bollitore a Nora.",
+            "Bringing(Theme=kettle1, Beneficiary=nora1) [Alle 10:30]",
+            "'Alle 10:30' is a time",
+        ),
+        (
+            "Alle dieci porta il bollitore a Nora.",
+            "Bringing(Theme=kettle1, Beneficiary=nora1) [Alle dieci]",
+            "'Alle dieci' is a time",
+        ),
+        (
+            "Ogni mattina apri il frigorifero.",
+            "Closure(Containing_object=fridge1) [Ogni mattina]",
+            "'Ogni mattina' is a time",
+        ),
+        (
+            "Prendi il bollitore solo se è vuoto.",
+            "Taking(Theme=kettle1) [solo se è vuoto]",
+            "'solo se è vuoto' is a condition",
         ),
         (
             "Porta il bollitore a Nora a meno che non sia vuoto.",
@@ -446,3 +561,21 @@ def test_nothing_of_an_italian_command_is_lost(read, text, step, doubt):
 )
 def test_a_question_in_italian_is_answered(read, text, answer):
     assert read(text).answer == answer
+
+
+@pytest.mark.parametrize(
+    "text", ["Not the red cup, take the blue one", "Don't just stand there, take the blue cup"]
+)
+def test_a_negation_holds_only_for_its_own_words(read, text):
+    assert texts(read(text)) == ["Taking(Theme=bluecup)"]
+
+
+def test_a_negation_before_an_insertion_is_kept(read):
+    (step,) = read("Do not, under any circumstances, open the oven").steps
+    assert step.negated
+
+
+@pytest.mark.parametrize("text", ["Is the oven on?", "Is the oven not on?", "How many lamps are off?"])
+def test_a_state_that_the_map_does_not_have_is_not_confirmed(read, text):
+    assert "yes" not in read(text).answer
+    assert "lamp1" not in read(text).answer

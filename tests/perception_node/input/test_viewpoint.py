@@ -69,3 +69,13 @@ def test_clouds_with_nothing_in_them_are_no_trouble(shape, value):
     placed, pose = Placement("z").place(np.full((*shape, 3), value, np.float32))
     assert placed.shape == (*shape, 3)
     assert np.isfinite(pose).all()
+
+
+@pytest.mark.parametrize("far", [1e9, 1e30])
+def test_a_point_far_away_does_not_prevent_the_rest(scene, far):
+    _, points = scene
+    points = points.copy()
+    points[0, 0] = far
+    placed, pose = Placement("z").place(points)
+    assert np.isfinite(pose).all()
+    assert (placed[np.isfinite(placed[..., 2]), 2] > 0).mean() > 0.9

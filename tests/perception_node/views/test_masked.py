@@ -52,6 +52,13 @@ def test_beside_masks_our_own_segments_remain():
     assert [segment.masked for segment in sight.segments].count(True) == 1
 
 
+def test_numbers_that_a_label_image_skips_are_not_unused_masks():
+    found = masks(0, names={"apple": None}, alone=True)
+    skipping = Masks(found.labels * 40, (None,) * 40, alone=True)
+    sight = with_masks(segment_cloud(shot().clouds[0]), skipping)
+    assert (len(sight.segments), sight.unused_masks) == (1, ())
+
+
 def test_names_of_a_detector_count_and_its_things_are_no_clutter():
     both = [masks(0, alone=True), masks(1, alone=True)]
     seen = observe_clouds(shot().clouds, shipped(), both).observations.observations

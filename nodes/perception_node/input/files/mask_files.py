@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zipfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,8 @@ from semmap.schemas.wording import few, sentence
 _WANTED = "a list of masks (COCO results), a dataset with annotations and categories, or shapes (labelme)"
 _CLASSES = "classes.txt"
 _MOST_BYTES = 2_000_000_000
+_SURE = 0.5
+"""Minimum of a mask of floats, which may be probabilities."""
 
 
 def read_masks(path: Path, height: int, width: int) -> Masks:
@@ -72,10 +75,11 @@ def _stack(masks: NDArray[Any], height: int, width: int) -> NDArray[np.bool_]:
     if masks.ndim != 3 or masks.shape[1:] != (height, width):
         shape = " x ".join(map(str, masks.shape))
         raise ValueError(f"masks for this image must be an array N x {height} x {width}; this one is {shape}")
-    return np.asarray(masks, bool)
+    return np.asarray(masks > _SURE if masks.dtype.kind == "f" else masks, bool)
 
 
 def _of_archive(path: Path, height: int, width: int) -> Masks:
+    """Return the masks in an archive: one for each thing, or a label image (H, W) of several numbers."""
     try:
         with zipfile.ZipFile(path) as archive:
             if sum(entry.file_size for entry in archive.infolist()) > _MOST_BYTES:
@@ -83,11 +87,19 @@ def _of_archive(path: Path, height: int, width: int) -> Masks:
         with np.load(path, allow_pickle=False) as arrays:
             if "masks" not in arrays.files:
                 raise ValueError(f"it has no array named masks, only {few(arrays.files) or 'none'}")
-            names = [str(name) for name in arrays["names"]] if "names" in arrays.files else []
-            scores = [float(score) for score in arrays["scores"]] if "scores" in arrays.files else []
-            return masks_from_stack(_stack(arrays["masks"], height, width), names, scores)
+            masks = arrays["masks"]
+            names = [n.decode() if isinstance(n, bytes) else str(n) for n in _listed(arrays, "names")]
+            scores = [float(score) for score in _listed(arrays, "scores")]
+            if masks.shape == (height, width) and len(np.unique(masks[masks != 0])) > 1:
+                return masks_from_numbers(masks.astype(np.int64), names, scores)
+            return masks_from_stack(_stack(masks, height, width), names, scores)
     except (zipfile.BadZipFile, EOFError):
         raise ValueError("not an .npz archive of arrays, or a truncated one") from None
+
+
+def _listed(arrays: Mapping[str, NDArray[Any]], name: str) -> list[Any]:
+    """Return the values of an array, also of a column or of a single value; empty if it is absent."""
+    return np.ravel(arrays[name]).tolist() if name in arrays else []
 
 
 def _yolo_runs(path: Path, height: int, width: int) -> list[MaskRun]:
@@ -138,6 +150,18 @@ def _of_shape(shape: Any) -> dict[str, Any]:
     return {"segmentation": [corners], "label": shape.get("label", "")}
 
 
+def _require_size(found: Mapping[str, Any], height: int, width: int) -> None:
+    """Raise ValueError if a file of labelme or COCO names another image size."""
+    images = found.get("images")
+    image = images[0] if isinstance(images, list) and len(images) == 1 else found
+    across, down = ("width", "height") if image is not found else ("imageWidth", "imageHeight")
+    size = (image.get(across), image.get(down)) if isinstance(image, dict) else (None, None)
+    if None not in size and size != (width, height):
+        raise ValueError(
+            f"its masks are for an image of {size[0]} x {size[1]} pixels, not {width} x {height}"
+        )
+
+
 def _runs(data: bytes, height: int, width: int) -> list[MaskRun]:
     """Return masks, with labels if there are category names. Raises ValueError."""
     try:
@@ -145,6 +169,8 @@ def _runs(data: bytes, height: int, width: int) -> list[MaskRun]:
     except msgspec.DecodeError as error:
         raise ValueError(f"not JSON: {error}") from None
     names: dict[str, str] = {}
+    if isinstance(found, dict):
+        _require_size(found, height, width)
     if isinstance(found, dict) and isinstance(shapes := found.get("shapes"), list):
         found = [_of_shape(shape) for shape in shapes]
     if isinstance(found, dict):

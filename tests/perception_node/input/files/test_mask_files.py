@@ -52,6 +52,34 @@ def test_shapes_of_labelme(tmp_path):
     assert [one.label for one in found.detector_labels] == ["mug", "box"]
 
 
+@pytest.mark.parametrize(
+    "content",
+    [
+        {"imageWidth": 6, "imageHeight": 4, "shapes": []},
+        {"images": [{"id": 1, "width": 6, "height": 4}], "annotations": []},
+    ],
+)
+def test_masks_for_an_image_of_another_size_are_invalid(tmp_path, content):
+    (tmp_path / "a.json").write_text(json.dumps(content))
+    with pytest.raises(BadFile, match="its masks are for an image of 6 x 4 pixels, not 3 x 2"):
+        read_masks(tmp_path / "a.json", 2, 3)
+    assert read_masks(tmp_path / "a.json", 4, 6).detector_labels == ()
+
+
+def test_a_label_image_in_an_archive_has_its_things(tmp_path):
+    np.savez(tmp_path / "a.npz", masks=LABELS, names=np.array([b"mug", b"box"]), scores=[[0.9], [0.8]])
+    found = read_masks(tmp_path / "a.npz", 2, 3)
+    assert found.labels.tolist() == LABELS.tolist()
+    assert found.detector_labels == (DetectorLabel("mug", 0.9), DetectorLabel("box", 0.8))
+
+
+def test_one_mask_has_one_name_and_may_be_of_probabilities(tmp_path):
+    np.savez(tmp_path / "a.npz", masks=np.array([[0.0, 0.2, 0.9], [0.1, 0.6, 1.0]])[None], names="mug")
+    found = read_masks(tmp_path / "a.npz", 2, 3)
+    assert found.labels.tolist() == [[0, 0, 1], [0, 1, 1]]
+    assert found.detector_labels == (DetectorLabel("mug", 1.0),)
+
+
 @pytest.mark.parametrize("place", [None, "frame", "."])
 def test_lines_of_yolo(tmp_path, place):
     (tmp_path / "frame").mkdir()
