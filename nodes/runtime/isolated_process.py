@@ -163,8 +163,7 @@ def limited(cpu_s: float = CPU_S) -> Iterator[None]:
 
 def _limit_cpu(cpu_s: float) -> None:
     """Limit the CPU time of this process from now on. The kernel sends SIGXCPU beyond it."""
-    _, most = resource.getrlimit(resource.RLIMIT_CPU)
-    resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(time.process_time() + cpu_s), most))
+    _set_limit(resource.RLIMIT_CPU, math.ceil(time.process_time() + cpu_s))
 
 
 def _limit_memory(memory_bytes: int) -> None:
@@ -172,8 +171,13 @@ def _limit_memory(memory_bytes: int) -> None:
     used = 0
     with suppress(OSError):  # only Linux has it
         used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-    _, most = resource.getrlimit(resource.RLIMIT_AS)
-    resource.setrlimit(resource.RLIMIT_AS, (used + memory_bytes, most))
+    _set_limit(resource.RLIMIT_AS, used + memory_bytes)
+
+
+def _set_limit(kind: int, limit: int) -> None:
+    """Set a limit of this process, at most the one that it was started with (`ulimit`)."""
+    _, most = resource.getrlimit(kind)
+    resource.setrlimit(kind, (limit if most == resource.RLIM_INFINITY else min(limit, most), most))
 
 
 def _let_kernel_end_first() -> None:

@@ -72,3 +72,12 @@ def test_the_limits_of_a_context_end_with_it():
     with pytest.raises(MemoryError), limited():
         bytearray(4 * isolated_process.MEMORY_BYTES)
     assert isolated_process.resource.getrlimit(isolated_process.resource.RLIMIT_AS) == before
+
+
+def test_a_limit_is_at_most_that_of_the_shell(monkeypatch):
+    """The kernel rejects more, and a node that runs under `ulimit` must start."""
+    limits = []
+    monkeypatch.setattr(isolated_process.resource, "getrlimit", lambda kind: (1 << 20, 1 << 20))
+    monkeypatch.setattr(isolated_process.resource, "setrlimit", lambda kind, pair: limits.append(pair))
+    with limited(cpu_s=1 << 30):
+        assert limits == [(1 << 20, 1 << 20)] * 2
