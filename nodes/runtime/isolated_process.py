@@ -30,6 +30,8 @@ _OUT_OF_MEMORY: Final = 77
 """The exit status after a failed allocation that Python noticed."""
 _WALL_PER_CPU: Final = 2.0
 """How much longer than its CPU time a request may take on a busy machine."""
+_START_S: Final = 30.0
+"""Time in which a process starts on a busy machine."""
 _END_S: Final = 10.0
 """Time in which a process ends after it closed its connection."""
 _LARGE: Final = 1 << 20
@@ -70,7 +72,7 @@ class IsolatedProcess:
         text. `wall_s` is another limit of the elapsed time.
         """
         with self._turn:
-            reply = self._exchange(request, subject, wall_s or _WALL_PER_CPU * self._cpu_s)
+            reply = self._exchange(request, subject, wall_s or _START_S + _WALL_PER_CPU * self._cpu_s)
             if max(len(request), len(reply)) > _LARGE:
                 self._discard()
             return reply
