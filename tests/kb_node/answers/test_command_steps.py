@@ -446,3 +446,8 @@ def test_nothing_of_an_italian_command_is_lost(read, text, step, doubt):
 )
 def test_a_question_in_italian_is_answered(read, text, answer):
     assert read(text).answer == answer
+
+
+@pytest.mark.parametrize("text", ["is", "are there", "sono"])
+def test_a_question_that_ends_after_its_verb_has_no_steps(read, text):
+    assert not read(text).steps
