@@ -451,3 +451,8 @@ def test_a_question_in_italian_is_answered(read, text, answer):
 @pytest.mark.parametrize("text", ["is", "are there", "sono"])
 def test_a_question_that_ends_after_its_verb_has_no_steps(read, text):
     assert not read(text).steps
+
+
+def test_a_superlative_may_be_a_whole_phrase(read):
+    assert read("again most laying").doubts == ("'most laying' is not understood",)
+    assert texts(read("find most laying")) == ['Locating(Sought_entity="most laying")']
