@@ -30,6 +30,8 @@ _OUT_OF_MEMORY: Final = 77
 """The exit status after a failed allocation that Python noticed."""
 _WALL_PER_CPU: Final = 2.0
 """How much longer than its CPU time a request may take on a busy machine."""
+_START_S: Final = 30.0
+"""Time in which a process starts on a busy machine."""
 _END_S: Final = 10.0
 """Time in which a process ends after it closed its connection."""
 _LARGE: Final = 1 << 20
@@ -70,7 +72,7 @@ class IsolatedProcess:
         text. `wall_s` is another limit of the elapsed time.
         """
         with self._turn:
-            reply = self._exchange(request, subject, wall_s or _WALL_PER_CPU * self._cpu_s)
+            reply = self._exchange(request, subject, wall_s or _START_S + _WALL_PER_CPU * self._cpu_s)
             if max(len(request), len(reply)) > _LARGE:
                 self._discard()
             return reply
@@ -163,8 +165,7 @@ def limited(cpu_s: float = CPU_S) -> Iterator[None]:
 
 def _limit_cpu(cpu_s: float) -> None:
     """Limit the CPU time of this process from now on. The kernel sends SIGXCPU beyond it."""
-    _, most = resource.getrlimit(resource.RLIMIT_CPU)
-    resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(time.process_time() + cpu_s), most))
+    _set_limit(resource.RLIMIT_CPU, math.ceil(time.process_time() + cpu_s))
 
 
 def _limit_memory(memory_bytes: int) -> None:
@@ -172,8 +173,13 @@ def _limit_memory(memory_bytes: int) -> None:
     used = 0
     with suppress(OSError):  # only Linux has it
         used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-    _, most = resource.getrlimit(resource.RLIMIT_AS)
-    resource.setrlimit(resource.RLIMIT_AS, (used + memory_bytes, most))
+    _set_limit(resource.RLIMIT_AS, used + memory_bytes)
+
+
+def _set_limit(kind: int, limit: int) -> None:
+    """Set a limit of this process, at most the one that it was started with (`ulimit`)."""
+    _, most = resource.getrlimit(kind)
+    resource.setrlimit(kind, (limit if most == resource.RLIM_INFINITY else min(limit, most), most))
 
 
 def _let_kernel_end_first() -> None:

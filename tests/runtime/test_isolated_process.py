@@ -36,11 +36,17 @@ def running(program):
         ("os.kill(os.getpid(), signal.SIGSEGV)", "^x cannot be read: it ended the parser .status -11.; save"),
         ("os.kill(os.getpid(), signal.SIGABRT)", r"^x needs more than \d+ MB of memory to read; use"),
         ("os.kill(os.getpid(), signal.SIGXCPU)", "^x takes longer than 1 s to read; use"),
-        ("signal.pause()", "^x takes longer than 1 s to read; use"),
     ],
 )
 def test_a_request_that_ends_its_process_is_rejected(end, text):
     with running(RECEIVE + end) as process, pytest.raises(errors.BadFile, match=text):
+        process.exchange(b"", "x")
+
+
+@pytest.mark.process
+def test_a_request_that_hangs_is_rejected():
+    rejected = pytest.raises(errors.BadFile, match=r"^x takes longer than 1 s to read; use")
+    with running(RECEIVE + "signal.pause()") as process, rejected:
         process.exchange(b"", "x", wall_s=1.0)
 
 
@@ -50,7 +56,7 @@ def test_a_request_that_ends_its_process_is_rejected(end, text):
 )
 def test_a_request_that_needs_more_than_the_limits_is_rejected(work, text):
     with running(SERVE.format(work)) as process, pytest.raises(errors.BadFile, match=text):
-        process.exchange(b"", "x", wall_s=30.0)
+        process.exchange(b"", "x")
 
 
 @pytest.mark.process
@@ -72,3 +78,12 @@ def test_the_limits_of_a_context_end_with_it():
     with pytest.raises(MemoryError), limited():
         bytearray(4 * isolated_process.MEMORY_BYTES)
     assert isolated_process.resource.getrlimit(isolated_process.resource.RLIMIT_AS) == before
+
+
+def test_a_limit_is_at_most_that_of_the_shell(monkeypatch):
+    """The kernel rejects more, and a node that runs under `ulimit` must start."""
+    limits = []
+    monkeypatch.setattr(isolated_process.resource, "getrlimit", lambda kind: (1 << 20, 1 << 20))
+    monkeypatch.setattr(isolated_process.resource, "setrlimit", lambda kind, pair: limits.append(pair))
+    with limited(cpu_s=1 << 30):
+        assert limits == [(1 << 20, 1 << 20)] * 2

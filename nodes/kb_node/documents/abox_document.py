@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import chain, count
 from operator import itemgetter
 from typing import NamedTuple
@@ -81,7 +81,7 @@ def filter_document(
         raise errors.UnknownClass(classes.index.unknown_classes(users))
     named: list[str] = []
     if not classes.alignments and (
-        nameless := {s: o for s, _, o in types_said if is_blank(s) and o in spatial}
+        nameless := dict(sorted((s, o) for s, _, o in types_said if is_blank(s) and o in spatial))
     ):
         labels = _make_iris(triples, nameless)
         triples = list(blank_nodes.relabel(triples, labels))
@@ -114,11 +114,15 @@ def _make_iris(triples: Iterable[Triple], nodes: Mapping[Term, Term]) -> dict[Te
     """Return IRIs for blank nodes with these classes.
 
     They depend on what the document states about the nodes, so a file that is loaded again gives the same.
+    They differ from the IRIs that the document describes.
     """
     about: dict[Term, list[Triple]] = {}
+    used: set[Term] = set()
     for triple in triples:
         if is_blank(triple[0]):
             about.setdefault(triple[0], []).append(triple)
+        else:
+            used.add(triple[0])
     digests: dict[tuple[Term, int], str] = {}
 
     def digest(node: Term, depth: int) -> str:
@@ -131,12 +135,15 @@ def _make_iris(triples: Iterable[Triple], nodes: Mapping[Term, Term]) -> dict[Te
             digests[node, depth] = hashlib.blake2b(text, digest_size=4).hexdigest()
         return digests[node, depth]
 
-    names: dict[str, Term] = {}
+    iris: dict[Term, Term] = {}
+    numbers: dict[str, Iterator[int]] = {}
     for node in (s for s in about if s in nodes):
         name = f"{name_stem(v.local_name(nodes[node]))}_{digest(node, _DEPTH)}"
-        alike = (name if number == 1 else f"{name}_{number}" for number in count(1))
-        names[next(free for free in alike if free not in names)] = node
-    return {node: v.entity_iri(name) for name, node in names.items()}
+        further = numbers.setdefault(name, count(1))  # thousands may be alike
+        alike = (v.entity_iri(name if number == 1 else f"{name}_{number}") for number in further)
+        iris[node] = next(free for free in alike if free not in used)
+        used.add(iris[node])
+    return iris
 
 
 def undeclared_classes(triples: Iterable[Triple], classes: ClassTable) -> set[Term]:

@@ -125,8 +125,8 @@ class Draft:
             nodes = asserted.get(v.HAS_PREFERRED_REFERENCE, ())
             (node,) = self._references(entity, v.HAS_PREFERRED_REFERENCE, nodes, ["preferred_reference"])
             self._insert(entity_triples.preferred_reference(iri, node, edit.ref))
+        kept = self._keep_labels(entity, asserted, edit)
         if edit.alt is not None and edit.alt != entity.alternative_references:
-            kept = self._keep_labels(entity, asserted, edit.alt)
             alt = [text for text in edit.alt if text not in kept]
             nodes = asserted.get(v.HAS_ALTERNATIVE_REFERENCE, ())
             names = [f"alternative_reference_{i}" for i in range(1, len(alt) + 1)]
@@ -145,15 +145,17 @@ class Draft:
         if edit.rename is not None and edit.rename != entity.name:
             self._rename(entity, edit.rename)
 
-    def _keep_labels(self, entity: Entity, asserted: Objects, aliases: Sequence[str]) -> set[str]:
-        """Remove labels (`rdfs:label` and the like) that are not among `aliases`, and return the others.
+    def _keep_labels(self, entity: Entity, asserted: Objects, edit: Edit) -> set[str]:
+        """Remove labels (`rdfs:label` and the like) that are not among new aliases, and return the others.
 
-        The preferred label stays.
+        The preferred label after the edit stays.
         """
+        if edit.alt is None:
+            return set()
         labels = [(p, o) for p in LABELS for o in asserted.get(p, ()) if o.startswith('"')]
-        stay = {entity.preferred_reference, *aliases}
+        stay = {entity.preferred_reference if edit.ref is None else edit.ref, *edit.alt}
         self._retract((v.iri(entity.iri), p, o) for p, o in labels if v.lexical(o) not in stay)
-        return {v.lexical(o) for _, o in labels}.intersection(aliases)
+        return {v.lexical(o) for _, o in labels}.intersection(edit.alt)
 
     def _rename(self, entity: Entity, name: str) -> None:
         """Replace the last part of an entity's IRI in all triples about it and all that refer to it.

@@ -157,7 +157,7 @@ class PropertyTable:
                 return term
         elif (found := named(text) or self._individual(prop, text)) is not None:
             return found
-        allowed = sorted(v.local_name(i) for i in self._allowed(prop))
+        allowed = sorted(v.entity_name(i) for i in self._allowed(prop))
         hint = errors.did_you_mean(text, (*allowed, *names))
         if not hint and 0 < len(allowed) <= _FEW:
             hint = f"; {prop.name} takes {', '.join(allowed)}"
@@ -188,7 +188,7 @@ class PropertyTable:
                 range=self._called(prop.ranges) or ((prop.data_range.text,) if prop.data_range else ()),
                 labels=self._labels(prop.iri),
                 comment=v.lexical(comments[0]) if comments else "",
-                values={v.local_name(i): _label(self._labels(i)) for i in sorted(self._allowed(prop))},
+                values={v.entity_name(i): _label(self._labels(i)) for i in sorted(self._allowed(prop))},
             )
 
     def _called(self, classes: Iterable[Term]) -> tuple[str, ...]:
@@ -241,7 +241,7 @@ class PropertyTable:
         return v.iri(self._prefixes[prefix] + name) if colon and prefix in self._prefixes else None
 
     def _note(self, words: dict[str, set[Term]], term: Term) -> None:
-        for word in (v.local_name(term), *self._labels(term).values()):
+        for word in (v.entity_name(term), v.local_name(term), *self._labels(term).values()):
             words.setdefault(_fold(word), set()).add(term)
 
     def _labels(self, term: Term) -> dict[str, str]:

@@ -129,9 +129,12 @@ class LoadHandlers:
 
     def _axioms_after(self, load: LoadDocument, triples: Iterable[Triple]) -> frozenset[Triple] | None:
         """Return the axioms of the map with a document, or None if it does not add very many."""
+        loaded = set(filter(is_schema, triples))
+        if len(loaded) <= _MANY_AXIOMS:
+            return None
         axioms = self._map.reasoner.axioms
         kept = axioms & self._map.tbox if load.replace else axioms
-        after = kept.union(filter(is_schema, triples))
+        after = kept | loaded
         return after if len(after) - len(kept) > _MANY_AXIOMS else None
 
     def _load_with_axioms(

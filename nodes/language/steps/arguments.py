@@ -360,7 +360,9 @@ class ArgumentReader(ClauseBoundaries):
             clause.roles.append(Role("Topic", given.head + 1, end, of.head, [of]))
 
     def _unread(self, i: int) -> int:
-        """Note the words of a clause that cannot be read; return where it ends."""
+        """Note the words of a clause that cannot be read, if there are any; return where it ends."""
+        if i == len(self._words):
+            return i
         end = i + 1
         while end < len(self._words) and not self._t.is_mark(end):
             if (

@@ -231,7 +231,7 @@ class NounGroupReader:
         i = start
         while i < end - 1 and (self._is_modifier(i) or self._superlative(i, end)):
             i += max(1, self._superlative(i, end))
-        return i
+        return min(i, end - 1)  # a superlative may be all there is
 
     def _is_modifier(self, i: int) -> bool:
         word, base = self._words[i], self._bases[i]

@@ -579,3 +579,13 @@ def test_a_negation_before_an_insertion_is_kept(read):
 def test_a_state_that_the_map_does_not_have_is_not_confirmed(read, text):
     assert "yes" not in read(text).answer
     assert "lamp1" not in read(text).answer
+
+
+@pytest.mark.parametrize("text", ["is", "are there", "sono"])
+def test_a_question_that_ends_after_its_verb_has_no_steps(read, text):
+    assert not read(text).steps
+
+
+def test_a_superlative_may_be_a_whole_phrase(read):
+    assert read("again most laying").doubts == ("'most laying' is not understood",)
+    assert texts(read("find most laying")) == ['Locating(Sought_entity="most laying")']

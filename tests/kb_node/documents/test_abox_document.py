@@ -183,6 +183,27 @@ def test_blank_nodes_that_are_alike_get_different_names(classes):
     assert [name.count("_") for name in names].count(2) == 2
 
 
+def test_the_names_of_many_blank_nodes_that_are_alike_are_each_tried_once(classes, monkeypatch):
+    tried, make = [], v.entity_iri
+    triples = turtle("[] a dm:Chair ." * 100)
+    monkeypatch.setattr(v, "entity_iri", lambda name: tried.append(name) or make(name))
+    abox_document.filter_document(triples, classes, skip_unknown=False)
+    assert len(tried) == len(set(tried)) == 100
+
+
+def test_the_name_of_a_blank_node_differs_from_those_in_the_document(classes):
+    ((name,), _) = filtered_names(classes, "[] a dm:Chair .")
+    names, filtered = filtered_names(classes, f":{name} a dm:Chair . [] a dm:Chair .")
+    assert filtered.notes[0] == f"1 blank node stored with names: {name}_2"
+    assert set(names) == {name, f"{name}_2"}
+
+
+def test_the_name_of_a_blank_node_does_not_depend_on_the_order_of_its_classes(classes):
+    one, _ = filtered_names(classes, "[] a dm:Chair , dm:Kitchen .")
+    other, _ = filtered_names(classes, "[] a dm:Kitchen , dm:Chair .")
+    assert list(one) == list(other)
+
+
 def test_a_circle_of_blank_nodes_gets_names(classes):
     names, _ = filtered_names(classes, "_:a a dm:Chair ; dm:near _:b . _:b a dm:Chair ; dm:near _:a , _:b .")
     assert len(names) == 2

@@ -298,6 +298,16 @@ def test_new_aliases_replace_labels_and_a_new_label_does_not(semantic_map):
     assert edit(3, alt=()) == ("big fridge", ())
 
 
+@pytest.mark.parametrize("alias", ["icebox", "frigo"])
+def test_a_new_label_with_aliases_replaces_labels(semantic_map, alias):
+    entity_of(semantic_map, ":a rdfs:label 'fridge'@en , 'frigo'@it .")
+    edit = Edit(name="a", ref="big fridge", alt=(alias,))
+    for number in range(2):  # the same again changes nothing
+        semantic_map.commit(Transaction(id=f"e{number}", source="operator", edit=(edit,)))
+        entity = semantic_map.entity("a")
+        assert (entity.preferred_reference, entity.alternative_references) == ("big fridge", (alias,))
+
+
 def test_another_name_of_an_entity_elsewhere_is_not_an_entity(semantic_map):
     link = turtle(":c owl:sameAs <http://dbpedia.org/resource/Mug_(cup)> .")
     semantic_map.commit(transaction(1, [*turtle(":c a dm:Chair ."), *link]))

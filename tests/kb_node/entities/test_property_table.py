@@ -5,7 +5,7 @@ import pytest
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.entities import PropertyInfo
-from tests.kb_node import home
+from tests.kb_node import home, stating
 from tests.kb_node.home import transaction, turtle
 from tests.kb_node.stating import (
     adding,
@@ -54,6 +54,18 @@ def test_an_individual_of_the_tbox_is_found_by_its_names(stateful_map, word):
 def test_the_range_selects_among_individuals_with_the_same_label(stateful_map):
     stated(stateful_map, "ha colore", "blue")
     assert properties(stateful_map) == {"hasColor": ("color_blue",)}
+
+
+@pytest.mark.parametrize("word", ["_2nd", "2nd", "dm:2nd"])
+def test_an_individual_with_a_made_name_is_listed_and_found_by_that(tmp_path, monkeypatch, word):
+    second = turtle("dm:2nd a owl:NamedIndividual , dm:Color .")
+    monkeypatch.setattr(stating, "TBOX", [*stating.TBOX, *second])
+    made = stating.new_map(tmp_path)
+    stated(made, "hasColor", word)
+    assert properties(made) == {"hasColor": ("_2nd",)}
+    rows = {row.name: row for row in made.classes.property_table.rows()}
+    assert "_2nd" in rows["hasColor"].values
+    home.close(made)
 
 
 def test_an_unknown_individual_is_rejected_with_suggestions(stateful_map):

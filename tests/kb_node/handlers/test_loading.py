@@ -117,6 +117,13 @@ def test_names_that_are_made_from_iris_are_noted_once(flat, dry_run):
     assert bool(handlers.on_load(load("2")).notes) == dry_run
 
 
+def test_the_axioms_of_the_map_are_not_collected_for_a_load_without_many(flat, monkeypatch):
+    """There may be a million."""
+    monkeypatch.setattr(type(flat.reasoner), "axioms", None)
+    load = structs.replace(restrictions(0), content=CUPS)
+    assert len(loading(flat, []).on_load(load).names) == 2
+
+
 @pytest.mark.process
 def test_axioms_that_take_long_are_rejected_with_a_map(flat, monkeypatch):
     monkeypatch.setattr(handlers_loading, "_AXIOMS_S", 1.0)

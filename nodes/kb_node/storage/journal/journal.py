@@ -167,7 +167,9 @@ class Journal:
         NotWritten if the disk rejects it.
         """
         if self._digest is None:
-            self._digest = self.digest(self.last)
+            last = self.last
+            self._digest = self.digest(last)
+            self.file.acknowledged.note(last)  # a kill may interrupt this commit already
         commit = structs.replace(commit, digest=self._digest.hex())
         whole = None if begun is None else begun.finish(commit)
         with self.file.writing(f"commit {commit.seq}") as db:

@@ -10,6 +10,7 @@ import pytest
 
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
+from semmap.nodes.kb_node.storage.journal.acknowledged import Acknowledged
 from semmap.nodes.kb_node.storage.journal.write_ahead import Log, inspect_log
 from semmap.nodes.kb_node.storage.repair.repair import repair
 from tests.kb_node import home
@@ -77,6 +78,29 @@ def test_a_page_that_was_not_written_is_damage_only_if_its_commit_was_acknowledg
         assert found == ALL - {"chair8"}
     else:
         assert "the write-ahead log with the last commits is damaged" in found
+
+
+def test_a_page_of_the_first_commit_after_a_start_that_was_not_written_is_not_damage(tmp_path, monkeypatch):
+    """The number of the last commit is noted before it, so that the log is compared with something."""
+    running, killed, noted = tmp_path / "running", tmp_path / "killed", []
+    for folder in (running, killed):
+        folder.mkdir()
+    note = Acknowledged.note
+
+    def note_once(acknowledged, seq):
+        noted.append(seq)
+        if len(noted) == 1:
+            note(acknowledged, seq)
+
+    monkeypatch.setattr(Acknowledged, "note", note_once)
+    semantic_map = home.new_map(running)
+    semantic_map.commit(transaction(1, chair("chair1", at=(3.0, 2.0, 0.0))))
+    for path in running.glob(f"{FILENAME}*"):
+        shutil.copy(path, killed)
+    home.close(semantic_map)
+    assert noted == [0, 1]
+    interrupt_last_page(killed)
+    assert names(killed) == set()
 
 
 def test_an_intact_log_is_read(data):

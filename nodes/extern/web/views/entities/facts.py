@@ -89,10 +89,18 @@ def exclude_asserted(entity: Entity, triples: Iterable[Triple]) -> tuple[Triple,
 
     def is_asserted(triple: Triple) -> bool:
         _, predicate, value = triple
-        text = v.lexical(value) if value.startswith('"') else v.local_name(value)
-        return predicate in _PARTS or value == v.OWL_THING or (v.local_name(predicate), text) in asserted
+        stated = (v.local_name(predicate), _value_text(triple))
+        return predicate in _PARTS or value == v.OWL_THING or stated in asserted
 
     return tuple(triple for triple in triples if not is_asserted(triple))
+
+
+def _value_text(triple: Triple) -> str:
+    """Return the value of a triple as commands read it: a literal, a class or the name of an individual."""
+    _, predicate, value = triple
+    if value.startswith('"'):
+        return v.lexical(value)
+    return v.local_name(value) if predicate == v.RDF_TYPE else v.entity_name(value)
 
 
 def asserted_facts(entity: Entity, properties: Mapping[str, PropertyInfo]) -> tuple[Fact, ...]:
@@ -129,13 +137,10 @@ def inferred_facts(
             continue
         is_class = predicate == v.RDF_TYPE
         text = triple_clause(triple, words).removeprefix(f"{name} ")
-        known = properties.get(v.local_name(predicate))
-        if known is not None and (value_label := known.values.get(v.local_name(value), "")):
+        args = ExplainArgs(name, v.local_name(predicate), _value_text(triple))
+        known = properties.get(args.predicate)
+        if known is not None and (value_label := known.values.get(args.value, "")):
             text = f"{english(known.labels) or known.name} {value_label}"
-        if value.startswith('"'):
-            args = ExplainArgs(name, v.local_name(predicate), v.lexical(value))
-        else:
-            args = ExplainArgs(name, v.local_name(predicate), v.local_name(value))
         other = "" if is_class or value.startswith('"') else v.entity_name(value)
         found.append((not is_class, text, Fact(text, args, other=other)))
     return tuple(fact for *_, fact in sorted(found, key=lambda item: item[:2]))

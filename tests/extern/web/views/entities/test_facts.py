@@ -1,3 +1,5 @@
+from msgspec import structs
+
 from semmap.nodes.extern.web.views.entities.facts import (
     ExplainArgs,
     asserted_facts,
@@ -97,6 +99,13 @@ def test_asserted_triples_are_excluded_from_past_inferences():
         fact("milk1", "isLocatedIn", "flat1"),
     ]
     assert exclude_asserted(MILK, held) == (is_a("milk1", "Drink"), fact("milk1", "isLocatedIn", "flat1"))
+
+
+def test_a_made_name_is_used_for_an_asserted_and_an_inferred_value():
+    held = (v.entity_iri("milk1"), v.dm("hasColor"), v.dm("2nd"))
+    assert exclude_asserted(structs.replace(MILK, properties={"hasColor": ("_2nd",)}), [held]) == ()
+    (color,) = group_facts(MILK, PROPERTIES, [held], [], WORDS).inferred
+    assert (color.why, color.other) == (ExplainArgs("milk1", "hasColor", "_2nd"), "_2nd")
 
 
 def test_next_to_hides_near():
