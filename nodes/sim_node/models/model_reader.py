@@ -6,6 +6,8 @@ The process is this module as a program. What the two pickle comes from them, ne
 from __future__ import annotations
 
 import pickle
+import time
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Final
@@ -18,6 +20,20 @@ from semmap.schemas import errors
 
 _CPU_S: Final = 30.0
 """Time limit of a file [s of CPU time]."""
+_ATTEMPTS: Final = 3
+"""How often a file that ends the process or exceeds a limit is read. The cause may be a busy machine."""
+_PAUSE_S: Final = 60.0
+"""Time after the end of such an attempt until the next one [s]."""
+
+
+@dataclass
+class _Reading:
+    """The result of a file: a model, the text of an error of the file, or of the last failed attempt."""
+
+    found: Model | str = ""
+    attempts_left: int = _ATTEMPTS
+    next_s: float = 0.0
+    """The earliest time of the next attempt on the monotonic clock [s]."""
 
 
 class ModelReader(IsolatedProcess):
@@ -28,25 +44,31 @@ class ModelReader(IsolatedProcess):
     def __init__(self, cpu_s: float = _CPU_S) -> None:
         """Create it; reading a file may take `cpu_s` of CPU time."""
         super().__init__(program(__name__), cpu_s=cpu_s)
-        self._read = lru_cache(maxsize=256)(self._read_once)
+        self._readings = lru_cache(maxsize=256)(lambda *_: _Reading())
 
     def __call__(self, path: Path, size_m: Vec3 | None, version: int) -> Model:
         """Return the model in a file. Raises ModelError also for a file that exceeds a limit.
 
-        Errors are remembered, too, because the simulator asks for a model again and again.
+        The simulator asks for a model again and again, so errors are remembered until the file changes. A
+        file that ended the process or exceeded a limit is read again after a pause, a few times.
         """
-        found = self._read(path, size_m, version)
-        if isinstance(found, str):
-            raise ModelError(found)
-        return found
+        reading = self._readings(path, size_m, version)
+        if reading.attempts_left and time.monotonic() >= reading.next_s:
+            self._read(reading, path, size_m, version)
+        if isinstance(reading.found, str):
+            raise ModelError(reading.found)
+        return reading.found
 
-    def _read_once(self, path: Path, size_m: Vec3 | None, version: int) -> Model | str:
+    def _read(self, reading: _Reading, path: Path, size_m: Vec3 | None, version: int) -> None:
         try:
             content = self.exchange(pickle.dumps((path, size_m, version)), f"model file {path}")
         except errors.BadFile as error:
-            return error.text
-        found: Model | str = pickle.loads(content)
-        return found
+            reading.found = error.text
+            reading.attempts_left -= 1
+            reading.next_s = time.monotonic() + _PAUSE_S
+            return
+        reading.found = pickle.loads(content)
+        reading.attempts_left = 0
 
 
 def answer(request: bytes) -> bytes:

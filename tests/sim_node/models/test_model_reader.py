@@ -1,11 +1,14 @@
 """A model file costs the reader's process at most."""
 
+from contextlib import suppress
+
 import pytest
 
 from semmap.nodes.sim_node.models.library import ModelError
 from semmap.nodes.sim_node.models.model_files import read_model
 from semmap.nodes.sim_node.models.model_reader import ModelReader, answer
 from semmap.nodes.sim_node.models.sources import Models
+from semmap.schemas import errors
 
 BOX = "<mujoco><worldbody><body><geom type='box' size='.1 .2 .3'/></body></worldbody></mujoco>"
 MANY = """<mujoco><worldbody><replicate count='{}' offset='.1 0 0'>
@@ -40,6 +43,41 @@ def test_errors_are_remembered(tmp_path, monkeypatch):
     with pytest.raises(ModelError, match=r"cannot read model file .*none\.xml: No such file"):
         reader(tmp_path / "none.xml", None, 1)
     assert len(requests) == 3
+
+
+def test_a_failure_of_the_process_is_tried_again_after_a_pause_and_three_times_at_most(tmp_path, monkeypatch):
+    path, now, failures, requests = tmp_path / "box.xml", [0.0], [1], []
+    path.write_text(BOX)
+
+    def exchange(request, subject):
+        requests.append(subject)
+        if failures[0] > 0:
+            failures[0] -= 1
+            raise errors.BadFile(f"{subject} takes longer than 30 s to read")
+        return answer(request)
+
+    monkeypatch.setattr("time.monotonic", lambda: now[0])
+    reader = ModelReader()
+    monkeypatch.setattr(reader, "exchange", exchange)
+
+    def is_read(version):
+        with suppress(ModelError):
+            return reader(path, None, version) is not None
+        return False
+
+    assert not is_read(1)
+    assert not is_read(1)
+    assert len(requests) == 1, "the simulator asks often, and each attempt takes long"
+    now[0] += 61.0
+    assert is_read(1)
+    assert is_read(1)
+    assert len(requests) == 2
+
+    failures[0] = 10
+    for _ in range(5):
+        assert not is_read(2)
+        now[0] += 61.0
+    assert len(requests) == 2 + 3
 
 
 def test_a_model_of_very_many_geoms_is_rejected(tmp_path):
