@@ -127,14 +127,13 @@ class LoadHandlers:
             if self._map.seq == before:
                 self._sparql.discard_prepared()
 
-    def _axioms_after(self, load: LoadDocument, triples: Iterable[Triple]) -> frozenset[Triple] | None:
-        """Return the axioms of the map with a document, or None if it does not add very many."""
-        loaded = set(filter(is_schema, triples))
-        if len(loaded) <= _MANY_AXIOMS:
+    def _axioms_after(self, transaction: Transaction) -> frozenset[Triple] | None:
+        """Return the axioms of the map after a transaction, or None if it does not add very many."""
+        inserted = set(filter(is_schema, transaction.insert))
+        if len(inserted) <= _MANY_AXIOMS:
             return None
-        axioms = self._map.reasoner.axioms
-        kept = axioms & self._map.tbox if load.replace else axioms
-        after = kept | loaded
+        kept = self._map.reasoner.axioms.difference(transaction.retract)
+        after = kept | inserted
         return after if len(after) - len(kept) > _MANY_AXIOMS else None
 
     def _load_with_axioms(
@@ -168,15 +167,15 @@ class LoadHandlers:
     ) -> Loaded | Future[Loaded]:
         with self._report_progress(f"loading {load.filename or 'a file'}") as report:
             document = read(lambda count: report(f"{count:,} triples read"))
-            axioms = self._axioms_after(load, document.triples)
-            if axioms is not None and axioms != closed:
-                return self._load_with_axioms(load, document, axioms)
             triples = document.triples
-            del document
             report(f"{len(triples):,} triples to check and write")
             transaction, filtered, replaced = document_change.make_document_transaction(
                 self._map, load, triples
             )
+            axioms = self._axioms_after(transaction)  # of what is committed: filtering may change axioms
+            if axioms is not None and axioms != closed:
+                return self._load_with_axioms(load, document, axioms)
+            del document
             if not document_change.is_exact_copy(triples, transaction):
                 self._sparql.discard_prepared()
             known = {

@@ -96,6 +96,24 @@ def test_very_many_axioms_are_closed_in_another_process(flat, monkeypatch):
     assert len(flat.reasoner.axioms.difference(flat.tbox)) == 4 * 260
 
 
+@pytest.mark.parametrize("replace", [False, True])
+def test_the_axioms_that_are_tried_are_those_that_are_committed(flat, monkeypatch, replace):
+    """Skipping an individual removes the axioms about it."""
+    monkeypatch.setattr(handlers_loading, "_MANY_AXIOMS", 10)
+    load = restrictions(5)
+    skipped = "\n<http://o#x> a <http://o#Unknown> .\n" + SOME.format(0, "owl:hasValue <http://o#x>")
+    content = load.content + skipped.encode()
+    loads, tried = loading(flat, []), []
+    monkeypatch.setattr(loads._parser, "close_tbox", lambda known, *_, **__: tried.append(known))
+    loaded = loads.on_load(structs.replace(load, content=content, skip_unknown=True, replace=replace)).result(
+        60
+    )
+    loads.close()
+    assert loaded.skipped == ("x (unknown class 'Unknown')",)
+    assert not any("<http://o#x>" in triple for triple in flat.reasoner.axioms)
+    assert tried == [flat.reasoner.axioms | flat.tbox]
+
+
 CUPS = f"""@prefix dm: <{v.TBOX}> . @prefix owl: <{v.OWL}> .
 <https://ex.org/cups/9499a8c6-2e95> a dm:Cup .
 <http://ex.org/m#cup_z> a dm:Cup .
