@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import base64
-from typing import Final
+import contextlib
+from collections.abc import Awaitable, Callable, Coroutine
+from typing import Any, Final
 
 from nicegui import events, ui
 
@@ -16,6 +18,10 @@ from semmap.schemas import errors
 from semmap.schemas.commands import PlanFloor
 from semmap.schemas.plans import Plan
 
+_PAUSE_S: Final = 1.0
+"""Minimum interval between two drawings, and thus between two requests for the plan [s]."""
+_PATIENCE_S: Final = 0.5
+"""Time that a drawing waits for the plan [s]."""
 _MARKED: Final = 'fill="rgba(47,129,247,.25)" stroke="#2f81f7" stroke-width="2"'
 _PRINT: Final = """
 const frame = document.createElement("iframe");
@@ -37,9 +43,60 @@ def plan(page: Page) -> None:
     _Plan(page)
 
 
+class PlanRequests:
+    """Requests the plan of a moment once, one request at a time. A drawing waits only briefly for it."""
+
+    def __init__(
+        self,
+        ask: Callable[[int | None], Awaitable[Plan]],
+        start_task: Callable[[Coroutine[Any, Any, None]], asyncio.Task[None]],
+        on_late: Callable[[], None],
+    ) -> None:
+        """Create it. `ask(commit)` sends a request, and `start_task` runs it in the background.
+
+        `on_late()` is called when a plan arrives after `at` has returned without it, and when a request has
+        ended that prevented another one.
+        """
+        self._ask = ask
+        self._start_task = start_task
+        self._on_late = on_late
+        self._known: tuple[object, Plan] | None = None
+        self._task: asyncio.Task[None] | None = None
+        self._wanted: object = None
+        self._is_late = False
+
+    async def at(self, commit: int | None, content: object) -> Plan | None:
+        """Return the plan after a commit, or the current one for None.
+
+        The result is None if the plan is not there yet, or if the knowledge base cannot send it. `content`
+        identifies the content of the plan: a plan that is known is not requested again.
+        """
+        self._wanted = content
+        if self._task is None and not self._has(content):
+            self._task = self._start_task(self._request(commit, content))
+            await asyncio.wait([self._task], timeout=_PATIENCE_S)
+        self._is_late = self._task is not None
+        return self._known[1] if self._known is not None and self._has(content) else None
+
+    def _has(self, content: object) -> bool:
+        return self._known is not None and self._known[0] == content
+
+    async def _request(self, commit: int | None, content: object) -> None:
+        try:
+            with contextlib.suppress(errors.SemmapError):
+                self._known = (content, await self._ask(commit))
+        finally:
+            self._task = None
+        if self._is_late and (self._has(content) or self._wanted != content):
+            self._on_late()
+
+
 class _Plan:
     def __init__(self, page: Page) -> None:
         self._page = page
+        self._requests = PlanRequests(
+            lambda commit: page.live.ask(PlanFloor(as_of=commit)), page.start_task, self._again
+        )
         self._floor: Floor | None = None
         self._drawing: Drawing | None = None
         self._redraw: LazyRedraw | None = None
@@ -54,7 +111,7 @@ class _Plan:
             self._image = ui.interactive_image(on_mouse=self._click, events=["click"], sanitize=False)
             self._image.classes("w-full semmap-framed").style("background: #fff")
             self._image.props('role="img" aria-label="Plan of the rooms and the furniture"').mark("plan")
-        self._redraw = LazyRedraw(page, self._draw)
+        self._redraw = LazyRedraw(page, self._draw, pause_s=_PAUSE_S)
         page.on_change(self._again)
         page.on_select(self._mark)
 
@@ -87,10 +144,8 @@ class _Plan:
         """Return the outlines of objects at the moment shown; None if the knowledge base cannot send them."""
         if not self._page.live.connected:
             return None
-        try:
-            return await self._page.live.ask(PlanFloor(as_of=self._page.moment.commit))
-        except errors.SemmapError:
-            return None
+        live, commit = self._page.live, self._page.moment.commit
+        return await self._requests.at(commit, (live.map_id, commit, self._page.state.commit, live.scene))
 
     def _mark(self) -> None:
         """Outline the selected entities. Only numbers go into the markup."""

@@ -17,9 +17,10 @@ _PAUSE_S: Final = 0.4
 class LazyRedraw:
     """Calls `draw` when the panel is stale and visible. It is created where the panel is drawn."""
 
-    def __init__(self, page: Page, draw: Callable[[], Awaitable[None]]) -> None:
+    def __init__(self, page: Page, draw: Callable[[], Awaitable[None]], *, pause_s: float = _PAUSE_S) -> None:
         self._page = page
         self._draw = draw
+        self._pause_s = pause_s
         self._is_stale = True
         self._is_busy = False
         self._is_visible = visibility_check()
@@ -46,7 +47,7 @@ class LazyRedraw:
             while self._is_stale and self.is_shown:
                 self._is_stale = False
                 await self._draw()
-                await asyncio.sleep(_PAUSE_S)
+                await asyncio.sleep(self._pause_s)
         finally:
             self._is_busy = False
 
