@@ -21,7 +21,7 @@ from semmap.schemas import errors
 _CPU_S: Final = 30.0
 """Time limit of a file [s of CPU time]."""
 _ATTEMPTS: Final = 3
-"""How often a file that ends the process or exceeds a limit is read. The cause may be a busy machine."""
+"""How often a file is read that ends the process or exceeds a limit, which may be due to a busy machine."""
 _PAUSE_S: Final = 60.0
 """Time after the end of such an attempt until the next one [s]."""
 
@@ -62,7 +62,7 @@ class ModelReader(IsolatedProcess):
     def _read(self, reading: _Reading, path: Path, size_m: Vec3 | None, version: int) -> None:
         try:
             content = self.exchange(pickle.dumps((path, size_m, version)), f"model file {path}")
-        except errors.BadFile as error:
+        except (errors.BadFile, errors.Refused) as error:
             reading.found = error.text
             reading.attempts_left -= 1
             reading.next_s = time.monotonic() + _PAUSE_S
