@@ -21,6 +21,8 @@ def root(tmp_path):
     (root / "nodes" / "a" / "twice.py").write_text(CODE)
     (root / "nodes" / "__init__.py").touch()
     (root / "nodes" / "a" / "__init__.py").touch()
+    (root / "package").mkdir()
+    (root / "package" / "nodes").symlink_to("../nodes")  # as in this checkout
     (root / "pytest.ini").write_text("[pytest]\nmarkers =\n    long\n    process\n")
     _write_test(root, "assert twice(2) == 4")
     subprocess.run(["git", "init", "-q"], cwd=root, check=True)
@@ -64,7 +66,7 @@ def test_the_report_counts_what_has_no_test_as_missed_and_what_is_broken_not_at_
 
 
 def _write_test(root, line):
-    test = f"from nodes.a.twice import twice\n\ndef test_it():\n    {line}\n"
+    test = f"from package.nodes.a.twice import twice\n\ndef test_it():\n    {line}\n"
     (root / "tests" / "a" / "test_twice.py").write_text(test)
 
 

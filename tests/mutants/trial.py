@@ -124,4 +124,4 @@ def _files(root: Path) -> list[str]:
         capture_output=True,
         text=True,
     ).stdout.split("\0")
-    return [path for path in listed if path and (root / path).is_file()]
+    return [path for path in listed if path and ((root / path).is_file() or (root / path).is_symlink())]
