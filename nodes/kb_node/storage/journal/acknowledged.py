@@ -19,13 +19,13 @@ _SUFFIX: Final = "-acknowledged"
 class Acknowledged:
     """The file of an open journal, from its first commit until it is closed.
 
-    Without room for it, nothing is kept.
+    A number from a process that was killed stays until the next one: its interrupted transaction remains in the
+    log until then, too. Without room for the file, nothing is kept.
     """
 
     def __init__(self, path: Path) -> None:
-        """Prepare the file of the journal at `path`. A number from an earlier process is dropped."""
+        """Prepare the file of the journal at `path`."""
         self._path = _file_of(path)
-        self._path.unlink(missing_ok=True)
         self._memory: mmap.mmap | None = None
         self._is_open = False
 
@@ -46,12 +46,12 @@ class Acknowledged:
 
 
 def _map_file(path: Path) -> mmap.mmap | None:
-    """Return a new file as memory, or None, without a file, if there is no room."""
+    """Return the file as memory, or None, without a file, if there is no room."""
     try:
-        with path.open("wb+") as file:
-            os.posix_fallocate(
-                file.fileno(), 0, _NUMBER.size
-            )  # memory without a block on the disk would end us
+        path.touch()
+        with path.open("r+b") as file:
+            # A write to memory without a block on the disk would end the process.
+            os.posix_fallocate(file.fileno(), 0, _NUMBER.size)
             return mmap.mmap(file.fileno(), _NUMBER.size)
     except OSError:
         path.unlink(missing_ok=True)

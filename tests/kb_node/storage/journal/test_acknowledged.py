@@ -32,11 +32,13 @@ def test_a_closed_journal_has_no_file(journal):
     assert list(journal.parent.iterdir()) == []
 
 
-def test_the_number_of_an_earlier_process_is_dropped(journal):
+def test_the_number_of_an_earlier_process_stays_until_the_next_commit(journal):
     earlier = Acknowledged(journal)
     earlier.note(3)
-    Acknowledged(journal)
-    assert read_acknowledged(journal) is None
+    again = Acknowledged(journal)
+    assert read_acknowledged(journal) == 3
+    again.note(4)
+    assert read_acknowledged(journal) == 4
 
 
 def test_journals_in_one_folder_have_numbers_of_their_own(journal):

@@ -80,6 +80,18 @@ def test_a_page_that_was_not_written_is_damage_only_if_its_commit_was_acknowledg
         assert "the write-ahead log with the last commits is damaged" in found
 
 
+def test_a_second_kill_before_the_next_commit_is_not_damage(data, tmp_path_factory):
+    """Until then the log still has the transaction that the first kill interrupted."""
+    (data / f"{FILENAME}-acknowledged").write_bytes((7).to_bytes(8, "little"))
+    interrupt_last_page(data)
+    again = tmp_path_factory.mktemp("again")
+    journal = Journal(data / FILENAME)
+    for path in data.glob(f"{FILENAME}*"):
+        shutil.copy(path, again)
+    journal.close()
+    assert names(again) == ALL - {"chair8"}
+
+
 def test_a_page_of_the_first_commit_after_a_start_that_was_not_written_is_not_damage(tmp_path, monkeypatch):
     """The number of the last commit is noted before it, so that the log is compared with something."""
     running, killed, noted = tmp_path / "running", tmp_path / "killed", []
