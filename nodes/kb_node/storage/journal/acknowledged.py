@@ -19,8 +19,8 @@ _SUFFIX: Final = "-acknowledged"
 class Acknowledged:
     """The file of an open journal, from its first commit until it is closed.
 
-    A number from a process that was killed stays until the next one: its interrupted transaction remains in the
-    log until then, too. Without room for the file, nothing is kept.
+    A number from a process that was killed stays until the next one, as long as the log has the transaction
+    that was interrupted. Without room for the file, nothing is kept.
     """
 
     def __init__(self, path: Path) -> None:
