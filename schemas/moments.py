@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import re
-from datetime import date, datetime
+from datetime import date, datetime, timedelta
 from typing import Annotated, NamedTuple
 
 from msgspec import Meta
@@ -22,7 +22,14 @@ _ROUNDING_NS = 1000
 _WRITTEN = re.compile(
     r"(?P<date>\d{4}-\d\d-\d\d)(?P<time>[Tt ]\d\d(:\d\d(:\d\d([.,]\d+)?)?)?)?(?P<offset>Z|[+-]\d\d:?\d\d)?"
 )
-_OF_TODAY = re.compile(r"\d\d:\d\d(:\d\d([.,]\d+)?)?(Z|[+-]\d\d:?\d\d)?")
+_CLOCK = r"\d\d:\d\d(?::\d\d(?:[.,]\d+)?)?(?:Z|[+-]\d\d:?\d\d)?"
+_OF_A_DAY = re.compile(rf"(?P<day>today|yesterday)?(?:(?(day)(?: at)? )(?P<clock>{_CLOCK}))?", re.IGNORECASE)
+_AGO = re.compile(
+    r"(?P<number>an?|one|\d+(?:\.\d+)?) ?"
+    r"(?:(?P<seconds>s|sec|seconds?)|(?P<minutes>m|min|minutes?)|(?P<hours>h|hours?)|(?P<days>d|days?)"
+    r"|(?P<weeks>w|weeks?))(?: ago)?",
+    re.IGNORECASE,
+)
 _LASTS_S = {
     len(time): seconds for time, seconds in (("", 86_400), ("T12", 3600), ("T12:30", 60), ("T12:30:05", 1))
 }
@@ -33,10 +40,11 @@ When = (
     | Annotated[float, Meta(ge=0.0)]
     | Annotated[str, Meta(min_length=1, max_length=100)]
 )
-"""A commit's number, seconds since 1970, a time stamp as in replies (`stamp_ns`), or ISO 8601.
+"""A commit's number, seconds since 1970, a time stamp as in replies (`stamp_ns`), ISO 8601, or words.
 
 Without an offset, a time is in the client's local time; without a date, it is today's. A time covers its
-written precision: `12:30:05` is that second, `12:30` the minute, a date the whole day."""
+written precision: `12:30:05` is that second, `12:30` the minute, a date the whole day. Words are `now`, an
+age (`5 minutes ago`, `2h`), `today` and `yesterday`, also with a time (`yesterday 10:00`)."""
 
 
 class Moment(NamedTuple):
@@ -53,18 +61,18 @@ def read_moment(when: When) -> Moment:
         return _read_text(when) if isinstance(when, str) else _read_number(when)
     except (ValueError, OverflowError, OSError):
         raise BadRequest(
-            f"'{when}' is neither a commit number nor a time like 2026-03-01T12:30, 12:30 or 1772368200.5"
+            f"'{when}' is neither a commit number nor a time like 2026-03-01T12:30, 12:30, yesterday 12:30 or 2h ago"
         ) from None
 
 
 def with_offset(when: When | None) -> When | None:
-    """Return a time with an explicit offset and date, for a node in another time zone."""
+    """Return a time with an explicit offset and date, for a node with another clock or time zone."""
     if not isinstance(when, str):
         return when
-    when = _with_date(when)
-    if (written := _WRITTEN.fullmatch(when)) is None or written["offset"]:
-        return when
     try:
+        when = _with_date(when)
+        if (written := _WRITTEN.fullmatch(when)) is None or written["offset"]:
+            return when
         return when + datetime.fromisoformat(when).astimezone().strftime("%z")[:5]
     except (ValueError, OverflowError, OSError):
         return when  # the node that parses it reports the error
@@ -84,7 +92,20 @@ def _read_text(text: str) -> Moment:
 
 
 def _with_date(text: str) -> str:
-    return f"{date.today().isoformat()}T{text}" if _OF_TODAY.fullmatch(text) else text
+    """Return a time of a day or an age as ISO 8601; any other text is returned unchanged."""
+    text = " ".join(text.split()) if text.strip() == text else text
+    if text.lower() == "now":
+        return datetime.now().astimezone().isoformat(timespec="microseconds")
+    if (ago := _AGO.fullmatch(text)) is not None:
+        number = float(ago["number"]) if ago["number"][0].isdigit() else 1.0
+        unit = next(name for name in ("seconds", "minutes", "hours", "days", "weeks") if ago[name])
+        then = datetime.now().astimezone() - timedelta(**{unit: number})
+        return then.isoformat(timespec="microseconds")
+    if text and (written := _OF_A_DAY.fullmatch(text)) is not None:
+        is_yesterday = (written["day"] or "").lower() == "yesterday"
+        day = (date.today() - timedelta(days=is_yesterday)).isoformat()
+        return f"{day}T{written['clock']}" if written["clock"] else day
+    return text
 
 
 def _read_number(number: float) -> Moment:

@@ -108,6 +108,7 @@ def select(tab, view, entity) -> None:
 
 
 def test_panels_of_viser_are_hidden(tab):
+    tab.locator("iframe.is-drawn").wait_for()  # the notice that it loads goes with it
     panel = tab.frame_locator("iframe").get_by_text("Scene tree")
     for width in (480, 900):  # it has one for phones, and one for all others
         tab.set_viewport_size({"width": width, "height": 320})

@@ -66,8 +66,20 @@ def test_the_page_fits_a_phone(open_tab, web):
     assert tab.evaluate("document.documentElement.scrollWidth") <= 390
     tab.get_by_role("tab", name="Scene").wait_for()
     tab.get_by_role("tab", name="Entities").wait_for(state="hidden")  # the browser has reported its width
+    tab.get_by_label("Speed", exact=True).wait_for(state="hidden")
+    tab.get_by_role("button", name="Speed and comparison").click()
+    tab.get_by_label("Speed", exact=True).wait_for()
+    assert tab.evaluate("document.documentElement.scrollWidth") <= 390
     tab.get_by_role("button", name="Show or hide the lists").click()
     tab.get_by_role("tab", name="Entities").wait_for()
+
+
+def test_the_first_press_of_tab_offers_a_way_past_the_lists(tab):
+    tab.evaluate("document.activeElement.blur()")
+    tab.keyboard.press("Tab")
+    tab.wait_for_function("document.activeElement.textContent === 'Skip to the views'")
+    tab.keyboard.press("Enter")
+    tab.wait_for_function("document.activeElement.id === 'views'")
 
 
 def test_on_a_phone_check_boxes_keep_the_list_open_and_rows_close_it(open_tab, web):

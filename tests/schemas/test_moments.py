@@ -1,6 +1,6 @@
 import math
 import time
-from datetime import datetime
+from datetime import datetime, timedelta
 
 import pytest
 
@@ -49,6 +49,49 @@ def test_a_time_without_a_date_is_today_s(time_of_day):
     assert read_moment(time_of_day) == read_moment(with_offset(time_of_day)) == read_moment(today)
 
 
+@pytest.mark.parametrize(
+    ("text", "day", "clock"),
+    [
+        ("today", 0, ""),
+        ("yesterday", 1, ""),
+        ("today 05:31", 0, "T05:31"),
+        ("yesterday 05:31:07", 1, "T05:31:07"),
+        ("Yesterday at 05:31", 1, "T05:31"),
+        ("yesterday 05:31Z", 1, "T05:31Z"),
+    ],
+)
+def test_today_and_yesterday_are_dates(text, day, clock):
+    written = f"{datetime.now() - timedelta(days=day):%Y-%m-%d}{clock}"
+    assert read_moment(text) == read_moment(with_offset(text)) == read_moment(written)
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [
+        ("now", 0),
+        ("5 minutes ago", 300),
+        ("1 minute ago", 60),
+        ("10 min", 600),
+        ("90s", 90),
+        ("2h", 7200),
+        ("1.5 hours ago", 5400),
+        ("an hour ago", 3600),
+        ("A day ago", 86_400),
+        ("3 d", 3 * 86_400),
+        ("one week ago", 7 * 86_400),
+    ],
+)
+def test_an_age_is_counted_from_the_clock_of_the_one_who_asks(text, seconds):
+    before = time.time_ns()
+    asked = with_offset(text)
+    after = time.time_ns()
+    moment = read_moment(asked)
+    assert moment == read_moment(asked)  # it stays the same, whenever it is read
+    assert (
+        before - seconds * 10**9 - 2000 <= moment.first_ns <= moment.last_ns <= after - seconds * 10**9 + 2000
+    )
+
+
 @pytest.mark.parametrize("stamp_ns", [NOON_NS, NOON_NS + 499, NOON_NS + 999_998_999, NOON_NS + 123_456_501])
 def test_a_stamp_is_found_again_however_it_is_written(stamp_ns):
     then = datetime.fromtimestamp(stamp_ns / 1e9)
@@ -79,13 +122,30 @@ def test_a_time_gets_the_local_offset_and_keeps_its_precision(monkeypatch):
         time.tzset()
 
 
-@pytest.mark.parametrize("when", [None, 7, 3.5, "7", "20260301", "1772368200.5", "yesterday"])
+@pytest.mark.parametrize("when", [None, 7, 3.5, "7", "20260301", "1772368200.5", "tomorrow"])
 def test_other_texts_are_unchanged(when):
     assert with_offset(when) == when
 
 
 @pytest.mark.parametrize(
-    "when", ["yesterday", "-1", "nan", "inf", "1e400", "2026-13-01", "now ", "-2026-03-01", math.inf, 1e300]
+    "when",
+    [
+        "tomorrow",
+        "in 2h",
+        "ago",
+        "yesterday ago",
+        "9" * 30 + " days ago",
+        "",
+        "-1",
+        "nan",
+        "inf",
+        "1e400",
+        "2026-13-01",
+        "now ",
+        "-2026-03-01",
+        math.inf,
+        1e300,
+    ],
 )
 def test_invalid_moments_are_rejected(when):
     with pytest.raises(

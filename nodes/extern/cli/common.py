@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 
 TIME = (
     "TIME is ISO 8601, as printed by history: 2026-03-01T12:30:05 (that second), 12:30 (that minute of today)"
-    " or 2026-03-01 (that day). Seconds since 1970 and stamp_ns values are also accepted."
+    " or 2026-03-01 (that day); or in words: '5 minutes ago', 2h, yesterday, 'yesterday 10:00'."
+    " Seconds since 1970 and stamp_ns values are also accepted."
 )
 """The help of options that accept a time."""
 

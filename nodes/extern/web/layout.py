@@ -77,7 +77,7 @@ def layout(page: Page) -> None:
         allowed = {name: panels for name, panels in RIGHT.items() if name != "Add" or page.is_allowed("add")}
         details = _Tabs(page, allowed, "Details and adding")
         details.draw()
-    with ui.column().classes("semmap-centre"):
+    with ui.column().classes("semmap-centre").props('id=views tabindex=-1'):
         _draw_offline_banner(page)
         centre = _Tabs(page, CENTRE, "Views")
         centre.draw()
@@ -114,6 +114,7 @@ def _begin_scene(page: Page, stage: ui.element) -> None:
 def _draw_header(
     page: Page, left: ui.left_drawer, right: ui.right_drawer, dark: ui.dark_mode, open_add: Callable[[], None]
 ) -> None:
+    ui.link("Skip to the views", "#views").classes("semmap-skip")
     _bind_expanded(_icon("menu", "Show or hide the lists", left.toggle), left)
     heading("semmap", 1).classes("semmap-name")
     with ui.element("div").classes("semmap-search").props('role="search"'):

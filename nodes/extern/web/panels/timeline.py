@@ -46,6 +46,7 @@ class _Timeline:
     def __init__(self, page: Page) -> None:
         self._page = page
         self._is_playing = False
+        self._has_choices = False
         self._requested: int | None = None
         with ui.column().classes("semmap-bar") as self._bar:
             self._bar.props('role="group" aria-label="Time"')
@@ -59,11 +60,13 @@ class _Timeline:
                 self._now = ui.button("Now", on_click=lambda: self._go(None))
                 self._now.props("dense unelevated color=warning text-color=black padding='2px 10px'")
                 self._now.tooltip("Return to the current map (Home)")
+                options = self._button("tune", "Speed and comparison", self._toggle_choices)
+                self._options = options.classes("semmap-narrow").props("aria-expanded=false")
             with ui.row().classes("w-full items-center gap-3 semmap-time-row"):
                 self._caption = ui.label().props('role="status"').classes("ellipsis semmap-time-caption")
                 with ui.element("div").classes("semmap-time-choices"):
                     self._when = ui.input(placeholder="commit or time").classes("w-36")
-                    self._when.props(f'{_SMALL} aria-label="Go to commit or time, such as 12:30"')
+                    self._when.props(f'{_SMALL} aria-label="Go to commit or time, such as 12:30 or 5 minutes ago"')
                     self._when.on("keydown.enter", self._go_to_when)
                     self._speed = ui.select(_SPEEDS, value=1.0)
                     self._speed.props(f'{_SMALL} aria-label="Speed"')
@@ -86,6 +89,12 @@ class _Timeline:
     def _button(self, icon: str, label: str, act: Any) -> ui.button:
         button = ui.button(icon=icon, on_click=act).tooltip(label)
         return button.props(f'flat round dense color=secondary aria-label="{label}"')
+
+    def _toggle_choices(self) -> None:
+        """Show or hide the time, the speed and the comparison, for which a phone has no room otherwise."""
+        self._has_choices = not self._has_choices
+        self._bar.classes(**{"add" if self._has_choices else "remove": "has-choices"})
+        self._options.props(f"aria-expanded={str(self._has_choices).lower()}")
 
     def _close(self) -> None:
         self._is_playing = False

@@ -103,6 +103,7 @@ def scene(page: Page, tab: TabScene) -> None:
     """Draw the scene."""
     tab.is_in_view = visibility_check()
     frame = ui.element("iframe").props(f'src="{PATH}/{page.id}/" title="3-D scene"')
+    tab.on_first_drawing = lambda: frame.classes(add="is-drawn")
     with ui.element("div").classes("semmap-scene-tools").props('role="toolbar" aria-label="Scene"'):
         for name in SWITCHES:
             _switch(tab, name)

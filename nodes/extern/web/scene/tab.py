@@ -111,6 +111,8 @@ class TabScene:
         """Whether something has changed while the scene was hidden."""
         self.is_in_view: Callable[[], bool] = lambda: True
         """Returns whether the scene is visible; set by the code that creates its frame."""
+        self.on_first_drawing: Callable[[], object] = lambda: None
+        """Called when the bodies have been sent to the frame; set by the code that creates it."""
         self._camera: tuple[Any, ...] | None = None
         """The last camera of this tab, for a frame that reconnects."""
         page.on_change(self._draw_soon)
@@ -154,6 +156,7 @@ class TabScene:
             self._sensors.switch(switch, on=switch in self.on)
         self._draw()
         self._on_select()
+        self.on_first_drawing()
 
     def detach(self, client_id: int) -> None:
         """Detach a frame that has disconnected, and cancel picking and dragging."""
