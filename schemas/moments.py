@@ -61,7 +61,7 @@ def read_moment(when: When) -> Moment:
         return _read_text(when) if isinstance(when, str) else _read_number(when)
     except (ValueError, OverflowError, OSError):
         raise BadRequest(
-            f"'{when}' is neither a commit number nor a time like 2026-03-01T12:30, 12:30, yesterday 12:30 or 2h ago"
+            f"'{when}' is neither a commit number nor a time like 2026-03-01T12:30, yesterday 12:30 or 2h ago"
         ) from None
 
 

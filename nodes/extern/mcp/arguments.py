@@ -17,7 +17,8 @@ from semmap.schemas.moments import When
 from semmap.schemas.relations import ViewPoint
 
 Moment = Annotated[
-    When, Meta(description="A commit number, or a time such as 2026-03-01T12:30, 12:30, yesterday 10:00 or 5 minutes ago.")
+    When,
+    Meta(description="A commit number, or a time: 2026-03-01T12:30, 12:30, yesterday 10:00, 5 minutes ago."),
 ]
 Cursor = Annotated[
     str, Meta(max_length=100, description="The `next` of the previous page, to get the next page.")

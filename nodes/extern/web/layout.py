@@ -77,7 +77,7 @@ def layout(page: Page) -> None:
         allowed = {name: panels for name, panels in RIGHT.items() if name != "Add" or page.is_allowed("add")}
         details = _Tabs(page, allowed, "Details and adding")
         details.draw()
-    with ui.column().classes("semmap-centre").props('id=views tabindex=-1'):
+    with ui.column().classes("semmap-centre").props("id=views tabindex=-1"):
         _draw_offline_banner(page)
         centre = _Tabs(page, CENTRE, "Views")
         centre.draw()

@@ -66,7 +66,7 @@ class _Timeline:
                 self._caption = ui.label().props('role="status"').classes("ellipsis semmap-time-caption")
                 with ui.element("div").classes("semmap-time-choices"):
                     self._when = ui.input(placeholder="commit or time").classes("w-36")
-                    self._when.props(f'{_SMALL} aria-label="Go to commit or time, such as 12:30 or 5 minutes ago"')
+                    self._when.props(f'{_SMALL} aria-label="Go to commit or time, such as 12:30 or 2h ago"')
                     self._when.on("keydown.enter", self._go_to_when)
                     self._speed = ui.select(_SPEEDS, value=1.0)
                     self._speed.props(f'{_SMALL} aria-label="Speed"')
