@@ -129,6 +129,30 @@ def test_a_click_selects_and_a_click_on_the_background_deselects(tab, system, ch
         until(click_beside, "nothing is selected")
 
 
+def test_a_double_click_shows_the_selection(tab, system, chair):
+    frame = tab.locator("iframe").bounding_box()
+    middle = frame["x"] + frame["width"] / 2, frame["y"] + frame["height"] / 2
+
+    def clear() -> bool:
+        """Press Esc, which cancels a drag first if a click has hit the handles."""
+        tab.keyboard.press("Escape")
+        return becomes_true(lambda: selected(tab) == "")
+
+    def is_in_the_middle() -> bool:
+        until(clear, "nothing is selected")
+        tab.mouse.click(*middle)
+        return becomes_true(lambda: selected(tab) == chair)
+
+    with system.client() as client:
+        view, entity = looking(tab, client), client.get(chair)
+        x, y, z = entity.pose.position_m
+        assert math.dist(pixel(tab, view, (x, y, z + 0.45 * entity.size_m[2])), middle) > 40.0
+        select(tab, view, entity)
+    twice = "new MouseEvent('dblclick', { bubbles: true })"
+    tab.frames[-1].evaluate(f"document.querySelector('canvas').dispatchEvent({twice})")  # which presses f
+    until(is_in_the_middle, "the chair is in the middle")
+
+
 def drag_along_x(tab, view, client, name, done=None) -> None:
     """Drag by the arrow along x until the map has changed, or until `done()`.
 

@@ -56,6 +56,7 @@ KEYS: Final = {
     "Del": "delete the selected entities, after a confirmation",
     "u": "undo the last change",
     "Home": "return to the current map",
+    "f": "show the selected entities in the scene; so does a double click there",
     "Esc": "cancel dragging or picking; otherwise clear the selection",
     "?": "show this list",
 }

@@ -1,6 +1,6 @@
 // Keyboard shortcuts and reports about the browser window. The frame of the scene forwards its key presses.
 (() => {
-  const HANDLED = new Set(["/", "?", "u", "Delete", "Home", "Escape"]);
+  const HANDLED = new Set(["/", "?", "u", "f", "Delete", "Home", "Escape"]);
   const isWriting = (element) =>
     element && (element.isContentEditable || /^(INPUT|TEXTAREA|SELECT)$/.test(element.tagName));
 

@@ -23,14 +23,18 @@ _TRY_AGAIN: Final = 1013
 _OWN: Final = """<style>
 div:has(canvas) ~ div, .mantine-Notifications-root { display: none !important; }
 </style><script>
+const press = (init) =>
+  parent.document.body.dispatchEvent(new KeyboardEvent("keydown", { ...init, bubbles: true }));
 addEventListener("keydown", (event) => {
   if (event.target.closest && event.target.closest("input, textarea, select")) return;
   const { key, code, shiftKey, ctrlKey, altKey, metaKey } = event;
-  const init = { key, code, shiftKey, ctrlKey, altKey, metaKey, bubbles: true };
-  parent.document.body.dispatchEvent(new KeyboardEvent("keydown", init));
+  press({ key, code, shiftKey, ctrlKey, altKey, metaKey });
+});
+addEventListener("dblclick", (event) => {
+  if (event.target.tagName === "CANVAS") press({ key: "f" });
 });
 </script>"""
-"""Hides the panels of viser, and forwards key presses to the page."""
+"""Hides the panels of viser, and forwards key presses to the page; a double click is the key `f`."""
 
 
 def router(at: Path) -> APIRouter:

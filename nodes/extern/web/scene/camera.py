@@ -94,15 +94,26 @@ def first_view(points: Floats, aspect: float) -> tuple[Vector, Vector]:
     """
     if not len(points):
         points = np.array([(-2.0, -2.0, 0.0), (2.0, 2.0, 1.0)])
+    return fit_view(points, aspect, (0.0, -math.cos(_TILT_RAD), math.sin(_TILT_RAD)))
+
+
+def fit_view(points: Floats, aspect: float, back: Vector) -> tuple[Vector, Vector]:
+    """Return the position and the target [m] of a view of all `points` (N, 3), at least one.
+
+    `back` points from the target to the camera; its length does not matter. `aspect` is as in `first_view`.
+    """
     low, high = points.min(axis=0), points.max(axis=0)
     middle = (low + high) / 2.0
-    back = np.array((0.0, -math.cos(_TILT_RAD), math.sin(_TILT_RAD)))
-    up = np.array((0.0, math.sin(_TILT_RAD), math.cos(_TILT_RAD)))
+    back_axis = np.array(back) / max(float(np.linalg.norm(back)), _NEAREST_M)
+    x, y, _ = back_axis
+    level = math.hypot(x, y)
+    right = np.array((-y / level, x / level, 0.0)) if level > 1e-6 else np.array((1.0, 0.0, 0.0))
+    up = np.cross(back_axis, right)
     own = np.array(list(itertools.product(*zip(low, high, strict=True)))) - middle
     slope = math.tan(FOV_RAD / 2.0)
-    distances = own @ back + np.maximum(np.abs(own @ up) / slope, np.abs(own[:, 0]) / slope / aspect)
+    distances = own @ back_axis + np.maximum(np.abs(own @ up), np.abs(own @ right) / aspect) / slope
     distance = min(_FARTHEST_M, max(1.5, float(distances.max()) * _MARGIN))
-    eye = middle + distance * back
+    eye = middle + distance * back_axis
     return _vector(eye), _vector(middle)
 
 

@@ -7,8 +7,9 @@ import contextlib
 from collections.abc import Callable, Mapping
 from typing import Any, Final, Literal
 
+import numpy as np
 from msgspec import structs
-from viser import ClientHandle
+from viser import CameraHandle, ClientHandle
 
 from semmap.nodes.drawing.figures import is_still
 from semmap.nodes.extern.web.differences import Mark
@@ -24,11 +25,11 @@ from semmap.nodes.extern.web.scene.annotations import (
 )
 from semmap.nodes.extern.web.scene.assets import Assets
 from semmap.nodes.extern.web.scene.bodies import Bodies
-from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, select_labels
+from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, fit_view, select_labels
 from semmap.nodes.extern.web.scene.drawables import BOX, Drawable, Key, drawable_of
 from semmap.nodes.extern.web.scene.gizmo import Gizmo, Phase, place_on_support
 from semmap.nodes.extern.web.scene.map_overlay import difference_boxes, relation_lines
-from semmap.nodes.extern.web.scene.picking import Solid, edges_of, first_hit
+from semmap.nodes.extern.web.scene.picking import Solid, corners_of, edges_of, first_hit
 from semmap.nodes.extern.web.scene.rooms import Rooms
 from semmap.nodes.extern.web.scene.sensor_overlay import SensorOverlay
 from semmap.schemas import errors, keys
@@ -120,6 +121,7 @@ class TabScene:
         page.on_poses(self._on_poses)
         page.on_select(self._on_select)
         page.on_appearance_change(self._on_appearance_change)
+        page.on_key("f", self.show_selected)
         page.pick, page.get_viewpoint, page.cancel_interaction = (
             self.pick_place,
             self.viewpoint,
@@ -214,8 +216,27 @@ class TabScene:
         if self._client is None:
             return
         camera = self._client.camera
-        aspect = camera.image_width / max(1, camera.image_height)
-        eye, target = first_view(extent(self.page.state.entities.values()), aspect)
+        eye, target = first_view(extent(self.page.state.entities.values()), _aspect_of(camera))
+        camera.position, camera.look_at = eye, target
+
+    def show_selected(self) -> None:
+        """Show the selected entities in the direction of the current view; do nothing without any."""
+        if self._client is None:
+            return
+        things, entities = self._things, self.page.state.entities
+        parts = [
+            corners_of(things[name].pose, things[name].size_m)
+            if name in things
+            else extent([entities[name]])  # a place
+            for name in self.page.selected
+            if name in things or name in entities
+        ]
+        points = np.concatenate([np.zeros((0, 3)), *parts])
+        if not len(points):
+            return
+        camera = self._client.camera
+        back = np.subtract(camera.position, camera.look_at)
+        eye, target = fit_view(points, _aspect_of(camera), (float(back[0]), float(back[1]), float(back[2])))
         camera.position, camera.look_at = eye, target
 
     def _on_appearance_change(self) -> None:
@@ -619,6 +640,11 @@ def _cancel(*handles: asyncio.TimerHandle | None) -> None:
     for handle in handles:
         if handle is not None:
             handle.cancel()
+
+
+def _aspect_of(camera: CameraHandle) -> float:
+    """Return the width of the image divided by its height."""
+    return float(camera.image_width / max(1, camera.image_height))
 
 
 def _reach_of(thing: Drawable) -> Size:

@@ -6,7 +6,7 @@ import random
 import numpy as np
 import pytest
 
-from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, select_labels
+from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, fit_view, select_labels
 from semmap.nodes.extern.web.scene.sensor_overlay import wxyz_of
 from tests.extern.web.scene.sample_scenes import entity, pose
 
@@ -36,6 +36,26 @@ def test_the_initial_view_shows_everything(aspect, far):
     assert (at[:, 2] > 0.0).all()
     assert (at[:, :2] >= 0.0).all()
     assert (at[:, :2] <= (600 * aspect, 600)).all()
+
+
+@pytest.mark.parametrize("back", [(0.0, -3.0, 2.0), (4.0, 1.0, 0.5), (-1.0, 1.0, -0.2), (0.1, 0.0, 9.0)])
+def test_a_view_of_some_points_keeps_its_direction_and_shows_them(back):
+    points = np.array([(x, y, z) for x in (7.0, 9.0) for y in (-3.0, 2.0) for z in (0.0, 1.0)])
+    eye, target = fit_view(points, 1.5, back)
+    direction = np.subtract(eye, target)
+    assert np.cross(direction, back) == pytest.approx(np.zeros(3), abs=1e-6)
+    assert direction @ back > 0.0
+    at = looking(eye, target, 900, 600).project(points)
+    assert (at[:, 2] > 0.0).all()
+    assert (at[:, :2] >= 0.0).all()
+    assert (at[:, :2] <= (900, 600)).all()
+
+
+def test_a_view_from_straight_above_has_x_to_the_right():
+    eye, target = fit_view(np.array([(1.0, 2.0, 0.0), (5.0, 3.0, 0.0)]), 1.0, (0.0, 0.0, 1.0))
+    assert target == (3.0, 2.5, 0.0)
+    assert eye[:2] == target[:2]
+    assert eye[2] == pytest.approx(1.06 * 2.0 / math.tan(FOV_RAD / 2.0))
 
 
 def test_an_empty_map_has_an_initial_view():
