@@ -74,6 +74,26 @@ def test_the_page_fits_a_phone(open_tab, web):
     tab.get_by_role("tab", name="Entities").wait_for()
 
 
+def test_the_lists_and_the_details_leave_room_for_the_scene_and_can_be_resized(open_tab, web):
+    tab = open_tab(web, width=1024, height=768)
+
+    def is_wide(least: int, most: int) -> bool:
+        return least <= tab.locator(".semmap-centre").bounding_box()["width"] <= most
+
+    until(lambda: is_wide(450, 600), "the views have half of the window")
+    grip = tab.get_by_role("separator", name="Width of the lists")
+    box = grip.bounding_box()
+    tab.mouse.move(box["x"] + 3, 400)
+    tab.mouse.down()
+    tab.mouse.move(box["x"] + 103, 400)
+    tab.mouse.up()
+    until(lambda: is_wide(350, 449), "the lists are wider")
+    tab.get_by_role("separator", name="Width of the details").press("ArrowLeft")
+    until(lambda: is_wide(350, 425), "the details are wider")
+    grip.dblclick()
+    until(lambda: is_wide(450, 600), "the lists are as wide as before")
+
+
 def test_the_first_press_of_tab_offers_a_way_past_the_lists(tab):
     tab.evaluate("document.activeElement.blur()")
     tab.keyboard.press("Tab")

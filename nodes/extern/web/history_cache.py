@@ -36,6 +36,10 @@ _ROWS: Final = 500
 """Number of rows of the commit list per request."""
 _MOST_ROWS: Final = 50_000
 """Maximum number of cached rows; of a longer history the newest are kept."""
+_DETAILED: Final = 2_000
+"""Number of the newest rows that keep what they changed, which takes most of the memory of a row."""
+_FEW: Final = 2
+"""Number of entities whose changes a row keeps."""
 _TIMEOUT_S: Final = 30.0
 _RETRY_S: Final = 2.0
 """Time after which a request without a reply is repeated."""
@@ -120,7 +124,8 @@ class HistoryCache:
             await self._read_newest()
             while not self.is_complete and self.rows and len(self.rows) < _MOST_ROWS:
                 older = await self._fetch_rows(None, self.first - 1)
-                older = [row for row in older if row.seq < self.first]
+                is_old = len(self.rows) >= _DETAILED
+                older = [_without_changes(row) if is_old else row for row in older if row.seq < self.first]
                 self.is_complete = len(older) < _ROWS
                 self.rows[:0] = older
                 self._notify()
@@ -143,6 +148,8 @@ class HistoryCache:
             if last is None:
                 self.is_complete = len(newer) < _ROWS
             self.rows.extend(newer)
+            begin, end = (max(0, len(self.rows) - number) for number in (_DETAILED + len(newer), _DETAILED))
+            self.rows[begin:end] = map(_without_changes, self.rows[begin:end])
             if len(self.rows) > _MOST_ROWS:
                 del self.rows[:-_MOST_ROWS]
                 self.is_complete = False
@@ -150,7 +157,7 @@ class HistoryCache:
 
     async def _fetch_rows(self, since: int | None, until: int | None) -> Sequence[LoggedCommit]:
         found = await self._live.ask(History(since=since, until=until, limit=_ROWS), _TIMEOUT_S)
-        return [_without_details(row) for row in found]
+        return [_with_few_details(row) for row in found]
 
     def _notify(self) -> None:
         for listener in tuple(self._listeners):
@@ -226,16 +233,21 @@ def _store(cache: OrderedDict[int, T], seq: int, value: T) -> None:
         cache.popitem(last=False)
 
 
-def _without_details(row: LoggedCommit) -> LoggedCommit:
-    """Return a commit without its changes and notes, which would take much memory."""
+def _with_few_details(row: LoggedCommit) -> LoggedCommit:
+    """Return a commit with the changes of its first entities, and without its notes, to save memory."""
+    first = list(dict.fromkeys(change.name for change in row.changes))[:_FEW]
     return structs.replace(
         row,
         agent=sys.intern(row.agent),
         verb=sys.intern(row.verb),
         changed=tuple(map(sys.intern, row.changed)),
-        changes=(),
+        changes=tuple(change for change in row.changes if change.name in first),
         notes=(),
     )
+
+
+def _without_changes(row: LoggedCommit) -> LoggedCommit:
+    return structs.replace(row, changes=()) if row.changes else row
 
 
 def _apply(entities: dict[str, Entity], commit: Commit) -> None:

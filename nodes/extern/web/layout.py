@@ -49,8 +49,13 @@ CENTRE: Final[Panels] = {
     "Files": (files,),
     "System": (status, log),
 }
-_LIST_PX, _TABLE_PX = 340, 760
-"""Width of the lists with the main columns, and with all columns."""
+_LEFT_PX, _RIGHT_PX, _TABLE_PX = 340, 370, 760
+"""Width of the lists and of the details in a large window, and of the lists with all columns."""
+_LEAST_PX: Final = 200
+_NARROW_PX: Final = 960
+"""Up to here a drawer covers the views, as on a phone."""
+_SHARE: Final = 0.26
+"""The width of the lists and of the details in a small window; the rest is for the views."""
 KEYS: Final = {
     "/": "search",
     "Del": "delete the selected entities, after a confirmation",
@@ -71,10 +76,12 @@ def layout(page: Page) -> None:
     dark = ui.dark_mode(None)
     with ui.header(elevated=False).classes("semmap-header") as header:
         pass
-    with ui.left_drawer(bordered=False, value=True).props(f"width={_LIST_PX} breakpoint=960") as left:
-        page.set_wide_lists = lambda wide: left.props(f"width={_TABLE_PX if wide else _LIST_PX}")
+    with ui.left_drawer(bordered=False, value=True).props("breakpoint=960") as left:
+        lists = _Width(left, "left", _LEFT_PX)
+        page.set_wide_lists = lambda wide: lists.set_usual(_TABLE_PX if wide else _LEFT_PX)
         _Tabs(page, LEFT, "Lists").draw()
-    with ui.right_drawer(bordered=False, value=True).props("width=370 breakpoint=960") as right:
+    with ui.right_drawer(bordered=False, value=True).props("breakpoint=960") as right:
+        widths = (lists, _Width(right, "right", _RIGHT_PX))
         allowed = {name: panels for name, panels in RIGHT.items() if name != "Add" or page.is_allowed("add")}
         details = _Tabs(page, allowed, "Details and adding")
         details.draw()
@@ -93,7 +100,7 @@ def layout(page: Page) -> None:
     with header:
         _draw_header(page, left, right, dark, open_add)
     _bind_keys(page)
-    _bind_appearance(page, left, right)
+    _bind_appearance(page, left, right, widths)
     add_status_attributes(page)
     ui.on("semmap_scene", lambda: _begin_scene(page, stage))
     ui.timer(0.05, lambda: _mark_ready(page), once=True)
@@ -204,11 +211,60 @@ def _bind_keys(page: Page) -> None:
     ui.on("semmap_key", lambda event: page.press(_event_data(event).get("key", "")))
 
 
-def _bind_appearance(page: Page, left: ui.left_drawer, right: ui.right_drawer) -> None:
-    """Receive from the browser whether it is dark and narrow; a narrow one shows one drawer at a time."""
+class _Width:
+    """The width of a drawer [px]: what the user has set by its grip, or else what fits the window."""
+
+    def __init__(self, drawer: ui.left_drawer | ui.right_drawer, side: str, usual_px: int) -> None:
+        self._drawer = drawer
+        self._side = side
+        self._usual_px = usual_px
+        self._set_px = 0
+        """What the user has set; 0 before that."""
+        self._window_px = 1280
+        name = "lists" if side == "left" else "details"
+        self._grip = ui.element("div").classes(f"semmap-grip is-{side}")
+        self._grip.props(f'role=separator tabindex=0 aria-label="Width of the {name}" data-side={side}')
+        self._show()
+
+    def set_usual(self, usual_px: int) -> None:
+        """Set the width that the content needs; it replaces what the user has set."""
+        self._usual_px, self._set_px = usual_px, 0
+        self._show()
+
+    def set_window(self, window_px: int) -> None:
+        """Fit the width of the browser window."""
+        self._window_px = window_px
+        self._show()
+
+    def on_grip(self, event: events.GenericEventArguments) -> None:
+        """Set the width that the user asks for; 0 returns to what fits the window."""
+        request = _event_data(event)
+        if request.get("side") == self._side and isinstance(px := request.get("px"), int | float):
+            self._set_px = round(px)
+            self._show()
+
+    def _show(self) -> None:
+        is_table = self._usual_px == _TABLE_PX
+        fitting_px = self._usual_px if is_table else min(self._usual_px, round(_SHARE * self._window_px))
+        px = min(max(self._set_px or fitting_px, _LEAST_PX), max(_LEAST_PX, self._window_px // 2))
+        if self._window_px <= _NARROW_PX:
+            px = self._usual_px
+        self._drawer.props(f"width={px}")
+        self._grip.props(f"aria-valuenow={px}")
+
+
+def _bind_appearance(
+    page: Page, left: ui.left_drawer, right: ui.right_drawer, widths: Sequence[_Width]
+) -> None:
+    """Receive from the browser whether it is dark, and its width; a narrow one shows one drawer at a time."""
+    for width in widths:
+        ui.on("semmap_width", width.on_grip)
 
     def on_report(event: events.GenericEventArguments) -> None:
         report = _event_data(event)
+        if isinstance(window_px := report.get("width"), int):
+            for width in widths:
+                width.set_window(window_px)
         is_first, was_narrow = not page.is_appearance_known, page.narrow
         page.set_appearance(dark=report.get("dark") is True, narrow=report.get("narrow") is True)
         if page.narrow and (is_first or not was_narrow):

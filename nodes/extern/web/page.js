@@ -63,7 +63,49 @@
     emitEvent("semmap_appearance", {
       dark: document.body.classList.contains("body--dark"),
       narrow: window.innerWidth <= 960,
+      width: window.innerWidth,
     });
+  }
+
+  let resized = 0;
+  function onResize() {
+    clearTimeout(resized);
+    resized = setTimeout(reportAppearance, 100);
+  }
+
+  // The grips at the edges of the lists and of the details change their widths; a double click resets them.
+  const GRIP_STEP_PX = 20;
+  let gripped = null;
+
+  function setWidth(grip, px) {
+    emitEvent("semmap_width", { side: grip.dataset.side, px });
+  }
+
+  function onGripPress(event) {
+    gripped = event.target.closest?.(".semmap-grip");
+    if (!gripped) return;
+    event.preventDefault();
+    gripped.setPointerCapture(event.pointerId);
+    document.body.classList.add("semmap-gripping"); // the frame of the scene would take the pointer
+  }
+
+  function onGripMove(event) {
+    if (!gripped) return;
+    const x = Math.round(event.clientX);
+    setWidth(gripped, gripped.dataset.side === "left" ? x : window.innerWidth - x);
+  }
+
+  function onGripRelease() {
+    gripped = null;
+    document.body.classList.remove("semmap-gripping");
+  }
+
+  function onGripKey(event) {
+    const grip = event.target.closest?.(".semmap-grip");
+    const by = { ArrowLeft: -GRIP_STEP_PX, ArrowRight: GRIP_STEP_PX }[event.key];
+    if (!grip || !by) return;
+    const sign = grip.dataset.side === "left" ? 1 : -1;
+    setWidth(grip, Number(grip.getAttribute("aria-valuenow")) + sign * by);
   }
 
   // The scene is drawn on the same thread as the rest. It starts when the first rows of the table are painted and the
@@ -95,11 +137,20 @@
   document.addEventListener("pointerup", onRelease, true);
   document.addEventListener("pointercancel", () => { pressed = null; }, true);
   document.addEventListener("keydown", leaveTable, true);
+  document.addEventListener("pointerdown", onGripPress);
+  document.addEventListener("pointermove", onGripMove);
+  document.addEventListener("pointerup", onGripRelease);
+  document.addEventListener("pointercancel", onGripRelease);
+  document.addEventListener("keydown", onGripKey);
+  document.addEventListener("dblclick", (event) => {
+    const grip = event.target.closest?.(".semmap-grip");
+    if (grip) setWidth(grip, 0);
+  });
   window.semmapStart = () => {
     new MutationObserver(reportAppearance).observe(document.body, { attributeFilter: ["class"] });
     new MutationObserver(placeLists) // NiceGUI sets a class while a list is open
       .observe(document.documentElement, { attributeFilter: ["class"] });
-    window.matchMedia("(max-width: 960px)").addEventListener("change", reportAppearance);
+    window.addEventListener("resize", onResize);
     reportAppearance();
     setTimeout(semmapBeginScene, 5000);
   };

@@ -9,6 +9,7 @@ from semmap.nodes.extern.web import history_cache as history_cache_module
 from semmap.nodes.extern.web.history_cache import BLOCK, HistoryCache
 from semmap.nodes.extern.web.live import LiveEvent
 from semmap.schemas import bridge, errors
+from semmap.schemas.changes import Change
 from semmap.schemas.commands import History
 from semmap.schemas.replies import LoggedCommit
 from tests.recorder.messages import START_NS, commit, entity, pose
@@ -65,6 +66,7 @@ class Map:
             reason="",
             changed=tuple(e.name for e in made.changed),
             removed=tuple(gone.name for gone in made.removed),
+            changes=tuple(Change(name=name, kind="added", now="Cup") for name in ("a", "b", "c", "b")),
             **about,
         )
 
@@ -122,6 +124,25 @@ def test_a_request_without_a_reply_is_repeated_although_no_commit_follows(monkey
 
 async def _no_reply(command, timeout_s):
     raise errors.NoAnswer("no response from the knowledge base")
+
+
+def test_the_newest_rows_keep_what_they_changed_of_the_first_entities(monkeypatch):
+    monkeypatch.setattr(history_cache_module, "_ROWS", 10)
+    monkeypatch.setattr(history_cache_module, "_DETAILED", 15)
+
+    async def read():
+        live = Map(42)
+        cache = await whole(live)
+        for _ in range(3):
+            live.grow()
+            await cache.read()
+        return cache.rows
+
+    rows = run(read())
+    assert [row.seq for row in rows] == list(range(1, 46))
+    told = {row.seq: [change.name for change in row.changes] for row in rows}
+    assert all(told[seq] == ["a", "b", "b"] for seq in range(31, 46))
+    assert all(told[seq] == [] for seq in range(1, 23))
 
 
 def test_every_snapshot_equals_the_map_at_that_commit():
