@@ -48,7 +48,7 @@ def test_a_model_of_other_features_names_the_command_that_makes_a_new_one(tmp_pa
 def test_an_invalid_file_is_named(tmp_path, content):
     path = tmp_path / "merge.npz"
     path.write_bytes(content)
-    with pytest.raises(BadFile, match="merge.npz is not a valid merge model"):
+    with pytest.raises(BadFile, match=r"merge\.npz is not a valid merge model"):
         load(path)
 
 
@@ -60,5 +60,5 @@ def test_a_file_without_one_of_the_arrays_is_invalid(tmp_path):
 
 
 def test_a_missing_file_is_named(tmp_path):
-    with pytest.raises(BadFile, match="nothing.npz is not a valid merge model"):
+    with pytest.raises(BadFile, match=r"nothing\.npz is not a valid merge model"):
         load(tmp_path / "nothing.npz")
