@@ -97,10 +97,11 @@ def test_a_frame_whose_clouds_are_not_its_views_is_not_fitted():
 
 
 def test_a_model_across_a_long_box_gives_no_orientation():
-    book = seen("Book", at(0, 0))
-    here = Table([book], config=CONFIG).told([entity("book1", "Book", at(0, 0), source="perception")])
+    turned = at(0, 0, yaw=0.6)
+    book = seen("Book", turned)
+    here = Table([book], config=CONFIG).told([entity("book1", "Book", turned, source="perception")])
     here.observe(2)
-    for yaw, kept in ((0.1, True), (math.pi / 2, False), (math.pi, True)):
+    for yaw, kept in ((0.7, True), (0.6 + math.pi / 2, False), (0.6 + math.pi, True)):
         found = Fit("Book", at(0, 0, yaw=yaw), book.size_m, 0.8, True, 1)
         tracks = apply_fit(here.tracks, asked(here), found, CONFIG)
         assert (tracks.known["book1"].fit.orientation_wxyz is not None) == kept
