@@ -1,36 +1,29 @@
-"""Exemplars are learned and removed over the network."""
+"""Exemplars are learned from what cameras see, listed and removed."""
 
 from __future__ import annotations
 
+import time
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from msgspec import structs
 
-from semmap.nodes import bus
+from semmap.nodes.perception_node import exemplar_commands
 from semmap.nodes.perception_node.exemplar_commands import ExemplarCommands, view_message
 from semmap.nodes.perception_node.exemplar_store import ExemplarStore
 from semmap.nodes.perception_node.exemplar_views import ExemplarView, exemplar_view_of
 from semmap.nodes.perception_node.pipeline import observe_clouds, parts_in, shipped
 from semmap.nodes.perception_node.recognition.similarity import WIDTH
+from semmap.nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
 from semmap.nodes.perception_node.views.segmented_view import segment_cloud
-from semmap.nodes.runtime.loop import Node
 from semmap.schemas import errors, keys
-from semmap.schemas.calls import reply_type
 from semmap.schemas.commands import Forget, Learn, Learned
-from tests.conftest import PATIENCE_S, free_endpoint, handling
+from semmap.schemas.exemplars import ShownView
 from tests.perception_node.scenes import shot
 from tests.perception_node.things import CLASSES, at, seen
-
-
-@pytest.fixture(scope="module")
-def sessions():
-    endpoint = free_endpoint()
-    here = bus.Network(connect=(), listen=(endpoint,), mode="peer")
-    there = bus.Network(connect=(endpoint,), listen=("tcp/127.0.0.1:0",), mode="peer")
-    with bus.open_session(here) as session, bus.open_session(there) as other:
-        yield session, other
 
 
 @pytest.fixture(scope="module")
@@ -39,38 +32,34 @@ def things():
 
 
 class Asked:
-    """A perception node and a client."""
+    """A node that calls the handlers itself."""
 
-    def __init__(self, session, path: Path):
-        self._session = session
+    def __init__(self, path: Path):
         self.path = path
         self.learnt = []
+        self.hierarchy = CLASSES
+
+    def serve(self, prefix, handlers):
+        assert prefix == keys.PERCEPTION
+        self._handlers = handlers
 
     def __call__(self, call):
-        kind = type(call)
-        return bus.ask(
-            self._session,
-            keys.PERCEPTION,
-            kind.VERB,
-            call,
-            reply_type(kind),
-            timeout_s=PATIENCE_S,
-            patience_s=PATIENCE_S,
-        )
+        kind, function = self._handlers[call.VERB]
+        assert isinstance(call, kind)
+        return function(call)
 
 
 @pytest.fixture
-def asked(sessions, things, tmp_path):
-    session, other = sessions
-    asked = Asked(session, tmp_path / "lessons.npz")
-    node = Node("perception_node", other)
-    teaching = ExemplarCommands(
-        node, ExemplarStore(asked.path, shipped()), lambda: CLASSES, asked.learnt.append
-    )
-    named = [structs.replace(seen("Cup", at(0.0, 0.0)), entity=name) for name in ("thing1", "")]
-    teaching.see(things[:2], named)
-    with handling(node):
-        yield asked
+def asked(things, tmp_path):
+    asked = Asked(tmp_path / "lessons.npz")
+    store = ExemplarStore(asked.path, shipped())
+    asked.commands = ExemplarCommands(asked, store, lambda: asked.hierarchy, asked.learnt.append)
+    asked.commands.see(things[:2], named("thing1", ""))
+    return asked
+
+
+def named(*names):
+    return [structs.replace(seen("Cup", at(0.0, 0.0)), entity=name) for name in names]
 
 
 def test_what_is_seen_is_shown_listed_and_forgotten(asked, things):
@@ -103,6 +92,47 @@ def test_a_class_that_perception_never_learnt_has_what_the_map_has_above_it(aske
     assert asked.learnt[-1].exemplars.exemplars[0].ancestors == ()
     asked(Learn(class_="Cup", entity="thing1"))
     assert asked.learnt[-1].exemplars.exemplars[1].ancestors == shipped().ancestors["Cup"]
+
+
+def test_the_ancestors_of_a_class_of_the_map_alone_are_the_most_specific_first(asked, things):
+    tree = {"Gizmo": {"Tool", "Device", "Object"}, "Device": {"Tool", "Object"}, "Tool": {"Object"}}
+    asked.hierarchy = ClassHierarchy({name: frozenset(above) for name, above in tree.items()})
+    asked(Learn(class_="Gizmo", views=(view_message(exemplar_view_of(things[0], shipped())),)))
+    assert asked.learnt[-1].exemplars.exemplars[0].ancestors == ("Device", "Tool", "Object")
+
+
+def test_an_entity_that_an_image_edge_cuts_is_not_learned(asked, things):
+    cut = replace(things[0], segments=tuple(replace(s, cut=True) for s in things[0].segments))
+    asked.commands.see([cut], named("thing1"))
+    with pytest.raises(errors.Refused, match="only a part of thing1 is in view"):
+        asked(Learn(class_="Cup", entity="thing1"))
+
+
+def test_what_was_seen_seconds_ago_is_not_visible_any_more(asked, things, monkeypatch):
+    start_s = time.monotonic()
+
+    def wait_until(passed_s):
+        clock = SimpleNamespace(monotonic=lambda: start_s + passed_s)
+        monkeypatch.setattr(exemplar_commands, "time", clock)
+
+    wait_until(2.0)
+    asked.commands.see(things[1:2], named("thing2"))
+    assert asked(Learn(class_="Cup", entity="thing1")).shown == "entity thing1"
+    wait_until(4.0)
+    with pytest.raises(errors.Refused, match="thing1 is not visible to perception; visible are: thing2"):
+        asked(Learn(class_="Cup", entity="thing1"))
+    wait_until(6.0)
+    with pytest.raises(errors.Refused, match="thing1 is not visible to perception; no entity of the map is"):
+        asked(Learn(class_="Cup", entity="thing1"))
+
+
+def test_a_given_description_replaces_the_one_of_the_source(asked):
+    assert asked(Learn(class_="Cup", entity="thing1", shown="the red one")).shown == "the red one"
+
+
+def test_features_that_are_not_numbers_are_invalid(asked):
+    with pytest.raises(errors.BadRequest, match="must be 32-bit floats"):
+        asked(Learn(class_="Cup", views=(ShownView(features=b"12345", size_m=(1.0, 1.0, 1.0)),)))
 
 
 @pytest.mark.parametrize(

@@ -241,18 +241,29 @@ def _restricted(node: Term, base: DataRange, match: Match, used: dict[Triple, No
 
 
 def _members(head: Term, match: Match, used: dict[Triple, None]) -> list[Term] | None:
-    """Return the members of a list; None if it is incomplete, branching or cyclic."""
+    """Return the members of a list; None if it is incomplete, branching or cyclic.
+
+    A closure also has the other spellings of a value (dt-eq, eq-rep-o), of which the first one counts.
+    """
     members: list[Term] = []
     seen: set[Term] = set()
     while head != NIL:
         first, rest = list(match(head, FIRST, None)), list(match(head, REST, None))
-        if len(first) != 1 or len(rest) != 1 or head in seen:
+        if not _is_one_member([o for _, _, o in first]) or len(rest) != 1 or head in seen:
             return None
         seen.add(head)
         used |= {first[0]: None, rest[0]: None}
         members.append(first[0][2])
         head = rest[0][2]
     return members
+
+
+def _is_one_member(terms: Sequence[Term]) -> bool:
+    """Return whether there is one term, or only spellings of one value."""
+    if len(terms) == 1:
+        return True
+    values = {datatypes.value(term) if is_literal(term) else None for term in terms}
+    return len(values) == 1 and None not in values
 
 
 def _all(found: Iterable[bool | None]) -> bool | None:

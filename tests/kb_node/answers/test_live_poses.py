@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
+from types import SimpleNamespace
+
 import pytest
+from msgspec import structs
 
 from semmap.nodes.kb_node.answers.entity_queries import CurrentState
 from semmap.nodes.kb_node.answers.live_poses import LiveEntities
@@ -13,9 +17,10 @@ from semmap.ontology import vocabulary as v
 from semmap.schemas.bridge import Entities
 from semmap.schemas.commands import Relations
 from semmap.schemas.commits import Edit, NewEntity, Transaction
-from semmap.schemas.entities import Live, Pose
+from semmap.schemas.entities import Live, Pose, orientation_from_yaw
 from semmap.schemas.live import LivePoses
 from semmap.schemas.relations import Where
+from tests.kb_node.relations.entities import thing
 
 
 def new(name: str, class_name: str, x: float, **fields) -> NewEntity:
@@ -100,3 +105,29 @@ def test_tracking_survives_a_restart(tmp_path):
             found.checkpoint()
         assert (found.entity("robot1").tracked, found.entity("robot2").tracked) == ("sim", "")
         journal.close()
+
+
+@pytest.mark.parametrize(
+    ("pose", "moves"),
+    [
+        (Pose(position_m=(2.0005, 0.0, 0.0)), False),
+        (Pose(position_m=(2.002, 0.0, 0.0)), True),
+        (Pose(position_m=(2.0, 0.0, 0.0), orientation_wxyz=orientation_from_yaw(0.001)), False),
+        (Pose(position_m=(2.0, 0.0, 0.0), orientation_wxyz=orientation_from_yaw(0.01)), True),
+    ],
+)
+def test_a_live_pose_almost_as_committed_changes_nothing(pose, moves):
+    robot = structs.replace(thing("robot1", (2.0, 0.0, 0.0)), tracked="stream")
+    changes = []
+
+    def with_changes(entities):
+        changes.extend(entities)
+        return nullcontext()
+
+    space = SimpleNamespace(with_changes=with_changes)
+    places = SimpleNamespace(space=lambda: space)
+    live = LiveEntities(SimpleNamespace(find={"robot1": robot}.get, places=places), lambda: 0.0)
+    now = Live(pose=pose, stamp_ns=1, age_s=0.0, source="stream")
+    live.update(LivePoses(stamp_ns=1, entities={"robot1": now}))
+    with live.applied():
+        assert changes == ([structs.replace(robot, pose=pose)] if moves else [])

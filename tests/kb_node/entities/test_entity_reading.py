@@ -1,11 +1,13 @@
 import pytest
+from msgspec import structs
 
 from semmap.nodes.kb_node.entities import entity_reading
+from semmap.nodes.kb_node.entities.entity_reading import inherit_provenance
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commits import Edit, Transaction
-from semmap.schemas.entities import Pose
+from semmap.schemas.entities import Entity, Pose, Provenance
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
 
@@ -317,3 +319,56 @@ def test_another_name_of_an_entity_elsewhere_is_not_an_entity(semantic_map):
     semantic_map.commit(transaction(3, turtle("<http://o.org/1> owl:sameAs :c .")))
     semantic_map.commit(Transaction(id="4", source="file", remove=("c",)))
     assert [entity.class_ for entity in semantic_map.entities()] == ["Seat"]
+
+
+BEFORE = Provenance(commit=1, stamp_ns=1, source="operator")
+NOW = Provenance(commit=2, stamp_ns=2, source="file")
+PARTS = (
+    "provenance",
+    "pose_provenance",
+    "shape_provenance",
+    "reference_provenance",
+    "joint_provenance",
+    "switch_provenance",
+    "grip_provenance",
+)
+
+
+def with_provenance(said, **fields):
+    described = {"name": "chair1", "class_": "Chair", "iri": "urn:chair1", "types": ("Chair",), **fields}
+    return Entity(**described, **dict.fromkeys(PARTS, said))
+
+
+@pytest.mark.parametrize(
+    ("change", "part"),
+    [
+        ({"pose": Pose(position_m=(1.0, 0.0, 0.0))}, "pose_provenance"),
+        ({"size_m": (1.0, 1.0, 1.0)}, "shape_provenance"),
+        ({"model": "stool"}, "shape_provenance"),
+        ({"fixed": True}, "shape_provenance"),
+        ({"class_": "Stool"}, "shape_provenance"),
+        ({"preferred_reference": "seat"}, "reference_provenance"),
+        ({"alternative_references": ("seat",)}, "reference_provenance"),
+        ({"properties": {"openness": 0.5}}, "joint_provenance"),
+        ({"properties": {"isSwitchedOn": True}}, "switch_provenance"),
+        ({"properties": {"isGraspedBy": "robot1"}}, "grip_provenance"),
+        ({"properties": {"color": "red"}}, None),
+        ({}, None),
+    ],
+)
+def test_only_changed_parts_have_a_new_provenance(change, part):
+    known, entity = with_provenance(BEFORE), with_provenance(NOW, **change)
+    for concerned in (True, False):
+        found = inherit_provenance(entity, known, concerned=concerned)
+        expected = {name: NOW if name == part else BEFORE for name in PARTS}
+        expected["provenance"] = NOW if concerned else BEFORE
+        assert {name: getattr(found, name) for name in PARTS} == expected
+        assert structs.replace(found, **dict.fromkeys(PARTS, NOW)) == entity
+
+
+@pytest.mark.parametrize("part", PARTS[4:])
+def test_the_provenance_of_a_state_ends_with_the_state(part):
+    state = {"joint_provenance": "openness", "switch_provenance": "isSwitchedOn"}.get(part, "isGraspedBy")
+    known = with_provenance(BEFORE, properties={state: 1.0})
+    entity = structs.replace(with_provenance(NOW), **{part: None})
+    assert getattr(inherit_provenance(entity, known, concerned=True), part) == NOW

@@ -18,7 +18,14 @@ def restricted(base, *facets):
 
 PERCENT = restricted("xsd:integer", "xsd:minInclusive 0", "xsd:maxInclusive 100")
 NAMED = f" . :percent a rdfs:Datatype ; owl:equivalentClass {PERCENT}"
-LEVEL = "[ a rdfs:Datatype ; owl:oneOf ( 'low' 'high' 3 ) ]"
+
+
+def one_of(*members):
+    """Return a data range that lists its members in Turtle."""
+    return f"[ a rdfs:Datatype ; owl:oneOf ( {' '.join(map(str, members))} ) ]"
+
+
+LEVEL = one_of("'low'", "'high'", 3)
 RANGES = {
     PERCENT: (("0", "100", "'7'^^xsd:byte", "5.0"), ("-1", "101", "5.5", "'5'", "'5'^^xsd:float")),
     ":percent" + NAMED: (("100",), ("101", "'x'")),
@@ -40,6 +47,8 @@ RANGES = {
     restricted("xsd:hexBinary", "xsd:length 2"): (("'0A0B'^^xsd:hexBinary",), ("'0A'^^xsd:hexBinary",)),
     restricted("rdf:PlainLiteral", "rdf:langRange 'de'"): (("'a'@de", "'a'@de-AT"), ("'a'@den", "'a'")),
     LEVEL: (("'low'", "'3'^^xsd:byte"), ("'mid'", "4")),
+    one_of(0, 1, 2): (("1", "'2.0'^^xsd:decimal"), ("3", "'1'", "0.5")),  # the rules have a 0 and a 1, too
+    one_of(2, 3) + " . :Twofold rdfs:subClassOf [ owl:onProperty :e ; owl:hasValue 2.0 ]": (("2",), ("4",)),
     "[ a rdfs:Datatype ; owl:unionOf ( xsd:integer xsd:string ) ]": (("1", "'a'"), ("1.5",)),
     f"[ a rdfs:Datatype ; owl:unionOf ( {PERCENT} {LEVEL} ) ]": (("1", "'low'"), ("-1", "'mid'")),
     "[ a rdfs:Datatype ; owl:intersectionOf ( xsd:integer"
@@ -96,6 +105,8 @@ def test_facets_decide_membership():
     [
         (PERCENT, "300", "300 (integer) is not a value of integer from 0 to 100"),
         (LEVEL, "'mid'", '"mid" (string) is not one of "low", "high", "3"'),
+        (one_of(1, 2, 3, 4, 5), "9", '9 (integer) is not one of "1", "2", "3", "4", "5":'),
+        (one_of(1, 2, 3, 4, 5, 6, 7), "9", '9 (integer) is not one of "1", "2", "3", "4", "5" and 2 more:'),
         (
             restricted("xsd:string", "xsd:maxLength 2"),
             "'abc'",

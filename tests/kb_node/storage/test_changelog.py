@@ -48,6 +48,16 @@ def test_history_contains_old_and_new_values(stateful_map):
     ]
 
 
+def test_a_removed_entity_is_listed_with_its_class(stateful_map):
+    removed_together = transaction("go", remove=["chair1", "kitchen1"])
+    stateful_map.commit(removed_together)
+    (commit,) = history.HistoryReader(stateful_map._journal).history(History(since=2))
+    assert [(change.name, change.kind, change.was) for change in commit.changes] == [
+        ("chair1", "removed", "Chair"),
+        ("kitchen1", "removed", "Kitchen"),
+    ]
+
+
 def test_the_history_of_an_entity_is_filtered(stateful_map):
     stateful_map.commit(transaction("go", remove=["kitchen1"]))
     stateful_map.commit(adding("stool1"))

@@ -1,3 +1,7 @@
+import pytest
+
+from semmap.nodes.kb_node.storage.checkpointing import CheckpointSchedule
+from semmap.schemas.commits import Commit
 from tests.kb_node.home import chair, transaction
 
 
@@ -22,3 +26,45 @@ def test_a_checkpoint_is_due_after_many_triples_when_idle(semantic_map, monkeypa
     assert not semantic_map.checkpoint_is_due(quiet=False)
     semantic_map.checkpoint()
     assert not semantic_map.checkpoint_is_due(quiet=True)
+
+
+class NoNewTBox:
+    """A journal whose TBox does not change."""
+
+    def tbox_changes(self, *, after):
+        return []
+
+
+@pytest.fixture
+def schedule(monkeypatch):
+    monkeypatch.setattr("semmap.nodes.kb_node.storage.checkpointing.CHECKPOINT_EVERY_TRIPLES", 10)
+    return CheckpointSchedule(NoNewTBox(), checkpointed=5)
+
+
+def changing(inserted, retracted=0):
+    triples = (("<urn:s>", "<urn:p>", "<urn:o>"),)
+    return Commit(
+        id="1", seq=6, stamp_ns=1, source="file", inserted=triples * inserted, retracted=triples * retracted
+    )
+
+
+def test_a_checkpoint_is_urgent_once_most_of_the_map_has_changed(schedule):
+    schedule.count(changing(4, 6))
+    assert not schedule.is_urgent(range(20))
+    schedule.count(changing(1))
+    assert schedule.is_urgent(range(22))
+    assert not schedule.is_urgent(range(23))
+
+
+def test_what_changes_while_a_checkpoint_is_written_counts_for_the_next_one(schedule):
+    schedule.count(changing(11))
+    assert schedule.is_due(6, quiet=True)
+    schedule.mark_snapshot()
+    schedule.count(changing(10))
+    schedule.mark_written(6)
+    assert schedule.is_written(6)
+    assert not schedule.is_written(7)
+    assert not schedule.is_due(7, quiet=True)
+    schedule.count(changing(1))
+    assert schedule.is_due(8, quiet=True)
+    assert not schedule.is_due(8, quiet=False)

@@ -78,6 +78,49 @@ def test_what_is_seen_in_part_or_has_no_name_is_not_fitted(thing):
     assert asked(table(thing)) is None
 
 
+def test_things_that_cannot_be_fitted_do_not_keep_the_next_one_from_it():
+    things = [seen("Cup", at(0, 0), whole=False), seen("Object", at(1, 0)), seen("Cup", at(2, 0))]
+    names = [("cup1", "Cup"), ("object1", "Object"), ("cup2", "Cup")]
+    here = Table(things, config=CONFIG).told(
+        [entity(name, kind, thing.pose) for (name, kind), thing in zip(names, things, strict=True)]
+    )
+    here.observe(2)
+    request = asked(here)
+    assert (request.name, request.number) == ("cup2", 3)
+    assert request.seen.pose == things[2].pose
+
+
+def test_a_frame_whose_clouds_are_not_its_views_is_not_fitted():
+    here = table()
+    told = observe_views(here)
+    assert request_fit(told, (object(),), FrameResult(told, ()), here.tracks, CONFIG, CLASSES) is None
+
+
+def test_a_model_across_a_long_box_gives_no_orientation():
+    turned = at(0, 0, yaw=0.6)
+    book = seen("Book", turned)
+    here = Table([book], config=CONFIG).told([entity("book1", "Book", turned, source="perception")])
+    here.observe(2)
+    for yaw, kept in ((0.7, True), (0.6 + math.pi / 2, False), (0.6 + math.pi, True)):
+        found = Fit("Book", at(0, 0, yaw=yaw), book.size_m, 0.8, True, 1)
+        tracks = apply_fit(here.tracks, asked(here), found, CONFIG)
+        assert (tracks.known["book1"].fit.orientation_wxyz is not None) == kept
+        assert tracks.known["book1"].fit.score == 0.8
+
+
+def test_the_size_follows_a_fitted_orientation_across_the_box():
+    here = table(seen("Cup", at(0, 0), (0.1, 0.08, 0.1)))
+    answered(here, fit(math.pi / 2))
+    (told,) = observe_views(here).observations
+    assert told.size_m == pytest.approx((0.08, 0.1, 0.1))
+
+
+def test_an_observation_without_a_fit_gets_only_its_entity():
+    told = with_known_fit(CUP, "cup1", table().tracks)
+    assert told == structs.replace(CUP, entity="cup1")
+    assert with_known_fit(CUP, "", table().tracks) == CUP
+
+
 def test_the_map_and_all_others_are_told_the_orientation():
     here = table()
     answered(here, fit(1.5))

@@ -48,6 +48,15 @@ def test_neighbours_are_beside_or_above_one_another():
     assert near_pairs([]) == []
 
 
+def test_two_masks_of_a_detector_are_two_things():
+    masked = [
+        replace(one, segments=tuple(replace(segment, masked=True) for segment in one.segments))
+        for one in (FOOT, BESIDE)
+    ]
+    assert near_pairs(masked) == []
+    assert near_pairs([masked[0], BESIDE]) == near_pairs([FOOT, masked[1]]) == [(0, 1)]
+
+
 def test_what_is_known_of_a_pair():
     whole = thing([0.0, 0.0, 0.7], [0.1, 0.1, 1.0])
     held = np.array([[[-1.0, 0.5]], [[2.0, 3.0]]])

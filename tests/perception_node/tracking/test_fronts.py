@@ -18,6 +18,15 @@ def test_the_front_of_a_thing_is_as_wide_and_high_as_the_thing():
     assert not is_front(OVEN, FRONT)
 
 
+def test_the_front_may_be_the_long_or_the_short_side():
+    board = OrientedBox(at(1.0, 1.0, 0.0), (0.8, 0.5, 0.9))
+    assert is_front(OrientedBox(at(1.0, 1.15, 0.0), (0.78, 0.2, 0.9)), board)
+    deep = OrientedBox(at(1.0, 1.0, 0.0), (0.5, 0.6, 0.9))
+    assert is_front(OrientedBox(at(1.0, 1.15, 0.0), (0.42, 0.2, 0.9)), deep)
+    deeper = OrientedBox(at(1.0, 1.0, 0.0), (0.5, 0.7, 0.9))
+    assert not is_front(OrientedBox(at(1.0, 1.15, 0.0), (0.48, 0.2, 0.9)), deeper)
+
+
 @pytest.mark.parametrize(
     "piece",
     [

@@ -243,6 +243,12 @@ def test_another_size_is_told_where_the_whole_was_seen_often_enough(size_m, chan
         assert told(track(size_m=size_m, **changes), cup(source="operator", confidence=None)) is None
 
 
+def test_a_size_that_the_map_lacks_is_told_after_some_looks_too():
+    unsized = structs.replace(cup(), size_m=None)
+    assert told(track(frames=4), unsized) is None
+    assert told(track(), unsized).size == SIZES["Cup"]
+
+
 def test_a_thin_extent_may_be_off_by_centimetres():
     book = entity("book1", "Book", at(1, 1), (0.16, 0.24, 0.01), source="perception")
     assert told(track("Book", size_m=(0.16, 0.24, 0.024)), book) is None

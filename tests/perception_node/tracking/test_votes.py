@@ -44,6 +44,22 @@ def test_a_class_has_no_more_of_the_votes_than_one_above_it(said):
     assert 0.0 <= shares[0] <= shares[-1] <= 1.0 + 1e-9
 
 
+def test_the_votes_for_a_class_are_moved_to_another_one():
+    votes = cast(("Cup", 0.5), ("Bottle", 0.8))
+    moved = votes.moved("Cup", "Bottle")
+    assert moved.weights == {"Bottle": votes.weights["Cup"] + votes.weights["Bottle"]}
+    assert moved.frames == votes.frames
+    assert votes.moved("Cup", "Book").share("Book", CLASSES) == votes.share("Cup", CLASSES)
+    assert votes.moved("Book", "Cup").share("Cup", CLASSES) == votes.share("Cup", CLASSES)
+
+
+def test_remembered_votes_are_as_sure_as_they_were():
+    votes = Votes.remembered("Cup", 0.7)
+    assert votes.share("Cup", CLASSES) == 0.7
+    assert Votes().share("Cup", CLASSES) == 0.0
+    assert 0.6 < votes.cast("Bottle", 0.9).share("Cup", CLASSES) < 0.7
+
+
 def test_a_look_that_is_worth_more_outweighs_others():
     votes = cast(*[("Cup", 0.9)] * 4).cast("Bottle", 0.9, 8.0)
     assert votes.belief(CLASSES) == "Bottle"

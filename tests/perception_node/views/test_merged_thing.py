@@ -61,3 +61,16 @@ def test_colours_are_shares_of_full_light():
     colors = np.full((2000, 3), 255, np.uint8)
     thing = thing_of([segment(block([0, 0, 0], [0.1, 0.1, 0.1]), colors=colors)], [Support(0.0)])
     assert thing.colors == pytest.approx(1.0)
+
+
+def test_a_thing_is_what_one_of_its_segments_is():
+    points = block([0, 0, 0], [0.1, 0.1, 0.1])
+    thing = thing_of([segment(points), segment(points)], [Support(0.0)])
+    assert (thing.carrier, thing.masked, thing.whole, thing.count) == (False, False, True, 4000)
+    for change, found in (
+        ({"carrier": True}, (True, False, True)),
+        ({"masked": True}, (False, True, True)),
+        ({"cut": True}, (False, False, False)),
+    ):
+        thing = thing_of([segment(points), segment(points, **change)], [Support(0.0)])
+        assert (thing.carrier, thing.masked, thing.whole) == found

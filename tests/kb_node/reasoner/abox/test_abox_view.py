@@ -9,6 +9,7 @@ import pytest
 
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner.rules.general import GeneralEngine
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.reasoner.terms import SAME_AS, TYPE, is_literal
 from tests.kb_node.reasoner.graphs import triple, triples
 from tests.kb_node.reasoner.test_worlds import THEMES, follow
@@ -71,6 +72,16 @@ def test_a_pattern_returns_all_matching_facts(reasoner, ask):
     for pattern in patterns_of(everything):
         found = list(ask(*pattern))
         assert sorted(found) == sorted(fact for fact in everything if matches(pattern, fact)), pattern
+
+
+def test_asserted_facts_are_also_listed_by_subject(reasoner):
+    reasoner.apply(delete=triples(":shelf1 a :Shelf ; :part :room1 ; :mass 2 . :room1 :part :house1 ."))
+    data = [fact for fact in reasoner.asserted() if not is_schema(fact)]
+    listed = list(reasoner._engine._view.by_subject())
+    assert sorted(fact for facts in listed for fact in facts) == sorted(data)
+    subjects = [{s for s, _, _ in facts} for facts in listed if facts]
+    assert all(len(some) == 1 for some in subjects)
+    assert len(subjects) == len({s for s, _, _ in data})
 
 
 def test_conclusions_equal_those_of_the_rules(reasoner):

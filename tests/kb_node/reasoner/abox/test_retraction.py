@@ -51,3 +51,54 @@ def test_a_conclusion_may_have_another_reason_but_not_in_a_cycle():
     reasoner.update_computed(remove=[(table, bears, other)])
     assert laden not in reasoner.types(table)
     assert "<http://example.org/Cup>" not in reasoner.types(made)
+
+
+CHAINS = """
+    :in a owl:ObjectProperty , owl:TransitiveProperty . :contains owl:inverseOf :in .
+    :at a owl:ObjectProperty ; owl:propertyChainAxiom ( :on :in ) . :near a owl:ObjectProperty .
+    :near owl:propertyChainAxiom ( :beside :on ) .
+"""
+
+
+def names(*parts):
+    return tuple(f"<http://example.org/{part}>" for part in parts)
+
+
+@pytest.mark.parametrize(
+    ("facts", "lost", "conclusion"),
+    [
+        (":c :on :t , :s . :t :in :r . :s :in :r .", ("c", "on", "t"), ("c", "at", "r")),
+        (":c :on :t , :s . :t :in :r . :s :in :r .", ("s", "in", "r"), ("c", "at", "r")),
+        (":c :on :t , :s . :t :in :r . :r :contains :s .", ("t", "in", "r"), ("c", "at", "r")),
+        (":a :in :b , :c . :b :in :d . :c :in :d .", ("b", "in", "d"), ("a", "in", "d")),
+        (":a :in :b , :c . :b :in :d . :d :contains :c .", ("a", "in", "b"), ("d", "contains", "a")),
+        (":a :beside :b , :c . :b :on :d . :c :on :d .", ("a", "beside", "c"), ("a", "near", "d")),
+    ],
+)
+def test_the_conclusion_of_a_chain_stays_while_other_facts_entail_it(facts, lost, conclusion):
+    reasoner = Reasoner(triples(CHAINS))
+    facts = triples(facts)
+    reasoner.apply(insert=facts)
+    reasoner.apply(delete=[names(*lost)])
+    assert reasoner.holds(names(*conclusion))
+    left = [fact for fact in facts if fact != names(*lost)]
+    assert set(reasoner.inferred()) == set(Reasoner([*triples(CHAINS), *left]).inferred())
+    for fact in left:
+        reasoner.apply(delete=[fact])
+    assert not reasoner.holds(names(*conclusion))
+    assert set(reasoner.inferred()) == set()
+
+
+def test_an_asserted_edge_that_a_chain_entails_stays_as_a_conclusion():
+    reasoner = Reasoner(triples(CHAINS))
+    reasoner.apply(insert=triples(":c :on :t ; :at :r . :t :in :r ."))
+    reasoner.apply(delete=[names("c", "at", "r")])
+    assert names("c", "at", "r") in set(reasoner.inferred())
+
+
+def test_an_asserted_value_that_a_class_entails_stays_as_a_conclusion():
+    reasoner = Reasoner(triples(":Fridge rdfs:subClassOf [ owl:onProperty :does ; owl:hasValue :cooling ] ."))
+    reasoner.apply(insert=triples(":f a :Fridge ; :does :cooling , :humming ."))
+    reasoner.apply(delete=[names("f", "does", "cooling"), names("f", "does", "humming")])
+    assert reasoner.holds(names("f", "does", "cooling"))
+    assert not reasoner.holds(names("f", "does", "humming"))

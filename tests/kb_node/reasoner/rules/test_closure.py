@@ -165,3 +165,11 @@ def test_the_general_engine_answers_patterns():
                     f for f in everything if all(a in (None, b) for a, b in zip(pattern, f, strict=True))
                 }
                 assert set(ask(*pattern)) == wanted, pattern
+
+
+def test_a_spelling_of_a_later_query_counts_without_being_in_the_graph():
+    facts = triples(":x :mass 1 .")
+    (x, mass, _), spelled = facts[0], '"1.0"^^<http://www.w3.org/2001/XMLSchema#decimal>'
+    assert Closure(facts, mentions=[spelled]).holds((x, mass, spelled))
+    assert not Closure(facts, mentions=['"2"']).holds((x, mass, '"2"'))
+    assert not Closure(facts).holds((x, mass, spelled))

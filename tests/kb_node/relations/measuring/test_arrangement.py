@@ -3,6 +3,7 @@
 import pytest
 
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
+from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.arrangement import (
     find_attachments,
     find_between,
@@ -68,3 +69,27 @@ def test_an_attachment_ends_with_a_support():
     box = thing("box1", (0.0, 1.85, 0.0), size=(0.3, 0.3, 1.4))
     assert hangs in facts.update([box]).gone
     assert hangs in facts.update([], ["box1"]).come
+
+
+@pytest.mark.parametrize(
+    ("lower", "share"),
+    [
+        pytest.param(thing("box1", (0.0, 0.0, 0.0), "box", size=(0.2, 0.2, 0.3)), 1.0, id="under it"),
+        pytest.param(thing("box1", (0.0, 0.3, 0.0), "box", size=(0.2, 0.2, 0.9)), None, id="higher"),
+        pytest.param(thing("cup1", (0.1, 0.1, TOP)), None, id="on it"),
+        pytest.param(thing("box1", (3.0, 0.0, 0.0), "box", size=(0.2, 0.2, 0.3)), None, id="far away"),
+    ],
+)
+def test_an_object_beneath_a_table(lower, share):
+    there = space(lower)
+    made = measures.beneath(there.solids[lower.name], there.solids["table1"], there.limits)
+    assert (None if made is None else made.share) == share
+    assert made is None or (made.holds and made.gap_m > 0.3)
+
+
+def test_a_chair_half_beneath_a_table_is_beneath_it_by_its_seat():
+    there = space(thing("chair1", (0.0, -0.45, 0.0), yaw=1.57))
+    made = measures.beneath(there.solids["chair1"], there.solids["table1"], there.limits)
+    assert 0.5 < made.share < 1.0
+    assert 0.0 < made.gap_m < 0.4
+    assert made.height_m < TOP

@@ -5,11 +5,13 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec import structs
 
 from semmap.nodes.kb_node.relations.lazy_space import LazySpace
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.ontology.model_shapes import shapes
-from tests.kb_node.relations.entities import CORNER, ROOM, TABLE, TOP, thing
+from semmap.schemas.attachments import IS_GRASPED_BY
+from tests.kb_node.relations.entities import CORNER, PROVENANCE, ROOM, TABLE, TOP, thing
 
 LYING = (math.cos(math.pi / 4), 0.0, math.sin(math.pi / 4), 0.0)
 BOWL = thing("bowl1", (0.1, 0.0, TOP))
@@ -181,3 +183,34 @@ def test_cached_neighbours_equal_uncached_ones(places, margins):
             assert [set(space.around(solid, margin)) for margin in margins] == expected
             assert set(space.supporters_around(solid)) == set(space.grid.around(solid.bounds, 0.0, solid))
     assert space.cache is None
+
+
+@pytest.mark.parametrize(
+    ("support", "solid", "expected"),
+    [
+        pytest.param(TABLE, thing("cup1", (0.0, 0.0, TOP)), True, id="on it"),
+        pytest.param(TABLE, thing("cup1", (0.0, 0.0, TOP + 0.3)), False, id="in the air"),
+        pytest.param(TABLE, thing("cup1", (0.0, 0.0, 0.0)), False, id="under it"),
+        pytest.param(TABLE, thing("cup1", (2.0, 0.0, TOP)), False, id="beside it"),
+        pytest.param(BOWL, thing("apple1", (0.1, 0.0, TOP + 0.02)), True, id="in it"),
+        pytest.param(TABLE, CORNER, False, id="a place"),
+    ],
+)
+def test_an_object_may_support_what_is_on_or_inside_it(support, solid, expected):
+    space = Space([ROOM, support, solid])
+    assert space.may_support(space.solids[support.name], space.solids[solid.name]) == expected
+
+
+def test_what_is_attached_is_supported_only_by_what_is_carried_with_it():
+    def attached(entity, holder):
+        return structs.replace(entity, properties={IS_GRASPED_BY: holder}, grip_provenance=PROVENANCE)
+
+    tray = attached(thing("tray1", (0.0, 0.0, TOP)), "robot1")
+    cup = attached(thing("cup1", (0.0, 0.0, TOP + 0.03)), "tray1")
+    other = attached(thing("cup2", (0.1, 0.1, TOP + 0.03)), "robot1")
+    space = Space([ROOM, TABLE, tray, cup, other])
+    of = space.solids
+    assert space.holders == {"tray1": "robot1", "cup1": "tray1", "cup2": "robot1"}
+    assert space.may_support(of["tray1"], of["cup1"])
+    assert not space.may_support(of["table1"], of["tray1"])
+    assert not space.may_support(of["tray1"], of["cup2"])

@@ -1,0 +1,121 @@
+"""Files of alignments with other vocabularies."""
+
+import pytest
+
+from semmap.nodes.kb_node.entities import alignments
+from semmap.nodes.kb_node.entities.alignments import PoseMapping, SizeMapping
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+
+FILE = """
+title = "a:title stays as written"
+namespaces = ["a"]
+things = ["a:Thing", "<urn:x>"]
+names = ["b:name"]
+
+[prefixes]
+a = "http://a.org#"
+b = "http://b.org/"
+
+[[pose]]
+path = ["a:at", "a:region"]
+position = "a:xyz"
+orientation = "a:turn"
+order = "wxyz"
+origin = "bottom"
+
+[[pose]]
+position = "b:direct"
+
+[[size]]
+path = ["a:shape"]
+x = "a:depth"
+y = "a:width"
+z = "a:height"
+
+[[size]]
+x = "b:depth"
+y = "b:width"
+z = "b:height"
+
+[[set_aside]]
+triple = ["a:s", "a:p", "a:o"]
+why = "b: because"
+
+[relations]
+isOn = "b:on"
+"""
+
+
+def a(name):
+    return v.iri("http://a.org#" + name)
+
+
+def b(name):
+    return v.iri("http://b.org/" + name)
+
+
+@pytest.fixture
+def read():
+    return alignments.read(FILE, "a.toml")
+
+
+def test_prefixed_names_become_terms(read):
+    assert read.title == "a:title stays as written"
+    assert read.prefixes == {"a": "http://a.org#", "b": "http://b.org/"}
+    assert read.namespaces == ("http://a.org#",)
+    assert read.things == (a("Thing"), "<urn:x>")
+    assert read.names == (b("name"),)
+    assert read.relations == {"isOn": b("on")}
+    (ignored,) = read.set_aside
+    assert (ignored.triple, ignored.why, ignored.instead) == ((a("s"), a("p"), a("o")), "b: because", None)
+
+
+def test_poses_and_sizes_are_found_along_paths(read):
+    assert read.pose == (
+        PoseMapping(
+            path=(a("at"), a("region")),
+            position=a("xyz"),
+            orientation=a("turn"),
+            order="wxyz",
+            origin="bottom",
+        ),
+        PoseMapping(position=b("direct"), order="xyzw", origin="middle"),
+    )
+    assert read.size[0] == SizeMapping(path=(a("shape"),), x=a("depth"), y=a("width"), z=a("height"))
+    assert read.edges == {a("at"), a("region"), a("shape")}
+
+
+def test_the_entry_properties_are_those_of_the_entity_itself(read):
+    assert read.entry_properties == {
+        *(a("at"), b("direct"), a("shape"), b("depth")),
+        *(b("name"), v.RDFS_LABEL),
+    }
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("title = ", "a.toml is not an alignment: "),
+        (FILE.replace("a:Thing", "c:Thing"), "a.toml is not an alignment: it has no prefix 'c'"),
+        (FILE.replace('["a"]', '["c"]'), "it has no prefix 'c'"),
+        ("more = true" + FILE, "a.toml is not an alignment: .*more"),
+        (FILE.replace('"wxyz"', '"xwyz"'), "a.toml is not an alignment: "),
+        ('title = "t"', "a.toml is not an alignment: .*prefixes"),
+    ],
+)
+def test_an_invalid_file_is_named(text, said):
+    with pytest.raises(errors.BadFile, match=said):
+        alignments.read(text, "a.toml")
+
+
+def test_the_shipped_alignments_are_found_by_their_namespaces():
+    shipped = alignments.shipped()
+    assert len(shipped) > 3
+    assert alignments.shipped() is shipped
+    for known in shipped:
+        for namespace in known.namespaces:
+            assert known in alignments.find_for_namespaces(["http://else.org/", namespace])
+    assert alignments.find_for_namespaces(["http://else.org/"]) == ()
+    every = [namespace for known in shipped for namespace in known.namespaces]
+    assert alignments.find_for_namespaces(every) == shipped
