@@ -272,7 +272,9 @@ def test_a_time_or_condition_is_kept_beside_a_message(read, text, condition, tim
     understood = read(text)
     (step,) = understood.steps
     assert (step.condition, step.time) == (condition, time)
-    assert f"'{time}' {OPEN_TIME}" in understood.doubts or f"'{condition}' {OPEN_CONDITION}" in understood.doubts
+    assert (
+        f"'{time}' {OPEN_TIME}" in understood.doubts or f"'{condition}' {OPEN_CONDITION}" in understood.doubts
+    )
 
 
 @pytest.mark.parametrize(
