@@ -98,10 +98,11 @@ def test_nothing_is_left_of_a_simulator_that_has_ended():
 def test_an_older_snapshot_is_ignored_and_one_after_the_clock_was_set_is_taken():
     def taken(stamp_ns: int) -> list[str]:
         view = SceneView()
-        view.take(Scene(run="r", version=1, stamp_ns=hour_ns, sim_time_s=0.0, world="w", bodies=(body("a"),)))
-        view.take(
-            Scene(run="r", version=2, stamp_ns=stamp_ns, sim_time_s=0.0, world="w", bodies=(body("b"),))
-        )
+        for version, at_ns, name in ((1, HOUR_NS, "a"), (2, stamp_ns, "b")):
+            there = (body(name),)
+            view.take(
+                Scene(run="r", version=version, stamp_ns=at_ns, sim_time_s=0.0, world="w", bodies=there)
+            )
         return list(view.bodies)
 
     assert taken(HOUR_NS - 1) == ["a"]
