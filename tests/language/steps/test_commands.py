@@ -84,6 +84,13 @@ def test_a_verb_may_be_left_out_the_second_time(read, text, steps):
     assert texts(read(text)) == steps
 
 
+@pytest.mark.parametrize("joined", [", to", ", then to", " and then to", ", and to", ", and then, to"])
+def test_several_goals_are_several_steps(read, joined):
+    understood = read(f"go to the table{joined} the desk")
+    assert texts(understood) == ["Motion(Goal=table1)", "Motion(Goal=desk1)"]
+    assert understood.doubts == ()
+
+
 @pytest.mark.parametrize(
     ("text", "theme"),
     [
@@ -386,7 +393,10 @@ def test_something_for_a_purpose_is_of_the_class_for_it(read, text, entities):
         ("find the plates and take them to the sofa", "Bringing(Theme=plate1|plate2, Goal=couch1)"),
         ("take the plates and give them to me", 'Giving(Theme=plate1|plate2, Recipient="to me")'),
         ("take the red cup and clean the blue one", "Cleaning(Theme=bluecup)"),
-        ("go to the table, then to the desk", "Motion(Goal=desk1)"),
+        (
+            "if you take the milk, bring it to Nora",
+            "Bringing(Theme=milk1, Beneficiary=nora1) [if you take the milk]",
+        ),
     ],
 )
 def test_a_pronoun_takes_the_verb_of_a_person_or_of_a_thing(read, text, last):
