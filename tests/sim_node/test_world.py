@@ -16,7 +16,7 @@ from semmap.schemas.entities import Pose, angle_rad, distance_m
 from semmap.schemas.errors import BadFile, Refused
 from semmap.schemas.scenes import DriveBase, GripOrder, JointOrder, Placement
 from tests.household import household_classes
-from tests.sim_node.orders import bodies, hand, order, pose
+from tests.sim_node.orders import bodies, hand, order, pose, spawned
 
 
 def body(world, name):
@@ -743,3 +743,15 @@ def test_hundreds_of_bodies_at_one_spot_are_stacked_without_a_search_of_all_plac
     heights = sorted(there.pose.position_m[2] for there in bodies(world).values())
     assert np.diff(heights).min() > 0.05
     assert len(tried) < 20 * count
+
+
+def test_only_bodies_that_exist_have_a_state_to_store():
+    world = spawned(order("can1", "can", pose(1, 0)), order("fridge1", "fridge", pose(3, 0)))
+    stored = world.stored_bodies(["can1", "fridge1", "gone1"])
+    assert stored.keys() == {"can1", "fridge1"}
+    assert stored["can1"].pose.position_m == pytest.approx((1.0, 0.0, 0.0), abs=1e-6)
+    assert (stored["can1"].joints, stored["can1"].held_by) == ({}, "")
+    assert stored["fridge1"].joints
+    other = spawned(order("can1", "can", pose(0, 5)), order("fridge1", "fridge", pose(6, 6)))
+    other.restore(stored)
+    assert other.stored_bodies(["can1", "fridge1"]) == stored

@@ -7,7 +7,7 @@ from semmap.nodes.runtime.class_names import ClassNames
 from semmap.nodes.sim_node.models.sources import Models
 from semmap.nodes.sim_node.physics import base_scene
 from semmap.nodes.sim_node.vision.view import camera_names, camera_view
-from semmap.nodes.sim_node.world_file import open_world
+from semmap.nodes.sim_node.world_file import names_classes, open_world, require_world, write_world
 from semmap.schemas.entities import ClassInfo
 from semmap.schemas.errors import BadFile
 from tests.household import household_classes
@@ -170,3 +170,49 @@ def test_the_class_map_states_classes_by_name_or_label(tmp_path):
     assert caddy.class_ == "Basket"
     with pytest.raises(BadFile, match="--class-map: unknown class 'Baskett'; did you mean Basket"):
         open_world(path, Models(), classes=known, class_map={"caddy": "Baskett"})
+
+
+MJCF = '<mujoco><worldbody><body name="{name}"><geom size=".1"/></body></worldbody></mujoco>'
+
+
+@pytest.mark.parametrize("relation", ["on", "in", "next_to"])
+def test_a_world_has_positions_and_not_relations(tmp_path, relation):
+    path = tmp_path / "world.json"
+    cup = {"class": "Cup", "name": "cup1", relation: "table1"}
+    path.write_text(json.dumps({"entities": [{"class": "Table", "at": [0, 0, 0]}, cup]}))
+    with pytest.raises(BadFile, match=r"^world\.json: entity cup1: on, in and next_to place objects"):
+        open_world(path, Models())
+    path.write_text(json.dumps({"entities": [{"class": "Cup", relation: "table1"}]}))
+    with pytest.raises(BadFile, match=r"^world\.json: entity 1: on, in and next_to"):
+        require_world(path, Models())
+
+
+def test_a_body_that_cannot_be_created_is_named(tmp_path):
+    path = tmp_path / "world.json"
+    far = {"class": "Cup", "name": "cup1", "at": [9000, 0, 0]}
+    path.write_text(json.dumps({"entities": [far]}))
+    with pytest.raises(BadFile, match=r"^world\.json: cup1 cannot be created: .* from the origin"):
+        open_world(path, Models())
+
+
+def test_bodies_of_a_scene_in_json_depend_on_classes_and_those_of_no_world_do_not(tmp_path):
+    path = tmp_path / "world.json"
+    path.write_text(json.dumps(SCENE))
+    assert names_classes(path)
+    assert not names_classes(None)
+
+
+def test_a_scene_in_json_has_no_shapes_of_its_own(tmp_path):
+    path, target = tmp_path / "world.json", tmp_path / "shapes" / "world_shapes.json"
+    path.write_text(json.dumps(SCENE))
+    write_world(path, Models(), target)
+    assert not target.parent.exists()
+
+
+def test_a_world_is_checked_without_being_opened(tmp_path):
+    path = tmp_path / "world.xml"
+    path.write_text(MJCF.format(name="cup1"))
+    require_world(path, Models())
+    path.write_text("<mujoco><worldbody><body><geom/></body></worldbody></mujoco>")
+    with pytest.raises(BadFile, match=r"world\.xml"):
+        require_world(path, Models())

@@ -165,3 +165,34 @@ def test_a_later_world_does_not_overwrite_shapes_of_the_same_names(tmp_path, mon
     assert found == ["world/table1", "world/table1/1", "world/table1/2"]
     assert [model_shapes.shape_named(name).surfaces[0].height for name in found] == [0.61, 0.41, 0.51]
     assert model_shapes.model_in_world("table1", "table", (1.0, 1.0, 0.9)) == "table"
+
+
+def test_a_joint_of_the_body_itself_does_not_hide_those_of_its_parts():
+    shapes = world_shapes(
+        World(
+            mujoco.MjSpec.from_string("""<mujoco><worldbody>
+          <body name="cabinet1" pos="0 0 1"><joint name="whole" axis="0 0 1" range="0 90"/>
+            <geom type="box" size=".3 .3 .5"/>
+            <body name="ball" pos="0 0 .6"><joint name="socket" type="ball"/>
+              <geom type="sphere" size=".05"/></body>
+            <body name="leaf" pos=".31 .3 0"><joint name="door" axis="0 0 1" range="0 90"/>
+              <geom type="box" size=".01 .3 .5" pos="0 -.3 0"/></body></body>
+        </worldbody></mujoco>""")
+        )
+    )
+    assert [leaf.name for leaf in shapes["cabinet1"].leaves] == ["door"]
+
+
+def test_meshes_of_equal_boxes_and_other_forms_have_shapes_of_their_own():
+    """Two tetrahedra fill the same box, one upside down."""
+    corners = {"up": "0 0 0 1 0 0 0 1 0 0 0 1", "down": "0 0 1 1 0 1 0 1 1 0 0 0"}
+    assets = "".join(f'<mesh name="{name}" vertex="{points}"/>' for name, points in corners.items())
+    pieces = "".join(
+        f'<body name="{name}1" pos="{x} 0 0"><geom type="mesh" mesh="{name}"/></body>'
+        for x, name in enumerate(corners)
+    )
+    world = World(
+        mujoco.MjSpec.from_string(f"<mujoco><asset>{assets}</asset><worldbody>{pieces}</worldbody></mujoco>")
+    )
+    shapes = world_shapes(world)
+    assert shapes["up1"] != shapes["down1"]

@@ -39,7 +39,7 @@ def walls(model: mujoco.MjModel, data: mujoco.MjData, bodies: Collection[int]) -
 def _points(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> Floats:
     """Return points (N, 3) whose hull contains the geometry; map frame [m]."""
     kind = int(model.geom_type[geom])
-    centre, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
+    half = model.geom_aabb[geom, 3:]  # about the origin of a shape that is not a mesh
     if kind == int(mujoco.mjtGeom.mjGEOM_MESH):
         mesh = int(model.geom_dataid[geom])
         start = int(model.mesh_vertadr[mesh])
@@ -49,10 +49,10 @@ def _points(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> Floats:
         reach = half[0] / np.cos(np.pi / _SIDES)
         ring = np.stack([np.cos(angle) * reach, np.sin(angle) * reach, np.zeros(_SIDES)], axis=1)
         up = np.array([0.0, 0.0, half[2]])
-        own = np.concatenate([ring - up, ring + up]) + centre
+        own = np.concatenate([ring - up, ring + up])
     else:
         signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
-        own = centre + signs * half
+        own = signs * half
     rotation = data.geom_xmat[geom].reshape(3, 3)
     points: Floats = own @ rotation.T + data.geom_xpos[geom]
     return points

@@ -3,15 +3,24 @@
 import json
 import math
 from itertools import combinations
+from types import SimpleNamespace
 
 import pytest
 from msgspec import structs
 
-from semmap.nodes.coordinator.commands.placement import at_room, make_request, placing_of
+from semmap.nodes.coordinator.commands.placement import (
+    at_room,
+    make_request,
+    place_described,
+    placing_of,
+)
+from semmap.nodes.coordinator.kb_coroutines import run
 from semmap.schemas import commands as c
 from semmap.schemas import errors
 from semmap.schemas.bridge import Room
 from semmap.schemas.entities import Pose, orientation_from_yaw
+from semmap.schemas.scene_files import Described
+from tests.coordinator.reconciler.test_reconcile import entity
 
 SMALL = (0.1, 0.1, 0.1)
 TABLE = c.Add(class_="Living_Room_Table", name="table1", at=(1.0, 1.0, 0.0), yaw=0.5, size=(1.2, 0.8, 0.7))
@@ -157,3 +166,25 @@ def test_a_scene_with_a_placement_that_is_not_possible_adds_nothing(dispatcher, 
         dispatcher.change(scene(*entities))
     assert reason in error.value.text
     assert not dispatcher.map.entities
+
+
+@pytest.mark.parametrize("note", ["", "cup1 is close to the edge of table1"])
+def test_each_note_about_the_room_of_a_scene_s_objects_is_reported_once(note):
+    items = [
+        (name, Described(class_="Cup", on="table1"), SimpleNamespace(place=False, model="cup"))
+        for name in ("cup1", "cup2")
+    ]
+    table = entity("table1", Pose(position_m=(0.0, 0.0, 0.0)))
+    asked = []
+
+    def answer(call):
+        asked.append(call)
+        return Room(pose=Pose(position_m=(0.0, 0.0, 0.7)), note=note)
+
+    placed, notes = run(place_described(items, {"table1": table}, replace=False), answer)
+    assert notes == ((note,) if note else ())
+    assert [(name, item.at, item.on) for name, item, _ in placed] == [
+        ("cup1", (0.0, 0.0, 0.7), None),
+        ("cup2", (0.0, 0.0, 0.7), None),
+    ]
+    assert [[other.name for other in call.others] for call in asked] == [[], ["cup1"]]

@@ -1,13 +1,18 @@
 """Values that are probably mistakes."""
 
+import math
+
 import pytest
+from msgspec import structs
 
 from semmap.nodes.coordinator.commands.plausibility import (
     find_doubts,
     find_isolation,
+    require_carry,
     require_same_nature,
 )
 from semmap.schemas import errors
+from semmap.schemas.commands import Attach, Move, Update
 from semmap.schemas.entities import ClassInfo, Entity, Pose, Provenance, orientation_from_yaw
 
 BY = Provenance(commit=1, stamp_ns=1, source="operator")
@@ -55,6 +60,39 @@ def test_outside_every_place(at, places, outside):
     notes = find_doubts("cup1", class_info("Cup"), pose, None, places)
     assert notes == (("cup1 at (3.9, 3) is outside every place of the map",) if outside else ())
     assert find_doubts("hall", class_info("Hall", place=True), pose, None, places) == ()
+
+
+@pytest.mark.parametrize(
+    ("at", "outside"),
+    [
+        ((3.5, 2.1, 0.0), False),  # near a corner of the room in its own frame
+        ((3.5, 3.9, 0.0), True),  # the same corner if it were turned the other way
+        ((3.7, 3.0, 0.0), True),
+        ((2.3, 3.4, 0.0), False),
+    ],
+)
+def test_a_room_that_is_turned_by_less_than_a_quarter(at, outside):
+    room = entity("room", at=(2.0, 3.0, 0.0), size=(4.0, 1.0, 2.5), place=True, yaw=-math.pi / 6)
+    notes = find_doubts("cup1", class_info("Cup"), Pose(position_m=at), None, [room])
+    assert bool(notes) == outside
+
+
+@pytest.mark.parametrize(("at", "outside"), [((0.5, 0.5, 0.0), False), ((1.5, 1.5, 0.0), True)])
+def test_a_place_with_a_polygon_ends_at_its_border(at, outside):
+    """The point that is outside is inside the box around the triangle."""
+    triangle = "POLYGON ((0 0, 2 0, 0 2, 0 0))"
+    place = entity("room", at=(1.0, 1.0, 0.0), size=(2.0, 2.0, 2.5), place=True)
+    place = structs.replace(place, properties={"hasExtent": triangle})
+    notes = find_doubts("cup1", class_info("Cup"), Pose(position_m=at), None, [place])
+    assert bool(notes) == outside
+
+
+@pytest.mark.parametrize("command", [Update(name="a"), Move(name="a"), Attach(name="a", to="b")])
+def test_contents_are_left_only_if_others_are_carried(command):
+    require_carry(command)
+    require_carry(structs.replace(command, carry=True, leave=("cup1",)))
+    with pytest.raises(errors.BadRequest, match="--leave requires --carry"):
+        require_carry(structs.replace(command, leave=("cup1",)))
 
 
 def test_a_size_ten_times_off():

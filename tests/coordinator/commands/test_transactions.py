@@ -363,3 +363,19 @@ def test_an_invalid_assignment_is_rejected(words):
 def test_an_assignment_may_have_an_empty_value():
     (new,) = transactions.add(c.Add(class_="Chair", id="a", set=("note=",)), "chair1", CHAIR, HERE, None).add
     assert said(new.set) == {"note": ("",)}
+
+
+@pytest.mark.parametrize("fields", [{"at": (9.0, 2.0, 0.0)}, {"size": (9.0, 2.0, 2.5)}])
+def test_a_file_does_not_move_a_place_with_a_polygon_as_a_box(fields):
+    with pytest.raises(errors.Refused, match=r"^the extent of kitchen1 is a polygon"):
+        transactions.edit_entity(DRAWN, KITCHEN, Described(class_="Kitchen", **fields))
+
+
+def test_a_file_gives_a_place_with_a_polygon_another_one_or_another_word():
+    another = "POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0))"
+    edit = transactions.edit_entity(
+        DRAWN, KITCHEN, Described(class_="Kitchen", extent=another, at=(1.0, 1.0, 0.0))
+    )
+    assert edit.at == (2.0, 2.0, 0.0)
+    edit = transactions.edit_entity(DRAWN, KITCHEN, Described(class_="Kitchen", ref="galley"))
+    assert (edit.at, edit.ref) == (None, "galley")

@@ -74,3 +74,11 @@ def test_an_invalid_pose_is_reported():
     say(published, "lidar", "robot1", yaw=1.0, orientation=(1.0, 0.0, 0.0, 0.0))
     assert not list(published)
     assert any("yaw or orientation" in problem for problem in published.problems(0.0))
+
+
+def test_the_age_of_a_frame_is_the_time_since_its_last_message():
+    published = PublishedFrames(2.0)
+    say(published, "lidar", "robot1", 100.0)
+    assert published.link("lidar", 101.5).age_s == 1.5
+    assert published.link("lidar", 99.0).age_s == 0.0  # read before the message was received
+    assert published.link("lidar", 103.0).age_s == 3.0

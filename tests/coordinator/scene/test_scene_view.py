@@ -2,6 +2,8 @@ from semmap.nodes.coordinator.scene.scene_view import SceneView
 from semmap.schemas.entities import Pose
 from semmap.schemas.scenes import Body, Poses, Scene
 
+HOUR_NS = 3_600_000_000_000
+
 
 def body(name: str) -> Body:
     return Body(
@@ -76,3 +78,39 @@ def test_a_clock_that_was_set_back_does_not_stop_the_poses():
         Scene(run="r", version=1, stamp_ns=15, sim_time_s=0.0, world="w", bodies=(body("a"), body("b")))
     )
     assert view.update(poses(20, (False, True))) == {"a"}
+
+
+def test_it_has_the_run_and_the_stamp_of_the_newest_poses():
+    view = seen()
+    assert (view.known, view.run, view.stamp_ns) == (True, "r", 10)
+    view.update(poses(12, (True, True)))
+    assert (view.run, view.stamp_ns) == ("r", 12)
+
+
+def test_nothing_is_left_of_a_simulator_that_has_ended():
+    view = seen()
+    view.forget()
+    assert (view.known, view.bodies, view.run, view.stamp_ns, view.sim_time_s) == (False, {}, "", 0, 0.0)
+    view.take(Scene(run="r", version=1, stamp_ns=5, sim_time_s=0.0, world="w", bodies=(body("a"),)))
+    assert list(view.bodies) == ["a"]  # though it is older than what was forgotten
+
+
+def test_an_older_snapshot_is_ignored_and_one_after_the_clock_was_set_is_taken():
+    def taken(stamp_ns: int) -> list[str]:
+        view = SceneView()
+        for version, at_ns, name in ((1, HOUR_NS, "a"), (2, stamp_ns, "b")):
+            there = (body(name),)
+            view.take(
+                Scene(run="r", version=version, stamp_ns=at_ns, sim_time_s=0.0, world="w", bodies=there)
+            )
+        return list(view.bodies)
+
+    assert taken(HOUR_NS - 1) == ["a"]
+    assert taken(HOUR_NS + 1) == ["b"]
+    assert taken(0) == ["b"]
+
+
+def test_a_body_that_was_created_since_is_added():
+    view = seen()
+    view.add((body("c"),))
+    assert list(view.bodies) == ["a", "b", "c"]

@@ -5,7 +5,7 @@ import pytest
 
 from semmap.nodes.sim_node.models.facets import facets, surface_of
 from semmap.nodes.sim_node.models.library import build
-from semmap.nodes.sim_node.models.parts import Mesh, Part, Shape, about, ball, box, pill, rod
+from semmap.nodes.sim_node.models.parts import Mesh, Part, Role, Shape, about, ball, box, pill, rod
 from semmap.nodes.sim_node.models.variety_table import KINDS
 
 RED = (1.0, 0.0, 0.0)
@@ -61,3 +61,18 @@ def test_every_model_has_a_surface_of_its_size(name):
 def test_a_surface_has_the_colours_of_its_parts():
     colours = np.frombuffer(surface_of(build("apple", None)).colours, "u1").reshape(-1, 3)
     assert any((red > 150) and green < 80 for red, green, _ in colours.tolist())
+
+
+@pytest.mark.parametrize("name", ["fridge", "oven", "drawer", "book"])
+def test_a_joint_moves_the_points_of_its_parts(name):
+    model = build(name, None)
+    surface = surface_of(model)
+    points = np.frombuffer(surface.points, "<f4").reshape(-1, 3)
+    assert [leaf.joint for leaf in surface.leaves] == [leaf.joint.name for leaf in model.leaves]
+    for leaf, own in zip(surface.leaves, model.leaves, strict=True):
+        moved = [
+            facets(part).points
+            for part in model.parts
+            if part.role is not Role.COLLISION and part.joint == own.joint
+        ]
+        assert points[leaf.first : leaf.first + leaf.count] == pytest.approx(np.concatenate(moved), abs=1e-5)

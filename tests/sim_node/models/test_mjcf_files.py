@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from semmap.nodes.sim_node.models.parts import Role
 from semmap.nodes.sim_node.models.sources import Models
 from semmap.nodes.sim_node.models.write_shapes import own_notes, own_shapes
 from semmap.nodes.sim_node.world import World
@@ -162,3 +163,27 @@ def test_notes_are_told_of_those_files_that_are_a_class_s_model(folder):
         "because along already moves that body; 1 tendon (string) omitted;"
         " 2 actuators (motor) omitted; 1 equality constraint omitted"
     )
+
+
+COLOURED = """<mujoco>
+  <asset><material name="green" rgba="0 1 0 1"/><material name="blue" rgba="0 0 1 1"/></asset>
+  <worldbody><body name="block">
+    <geom type="box" size="0.1 0.1 0.1" material="green" rgba="1 0 0 1"/>
+    <geom type="box" size="0.1 0.1 0.1" pos="0 0 0.2" material="blue"/>
+    <geom type="box" size="0.1 0.1 0.1" pos="0 0 0.4" rgba="1 0 0 1"/>
+    <geom type="sphere" size="0.02" pos="0 0 0.5" rgba="1 1 0 1" contype="0" conaffinity="0"/>
+    <geom type="box" size="0.1 0.1 0.25" pos="0 0 0.25" rgba="1 1 1 0"/>
+  </body></worldbody>
+</mujoco>"""
+
+
+def test_a_part_has_the_colour_of_its_material_and_collides_or_is_seen_as_in_the_file(tmp_path):
+    (tmp_path / "block.xml").write_text(COLOURED)
+    parts = Models(tmp_path)("block", None).parts
+    assert [(part.role, part.colour) for part in parts] == [
+        (Role.BOTH, (0.0, 1.0, 0.0)),
+        (Role.BOTH, (0.0, 0.0, 1.0)),
+        (Role.BOTH, (1.0, 0.0, 0.0)),
+        (Role.VISUAL, (1.0, 1.0, 0.0)),
+        (Role.COLLISION, (1.0, 1.0, 1.0)),
+    ]

@@ -163,3 +163,13 @@ def test_bodies_from_files_stand_beside_others(folder):
     assert heights["f"] == pytest.approx(0, abs=0.002)
     world.delete([*"abcdf"])
     assert world.scene().bodies == ()
+
+
+def test_a_mesh_without_a_colour_that_can_be_read_is_grey(folder, monkeypatch):
+    def unreadable(self):
+        raise ValueError("no texture")
+
+    monkeypatch.setattr(trimesh.visual.ColorVisuals, "main_color", property(unreadable))
+    (part,) = Models(folder)("brick", None).parts
+    assert max(part.colour) - min(part.colour) < 0.1
+    assert all(0.2 < channel < 0.9 for channel in part.colour)

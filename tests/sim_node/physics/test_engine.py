@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from semmap.nodes.sim_node.bodies import StoredBody
 from semmap.nodes.sim_node.body_classes import BodyClasses
 from semmap.nodes.sim_node.models.library import build as library_model
 from semmap.nodes.sim_node.order_validation import validate_spawn
@@ -359,3 +360,46 @@ def test_many_at_once_need_more_slots_than_there_are():
 
 def _poses(world):
     return [Pose(position_m=tuple(row[:3].tolist())) for row in world.poses()]
+
+
+def test_bodies_are_restored_where_they_stood_free_or_fixed_or_held():
+    world = engine(*cans(3), order("lamp1", "lamp", pose(0.0, 3.0, 1.0), fixed=True))
+    grip = Pose(position_m=(0.0, 0.0, 0.3))
+    world.restore(
+        {
+            "can0": StoredBody(pose(5.0, 1.0)),
+            "lamp1": StoredBody(pose(2.0, 3.0, 1.5)),
+            "can1": StoredBody(pose(2.0, 2.0, 0.3), {}, "can2", grip),
+        }
+    )
+    assert where(world, "can0") == pytest.approx((5.0, 1.0, 0.0), abs=1e-6)
+    assert where(world, "lamp1") == pytest.approx((2.0, 3.0, 1.5), abs=1e-6)
+    record = world.records["can1"]
+    assert (record.held_by, record.grip) == ("can2", grip)
+    world.put({"can2": pose(4.0, 0.0)})
+    world.carry(["can2"])
+    assert where(world, "can1") == pytest.approx((4.0, 0.0, 0.3), abs=1e-6)
+
+
+def test_a_body_that_was_held_by_one_that_is_gone_is_restored_free():
+    world = engine(*cans(1))
+    world.restore({"can0": StoredBody(pose(1.0, 1.0, 0.5), {}, "gone1", pose(0.0, 0.0))})
+    record = world.records["can0"]
+    assert (record.held_by, record.grip) == ("", None)
+    assert where(world, "can0") == pytest.approx((1.0, 1.0, 0.5), abs=1e-6)
+
+
+def test_joints_are_restored_if_they_have_as_many_coordinates_as_before():
+    world = engine(order("fridge1", "fridge", pose(0.0, 0.0)))
+    (joint, *_) = world.index.joint_coordinates("fridge1")
+    world.restore({"fridge1": StoredBody(pose(0.0, 0.0), {joint: (0.7,), "another": (0.3,)})})
+    assert world.data.qpos[world.index.joint_coordinates("fridge1")[joint]] == pytest.approx([0.7])
+    world.restore({"fridge1": StoredBody(pose(0.0, 0.0), {joint: (0.1, 0.2)})})
+    assert world.data.qpos[world.index.joint_coordinates("fridge1")[joint]] == pytest.approx([0.7])
+
+
+def test_bodies_that_are_restored_where_they_are_cost_no_compilation():
+    world = engine(order("lamp1", "lamp", pose(0.0, 3.0, 1.0), fixed=True), *cans(1))
+    model = world.model
+    world.restore({"lamp1": StoredBody(pose(0.0, 3.0, 1.0)), "can0": StoredBody(pose(3.0, 0.0))})
+    assert world.model is model

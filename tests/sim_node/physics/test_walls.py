@@ -105,3 +105,12 @@ def test_bodies_and_what_moves_are_no_walls_but_what_follows_them_is():
     found = outlines(body_xml=shelf + can + frame, bodies={1})
     assert [box(wall)[0] for wall in found] == [[8.0, -1.0]]
     assert len(outlines(body_xml=shelf + can + frame)) == 2
+
+
+@pytest.mark.parametrize("kind", ["capsule", "ellipsoid"])
+def test_other_shapes_are_the_boxes_around_them(kind):
+    (wall,) = outlines(f'<geom type="{kind}" size="0.2 0.3 0.4" pos="1 2 3"/>')
+    across, up = (0.2, 0.5) if kind == "capsule" else (0.3, 0.4)
+    low, high, bottom, top = box(wall)
+    assert (low, high) == ([0.8, 2.0 - across], [1.2, 2.0 + across])
+    assert (bottom, top) == (3.0 - up, 3.0 + up)

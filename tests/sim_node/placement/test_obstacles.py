@@ -193,3 +193,13 @@ def test_surfaces_of_what_does_not_stand_or_could_not_carry_it_do_not_count():
 def test_rows_are_those_of_the_index_whatever_the_order_of_geometry():
     here, row = obstacles(*((f"b{i}", ((float(i), 0.0, 0.0), BOX)) for i in range(6)))
     assert [here.body_low[row[f"b{i}"], 0] for i in range(6)] == pytest.approx(np.arange(6) - 0.2)
+
+
+@pytest.mark.parametrize(
+    ("masks", "has_box"), [((1, 1), True), ((1, 0), True), ((0, 1), True), ((0, 0), False)]
+)
+def test_a_ghost_has_the_box_of_its_geometry_that_would_collide(masks, has_box):
+    """Geometry of a world file may collide in one direction only."""
+    here, row = obstacles(("a", ((1.0, 2.0, 0.5), BOX)), a={"ghost": True, "masks": [masks]})
+    assert np.isfinite(here.body_low[row["a"]]).all() == has_box
+    assert not here.standing[row["a"]]
