@@ -25,7 +25,7 @@ from semmap.nodes.supervisor import presence, registry
 from semmap.nodes.supervisor.control import LONGEST_STOP_S, SILENT_S, Supervisor
 from semmap.nodes.supervisor.notices import Notices
 from semmap.nodes.supervisor.settings import Replay, Settings
-from semmap.nodes.supervisor.watchdog import Watchdog
+from semmap.nodes.supervisor.watchdog import StoppedProcesses, Watchdog
 from semmap.ontology import EMPTY_WORLD, FLAT_WORLD
 from semmap.ontology.model_shapes import varieties_of
 from semmap.schemas import errors, keys, wording
@@ -130,6 +130,7 @@ class _Foreground:
         self._answered_s = time.monotonic()
         self._pids: dict[str, int] = {}
         self._watchdog = Watchdog()
+        self._stopped_processes = StoppedProcesses()
         self._stopping = False
         self._deadline_s = time.monotonic() + _START_TIMEOUT_S
         self._waits_from_s = time.monotonic() + _WAITS_S
@@ -248,6 +249,10 @@ class _Foreground:
         for hang in self._watchdog.hanging():
             self._say(f"{hang.node:<{_COLUMN}} {hang.reason}: restarting it")
             self._supervisor.replace(hang.pid)
+        for hang in self._stopped_processes.find(self._watchdog.pids):
+            self._say(f"{hang.node:<{_COLUMN}} {hang.reason}: ending it")
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(hang.pid, signal.SIGKILL)
 
     def _wait_until_complete(self) -> None:
         """Wait until the coordinator knows every node and the bodies are placed, before reporting ready.
