@@ -7,6 +7,7 @@ import contextlib
 import hashlib
 import io
 import os
+import shlex
 import shutil
 import signal
 import socket
@@ -44,6 +45,10 @@ LONGEST_STOP_S = max(_STOP_WAITS_S.values()) + _STOP_WAIT_S
 """Longest time until supervisord has ended."""
 SILENT_S = 10.0
 """Longest time without a progress message."""
+_VARIABLE = "SEMMAP_UP_"
+"""The prefix of variables with paths. In the configuration itself, characters such as `%` have a meaning."""
+_LONGEST_SOCKET = 100
+"""Bytes: the kernel limits paths of sockets to about 107, on macOS to 103."""
 _NO_RESTART = "0,1,2"
 """Exit statuses after which a restart would fail again: stopped, rejected, bad request."""
 
@@ -102,6 +107,7 @@ class Supervisor:
         ]
         environment = {
             **os.environ,
+            **{_VARIABLE + name: value for name, value in self._paths().items()},
             NOTIFY_VARIABLE: str(self.notices),
             IN_WORK_VARIABLE: str(self._in_work.resolve()),
         }
@@ -226,19 +232,32 @@ class Supervisor:
 
     def _temporary(self, suffix: str) -> Path:
         """Return the path of a socket in the temporary folder, because socket paths must be short."""
-        digest = hashlib.sha256(str(self.data.resolve()).encode()).hexdigest()[:12]
-        return Path(tempfile.gettempdir()) / _SOCKET.format(digest, suffix)
+        digest = hashlib.sha256(os.fsencode(self.data.resolve())).hexdigest()[:12]
+        path = Path(tempfile.gettempdir()) / _SOCKET.format(digest, suffix)
+        return path if len(os.fsencode(path)) <= _LONGEST_SOCKET else Path("/tmp") / path.name
 
     def _rpc(self) -> Any:
         return xmlrpc.client.ServerProxy("http://127.0.0.1", transport=_Transport(self.socket))
 
+    def _paths(self) -> dict[str, str]:
+        """Return the paths for the configuration, by the names of their variables."""
+        return {
+            "SOCKET": str(self.socket),
+            "DATA": str(self.data),
+            "LOGS": str(self.logs),
+            "NODE_LOGS": str(self.logs).replace("%", "%%"),  # supervisord expands these twice
+            "PYTHON": shlex.quote(sys.executable),
+            "SETTINGS": shlex.quote(str(self._settings_path)),
+        }
+
     def _conf(self, settings: Settings) -> str:
+        paths = {name.lower(): f"%(ENV_{_VARIABLE}{name})s" for name in self._paths()}
         conf = configparser.RawConfigParser()
-        conf["unix_http_server"] = {"file": str(self.socket), "chmod": "0700"}
+        conf["unix_http_server"] = {"file": paths["socket"], "chmod": "0700"}
         conf["supervisord"] = {
-            "logfile": str(self.logs / "supervisord.log"),
-            "pidfile": str(self.data / "supervisord.pid"),
-            "childlogdir": str(self.logs),
+            "logfile": f"{paths['logs']}/supervisord.log",
+            "pidfile": f"{paths['data']}/supervisord.pid",
+            "childlogdir": paths["logs"],
             "identifier": GROUP,
             "umask": f"{UMASK:03o}",
         }
@@ -247,16 +266,9 @@ class Supervisor:
         }
         conf[f"group:{GROUP}"] = {"programs": ",".join(settings.nodes)}
         for priority, node in enumerate(settings.nodes, start=1):
-            words = [
-                sys.executable,
-                "-P",
-                "-m",
-                "semmap.nodes.supervisor.launch",
-                node,
-                str(self._settings_path),
-            ]
+            launch = f"{paths['python']} -P -m semmap.nodes.supervisor.launch"
             conf[f"program:{node}"] = {
-                "command": " ".join(f'"{word}"' for word in words).replace("%", "%%"),
+                "command": f"{launch} {node} {paths['settings']}",
                 "priority": str(priority),
                 "startsecs": "0",
                 "startretries": "10",
@@ -266,7 +278,7 @@ class Supervisor:
                 "stopasgroup": "true",
                 "killasgroup": "true",
                 "redirect_stderr": "true",
-                "stdout_logfile": str(self.log_of(node)).replace("%", "%%"),
+                "stdout_logfile": f"{paths['node_logs']}/{self.log_of(node).name}",
                 "stdout_logfile_maxbytes": "10MB",
                 "stdout_logfile_backups": "2",
             }
