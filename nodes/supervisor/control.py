@@ -34,6 +34,7 @@ from semmap.schemas.endpoints import WEB_TOKEN_VARIABLE
 
 GROUP = "semmap"
 _SOCKET = f"semmap-{os.getuid()}-{{}}{{}}"
+_OUTPUT = "supervisord.out"
 _STOP_WAIT_S = 3
 _ANSWER_S = 3.0
 """Seconds: supervisord replies within milliseconds, unless it hangs."""
@@ -47,6 +48,8 @@ SILENT_S = 10.0
 """Longest time without a progress message."""
 _VARIABLE = "SEMMAP_UP_"
 """The prefix of variables with paths. In the configuration itself, characters such as `%` have a meaning."""
+FILES = 1024
+"""Files that a process must be able to open. supervisord raises its own limit to this number."""
 _LONGEST_SOCKET = 100
 """Bytes: the kernel limits paths of sockets to about 107, on macOS to 103."""
 _NO_RESTART = "0,1,2"
@@ -113,7 +116,7 @@ class Supervisor:
         }
         if web_token:
             environment[WEB_TOKEN_VARIABLE] = web_token
-        with (self.logs / "supervisord.out").open("wb") as out:
+        with (self.logs / _OUTPUT).open("wb") as out:
             make_private(self.data)
             return subprocess.Popen(
                 command,
@@ -226,6 +229,14 @@ class Supervisor:
         lines = path.read_text(errors="replace").strip().splitlines() if path.exists() else []
         return lines[-1].removeprefix(f"{node}: ") if lines else "(its log is empty)"
 
+    def last_error(self) -> str:
+        """Return the reason that supervisord gave for ending, in parentheses, or an empty text."""
+        with contextlib.suppress(OSError):
+            for line in (self.logs / _OUTPUT).read_text(errors="replace").splitlines():
+                if line.startswith("Error: "):
+                    return f" ({errors.shortened(line.removeprefix('Error: '), 300)})"
+        return ""
+
     def log_of(self, node: str) -> Path:
         """Return the log file of a node."""
         return self.logs / f"{node}.log"
@@ -259,6 +270,7 @@ class Supervisor:
             "pidfile": f"{paths['data']}/supervisord.pid",
             "childlogdir": paths["logs"],
             "identifier": GROUP,
+            "minfds": str(FILES),
             "umask": f"{UMASK:03o}",
         }
         conf["rpcinterface:supervisor"] = {

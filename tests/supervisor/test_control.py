@@ -54,6 +54,14 @@ def test_sockets_have_short_paths(tmp_path, monkeypatch):
     assert supervisor.socket != Supervisor(tmp_path).socket
 
 
+def test_the_reason_of_supervisord_for_ending_is_returned(tmp_path):
+    supervisor = Supervisor(tmp_path)
+    assert supervisor.last_error() == ""
+    supervisor.logs.mkdir()
+    (supervisor.logs / "supervisord.out").write_text("a line\nError: too few processes\nFor help, use -h\n")
+    assert supervisor.last_error() == " (too few processes)"
+
+
 def test_stopping_waits_for_a_slow_knowledge_base(tmp_path):
     data = tmp_path / "data"
     with running(data, "--abox", "none", "--no-sim", "--no-record") as system:
