@@ -56,17 +56,22 @@ class HealthView:
 
     def _status(self, health: Health, at: float) -> NodeStatus:
         age_s = time.monotonic() - at
+        is_silent = age_s >= SILENT_AFTER_S
         return NodeStatus(
             node=health.node,
-            state=health.state if age_s < SILENT_AFTER_S else "silent",
+            state="silent" if is_silent else health.state,
             host=health.host,
             pid=health.pid,
             uptime_s=round((health.stamp_ns - health.started_ns) / 1e9 + age_s, 1),  # by its own clock
             heartbeat_age_s=round(age_s, 2),
-            detail=_detail(health),
+            detail=_next_step(health) if is_silent else _detail(health),
             last_error=health.last_error,
             notes=health.notes,
         )
+
+
+def _next_step(health: Health) -> str:
+    return f"no heartbeat; if semmap up does not restart it, see logs/{health.node}.log in its data folder"
 
 
 def _detail(health: Health) -> str:

@@ -126,7 +126,9 @@ class IsolatedProcess:
         """Return what a file did to its process, and the next step."""
         if status == -signal.SIGXCPU:
             return f"takes longer than {self._cpu_s:g} s to read; {self.remedy}"
-        if status in (_OUT_OF_MEMORY, -signal.SIGABRT, -signal.SIGKILL):
+        if status == -signal.SIGKILL:  # by the kernel, or by `semmap up` because it was stopped
+            return "was not read: its process was killed, as happens when memory is short; try it again"
+        if status in (_OUT_OF_MEMORY, -signal.SIGABRT):
             return f"needs more than {MEMORY_BYTES >> 20} MB of memory to read; {self.remedy}"
         return f"cannot be read: it ended the parser (status {status}); {self.repair}"
 

@@ -7,6 +7,7 @@ import contextlib
 import hashlib
 import io
 import os
+import shlex
 import shutil
 import signal
 import socket
@@ -33,6 +34,7 @@ from semmap.schemas.endpoints import WEB_TOKEN_VARIABLE
 
 GROUP = "semmap"
 _SOCKET = f"semmap-{os.getuid()}-{{}}{{}}"
+_OUTPUT = "supervisord.out"
 _STOP_WAIT_S = 3
 _ANSWER_S = 3.0
 """Seconds: supervisord replies within milliseconds, unless it hangs."""
@@ -44,6 +46,12 @@ LONGEST_STOP_S = max(_STOP_WAITS_S.values()) + _STOP_WAIT_S
 """Longest time until supervisord has ended."""
 SILENT_S = 10.0
 """Longest time without a progress message."""
+_VARIABLE = "SEMMAP_UP_"
+"""The prefix of variables with paths. In the configuration itself, characters such as `%` have a meaning."""
+FILES = 1024
+"""Files that a process must be able to open. supervisord raises its own limit to this number."""
+_LONGEST_SOCKET = 100
+"""Bytes: the kernel limits paths of sockets to about 107, on macOS to 103."""
 _NO_RESTART = "0,1,2"
 """Exit statuses after which a restart would fail again: stopped, rejected, bad request."""
 
@@ -102,12 +110,13 @@ class Supervisor:
         ]
         environment = {
             **os.environ,
+            **{_VARIABLE + name: value for name, value in self._paths().items()},
             NOTIFY_VARIABLE: str(self.notices),
             IN_WORK_VARIABLE: str(self._in_work.resolve()),
         }
         if web_token:
             environment[WEB_TOKEN_VARIABLE] = web_token
-        with (self.logs / "supervisord.out").open("wb") as out:
+        with (self.logs / _OUTPUT).open("wb") as out:
             make_private(self.data)
             return subprocess.Popen(
                 command,
@@ -220,26 +229,48 @@ class Supervisor:
         lines = path.read_text(errors="replace").strip().splitlines() if path.exists() else []
         return lines[-1].removeprefix(f"{node}: ") if lines else "(its log is empty)"
 
+    def last_error(self) -> str:
+        """Return the reason that supervisord gave for ending, in parentheses, or an empty text."""
+        with contextlib.suppress(OSError):
+            for line in (self.logs / _OUTPUT).read_text(errors="replace").splitlines():
+                if line.startswith("Error: "):
+                    return f" ({errors.shortened(line.removeprefix('Error: '), 300)})"
+        return ""
+
     def log_of(self, node: str) -> Path:
         """Return the log file of a node."""
         return self.logs / f"{node}.log"
 
     def _temporary(self, suffix: str) -> Path:
         """Return the path of a socket in the temporary folder, because socket paths must be short."""
-        digest = hashlib.sha256(str(self.data.resolve()).encode()).hexdigest()[:12]
-        return Path(tempfile.gettempdir()) / _SOCKET.format(digest, suffix)
+        digest = hashlib.sha256(os.fsencode(self.data.resolve())).hexdigest()[:12]
+        path = Path(tempfile.gettempdir()) / _SOCKET.format(digest, suffix)
+        return path if len(os.fsencode(path)) <= _LONGEST_SOCKET else Path("/tmp") / path.name
 
     def _rpc(self) -> Any:
         return xmlrpc.client.ServerProxy("http://127.0.0.1", transport=_Transport(self.socket))
 
+    def _paths(self) -> dict[str, str]:
+        """Return the paths for the configuration, by the names of their variables."""
+        return {
+            "SOCKET": str(self.socket),
+            "DATA": str(self.data),
+            "LOGS": str(self.logs),
+            "NODE_LOGS": str(self.logs).replace("%", "%%"),  # supervisord expands these twice
+            "PYTHON": shlex.quote(sys.executable),
+            "SETTINGS": shlex.quote(str(self._settings_path)),
+        }
+
     def _conf(self, settings: Settings) -> str:
+        paths = {name.lower(): f"%(ENV_{_VARIABLE}{name})s" for name in self._paths()}
         conf = configparser.RawConfigParser()
-        conf["unix_http_server"] = {"file": str(self.socket), "chmod": "0700"}
+        conf["unix_http_server"] = {"file": paths["socket"], "chmod": "0700"}
         conf["supervisord"] = {
-            "logfile": str(self.logs / "supervisord.log"),
-            "pidfile": str(self.data / "supervisord.pid"),
-            "childlogdir": str(self.logs),
+            "logfile": f"{paths['logs']}/supervisord.log",
+            "pidfile": f"{paths['data']}/supervisord.pid",
+            "childlogdir": paths["logs"],
             "identifier": GROUP,
+            "minfds": str(FILES),
             "umask": f"{UMASK:03o}",
         }
         conf["rpcinterface:supervisor"] = {
@@ -247,16 +278,9 @@ class Supervisor:
         }
         conf[f"group:{GROUP}"] = {"programs": ",".join(settings.nodes)}
         for priority, node in enumerate(settings.nodes, start=1):
-            words = [
-                sys.executable,
-                "-P",
-                "-m",
-                "semmap.nodes.supervisor.launch",
-                node,
-                str(self._settings_path),
-            ]
+            launch = f"{paths['python']} -P -m semmap.nodes.supervisor.launch"
             conf[f"program:{node}"] = {
-                "command": " ".join(f'"{word}"' for word in words).replace("%", "%%"),
+                "command": f"{launch} {node} {paths['settings']}",
                 "priority": str(priority),
                 "startsecs": "0",
                 "startretries": "10",
@@ -266,7 +290,7 @@ class Supervisor:
                 "stopasgroup": "true",
                 "killasgroup": "true",
                 "redirect_stderr": "true",
-                "stdout_logfile": str(self.log_of(node)).replace("%", "%%"),
+                "stdout_logfile": f"{paths['node_logs']}/{self.log_of(node).name}",
                 "stdout_logfile_maxbytes": "10MB",
                 "stdout_logfile_backups": "2",
             }

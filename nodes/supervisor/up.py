@@ -7,6 +7,7 @@ import fcntl
 import math
 import os
 import re
+import resource
 import shlex
 import signal
 import socket
@@ -22,10 +23,10 @@ from semmap.nodes import bus
 from semmap.nodes.identity import SUPERVISOR, Identity
 from semmap.nodes.runtime.web_token import new_token
 from semmap.nodes.supervisor import presence, registry
-from semmap.nodes.supervisor.control import LONGEST_STOP_S, SILENT_S, Supervisor
+from semmap.nodes.supervisor.control import FILES, LONGEST_STOP_S, SILENT_S, Supervisor
 from semmap.nodes.supervisor.notices import Notices
 from semmap.nodes.supervisor.settings import Replay, Settings
-from semmap.nodes.supervisor.watchdog import Watchdog
+from semmap.nodes.supervisor.watchdog import StoppedProcesses, Watchdog
 from semmap.ontology import EMPTY_WORLD, FLAT_WORLD
 from semmap.ontology.model_shapes import varieties_of
 from semmap.schemas import errors, keys, wording
@@ -36,8 +37,8 @@ from semmap.schemas.entities import Entity
 from semmap.schemas.health import Health
 
 _START_TIMEOUT_S = 120.0
-_ANSWERS_WITHIN_S = 5.0
-"""A supervisord that does not reply for this time hangs."""
+_ANSWERS_WITHIN_S = 30.0
+"""A supervisord that does not reply for this time hangs. Until then the nodes continue."""
 _LIVE_PORT = 9876
 _COLUMN = max(map(len, keys.NODES))
 _LOOK_S = 0.2
@@ -59,6 +60,7 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
         if supervisor.end_leftovers():
             say(f"{'cleanup':<{_COLUMN}} ended processes left running by an earlier semmap up")
         _require_free(settings.listen)
+        require_files()
         if settings.record and settings.secure is None:  # all users of this machine can open a live view
             settings = structs.replace(settings, live_view=_live_view())
         token = new_token(os.environ.get(WEB_TOKEN_VARIABLE, "")) if settings.web else ""
@@ -130,6 +132,7 @@ class _Foreground:
         self._answered_s = time.monotonic()
         self._pids: dict[str, int] = {}
         self._watchdog = Watchdog()
+        self._stopped_processes = StoppedProcesses()
         self._stopping = False
         self._deadline_s = time.monotonic() + _START_TIMEOUT_S
         self._waits_from_s = time.monotonic() + _WAITS_S
@@ -156,8 +159,8 @@ class _Foreground:
             self._restart_hanging()
         if not self._stopping and self._process.returncode != 0:
             raise errors.InternalError(
-                f"supervisord {_ending(self._process.returncode)}, and the nodes were stopped with it;"
-                " restart with: semmap up"
+                f"supervisord {_ending(self._process.returncode)}{self._supervisor.last_error()},"
+                " and the nodes were stopped with it; restart with: semmap up"
             )
 
     def _on_signal(self, *_: object) -> None:
@@ -248,6 +251,10 @@ class _Foreground:
         for hang in self._watchdog.hanging():
             self._say(f"{hang.node:<{_COLUMN}} {hang.reason}: restarting it")
             self._supervisor.replace(hang.pid)
+        for hang in self._stopped_processes.find(self._watchdog.pids):
+            self._say(f"{hang.node:<{_COLUMN}} {hang.reason}: ending it")
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(hang.pid, signal.SIGKILL)
 
     def _wait_until_complete(self) -> None:
         """Wait until the coordinator knows every node and the bodies are placed, before reporting ready.
@@ -367,6 +374,16 @@ def _require_free(endpoint: str) -> None:
                 f"cannot listen on {endpoint}: {error.strerror}; use another endpoint, for example"
                 f" --listen tcp/{match[1]}:{port + 1}"
             ) from None
+
+
+def require_files() -> None:
+    """Raise Refused if this user may not open as many files as supervisord and the nodes need."""
+    _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if most != resource.RLIM_INFINITY and most < FILES:
+        raise errors.Refused(
+            f"a process may open {most} files here, and semmap needs {FILES:,}; raise the hard limit of open"
+            f" files, for example in a new shell: ulimit -n {FILES}"
+        )
 
 
 def _web_port(port: int) -> int:

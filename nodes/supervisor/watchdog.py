@@ -1,8 +1,11 @@
-"""Detects hanging nodes: silent and idle, or silent for far too long."""
+"""Detects hanging nodes: silent and idle, or silent for far too long; and stopped processes of nodes."""
 
 from __future__ import annotations
 
+import contextlib
+import os
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,12 +25,15 @@ _LOOKED_AT_S: Final = 2.0
 """Shortest measurement of the CPU time."""
 _HELD_UP_S: Final = 2.0
 """If the checks are this far apart, the watchdog itself was delayed, and silence is not counted."""
+_STOPPED_LOOKS: Final = 4
+"""A process of a node that is stopped (SIGSTOP) at this many looks in succession is to be ended."""
+_BETWEEN_LOOKS_S: Final = 1.0
 _AT_WORK: Final = 0.03
 """The CPU share that a working process uses at least, however busy the machine is."""
 
 
 class Hang(NamedTuple):
-    """A node whose process is to be restarted, and the reason."""
+    """A node of which a process is to be ended, and the reason."""
 
     node: str
     pid: int
@@ -69,6 +75,49 @@ def _starved_s(pid: int) -> float:
         return 0.0
 
 
+def stopped_processes(nodes: Mapping[str, int]) -> dict[int, str]:
+    """Return the stopped processes that nodes started, with their nodes; a node leads a process group."""
+    leaders = {pid: node for node, pid in nodes.items()}
+    stopped = {}
+    for process in psutil.process_iter():
+        with contextlib.suppress(psutil.Error, OSError):
+            if process.status() == psutil.STATUS_STOPPED and process.pid not in leaders:
+                leader = os.getpgid(process.pid)
+                if leader in leaders:
+                    stopped[process.pid] = leaders[leader]
+    return stopped
+
+
+class StoppedProcesses:
+    """Finds stopped processes that nodes started, such as the one for SPARQL: their nodes are not silent."""
+
+    def __init__(
+        self,
+        *,
+        clock: Callable[[], float] = time.monotonic,
+        stopped_among: Callable[[Mapping[str, int]], Mapping[int, str]] = stopped_processes,
+    ) -> None:
+        self._clock = clock
+        self._stopped_among = stopped_among
+        self._looks: Counter[int] = Counter()
+        self._next_look_s = clock()
+
+    def find(self, nodes: Mapping[str, int]) -> Iterator[Hang]:
+        """Yield the processes that have been stopped for about 4 s. Must be called several times a second.
+
+        Looks are counted, not seconds: when the whole system continues after a pause, nothing is ended.
+        """
+        now_s = self._clock()
+        if now_s < self._next_look_s:
+            return
+        self._next_look_s = now_s + _BETWEEN_LOOKS_S
+        stopped = self._stopped_among(nodes)
+        self._looks = Counter({pid: self._looks[pid] + 1 for pid in stopped})
+        for pid, node in stopped.items():
+            if self._looks[pid] >= _STOPPED_LOOKS:
+                yield Hang(node, pid, f"its process {pid} was stopped (SIGSTOP)")
+
+
 class Watchdog:
     """Takes processes and heartbeats, and returns hanging nodes. Long work does not count as hanging."""
 
@@ -91,6 +140,11 @@ class Watchdog:
         for node, pid in pids.items():
             if node not in self._watched or self._watched[node].pid != pid:
                 self._watched[node] = _Watched(pid, now_s)
+
+    @property
+    def pids(self) -> dict[str, int]:
+        """The processes of the running nodes."""
+        return {node: watched.pid for node, watched in self._watched.items()}
 
     def heard(self, node: str, pid: int) -> bool:
         """Note a heartbeat. Returns False, and ignores it, if it is not from the node's process."""

@@ -52,4 +52,6 @@ def test_ended_clients_are_not_listed(monkeypatch, client):
     view.take(beat("ready", 9))
     assert [(row.node, row.pid) for row in view.nodes()] == [("kb_node", 9), (client, 7), (client, 8)]
     monkeypatch.setattr(health_view, "SILENT_AFTER_S", 0.0)
-    assert [(row.node, row.state) for row in view.nodes()] == [("kb_node", "silent")]
+    (row,) = view.nodes()
+    assert (row.node, row.state) == ("kb_node", "silent")
+    assert row.detail.endswith("see logs/kb_node.log in its data folder")

@@ -16,12 +16,14 @@ from pathlib import Path
 import psutil
 
 from semmap.nodes.supervisor.control import Supervisor
+from semmap.schemas import errors
 from tests.faults.ground import PATIENCE_S, Ground, wait_for
 from tests.faults.table import Fault
 
 NOTICED_S = 5.0
 _QUERY = "SELECT ?thing { ?thing a dm:Cup } LIMIT 1"
 ALL = ("--abox", "none", "--world", "empty")
+SEES = ("--perception", "--camera-hz", "0")
 
 
 def kill(node: str, ground: Ground) -> None:
@@ -66,25 +68,26 @@ def stop_supervisord(ground: Ground) -> None:
 
 
 def stop_sparql(ground: Ground) -> None:
-    """Changes and `status` go on, and the query that waits is answered when the process continues."""
+    """Changes and `status` go on, the query that waits is rejected in time, and the next one is answered."""
     with ground.client() as client, ThreadPoolExecutor(1) as thread:
         client.sparql(_QUERY)
         kb_node = psutil.Process(all_pids_of(ground.data)["kb_node"])
         stopped = [p for p in kb_node.children(recursive=True) if "semmap.nodes.kb_node.sparql" in _words(p)]
         assert stopped
-        try:
-            for process in stopped:
-                process.suspend()
-            waiting = thread.submit(client.sparql, _QUERY)
-            seen = len(ground.load.added)
-            ground.observe(NOTICED_S)
-            assert len(ground.load.added) > seen
-            assert ground.nodes()["kb_node"].pid == kb_node.pid
-            assert not waiting.done()
-        finally:
-            for process in stopped:
-                process.resume()
-        assert waiting.result(PATIENCE_S).rows
+        for process in stopped:
+            process.suspend()
+        began_s = time.monotonic()
+        waiting = thread.submit(client.sparql, _QUERY)
+        seen = len(ground.load.added)
+        refused = waiting.exception(PATIENCE_S)
+        assert isinstance(refused, errors.Refused), refused
+        assert "repeat" in str(refused)
+        noticed_s = time.monotonic() - began_s
+        assert noticed_s < NOTICED_S, f"the SPARQL process was stopped for {noticed_s:.1f} s"
+        assert client.sparql(_QUERY).rows
+        assert len(ground.load.added) > seen
+        assert ground.nodes()["kb_node"].pid == kb_node.pid
+        assert not any(_runs(process.pid) for process in stopped)
 
 
 def _words(process: psutil.Process) -> str:
@@ -184,6 +187,8 @@ PROCESSES = (
     Fault("kb_node stopped", _of(stop, "kb_node"), words=ALL),
     Fault("sim_node stopped", _of(stop, "sim_node"), words=ALL),
     Fault("recorder stopped", _of(stop, "recorder"), words=ALL),
+    Fault("perception_node stopped", _of(stop, "perception_node"), words=(*ALL, *SEES), often=2),
+    Fault("web stopped", _of(stop, "web"), words=(*ALL, "--web", "--web-port", "0"), often=2),
     Fault("semmap up stopped for 10 s", stop_up, often=1),
     Fault("supervisord killed", kill_supervisord, often=2, in_short=1),
     Fault("supervisord stopped", stop_supervisord, often=1),

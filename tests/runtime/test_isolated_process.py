@@ -35,6 +35,7 @@ def running(program):
     [
         ("os.kill(os.getpid(), signal.SIGSEGV)", "^x cannot be read: it ended the parser .status -11.; save"),
         ("os.kill(os.getpid(), signal.SIGABRT)", r"^x needs more than \d+ MB of memory to read; use"),
+        ("os.kill(os.getpid(), signal.SIGKILL)", "^x was not read: its process was killed.*; try it again"),
         ("os.kill(os.getpid(), signal.SIGXCPU)", "^x takes longer than 1 s to read; use"),
     ],
 )

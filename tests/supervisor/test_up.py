@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import resource
 import socket
 import subprocess
 import sys
@@ -13,8 +14,10 @@ from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.kb_node.storage.seed import seed
 from semmap.nodes.supervisor.settings import JOURNAL, SETTINGS
+from semmap.nodes.supervisor.up import require_files
 from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
 from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from tests.conftest import PATIENCE_S, free_endpoint, running
 
 BASE = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping"
@@ -115,6 +118,16 @@ def test_a_port_in_use_is_reported(tmp_path):
     assert status == 1
     assert f"cannot listen on {endpoint}" in line
     assert "for example --listen tcp/127.0.0.1:" in line
+
+
+def test_too_few_open_files_are_reported(monkeypatch):
+    monkeypatch.setattr(resource, "getrlimit", lambda _: (200, 200))
+    with pytest.raises(
+        errors.Refused, match=r"may open 200 files here, and semmap needs 1,024; .*ulimit -n 1024"
+    ):
+        require_files()
+    monkeypatch.setattr(resource, "getrlimit", lambda _: (200, resource.RLIM_INFINITY))
+    require_files()
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 import multiprocessing
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -7,7 +8,15 @@ import time
 import psutil
 import pytest
 
-from semmap.nodes.supervisor.watchdog import ENDLESS_S, SILENT_S, UNHEARD_S, Watchdog, work_seconds
+from semmap.nodes.supervisor.watchdog import (
+    ENDLESS_S,
+    SILENT_S,
+    UNHEARD_S,
+    StoppedProcesses,
+    Watchdog,
+    stopped_processes,
+    work_seconds,
+)
 from tests.conftest import PATIENCE_S, until
 
 
@@ -122,6 +131,67 @@ def test_a_delayed_watchdog_counts_no_silence():
     world.beat()
     world.now_s += 100.0
     assert world.pass_time(SILENT_S) == []
+
+
+class Pausing:
+    """A fake clock, and processes that are stopped or not."""
+
+    def __init__(self):
+        self.now_s = 1000.0
+        self.stopped = {}
+        self.search = StoppedProcesses(clock=lambda: self.now_s, stopped_among=lambda _: self.stopped)
+
+    def pass_time(self, seconds, step_s=0.25):
+        """The processes that stay stopped in the meantime."""
+        found = []
+        for _ in range(int(seconds / step_s)):
+            self.now_s += step_s
+            found += self.search.find({"kb_node": 1})
+        return [(hang.node, hang.pid) for hang in found]
+
+
+def test_a_process_of_a_node_that_stays_stopped_is_found_within_five_seconds():
+    world = Pausing()
+    world.pass_time(10)
+    world.stopped = {7: "kb_node"}
+    assert world.pass_time(SILENT_S - 1) == []
+    assert world.pass_time(2)[0] == ("kb_node", 7)
+
+
+def test_a_process_that_continues_is_not_found():
+    world = Pausing()
+    for _ in range(10):
+        world.stopped = {7: "kb_node"}
+        assert world.pass_time(SILENT_S - 1) == []
+        world.stopped = {}
+        assert world.pass_time(2) == []
+
+
+def test_a_pause_of_the_whole_system_is_not_counted():
+    world = Pausing()
+    world.stopped = {7: "kb_node"}
+    assert world.pass_time(1) == []
+    world.now_s += 1000.0
+    assert world.pass_time(1) == []
+
+
+def test_stopped_processes_belong_to_the_node_that_started_them():
+    """A node that is stopped itself is not listed, and nothing of another group is."""
+    fork = "import subprocess, sys; subprocess.Popen([sys.executable, '-c', 'input()']).wait()"
+    words = [sys.executable, "-c", fork]
+    nodes = [subprocess.Popen(words, stdin=subprocess.PIPE, start_new_session=True) for _ in range(2)]
+    try:
+        for node in nodes:
+            until(lambda node=node: psutil.Process(node.pid).children(), "its child is there")
+        (child,) = psutil.Process(nodes[0].pid).children()
+        assert stopped_processes({"kb_node": nodes[0].pid}) == {}
+        for node in nodes:
+            os.killpg(node.pid, signal.SIGSTOP)
+        until(lambda: stopped_processes({"kb_node": nodes[0].pid}) == {child.pid: "kb_node"}, "it is listed")
+    finally:
+        for node in nodes:
+            os.killpg(node.pid, signal.SIGKILL)
+            node.communicate()
 
 
 def spin():

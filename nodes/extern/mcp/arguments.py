@@ -16,6 +16,8 @@ from semmap.schemas.map_history import KeptRelation
 from semmap.schemas.moments import When
 from semmap.schemas.relations import ViewPoint
 
+MOST: Final = 50
+"""The maximum number of entities, aliases or values in a change; it keeps the map and its journal small."""
 Moment = Annotated[
     When,
     Meta(description="A commit number, or a time: 2026-03-01T12:30, 12:30, yesterday 10:00, 5 minutes ago."),
@@ -167,7 +169,7 @@ class Propose(Arguments, frozen=True, kw_only=True):
     verb: Literal["add", "update", "set", "unset", "remove"]
     reason: Annotated[str, Meta(min_length=1, max_length=300, description="Reason, in one sentence.")]
     name: Annotated[str, Meta(max_length=1000, description="Entity; optional for add.")] | None = None
-    names: Annotated[tuple[Word, ...], Meta(description="Remove: entities.")] | None = None
+    names: Annotated[tuple[Word, ...], Meta(max_length=MOST, description="Remove: entities.")] | None = None
     class_: Annotated[str, Meta(max_length=200, description="Add: class. Update: new class.")] | None = field(
         name="class", default=None
     )
@@ -180,12 +182,12 @@ class Propose(Arguments, frozen=True, kw_only=True):
     yaw: Annotated[Angle, Meta(description="Rotation about z [rad].")] | None = None
     size: Annotated[Size, Meta(description="Size along its own x, y, z [m].")] | None = None
     ref: Annotated[Text, Meta(description="Label.")] | None = None
-    alt: Annotated[tuple[Text, ...], Meta(description="Aliases.")] | None = None
+    alt: Annotated[tuple[Text, ...], Meta(max_length=MOST, description="Aliases.")] | None = None
     carry: Annotated[bool, Meta(description="Update of the pose: also move the objects on it.")] | None = None
     property_: Annotated[Text, Meta(description="Set and unset: property, e.g. isOpen.")] | None = field(
         name="property", default=None
     )
-    values: Annotated[tuple[Value, ...], Meta(description="Set: values.")] | None = None
+    values: Annotated[tuple[Value, ...], Meta(max_length=MOST, description="Set: values.")] | None = None
     value: Annotated[Value, Meta(description="Unset: value; without it, all values.")] | None = None
     confidence: Probability | None = None
 

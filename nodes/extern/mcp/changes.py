@@ -30,7 +30,7 @@ from semmap.nodes.extern.mcp.requests import Summary
 from semmap.schemas import codec, commands, errors
 from semmap.schemas.approvals import Request
 from semmap.schemas.commands import COMMANDS, Command
-from semmap.schemas.entities import NAME_PATTERN, ClassInfo
+from semmap.schemas.entities import NAME_PATTERN, ClassInfo, Entity
 from semmap.schemas.replies import Changed
 
 R = TypeVar("R")
@@ -48,8 +48,6 @@ _MOST_WAITERS: Final = 2
 _LATER_S: Final = 30.0
 """The suggested time until a retry if there are too many pending requests [s]."""
 _MOST_REQUESTED: Final = 1000
-_MOST_NAMES: Final = 50
-"""The maximum number of entities in a change; a dry run of more does not return all inferred facts."""
 
 
 class Changes:
@@ -166,8 +164,10 @@ class Changes:
             reason=arguments.reason or "undo by agent",
         )
         tried = client.send(structs.replace(undo, dry_run=True))
+        self._require_allowed(client, undo, tried)
         summary = requests.summarize_undo(found[0], tried, arguments.reason)
-        request = self._allowed(client, f"mcp-undo-{arguments.commit}", summary)
+        last = _last_change(client, tried.names, arguments.commit)  # an approval is for this state only
+        request = self._allowed(client, f"mcp-undo-{arguments.commit}-{last}", summary)
         if request is not None and request.decision == "waiting":
             return self._waiting(client, request)
         made = client.send(undo)
@@ -193,8 +193,8 @@ class Changes:
 
     def _require_allowed(self, client: Client, command: Any, tried: Changed) -> None:
         """Raise Refused for a change beyond the limits."""
-        if len(tried.names) > _MOST_NAMES:
-            raise errors.Refused(f"a change is limited to {_MOST_NAMES} entities; propose smaller changes")
+        if len(tried.names) > a.MOST:
+            raise errors.Refused(f"a change is limited to {a.MOST} entities; propose smaller changes")
         if self._limits == Limits():
             return
         classes = client.classes()
@@ -308,14 +308,15 @@ def _touched(
     client: Client, name: str, command: Any, tried: Changed, classes: Iterable[ClassInfo]
 ) -> Touched:
     """Return an entity with its classes and places before and after a change, for the limits."""
-    try:
-        entity = client.get(name)
-    except errors.UnknownName:
-        entity = None
+    entity = _entity(client, name)
     before = frozenset() if entity is None else frozenset(entity.types)
     places = queries.placed(client, [entity]).get(name, {}).get("in", []) if entity is not None else []
     word = getattr(command, "class_", None)
     after = before if word is None else _with_ancestors(word, classes)
+    is_gone = isinstance(command, commands.Remove)
+    if isinstance(command, commands.Undo) and command.commit is not None:
+        restored = _entity(client, name, as_of=command.commit - 1)
+        after, is_gone = frozenset(() if restored is None else restored.types), restored is None
     return Touched(
         name=name,
         classes_before=before,
@@ -323,8 +324,22 @@ def _touched(
         places_before=frozenset(places),
         places_after=limits.after(places, name, tried.follows, tried.no_longer_follows),
         is_new=entity is None,
-        is_gone=isinstance(command, commands.Remove),
+        is_gone=is_gone,
     )
+
+
+def _entity(client: Client, name: str, **fields: Any) -> Entity | None:
+    """Return an entity, or None if the map has none of this name."""
+    try:
+        return client.get(name, **fields)
+    except errors.UnknownName:
+        return None
+
+
+def _last_change(client: Client, names: Iterable[str], since: int) -> int:
+    """Return the newest commit from `since` on that changed or removed one of these entities."""
+    commits = client.history(since=since, limit=1000)
+    return max((c.seq for c in commits if {*names} & {*c.changed, *c.removed}), default=since)
 
 
 def _with_ancestors(word: str, classes: Iterable[ClassInfo]) -> frozenset[str]:

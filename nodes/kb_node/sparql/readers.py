@@ -79,7 +79,9 @@ def error_for_signal(number: int, timeout_s: float) -> errors.Refused:
         return errors.Refused(
             f"the query was cancelled: it needs more than {MEMORY_BYTES >> 20} MB of memory; narrow it"
         )
-    return errors.Refused(f"the query was cancelled: its process was ended by signal {number}")
+    if number == signal.SIGKILL:
+        return errors.Refused("the query was cancelled: its process was killed; repeat it")
+    return errors.Refused(f"the query was cancelled: it ended its process (signal {number}); simplify it")
 
 
 def _serve(lane: Connection, control: Connection, dataset: Dataset, log: Log, infers: bool) -> NoReturn:

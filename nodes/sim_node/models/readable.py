@@ -14,6 +14,8 @@ from semmap.nodes.sim_node.models.library import ModelError
 from semmap.schemas.nesting import NotWellFormed, require_shallow_xml
 
 _FOLDERS = ("meshdir", "texturedir", "assetdir")
+_MJCF = ("include", "model")
+"""Elements whose files refer to further files; a model is attached to bodies."""
 LARGEST_FILE_BYTES = 64 << 20
 _DEEPEST = 20
 """Maximum number of files that include one another."""
@@ -51,6 +53,7 @@ def require_references(path: Path, roots: Sequence[Path]) -> None:
         except ValueError as error:
             raise ModelError(f"cannot use model file {file}: {error}") from None
         root = ElementTree.fromstring(content)
+        folders.add(file.parent)
         folders.update(file.parent / value for value in _values(root, _FOLDERS))
         for folder in folders:
             require_readable(folder, roots)
@@ -59,7 +62,7 @@ def require_references(path: Path, roots: Sequence[Path]) -> None:
                 for there in (folder / name for folder in folders):
                     require_readable(there, roots)
                     _require_small(there)
-                    if element.tag == "include" and there.is_file():
+                    if element.tag in _MJCF and there.is_file():
                         files.append(there)
 
 

@@ -14,6 +14,8 @@ from semmap.schemas import errors
 from tests.extern.mcp.conftest import by_stdio, in_memory, run
 
 ON_TABLE = [8.2, 2.2, 0.74]
+BEDROOM = [4.4, 6.9, 0.0]
+BY_AGENT = {"source": "agent", "agent": "tester"}
 
 
 @pytest.fixture
@@ -200,6 +202,25 @@ def test_only_in_allowed_places_may_things_be_changed(client):
     assert all("may change" in text or "only an operator" in text for text in refused)
 
 
+def test_an_undo_is_within_the_limits_too(client):
+    """As they are now, even if the agent had other ones when it made the commit."""
+
+    async def talk(a):
+        refused = [await a.refused("undo", commit=commit) for commit in (label, book)]
+        client.update("cup2", at=ON_TABLE)
+        return [*refused, (await a("undo", commit=label))["undone"], (await a("undo", commit=cup))["undone"]]
+
+    cup = client.add("Cup", at=ON_TABLE, name="cup2", **BY_AGENT).commit
+    book = client.add("Book", at=[8.2, 2.8, 0.74], **BY_AGENT).commit
+    label = client.update("cup2", ref="mine", **BY_AGENT).commit
+    client.update("cup2", at=BEDROOM)
+    allowed = Limits(places=frozenset(["kitchen1"]), classes=frozenset(["Cup"]))
+    elsewhere, other, *undone = agent(client, talk, allowed=allowed)
+    assert elsewhere == "cup2 is not in a place that you may change: kitchen1"
+    assert "is not of a class that you may change: Cup" in other
+    assert undone == [label, cup]
+
+
 @pytest.mark.parametrize(
     ("allowed", "sentence"),
     [
@@ -370,6 +391,25 @@ def test_what_was_approved_is_refused_when_the_map_has_moved_on_meanwhile(client
         return await a.refused("commit", token=token)
 
     assert "table1 was changed" in agent(client, talk, approve=True)
+
+
+def test_the_approval_of_an_undo_is_void_when_its_entity_has_changed_meanwhile(client, flat):
+    async def talk(a):
+        async def number():
+            return (await a("undo", commit=label))["waiting_for_a_person"].split()[-1]
+
+        first = await number()
+        client.update("cup2", at=BEDROOM)
+        flat.cli("approve", first)
+        second = await number()
+        flat.cli("approve", second)
+        return first, second, await a("undo", commit=label)
+
+    client.add("Cup", at=ON_TABLE, name="cup2", **BY_AGENT)
+    label = client.update("cup2", ref="mine", **BY_AGENT).commit
+    first, second, undone = agent(client, talk, approve=True)
+    assert first != second
+    assert undone["undone"] == label
 
 
 def test_a_reference_that_reads_like_an_instruction_changes_nothing_but_itself(client):

@@ -82,11 +82,19 @@ def test_a_query_without_a_lane_waits(readers):
     assert readers.take(2).query == str(LANES)
 
 
-def test_a_query_that_kills_its_reader_fails(readers):
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [
+        (signal.SIGALRM, "cancelled after 1.5 s"),
+        (signal.SIGKILL, "was killed; repeat it"),
+        (signal.SIGSEGV, "it ended its process .signal 11.; simplify it"),
+    ],
+)
+def test_a_query_that_ends_its_reader_fails(readers, number, text):
     future = readers.ask("endless")
     late = readers.take(0)
-    readers.lanes.on_reader_exit(ReaderExited(lane=0, signal=signal.SIGALRM))
-    with pytest.raises(errors.Refused, match=r"cancelled after 1.5 s"):
+    readers.lanes.on_reader_exit(ReaderExited(lane=0, signal=number))
+    with pytest.raises(errors.Refused, match=text):
         future.result(WAIT_S)
     following = readers.ask("next")
     assert readers.sent == [StartReader(lane=0), StartReader(lane=0)]

@@ -57,12 +57,18 @@ def test_without_a_folder_there_is_none_to_read(folders):
         '<asset><mesh name="m" file="/etc/passwd"/></asset>',
         '<asset><texture name="t" type="cube" fileright="../elsewhere/t.png"/></asset>',
         '<include file="within.xml"/>',
+        '<asset><model name="m" file="within.xml"/></asset>',
+        '<asset><model name="m" file="parts/attached.xml"/></asset>',
     ],
 )
 def test_nor_what_a_model_refers_to(folders, models, inside):
     (folders / "models" / "spy.xml").write_text(BOX.format(inside.format(folders)))
     (folders / "models" / "within.xml").write_text(
         "<mujocoinclude><include file='../elsewhere/box.xml'/></mujocoinclude>"
+    )
+    (folders / "models" / "parts").mkdir()
+    (folders / "models" / "parts" / "attached.xml").write_text(
+        BOX.format('<include file="../../elsewhere/box.xml"/>')
     )
     with pytest.raises(ModelError, match="are allowed"):
         models("spy.xml", None)
