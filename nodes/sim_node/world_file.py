@@ -14,7 +14,7 @@ from semmap.nodes.runtime.class_names import ClassNames
 from semmap.nodes.sim_node.body_classes import BodyClasses
 from semmap.nodes.sim_node.config import RobotConfig
 from semmap.nodes.sim_node.models.parts import rotation_matrix
-from semmap.nodes.sim_node.models.write_shapes import as_json
+from semmap.nodes.sim_node.models.write_shapes import as_json, replace_file
 from semmap.nodes.sim_node.order_validation import ModelSource
 from semmap.nodes.sim_node.physics import base_scene
 from semmap.nodes.sim_node.physics.build import run_in_background
@@ -63,7 +63,7 @@ def write_world(path: Path, models: ModelSource, target: Path) -> None:
     before = read_shapes(target) if target.is_file() else {}
     target.parent.mkdir(parents=True, exist_ok=True)
     now = decode_shapes(as_json(world_shapes(open_world(path, models))))  # rounded, as those before
-    target.write_text(as_json(keep_earlier(before, now)))
+    replace_file(target, keep_earlier(before, now))
 
 
 def open_world(
