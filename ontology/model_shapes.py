@@ -36,6 +36,7 @@ class Surface(Struct, frozen=True, kw_only=True, omit_defaults=True):
 class Interior(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """An interior that can contain things: its box in the model's frame [m]; `open` at the top, or closed.
 
+    Seen from above, a `round` one is the ellipse in the rectangle of its box, such as that of a bowl.
     `behind` are the joints whose leaves close it: it is closed while all of them are closed. `carried_by` is
     the joint that it moves with, such as that of a drawer; "" for a static interior. A `filled` one is solid
     in the simulator, such as that of a cup, so nothing can be placed in it there.
@@ -44,6 +45,7 @@ class Interior(Struct, frozen=True, kw_only=True, omit_defaults=True):
     low: Corner
     high: Corner
     fill: float = 1.0
+    round: bool = False
     open: bool = True
     behind: tuple[str, ...] = ()
     carried_by: str = ""
@@ -53,16 +55,6 @@ class Interior(Struct, frozen=True, kw_only=True, omit_defaults=True):
     def is_sealed(self) -> bool:
         """Return whether nothing can get in from outside, such as into a can."""
         return self.filled and not self.open
-
-    @property
-    def is_round(self) -> bool:
-        """Return whether it is a cylinder or a ball instead of the whole box."""
-        return self.fill < 0.9
-
-    @property
-    def is_round_vessel(self) -> bool:
-        """Return whether it is the round hollow of a vessel that is open and solid in the simulator."""
-        return self.filled and self.open and self.is_round
 
 
 class ConvexPart(Struct, frozen=True, kw_only=True, omit_defaults=True):

@@ -1,5 +1,7 @@
 """The bodies of a world file have shapes of their own, and relations are about these."""
 
+import math
+
 import mujoco
 import pytest
 
@@ -127,6 +129,38 @@ def test_a_handle_moves_with_its_door_and_a_hinged_body_with_its_pose():
     shapes = world_shapes(world)
     assert [(leaf.name, len(leaf.parts)) for leaf in shapes["wardrobe1"].leaves] == [("door", 2)]
     assert shapes["door1"].leaves == ()
+
+
+@pytest.mark.parametrize("yaw", [0.0, 25.0])
+def test_a_bowl_of_the_world_is_round_and_does_not_contain_what_stands_beside_it(monkeypatch, yaw):
+    """Its wall consists of boxes in a ring. The dice are in corners of the box around its hollow."""
+    wall = "".join(
+        f'<geom type="box" size=".01 .03 .05" pos="{0.1 * math.cos(k * math.pi / 6)}'
+        f' {0.1 * math.sin(k * math.pi / 6)} .06" euler="0 0 {30 * k}"/>'
+        for k in range(12)
+    )
+    corners = [math.radians(yaw + 45.0 + 90.0 * k) for k in range(4)]
+    dice = "".join(
+        f'<body name="die{k}" pos="{0.122 * math.cos(at)} {0.122 * math.sin(at)} .05" euler="0 0 {yaw}">'
+        '<freejoint/><geom type="box" size=".005 .005 .05"/></body>'
+        for k, at in enumerate(corners)
+    )
+    world = World(
+        mujoco.MjSpec.from_string(
+            f'<mujoco><worldbody><body name="bowl1" euler="0 0 {yaw}">'
+            f'<geom type="cylinder" size=".1 .01" pos="0 0 .01"/>{wall}</body>{dice}'
+            '<body name="egg1" pos=".04 .04 .045"><freejoint/><geom size=".025"/></body></worldbody></mujoco>'
+        )
+    )
+    monkeypatch.setattr(model_shapes, "_world", {})
+    found = world_shapes(world)
+    model_shapes.add_shapes({f"world/{name}": shape for name, shape in found.items()})
+    (room,) = found["bowl1"].interiors
+    assert room.round
+    assert math.dist(room.low[:2], room.high[:2]) / 2 > 0.122
+    assert {fact for fact in computed(entities(world)) if fact[1] == "isInside"} == {
+        ("egg1", "isInside", "bowl1")
+    }
 
 
 def test_get_names_the_source_of_a_shape(known):
