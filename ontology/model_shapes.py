@@ -5,9 +5,10 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping
 from functools import cache
-from itertools import count, takewhile
+from itertools import chain
 from pathlib import Path
 from typing import Literal
 
@@ -36,6 +37,7 @@ class Surface(Struct, frozen=True, kw_only=True, omit_defaults=True):
 class Interior(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """An interior that can contain things: its box in the model's frame [m]; `open` at the top, or closed.
 
+    Seen from above, a `round` one is the ellipse in the rectangle of its box, such as that of a bowl.
     `behind` are the joints whose leaves close it: it is closed while all of them are closed. `carried_by` is
     the joint that it moves with, such as that of a drawer; "" for a static interior. A `filled` one is solid
     in the simulator, such as that of a cup, so nothing can be placed in it there.
@@ -44,6 +46,7 @@ class Interior(Struct, frozen=True, kw_only=True, omit_defaults=True):
     low: Corner
     high: Corner
     fill: float = 1.0
+    round: bool = False
     open: bool = True
     behind: tuple[str, ...] = ()
     carried_by: str = ""
@@ -53,16 +56,6 @@ class Interior(Struct, frozen=True, kw_only=True, omit_defaults=True):
     def is_sealed(self) -> bool:
         """Return whether nothing can get in from outside, such as into a can."""
         return self.filled and not self.open
-
-    @property
-    def is_round(self) -> bool:
-        """Return whether it is a cylinder or a ball instead of the whole box."""
-        return self.fill < 0.9
-
-    @property
-    def is_round_vessel(self) -> bool:
-        """Return whether it is the round hollow of a vessel that is open and solid in the simulator."""
-        return self.filled and self.open and self.is_round
 
 
 class ConvexPart(Struct, frozen=True, kw_only=True, omit_defaults=True):
@@ -123,10 +116,49 @@ class ModelShape(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """Whether it is chosen only by name, not by size."""
 
 
+class WorldShapes(Struct, frozen=True, forbid_unknown_fields=True):
+    """The shapes of the bodies of world files.
+
+    `shapes` are by digest: equal bodies share one, and the bodies of two worlds are not mistaken for one
+    another. `bodies` are the digests of each body by name: first that of the present world, then those of
+    other sizes in earlier worlds, the latest first, for past commits.
+    """
+
+    shapes: dict[str, ModelShape] = {}
+    bodies: dict[str, tuple[str, ...]] = {}
+
+    @classmethod
+    def of(cls, by_name: Mapping[str, ModelShape]) -> WorldShapes:
+        """Return the shapes of bodies by name."""
+        digests = {name: _digest(shape) for name, shape in by_name.items()}
+        return cls(
+            {digests[name]: shape for name, shape in by_name.items()},
+            {name: (digest,) for name, digest in digests.items()},
+        )
+
+    def followed_by(self, later: WorldShapes) -> WorldShapes:
+        """Return the shapes with those of a later world, and those of its bodies at earlier sizes."""
+        known = {**self.shapes, **later.shapes}
+        bodies = dict(self.bodies)
+        for name, (now, *_) in later.bodies.items():
+            size_m = known[now].size_m
+            earlier = self.bodies.get(name, ())
+            bodies[name] = (now, *(was for was in earlier if not is_same_size(known[was].size_m, size_m)))
+        used = set(chain.from_iterable(bodies.values()))
+        return WorldShapes({digest: shape for digest, shape in known.items() if digest in used}, bodies)
+
+
+class AddedShapes(Struct, frozen=True):
+    """The shapes that are not of the library, for another process."""
+
+    own: dict[str, ModelShape] = {}
+    world: WorldShapes = WorldShapes()
+
+
 _own: dict[str, ModelShape] = {}
 _WORLD = "world/"
-_world: dict[str, ModelShape] = {}
-"""The shapes of the bodies of the world files, by `_WORLD` and name; see `keep_earlier` for earlier ones."""
+"""Begins the digests of shapes of the world, which no model's name does."""
+_world = WorldShapes()
 
 
 def own_size_m(model: str) -> Size | None:
@@ -139,55 +171,41 @@ def own_size_m(model: str) -> Size | None:
 
 
 def shape_named(model: str) -> ModelShape | None:
-    """Return the shape of a model, or of a body of the world by its `world_model`, at its own size."""
-    return _world.get(model) or shapes().get(model)
+    """Return the shape of a model, or of a body of the world by its digest, at its own size."""
+    return _world.shapes.get(model) or shapes().get(model)
 
 
 def model_in_world(name: str, model: str, size_m: Size | None) -> str:
     """Return the model that stands for the shape of the entity `name`.
 
-    It is its body in the world file if there is one of this size, or the latest of an earlier world, else
-    `model`. A body that was created again at another size has the shape of the model.
+    It is the digest of its body in the world file if that has this size, or of its latest body of this size
+    in an earlier world, else `model`. A body that was created again at another size has the shape of the
+    model.
     """
-    if not _world or (known := _world.get(own := _WORLD + name)) is None:
-        return model
-    if size_m is None or is_same_size(size_m, known.size_m):
-        return own
-    earlier = [key for key in _earlier_keys(own, _world) if is_same_size(size_m, _world[key].size_m)]
-    return earlier[-1] if earlier else model
-
-
-def keep_earlier(before: Mapping[str, ModelShape], now: Mapping[str, ModelShape]) -> dict[str, ModelShape]:
-    """Return the shapes of a world's bodies `now`, and with them those `before` of earlier worlds, by name.
-
-    If a body had another shape in an earlier world, that is kept as `NAME/1`, a later one as `NAME/2`, for
-    past commits.
-    """
-    kept = {**before, **now}
-    for name, shape in now.items():
-        earlier = _earlier_keys(name, before)
-        known = [before[key] for key in (*earlier, name) if key in before]
-        for key in earlier:
-            del kept[key]
-        others = [was for was in known if was != shape]
-        kept.update((f"{name}/{number}", was) for number, was in enumerate(others, start=1))
-    return kept
-
-
-def _earlier_keys(name: str, known: Mapping[str, ModelShape]) -> list[str]:
-    """Return the keys of the earlier shapes of a body, the oldest first."""
-    return list(takewhile(known.__contains__, (f"{name}/{number}" for number in count(1))))
+    for digest in _world.bodies.get(name, ()):
+        if size_m is None or is_same_size(size_m, _world.shapes[digest].size_m):
+            return digest
+    return model
 
 
 def is_of_world(model: str) -> bool:
     """Return whether a result of `model_in_world` is a body of the world file."""
-    return model in _world
+    return model in _world.shapes
 
 
-def add_world(path: Path) -> None:
-    """Add the shapes of the bodies of the world from a file, if it exists."""
-    if path.is_file():
-        _world.update((_WORLD + name, shape) for name, shape in read_shapes(path).items())
+def world() -> WorldShapes:
+    """Return the shapes of the bodies of world files."""
+    return _world
+
+
+def exchange_world(shapes: WorldShapes) -> None:
+    """Replace the shapes of the bodies of world files."""
+    global _world
+    _world = shapes
+
+
+def _digest(shape: ModelShape) -> str:
+    return _WORLD + hashlib.blake2b(msgspec.json.encode(shape), digest_size=16).hexdigest()
 
 
 def read_shapes(path: Path) -> dict[str, ModelShape]:
@@ -200,15 +218,15 @@ def decode_shapes(content: bytes | str) -> dict[str, ModelShape]:
     return msgspec.json.decode(content, type=dict[str, ModelShape])
 
 
-def added_shapes() -> dict[str, ModelShape]:
+def added_shapes() -> AddedShapes:
     """Return the shapes that are not of the library, for another process: see `add_shapes`."""
-    return {**_own, **_world}
+    return AddedShapes(_own, _world)
 
 
-def add_shapes(added: Mapping[str, ModelShape]) -> None:
+def add_shapes(added: AddedShapes) -> None:
     """Add the shapes of another process."""
-    for name, shape in added.items():
-        (_world if name.startswith(_WORLD) else shapes())[name] = shape
+    shapes().update(added.own)
+    exchange_world(added.world)
 
 
 def is_same_size(one: Size, other: Size) -> bool:

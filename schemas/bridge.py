@@ -37,6 +37,7 @@ from semmap.schemas.explanations import Triple
 from semmap.schemas.moments import When
 from semmap.schemas.plans import Clearance, HeightRange, Outline, Plan, Way
 from semmap.schemas.relations import Placing, Where
+from semmap.schemas.replies import Done
 
 
 class Outcome(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -308,6 +309,23 @@ class TakeBack(Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_f
     """Sent by the coordinator; see `Transaction.told`."""
 
 
+class ShapeBodies(Call[Done], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """State the shapes of the bodies of the present world file, from which relations are computed.
+
+    `content` is JSON: `shapes` by digest, and the digest of each body by name (`ontology/model_shapes.py`).
+    """
+
+    LARGEST: ClassVar[int] = MANY
+
+    VERB: ClassVar[str] = "shapes"
+    content: bytes
+
+    @property
+    def is_quick(self) -> bool:
+        """Always true."""
+        return True
+
+
 BRIDGE: dict[str, type[Call]] = {
     call.VERB: call
     for call in (
@@ -328,7 +346,7 @@ BRIDGE: dict[str, type[Call]] = {
             *(Understand, Find, Tell, Diff, WasWhen),
         ),
         *(Sparql, Watch, Renew),
-        *(Backup, Compact),
+        *(Backup, Compact, ShapeBodies),
     )
 }
 """The request types of `semmap/bridge/<verb>`."""

@@ -251,6 +251,10 @@ def test_in_mode_scene_the_map_follows_what_stands_in_the_simulator(tmp_path):
         assert {e.class_ for e in client.list()} == {"Chair", "Seat", "Cup", "Object"}
         assert client.get("seat").properties["isDirectPartOf"] == "chair_3"
         assert client.get("mug").provenance.source == "scene"
+        until(
+            lambda: {client.get(name, where=True).shape for name in names} == {"world"},
+            "bodies have their own shapes",
+        )
         unknown = "unknown class of 1 body of the world: gizmo_1; name the classes in a JSON file"
         assert any(unknown in line for line in system.said)
         assert any(unknown in note for node in client.status().nodes for note in node.notes)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import random
 from collections.abc import Iterable
 from itertools import combinations
@@ -10,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmarks.relations.settled import settled_scene
 from semmap.nodes.kb_node.documents import rdf
@@ -23,7 +23,7 @@ from semmap.nodes.kb_node.relations.measuring import measures
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
 from semmap.ontology import vocabulary as v
-from semmap.ontology.model_shapes import shapes
+from semmap.ontology.model_shapes import Interior, shapes
 from semmap.schemas.entities import Entity, Pose, Provenance
 
 _NOBODY = Provenance(commit=1, stamp_ns=0, source="file")
@@ -101,7 +101,7 @@ def inside_against_samples(pairs: int) -> Counts:
     """Compare `isInside` with random points of a thing, of which half must be in an interior.
 
     For a thing that sticks out of the top of an interior, half of the points of its base suffice, if these
-    are in the lower half. A sealed interior must contain all points, and a round vessel the middle.
+    are in the lower half. A sealed interior must contain all points.
     """
     rng = random.Random(3)
     points = np.random.default_rng(3)
@@ -118,30 +118,29 @@ def inside_against_samples(pairs: int) -> Counts:
             found.add(pair)
         own = points.uniform((-0.5, -0.5, 0.0), (0.5, 0.5, 1.0), (_SAMPLES, 3)) * inner.size + at
         share = max(
-            0.0
-            if h.is_round_vessel
-            and math.hypot(
-                *(np.array(at) - np.add(h.low, h.high) / 2)[:2] / (np.subtract(h.high, h.low) / 2)[:2]
-            )
-            > 1.0
-            else np.all((own >= h.low) & (own <= h.high), axis=1).mean()
+            (_are_within_walls(own, h) & (own[:, 2] >= h.low[2]) & (own[:, 2] <= h.high[2])).mean()
             for h in outer.hollows
         )
         base = max(
-            np.all((own[:, :2] >= h.low[:2]) & (own[:, :2] <= h.high[:2]), axis=1).mean()
+            _are_within_walls(own, h).mean()
             if h.low[2] - 0.05 < at[2] <= (h.low[2] + h.high[2]) / 2 and at[2] + inner.size[2] > h.high[2]
             else 0.0
             for h in outer.hollows
         )
         if any(h.is_sealed for h in outer.hollows):
-            (h,) = outer.hollows
-            ends = (own - np.add(h.low, h.high) / 2) / (np.subtract(h.high, h.low) / 2)
-            is_out = np.hypot(ends[:, 0], ends[:, 1]) > 1.0 if h.is_round else np.abs(ends).max(axis=1) > 1.0
-            if share == 1.0 and not is_out.any():
+            if share == 1.0:
                 true.add(pair)
         elif share >= 0.5 or (base > 0.5 and any(map(measures.is_holder, outer.hollows))):
             true.add(pair)
     return Counts.of(found, true)
+
+
+def _are_within_walls(points: NDArray[np.float64], hollow: Interior) -> NDArray[np.bool_]:
+    """Return (N,) whether (N, 3) points are in the rectangle or ellipse of a hollow, seen from above."""
+    middle, half = np.add(hollow.low, hollow.high) / 2, np.subtract(hollow.high, hollow.low) / 2
+    ends = np.abs(((points - middle) / half)[:, :2])
+    found: NDArray[np.bool_] = (np.hypot(*ends.T) if hollow.round else ends.max(axis=1)) <= 1.0
+    return found
 
 
 def _solid(name: str, model: str | None, at: tuple[float, float, float], size: object = None) -> Solid:

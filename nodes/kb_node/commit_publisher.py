@@ -52,13 +52,23 @@ class CommitPublisher:
         if self._entities_are_watched():
             for departed in commit.removed:
                 self._delete(departed.name, self._types.get(departed.name, departed.types))
-            for name in dict.fromkeys((*(e.name for e in commit.changed), *derived_changes.subjects)):
-                if (described := self._describe(name)) is not None:
-                    self._put(described)
+            self._put_all(dict.fromkeys((*(e.name for e in commit.changed), *derived_changes.subjects)))
         for departed in commit.removed:
             self._types.pop(departed.name, None)
         for entity in commit.changed:
             self._types[entity.name] = entity.types
+
+    def publish_entities(self, entities: Iterable[Entity]) -> None:
+        """Publish entities whose computed facts have changed without a commit, if there are subscribers."""
+        changed = {entity.name: entity.types for entity in entities}
+        if self._entities_are_watched():
+            self._put_all(changed)
+        self._types.update(changed)
+
+    def _put_all(self, names: Iterable[str]) -> None:
+        for name in names:
+            if (described := self._describe(name)) is not None:
+                self._put(described)
 
     def _put(self, entity: Described) -> None:
         lost = set(self._types.get(entity.name, ())).difference(entity.types)

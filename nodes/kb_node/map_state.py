@@ -18,11 +18,11 @@ from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.kb_node.relations.facts.precomputation import Precomputation
 from semmap.nodes.kb_node.relations.facts.precompute_messages import PrecomputeRequest
-from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity, model_of
 from semmap.nodes.kb_node.relations.selection import resolve_single
 from semmap.nodes.runtime import memory
 from semmap.ontology import vocabulary as v
-from semmap.ontology.model_shapes import added_shapes
+from semmap.ontology.model_shapes import WorldShapes, added_shapes, exchange_world, world
 from semmap.schemas import errors
 from semmap.schemas.commits import Commit, Snapshot, Star, Transaction
 from semmap.schemas.entities import ClassInfo, Entity
@@ -245,6 +245,31 @@ class MapState:
             foreseen = PrecomputeRequest(facts.space.limits, self.placed(), coming, added_shapes())
             with suppress(OSError):  # then they are computed in this process
                 facts.set_precomputation(Precomputation(foreseen, self.progress))
+
+    def exchange_shapes(self, shapes: WorldShapes) -> frozenset[str]:
+        """Replace the shapes of the bodies of world files, and compute the relations of their entities again.
+
+        Return the names of the entities whose shapes or relations have changed. There is no commit, because
+        nothing that is asserted changes.
+        """
+        names = {**world().bodies, **shapes.bodies}
+        bodies = [entity for name in names if (entity := self.by_name.get(name)) is not None]
+        if bodies:
+            self.derive_all()
+        before = list(map(model_of, bodies))
+        exchange_world(shapes)
+        changed = {e.name: e for e, model in zip(bodies, before, strict=True) if model_of(e) != model}
+        if not changed:
+            return frozenset()
+        facts = self.derived_facts
+        facts.begin()  # they are taken out of the facts, and inserted again
+        facts.follow((), changed, self.by_name.get, (), ())
+        moved = facts.follow(
+            changed.values(), (), lambda name: None if name in changed else self.by_name.get(name), (), ()
+        )
+        for entity in list(filter(None, map(self.find_by_iri, moved))):
+            self.by_name[entity.name] = structs.replace(entity, types=self.types_of(entity))
+        return frozenset((*changed, *facts.derived_changes.subjects))
 
     def clean_up(self) -> None:
         """Do the cleanup that a commit leaves for a time when no client waits."""

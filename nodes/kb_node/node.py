@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
@@ -13,6 +13,7 @@ from semmap.nodes.kb_node.commit_publisher import CommitPublisher
 from semmap.nodes.kb_node.config import KbConfig
 from semmap.nodes.kb_node.derived_facts import DerivedChanges
 from semmap.nodes.kb_node.documents.tbox import tbox_notes
+from semmap.nodes.kb_node.handlers.body_shapes import ShapeHandlers
 from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, Report
 from semmap.nodes.kb_node.handlers.loading import LoadHandlers
 from semmap.nodes.kb_node.handlers.maintenance import MaintenanceHandlers
@@ -23,6 +24,7 @@ from semmap.nodes.kb_node.sparql.protocol import Placements
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.sparql.standing_queries.row_publisher import RowPublisher
 from semmap.nodes.kb_node.sparql.triples.large_map import LargeMap
+from semmap.nodes.kb_node.storage import body_shapes
 from semmap.nodes.kb_node.storage.checkpointing import Checkpointing
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 from semmap.nodes.kb_node.storage.journal.sqlite_file import DiskFull, NotWritten
@@ -47,6 +49,9 @@ class KnowledgeBase:
 
     def __init__(self, node: Node, journal: Journal, config: KbConfig) -> None:
         self._node = node
+        file = journal.path.with_name(body_shapes.FILENAME)
+        if problem := body_shapes.load(file):
+            node.report(problem)
         self.map = SemanticMap(journal, progress=node.beat)
         self._publisher = CommitPublisher(
             node.session, self.map.entities(), entity_queries.CurrentState(self.map).describe
@@ -83,11 +88,13 @@ class KnowledgeBase:
             run_soon=node.soon,
         )
         self._maintenance = MaintenanceHandlers(journal)
+        shapes = ShapeHandlers(self.map, file, self._on_shapes)
         handlers = {
             **changes.handlers(),
             **self._loading.handlers(),
             **self._queries.handlers(),
             **self._maintenance.handlers(),
+            **shapes.handlers(),
         }
         self._player: ReplayPlayer | None = None
         if config.replay is not None:
@@ -137,6 +144,12 @@ class KnowledgeBase:
         self._sparql.follow(commit, derived_changes)
         self._location_queries.follow(commit.seq, commit.names)
         self.map.clean_up()
+
+    def _on_shapes(self, names: Collection[str]) -> None:
+        """Pass on relations that have changed without a commit."""
+        self._sparql.reload()
+        self._location_queries.follow(self.map.seq, names)
+        self._publisher.publish_entities(filter(None, map(self.map.find, names)))
 
     def _on_write_error(self, error: NotWritten) -> None:
         self._node.report(error.text)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from concurrent.futures import Future
 from typing import Any, Literal, TypeVar
 
+import msgspec
 import numpy as np
 from msgspec import structs
 
@@ -16,13 +17,17 @@ from semmap.nodes.runtime.loop import Node, open_node
 from semmap.nodes.sim_node.config import SimConfig
 from semmap.nodes.sim_node.models.model_reader import ModelReader
 from semmap.nodes.sim_node.models.sources import Models
+from semmap.nodes.sim_node.physics.build import run_in_background
 from semmap.nodes.sim_node.robots.base_controller import Outcome
 from semmap.nodes.sim_node.scene_state import FILENAME, SceneStore
 from semmap.nodes.sim_node.vision.video_renderer import Plane, SceneSnapshot, VideoRenderer
 from semmap.nodes.sim_node.vision.view import FROM_ABOVE, View, camera_view, overview
 from semmap.nodes.sim_node.window import Window
-from semmap.nodes.sim_node.world_file import names_classes, open_world
+from semmap.nodes.sim_node.world_file import is_scene, names_classes, open_world
+from semmap.nodes.sim_node.world_shapes import world_shapes
+from semmap.ontology.model_shapes import WorldShapes
 from semmap.schemas import codec, errors, keys, wording
+from semmap.schemas.bridge import ShapeBodies
 from semmap.schemas.calls import by_verb
 from semmap.schemas.commands import Classes, Pause, Reset, StepOnce
 from semmap.schemas.plans import Outline, WallsQuery
@@ -82,6 +87,7 @@ class Simulator:
         if config.world is not None:
             node.describe(f"compiling the world {config.world.name}")
         self._world = open_world(config.world, models, node.tick, classes, config.robot, config.class_map)
+        self._send_shapes(config)
         self._store: SceneStore | None = None
         if config.is_truth and config.world is not None and config.data is not None:
             self._store = SceneStore(config.data / FILENAME, self._world, config.world)
@@ -135,6 +141,24 @@ class Simulator:
             self._node.report("no response from the knowledge base; using models named like the classes")
             return ClassNames()
         return ClassNames(found)
+
+    def _send_shapes(self, config: SimConfig) -> None:
+        """Send the shapes of the bodies of an MJCF world to the knowledge base, as soon as it is there.
+
+        The bodies of a JSON scene have the shapes of their models.
+        """
+        if config.world is None or is_scene(config.world):
+            return
+        found = run_in_background(lambda: world_shapes(self._world), self._node.tick)
+        if not found:
+            return
+
+        def report(sent: Future[Done]) -> None:
+            if isinstance(error := sent.exception(), errors.SemmapError):
+                self._node.report(f"relations do not use the shapes of the world's bodies: {error.text}")
+
+        message = ShapeBodies(content=msgspec.json.encode(WorldShapes.of(found)))
+        self._node.ask_later(keys.BRIDGE, message, patience_s=config.patience_s).add_done_callback(report)
 
     def close(self) -> None:
         """Store the scene, stop the renderer and the reader of models, and close the window."""

@@ -14,15 +14,12 @@ from semmap.nodes.runtime.class_names import ClassNames
 from semmap.nodes.sim_node.body_classes import BodyClasses
 from semmap.nodes.sim_node.config import RobotConfig
 from semmap.nodes.sim_node.models.parts import rotation_matrix
-from semmap.nodes.sim_node.models.write_shapes import as_json
 from semmap.nodes.sim_node.order_validation import ModelSource
 from semmap.nodes.sim_node.physics import base_scene
 from semmap.nodes.sim_node.physics.build import run_in_background
 from semmap.nodes.sim_node.robots.robot import add_robot
 from semmap.nodes.sim_node.vision.view import View, look_at, pinhole
 from semmap.nodes.sim_node.world import World
-from semmap.nodes.sim_node.world_shapes import world_shapes
-from semmap.ontology.model_shapes import decode_shapes, keep_earlier, read_shapes
 from semmap.schemas import codec, scene_files
 from semmap.schemas.entities import free_name
 from semmap.schemas.errors import BadFile, UnknownClass
@@ -50,20 +47,6 @@ def require_world(path: Path, models: ModelSource, robot: RobotConfig | None = N
         open_world(path, models, robot=robot)
     else:
         base_scene.read_mjcf(path)
-
-
-def write_world(path: Path, models: ModelSource, target: Path) -> None:
-    """Write the shapes of the bodies of an MJCF scene for the knowledge base, without those of a robot.
-
-    Bodies of earlier worlds remain in the file, for past commits, also those of the same names. Bodies of a
-    JSON scene have the shapes of their models. Raises BadFile as `open_world` does.
-    """
-    if is_scene(path):
-        return
-    before = read_shapes(target) if target.is_file() else {}
-    target.parent.mkdir(parents=True, exist_ok=True)
-    now = decode_shapes(as_json(world_shapes(open_world(path, models))))  # rounded, as those before
-    target.write_text(as_json(keep_earlier(before, now)))
 
 
 def open_world(

@@ -15,8 +15,9 @@ from semmap.nodes.sim_node.models.library import Leaf, Model
 from semmap.nodes.sim_node.models.mjcf_files import part_of_geom, shape_of_geom
 from semmap.nodes.sim_node.models.parts import Floats, Joint, Role, Vec3, inertial, rotation_matrix
 from semmap.nodes.sim_node.models.spaces import shape_of
+from semmap.nodes.sim_node.models.write_shapes import as_json
 from semmap.nodes.sim_node.world import World
-from semmap.ontology.model_shapes import ModelShape
+from semmap.ontology.model_shapes import ModelShape, decode_shapes
 from semmap.schemas.scenes import Body
 
 _KINDS: Final[dict[int, Literal["hinge", "slide"]]] = {
@@ -28,8 +29,8 @@ _KINDS: Final[dict[int, Literal["hinge", "slide"]]] = {
 def world_shapes(world: World) -> dict[str, ModelShape]:
     """Return the shape of each body of a world file, computed from its geoms like that of a library model.
 
-    Shapes are in the frame of the bottom centre, with all joints at 0. A body without
-    colliding geoms has none.
+    Shapes are in the frame of the bottom centre, with all joints at 0, to a tenth of a millimetre. A body
+    without colliding geoms has none, and neither have robots, which change their shape.
     """
     model, data, names = world.snapshot()
     for joint in range(model.njnt):
@@ -42,14 +43,14 @@ def world_shapes(world: World) -> dict[str, ModelShape]:
     found: dict[str, ModelShape] = {}
     alike: dict[bytes, ModelShape] = {}
     for body in world.scene().bodies:
-        made = _model_of(model, data, body, geoms.get(body.name, []))
+        made = None if body.robot else _model_of(model, data, body, geoms.get(body.name, []))
         if made is None:
             continue
         key = _digest(made)
         if key not in alike:  # a scene may have hundreds of equal cups
             alike[key] = structs.replace(shape_of(made), turns=False)
         found[body.name] = alike[key]
-    return found
+    return decode_shapes(as_json(found))
 
 
 def _model_of(model: mujoco.MjModel, data: mujoco.MjData, body: Body, geoms: list[int]) -> Model | None:

@@ -19,7 +19,7 @@ from semmap.nodes.supervisor.orphans import end_when_orphaned
 from semmap.nodes.supervisor.privacy import UMASK
 from semmap.nodes.supervisor.settings import Settings
 from semmap.ontology import EMPTY_WORLD, FLAT_WORLD
-from semmap.ontology.model_shapes import add_own, add_world
+from semmap.ontology.model_shapes import add_own
 from semmap.schemas import codec, errors
 from semmap.schemas.endpoints import WEB_TOKEN_VARIABLE
 from semmap.schemas.keys import ROUTER, WEB
@@ -77,7 +77,7 @@ def seed(settings: Settings) -> None:
 
 
 def _read_world(settings: Settings) -> None:
-    """Validate the world and the robot, and write the shapes of the world's bodies and of the models."""
+    """Validate the world and the robot, and write the shapes of the models."""
     has_own_world = settings.sim and Path(settings.world) not in (FLAT_WORLD, EMPTY_WORLD)
     if settings.sim and settings.robot is not None and not has_own_world:
         from semmap.nodes.sim_node.robots.robot import read
@@ -89,7 +89,7 @@ def _read_world(settings: Settings) -> None:
     from semmap.nodes.sim_node.models.model_reader import ModelReader
     from semmap.nodes.sim_node.models.sources import Models
     from semmap.nodes.sim_node.models.write_shapes import write_own
-    from semmap.nodes.sim_node.world_file import require_world, write_world
+    from semmap.nodes.sim_node.world_file import require_world
 
     folder = None if settings.models is None else Path(settings.models)
     with ModelReader() as reader:
@@ -97,7 +97,6 @@ def _read_world(settings: Settings) -> None:
             models = Models(folder, Path(settings.data), reader)
             with limited():
                 require_world(Path(settings.world), models, _robot(settings))
-                write_world(Path(settings.world), models, _world_shapes(settings))
         if folder is not None or _own_shapes(settings).is_file():
             Path(settings.data).mkdir(parents=True, exist_ok=True)
             write_own(folder, _own_shapes(settings), reader)
@@ -115,17 +114,11 @@ def _own_shapes(settings: Settings) -> Path:
     return Path(settings.data) / "model_shapes.json"
 
 
-def _world_shapes(settings: Settings) -> Path:
-    """Return the file with the shapes of the world's bodies. It remains for starts without the simulator."""
-    return Path(settings.data) / "world_shapes.json"
-
-
 def _kb_node(settings: Settings) -> None:
     from semmap.nodes.kb_node.config import KbConfig, Replay
     from semmap.nodes.kb_node.node import run
 
     add_own(_own_shapes(settings))
-    add_world(_world_shapes(settings))
     replay = settings.replay
     run(
         KbConfig(
@@ -143,7 +136,6 @@ def _coordinator(settings: Settings) -> None:
     from semmap.nodes.coordinator.node import run
 
     add_own(_own_shapes(settings))
-    add_world(_world_shapes(settings))
     thresholds = Thresholds(distance_m=settings.threshold_m, angle_rad=settings.angle_threshold_rad)
     live = LiveRules(stale_s=settings.stale_s, journal_every_s=settings.journal_every_s)
     keys = None if settings.secure is None else Path(settings.secure)

@@ -88,3 +88,12 @@ def test_entity_messages_include_the_location_also_if_another_entity_moved(told)
     (where, *_) = told.heard("Glass")["glass1"].whereabouts
     assert (where.relation, where.object) == ("isOn", "counter1")
     assert where.text
+
+
+def test_entities_whose_facts_changed_without_a_commit_are_published(told):
+    told.commit(insert=FLAT)
+    told.heard("Table")
+    table = told.map.entity("table1")
+    told._publisher.publish_entities([table])
+    assert told.heard("Table")["table1"].name == "table1"
+    assert told._publisher._types["table1"] == table.types

@@ -1,5 +1,7 @@
 """The bodies of a world file have shapes of their own, and relations are about these."""
 
+import math
+
 import mujoco
 import pytest
 
@@ -7,11 +9,10 @@ from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.kb_node.relations.facts.precompute import compute_facts
 from semmap.nodes.kb_node.relations.facts.precompute_messages import ExpectedEntities, PrecomputeRequest
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity, name_shape_source
-from semmap.nodes.sim_node.models.sources import Models
 from semmap.nodes.sim_node.world import World
-from semmap.nodes.sim_node.world_file import write_world
 from semmap.nodes.sim_node.world_shapes import world_shapes
 from semmap.ontology import model_shapes
+from semmap.ontology.model_shapes import WorldShapes
 from semmap.schemas import codec
 from tests.kb_node.relations.entities import thing
 
@@ -58,8 +59,7 @@ def shapes(world):
 @pytest.fixture
 def known(world, shapes, monkeypatch):
     """Return the entities of the world, whose shapes are known."""
-    monkeypatch.setattr(model_shapes, "_world", {})
-    model_shapes.add_shapes({f"world/{name}": shape for name, shape in shapes.items()})
+    monkeypatch.setattr(model_shapes, "_world", WorldShapes.of(shapes))
     return entities(world)
 
 
@@ -89,7 +89,7 @@ def test_relations_are_about_the_bodies_of_the_world(known):
 
 
 def test_without_them_they_are_about_the_models_of_their_classes(world, monkeypatch):
-    monkeypatch.setattr(model_shapes, "_world", {})
+    monkeypatch.setattr(model_shapes, "_world", WorldShapes())
     assert ("pot1", "isInside", "oven1") in computed(entities(world))
 
 
@@ -99,7 +99,7 @@ def test_the_process_that_precomputes_facts_has_them_too(known):
         Facts().space.limits, placed, ExpectedEntities([], []), model_shapes.added_shapes()
     )
     sent = codec.decode(codec.encode(request), PrecomputeRequest)
-    assert sent.shapes.keys() >= {"world/oven1"}
+    assert sent.shapes.world.bodies.keys() >= {"oven1"}
     assert ("isOn", "oven1") in compute_facts(sent).facts[0]["pot1"]
 
 
@@ -129,6 +129,37 @@ def test_a_handle_moves_with_its_door_and_a_hinged_body_with_its_pose():
     assert shapes["door1"].leaves == ()
 
 
+@pytest.mark.parametrize("yaw", [0.0, 25.0])
+def test_a_bowl_of_the_world_is_round_and_does_not_contain_what_stands_beside_it(monkeypatch, yaw):
+    """Its wall consists of boxes in a ring. The dice are in corners of the box around its hollow."""
+    wall = "".join(
+        f'<geom type="box" size=".01 .03 .05" pos="{0.1 * math.cos(k * math.pi / 6)}'
+        f' {0.1 * math.sin(k * math.pi / 6)} .06" euler="0 0 {30 * k}"/>'
+        for k in range(12)
+    )
+    corners = [math.radians(yaw + 45.0 + 90.0 * k) for k in range(4)]
+    dice = "".join(
+        f'<body name="die{k}" pos="{0.122 * math.cos(at)} {0.122 * math.sin(at)} .05" euler="0 0 {yaw}">'
+        '<freejoint/><geom type="box" size=".005 .005 .05"/></body>'
+        for k, at in enumerate(corners)
+    )
+    world = World(
+        mujoco.MjSpec.from_string(
+            f'<mujoco><worldbody><body name="bowl1" euler="0 0 {yaw}">'
+            f'<geom type="cylinder" size=".1 .01" pos="0 0 .01"/>{wall}</body>{dice}'
+            '<body name="egg1" pos=".04 .04 .045"><freejoint/><geom size=".025"/></body></worldbody></mujoco>'
+        )
+    )
+    found = world_shapes(world)
+    monkeypatch.setattr(model_shapes, "_world", WorldShapes.of(found))
+    (room,) = found["bowl1"].interiors
+    assert room.round
+    assert math.dist(room.low[:2], room.high[:2]) / 2 > 0.122
+    assert {fact for fact in computed(entities(world)) if fact[1] == "isInside"} == {
+        ("egg1", "isInside", "bowl1")
+    }
+
+
 def test_get_names_the_source_of_a_shape(known):
     sources = {entity.name: name_shape_source(entity) for entity in known}
     assert sources["oven1"] == "world"
@@ -137,34 +168,52 @@ def test_get_names_the_source_of_a_shape(known):
     assert name_shape_source(grown) == "model"
 
 
-def test_bodies_of_earlier_worlds_remain_in_the_file(tmp_path, monkeypatch):
-    monkeypatch.setattr(model_shapes, "_world", {})
-    target = tmp_path / "data" / "world_shapes.json"
-    for name in ("cup1", "mug2"):
-        path = tmp_path / "world.xml"
-        path.write_text(
-            f'<mujoco><worldbody><body name="{name}"><geom size=".1"/></body></worldbody></mujoco>'
-        )
-        write_world(path, Models(), target)
-    model_shapes.add_world(target)
-    assert model_shapes.added_shapes().keys() >= {"world/cup1", "world/mug2"}
+def shapes_of(mjcf):
+    return WorldShapes.of(
+        world_shapes(World(mujoco.MjSpec.from_string(f"<mujoco><worldbody>{mjcf}</worldbody></mujoco>")))
+    )
 
 
-def test_a_later_world_does_not_overwrite_shapes_of_the_same_names(tmp_path, monkeypatch):
-    monkeypatch.setattr(model_shapes, "_world", {})
-    target, path = tmp_path / "world_shapes.json", tmp_path / "world.xml"
+def test_bodies_of_earlier_worlds_keep_their_shapes_and_equal_bodies_share_one():
+    first = shapes_of(
+        '<body name="cup1"><geom size=".1"/></body><body name="cup2" pos="1 0 0"><geom size=".1"/></body>'
+    )
+    assert len(first.shapes) == 1
+    both = first.followed_by(shapes_of('<body name="mug2"><geom size=".2"/></body>'))
+    assert both.bodies.keys() == {"cup1", "cup2", "mug2"}
+    assert both.followed_by(first) == both
+
+
+def test_a_later_world_does_not_replace_shapes_of_the_same_names_and_other_sizes(monkeypatch):
+    monkeypatch.setattr(model_shapes, "_world", WorldShapes())
     for height in (0.4, 0.6, 0.5, 0.6):
-        path.write_text(
-            '<mujoco><worldbody><body name="table1"><geom type="box" size=".5 .5 .01"'
-            f' pos="0 0 {height}"/><geom type="box" size=".02 .02 .1" pos="0 0 .1"/></body>'
-            "</worldbody></mujoco>"
+        later = shapes_of(
+            f'<body name="table1"><geom type="box" size=".5 .5 .01" pos="0 0 {height}"/>'
+            '<geom type="box" size=".02 .02 .1" pos="0 0 .1"/></body>'
         )
-        write_world(path, Models(), target)
-    model_shapes.add_world(target)
+        model_shapes.exchange_world(model_shapes.world().followed_by(later))
     found = [model_shapes.model_in_world("table1", "table", (1.0, 1.0, size)) for size in (0.61, 0.41, 0.51)]
-    assert found == ["world/table1", "world/table1/1", "world/table1/2"]
     assert [model_shapes.shape_named(name).surfaces[0].height for name in found] == [0.61, 0.41, 0.51]
+    assert model_shapes.model_in_world("table1", "table", None) == found[0]
     assert model_shapes.model_in_world("table1", "table", (1.0, 1.0, 0.9)) == "table"
+    assert len(model_shapes.world().shapes) == 3
+
+
+def test_a_later_shape_of_the_same_size_replaces_the_earlier_one():
+    plain = shapes_of('<body name="box1"><geom type="box" size=".1 .1 .1"/></body>')
+    round_one = shapes_of('<body name="box1"><geom type="cylinder" size=".1 .1"/></body>')
+    assert plain.followed_by(round_one) == round_one
+
+
+def test_a_robot_has_no_shape():
+    world = World(
+        mujoco.MjSpec.from_string(
+            '<mujoco><worldbody><body name="robot1"><geom size=".1"/></body>'
+            '<body name="cup1" pos="1 0 0"><geom size=".1"/></body></worldbody></mujoco>'
+        )
+    )
+    world.mark_robot("robot1")
+    assert world_shapes(world).keys() == {"cup1"}
 
 
 def test_a_joint_of_the_body_itself_does_not_hide_those_of_its_parts():

@@ -145,5 +145,6 @@ def _read_regular(
 
 def _name_taken(holder: Entity, other: Entity) -> errors.NameTaken:
     return errors.NameTaken(
-        f"the name '{holder.name}' is taken by <{holder.iri}>; give <{other.iri}> another last part"
+        f"the name '{holder.name}' of <{other.iri}> is also that of <{holder.iri}>, and names are unique;"
+        f" give <{other.iri}> another last part"
     )

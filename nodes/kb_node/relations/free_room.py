@@ -241,10 +241,9 @@ def _facing(target: Solid) -> tuple[Quaternion, Quaternion]:
 
 def _levels_in(outer: Solid, hollow: Interior) -> Iterator[_Level]:
     """Yield the floor of a hollow and the boards in it, the lowest first."""
-    (x0, y0, z0), (x1, y1, z1) = hollow.low, hollow.high
-    floor = [outer.to_map((x, y, z0)) for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
-    outline = [(x, y) for x, y, _ in floor]
-    low, high = floor[0][2], floor[0][2] + (z1 - z0)
+    outline = outer.outline_of(hollow)
+    low = outer.to_map(hollow.low)[2]
+    high = low + hollow.high[2] - hollow.low[2]
     levels = [_Level(low, outline)]
     for support in outer.supports:
         if low + _LIFTED_M < support.height < high and len(board := clipped(support.outline, outline)) > 2:

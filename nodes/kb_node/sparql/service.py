@@ -170,6 +170,14 @@ class SparqlService:
                 )
             )
 
+    def reload(self) -> None:
+        """Send the computed facts to the process again, because they have changed without a commit.
+
+        A query that comes at the same moment may still see the earlier ones.
+        """
+        if self._infers:
+            self._load()
+
     def _load(self) -> None:
         """Send the present map to the process."""
         if self._worker is None:

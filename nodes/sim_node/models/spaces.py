@@ -75,7 +75,7 @@ def shape_of(model: Model) -> ModelShape:
             room if _is_among(room, without) else structs.replace(room, behind=(*room.behind, name))
             for room in interiors
         ]
-    interiors += [_cavity(part, part.cavity) for part in model.parts if part.cavity]
+    interiors += [_cavity(part, part.cavity, xs, ys) for part in model.parts if part.cavity]
     surfaces = _surfaces([_cut(part, xs, ys) for part in solid], xs, ys, step)
     leaves = []
     for leaf in model.leaves:
@@ -104,7 +104,7 @@ def shape_of(model: Model) -> ModelShape:
     )
 
 
-def _cavity(part: Part, cavity: Cavity) -> Interior:
+def _cavity(part: Part, cavity: Cavity, xs: Floats, ys: Floats) -> Interior:
     """Return the interior of a solid part, between its walls."""
     centre, reach = np.asarray(part.centre), part.reach()
     wall = min(VESSEL_WALL_M, VESSEL_WALL * float(reach.min()))
@@ -113,8 +113,25 @@ def _cavity(part: Part, cavity: Cavity) -> Interior:
     if cavity.is_open:
         high[2] += wall
     (x0, y0, z0), (x1, y1, z1) = low.tolist(), high.tolist()
-    fill = part.volume / float(np.prod(2.0 * reach))
-    return Interior(low=(x0, y0, z0), high=(x1, y1, z1), fill=fill, open=cavity.is_open, filled=True)
+    below, _ = _cut(part, xs, ys)
+    return Interior(
+        low=(x0, y0, z0),
+        high=(x1, y1, z1),
+        fill=part.volume / float(np.prod(2.0 * reach)),
+        round=_is_round(np.argwhere(~np.isnan(below))),
+        open=cavity.is_open,
+        filled=True,
+    )
+
+
+def _is_round(cells: NDArray[np.int64]) -> bool:
+    """Return whether an ellipse matches the outline of (N, 2) cells better than the rectangle around them."""
+    low, high = cells.min(axis=0), cells.max(axis=0) + 1
+    covered = np.zeros(high - low, dtype=bool)
+    covered[tuple((cells - low).T)] = True
+    across, along = (2.0 * (np.arange(count) + 0.5) / count - 1.0 for count in covered.shape)
+    ellipse = across[:, None] ** 2 + along**2 <= 1.0
+    return bool(np.count_nonzero(covered != ellipse) < np.count_nonzero(~covered))
 
 
 def _as_thick_as(step: float, part: Part) -> Part:
@@ -282,6 +299,7 @@ def _interiors(
                     lid_m if all(covered) else float(high[2] * rise),
                 ),
                 fill=len(cells) / float(np.prod(high - low)),
+                round=_is_round(cells[:, :2]),
                 open=not all(covered),
             )
         )

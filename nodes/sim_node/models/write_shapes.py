@@ -71,7 +71,14 @@ def write_own(folder: Path | None, target: Path, read: ReadModel = read_model) -
     if folder is None:
         target.unlink(missing_ok=True)
     else:
-        target.write_text(as_json(own_shapes(folder, read)))
+        replace_file(target, own_shapes(folder, read))
+
+
+def replace_file(target: Path, shapes: dict[str, ModelShape]) -> None:
+    """Write shapes to a file completely or not at all, because nodes read it while they start."""
+    beside = target.with_name(f"{target.name}.partly")
+    beside.write_text(as_json(shapes))
+    beside.replace(target)
 
 
 def as_json(shapes: dict[str, ModelShape]) -> str:

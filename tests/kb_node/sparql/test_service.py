@@ -25,6 +25,7 @@ from semmap.schemas.commits import Commit, Departed
 from semmap.schemas.entities import Pose
 from tests.kb_node import home
 from tests.kb_node.relations.entities import ROOM, TABLE, TOP, thing
+from tests.waiting import until
 
 WAIT_S = 60.0
 FOR_EVER = "SELECT (COUNT(*) AS ?n) { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i . ?j ?k ?l FILTER(?a < ?l) }"
@@ -125,6 +126,15 @@ def test_a_query_sees_every_earlier_commit(at_home):
     assert len(at_home.ask(SEATS, inferred=True).rows) == 20
     at_home.commit(retract=chair("c00"))
     assert len(at_home.ask(SEATS, inferred=True).rows) == len(at_home.ask(CHAIRS).rows) == 19
+
+
+def test_computed_facts_that_change_without_a_commit_are_sent_again(at_home):
+    at_home.commit(chair("c1"))
+    rows = at_home.ask(SEATS, inferred=True).rows
+    fact = (v.entity_iri("c2"), v.RDF_TYPE, v.dm("Chair"))
+    at_home.reasoner.update_computed(add=[fact])
+    at_home.service.reload()
+    until(lambda: len(at_home.ask(SEATS, inferred=True).rows) == len(rows) + 1, "the new fact is seen")
 
 
 def test_readers_without_open_files_note_unknown_terms(flat):

@@ -54,3 +54,13 @@ def test_without_a_folder_there_are_none_any_more(tmp_path):
     write_own(None, target)
     assert not target.exists()
     model_shapes.add_own(target)
+
+
+def test_shapes_that_cannot_be_written_leave_the_former_file(folder, tmp_path):
+    target = tmp_path / "model_shapes.json"
+    write_own(folder, target)
+    before = target.read_bytes()
+    target.with_name(f"{target.name}.partly").mkdir()
+    with pytest.raises(OSError, match="directory"):
+        write_own(folder, target)
+    assert target.read_bytes() == before

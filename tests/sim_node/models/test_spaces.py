@@ -145,6 +145,7 @@ def test_a_cavity_leaves_a_wall_and_the_surface_of_its_part():
     assert open_room.low == pytest.approx((-0.094, -0.094, 0.006))
     assert open_room.high == pytest.approx((0.094, 0.094, 0.3))
     assert open_room.fill == pytest.approx(math.pi / 4)
+    assert open_room.round
     (closed,) = shape(with_cavity(solid, is_open=False)).interiors
     assert not closed.open
     assert closed.high[2] == pytest.approx(0.294)

@@ -14,7 +14,7 @@ from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.ontology import vocabulary as v
 from semmap.ontology.model_choice import chosen
-from semmap.ontology.model_shapes import ModelShape, model_in_world
+from semmap.ontology.model_shapes import AddedShapes, model_in_world
 from semmap.schemas import codec
 from semmap.schemas.entities import IDENTITY, Entity, Pose
 from semmap.schemas.explanations import Term
@@ -75,8 +75,7 @@ class PrecomputeRequest(Struct, frozen=True, array_like=True):
     limits: Thresholds
     there: tuple[PlacedEntity, ...]
     coming: ExpectedEntities
-    shapes: dict[str, ModelShape] = {}
-    """The shapes that are not of the library."""
+    shapes: AddedShapes = AddedShapes()
 
 
 class PrecomputeResult(Struct, frozen=True, array_like=True):

@@ -106,7 +106,7 @@ class Convex:
             (ax, ay, _), (bx, by, _) = self.round
             if ax * by < ay * bx:
                 bx, by = -bx, -by
-            return tuple((cx + c * ax + s * bx, cy + c * ay + s * by) for c, s in _OCTAGON)
+            return tuple((cx + c * ax + s * bx, cy + c * ay + s * by) for c, s in OCTAGON)
         return tuple(hull([self._find_furthest(x, y) for x, y in _COMPASS]))
 
     def _find_furthest(self, nx: float, ny: float) -> Point:
@@ -180,7 +180,8 @@ _LEVEL = 1e-6
 _COMPASS = tuple((math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8))
 _EQUAL_AREA = math.sqrt(math.pi / (2.0 * math.sqrt(2.0)))
 """Scales the corners of an octagon so that it has the area of the disc."""
-_OCTAGON = tuple((_EQUAL_AREA * x, _EQUAL_AREA * y) for x, y in _COMPASS)
+OCTAGON = tuple((_EQUAL_AREA * x, _EQUAL_AREA * y) for x, y in _COMPASS)
+"""Stands for a unit disc, counterclockwise."""
 
 
 class Contact(NamedTuple):

@@ -66,8 +66,8 @@ class Hollows:
     v: Floats
     is_sealed: Floats
     """(K,) 1 or 0."""
-    is_round_vessel: Floats
-    """(K,) 1 or 0."""
+    is_round: Floats
+    """(K,) 1 if the walls are the ellipse in the parallelogram, else 0."""
 
     SHAPES: ClassVar = ((), (), (2,), (2,), (2,), (), ())
 
@@ -330,6 +330,6 @@ def _hollows(shape: ModelShape, stretch: Floats, rotation: Floats) -> list[Float
     middle, half = (low + high) / 2, (high - low) / 2
     vectors = (middle * [1.0, 1.0, 0.0], half * [1.0, 0.0, 0.0], half * [0.0, 1.0, 0.0])
     walls = [_turned(vector, rotation)[:, :, :2] for vector in vectors]
-    kinds = [(float(hollow.is_sealed), float(hollow.is_round_vessel)) for hollow in shape.interiors]
+    kinds = [(float(hollow.is_sealed), float(hollow.round)) for hollow in shape.interiors]
     flags = [np.broadcast_to(kind, low.shape[:2]) for kind in np.array(kinds).T]
     return [low[:, :, 2], high[:, :, 2], *walls, *flags]

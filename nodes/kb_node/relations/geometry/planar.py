@@ -47,8 +47,8 @@ def are_within(s: Floats, t: Floats) -> Bools:
     return found
 
 
-def are_on_top(s: Floats, t: Floats, is_disc: Floats) -> Bools:
-    """Return whether these extents are clearly on a top that is an ellipse or a parallelogram."""
+def are_within_outline(s: Floats, t: Floats, is_disc: Floats) -> Bools:
+    """Return whether these extents are clearly within an ellipse or a parallelogram."""
     found: Bools = np.where(is_disc > 0.0, s * s + t * t < _INSIDE_OCTAGON, are_within(s, t))
     return found
 

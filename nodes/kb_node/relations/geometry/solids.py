@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from semmap.nodes.geometry.polygons import Point
-from semmap.nodes.kb_node.relations.geometry.convex import Convex, translate
+from semmap.nodes.kb_node.relations.geometry.convex import OCTAGON, Convex, translate
 from semmap.nodes.kb_node.relations.geometry.forms import Bounds, Form, Matrix, form_of, region_form
 from semmap.nodes.kb_node.relations.geometry.lazy_property import lazy_property
 from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions
@@ -113,6 +113,15 @@ class Solid:
     def hollows(self) -> tuple[Interior, ...]:
         """Return its interiors, in its own frame."""
         return self.form.shape.interiors if self.is_measured else ()
+
+    def outline_of(self, hollow: Interior) -> list[Point]:
+        """Return the walls of one of its hollows on the floor plan. Those of a round one are an octagon."""
+        (x0, y0, z0), (x1, y1, _) = hollow.low, hollow.high
+        corners: Sequence[Point] = ((x0, y0), (x1, y0), (x1, y1), (x0, y1))
+        if hollow.round:
+            x, y, half_x, half_y = (x0 + x1) / 2, (y0 + y1) / 2, (x1 - x0) / 2, (y1 - y0) / 2
+            corners = [(x + half_x * c, y + half_y * s) for c, s in OCTAGON]
+        return [self.to_map((*corner, z0))[:2] for corner in corners]
 
     @property
     def lowest_top(self) -> float:

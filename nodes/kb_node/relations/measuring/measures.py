@@ -149,11 +149,11 @@ def is_in_open_hollow(lower: Solid, upper: Solid, made: Measure) -> bool:
         return False
     whole = area(upper.outline)
     for hollow in lower.hollows:
-        (x0, y0, z0), (x1, y1, _) = hollow.low, hollow.high
-        if hollow.open and abs(lower.position[2] + z0 - made.height_m) <= FLOOR_M:
-            floor = [lower.to_map((x, y, 0.0))[:2] for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
-            if area(clipped(upper.outline, floor)) > 0.5 * whole:
-                return True
+        is_on_floor = abs(lower.position[2] + hollow.low[2] - made.height_m) <= FLOOR_M
+        if not (hollow.open and is_on_floor):
+            continue
+        if area(clipped(upper.outline, lower.outline_of(hollow))) > 0.5 * whole:
+            return True
     return False
 
 
@@ -296,44 +296,43 @@ def _is_enclosed(inner: Solid, outer: Solid, hollow: Interior) -> bool:
         x, y, z = outer.to_own((px + dx, py + dy, pz + dz))
         if not (x0 - e <= x <= x1 + e and y0 - e <= y <= y1 + e and z0 - e <= z <= z1 + e):
             return False
-        if hollow.is_round and not _is_in_cylinder(x, y, hollow):
+        if not _is_within_walls(x, y, hollow):
             return False
     return True
 
 
-def _is_in_cylinder(x: float, y: float, hollow: Interior) -> bool:
-    """Return whether a point is in the cylinder within the box of a hollow, in the same frame."""
+def _is_within_walls(x: float, y: float, hollow: Interior) -> bool:
+    """Return whether a point in the box of a hollow, in the same frame, is in the hollow."""
+    if not hollow.round:
+        return True
     (x0, y0, _), (x1, y1, _) = hollow.low, hollow.high
     across, along = (2 * x - x0 - x1) / (x1 - x0), (2 * y - y0 - y1) / (y1 - y0)
     return across * across + along * along <= 1.0
 
 
 def _compute_share_in(inner: Solid, outer: Solid, hollow: Interior) -> float:
-    """Return the share of a volume in a hollow. In a sealed one it is all or nothing.
-
-    It is 0 beside a round vessel, although the corners of its box are there.
-    """
+    """Return the share of a volume in a hollow. In a sealed one it is all or nothing."""
     if hollow.is_sealed:
         return float(_is_enclosed(inner, outer, hollow))
-    if hollow.is_round_vessel and not _is_in_cylinder(*outer.to_own(inner.centre)[:2], hollow):
-        return 0.0
     (x0, y0, z0), (x1, y1, z1) = hollow.low, hollow.high
     if not (inner.is_level and outer.is_level):
         points = inner.samples
         found = [outer.to_own(point) for point in points]
-        return sum(x0 <= x <= x1 and y0 <= y <= y1 and z0 <= z <= z1 for x, y, z in found) / len(points)
+        return sum(
+            x0 <= x <= x1 and y0 <= y <= y1 and z0 <= z <= z1 and _is_within_walls(x, y, hollow)
+            for x, y, z in found
+        ) / len(points)
     floor, lid = outer.position[2] + z0, outer.position[2] + z1
     height = min(lid, inner.position[2] + inner.size[2]) - max(floor, inner.position[2])
     if height <= 0.0:
         return 0.0
-    if inner.form.is_square and outer.form.is_square:
+    if inner.form.is_square and outer.form.is_square and not hollow.round:
         (a0, b0, _), (a1, b1, _) = outer.to_map((x0, y0, 0.0)), outer.to_map((x1, y1, 0.0))
         u0, v0, u1, v1 = inner.bounds
         wide = min(u1, max(a0, a1)) - max(u0, min(a0, a1))
         deep = min(v1, max(b0, b1)) - max(v0, min(b0, b1))
         return wide * deep * height / inner.volume if wide > 0.0 and deep > 0.0 else 0.0
-    walls = [outer.to_map((x, y, 0.0))[:2] for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
-    return area(clipped(inner.outline, walls)) * height / inner.volume
+    return area(clipped(inner.outline, outer.outline_of(hollow))) * height / inner.volume
 
 
 def is_holder(hollow: Interior) -> bool:
@@ -344,14 +343,14 @@ def is_holder(hollow: Interior) -> bool:
 
 def _compute_base_share_in(inner: Solid, outer: Solid, hollow: Interior, limits: Thresholds) -> float:
     """Return the share of a base that stands in the lower half of a holder; of a leaning one, its foot."""
-    (x0, y0, z0), (x1, y1, z1) = hollow.low, hollow.high
+    z0, z1 = hollow.low[2], hollow.high[2]
     above = inner.bottom - outer.position[2]
     sticks_out = inner.top > outer.position[2] + z1
     if not (sticks_out and is_holder(hollow) and max(FLOOR_M, z0 - limits.gap_m) < above <= (z0 + z1) / 2):
         return 0.0
     if hollow.is_sealed:
         return 0.0
-    walls = [outer.to_map((x, y, 0.0))[:2] for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
+    walls = outer.outline_of(hollow)
     if not inner.is_upright:
         return float(contains(walls, min(inner.parts, key=_get_bottom).lowest))
     whole = area(inner.base)

@@ -10,7 +10,12 @@ from semmap.nodes.kb_node.relations.geometry.columns import Columns
 from semmap.nodes.kb_node.relations.geometry.convex import DEEPEST_M
 from semmap.nodes.kb_node.relations.geometry.form_columns import Bools, Floats, FormColumns, Ints
 from semmap.nodes.kb_node.relations.geometry.forms import LOWEST_M
-from semmap.nodes.kb_node.relations.geometry.planar import GUARD, are_on_top, compute_extents, decompose
+from semmap.nodes.kb_node.relations.geometry.planar import (
+    GUARD,
+    are_within_outline,
+    compute_extents,
+    decompose,
+)
 from semmap.nodes.kb_node.relations.measuring.broad_phase import repeat_rows, starts_run
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 
@@ -72,16 +77,16 @@ def find_supports(columns: Columns, one: Ints, other: Ints, limits: Thresholds) 
     lower = meeting.lower
     u, v, is_disc = parts.u[lower], parts.v[lower], parts.is_disc[lower]
     over = meeting.offset - parts.centre[lower]
-    meets_top = are_on_top(*decompose(over + parts.lowest[meeting.upper], u, v), is_disc)
+    meets_top = are_within_outline(*decompose(over + parts.lowest[meeting.upper], u, v), is_disc)
     plain = (meeting.slack > GUARD) & (meeting.above > GUARD - DEEPEST_M) & meets_top
     form = columns.form[one[meeting.pair]]
     forms = columns.forms
     low, high = forms.base[form, :2], forms.base[form, 2:]
     a, b = np.zeros_like(low), np.zeros_like(low)
     a[:, 0], b[:, 1] = ((high - low) / 2).T
-    carries = are_on_top(*compute_extents(over + (low + high) / 2, a, b, u, v), is_disc)
+    carries = are_within_outline(*compute_extents(over + (low + high) / 2, a, b, u, v), is_disc)
     # An object whose base centre is over the top is balanced there, whatever its share.
-    carries |= are_on_top(*decompose(over + _compute_base_centres(forms)[form], u, v), is_disc)
+    carries |= are_within_outline(*decompose(over + _compute_base_centres(forms)[form], u, v), is_disc)
     carries &= parts.low[meeting.upper, 2] - forms.bottom[form] < LOWEST_M - 2.0 * GUARD
 
     holds = np.logical_and.reduceat(plain | ~is_nearest, begins)

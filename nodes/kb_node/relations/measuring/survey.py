@@ -195,14 +195,15 @@ class Survey:
         shared = planar.compute_intersections(columns.bounds[i], planar.bounds_around(middle, u, v))
         deep = np.maximum(height, 0.0) / columns.volume[i]
         most = np.minimum(area, shared) * deep
-        covers = planar.are_within(*planar.compute_extents(columns.position[i, :2] - middle, a, b, u, v))
-        is_exact = forms.is_square[form] & forms.is_square[its]
+        is_round = forms.hollows.is_round[hollow]
+        extents = planar.compute_extents(columns.position[i, :2] - middle, a, b, u, v)
+        covers = planar.are_within_outline(*extents, is_round)
+        is_exact = forms.is_square[form] & forms.is_square[its] & (is_round == 0.0)
         least = np.where(is_exact, most, np.where(covers, area * deep, 0.0))
         is_sealed = forms.hollows.is_sealed[hollow] > 0.0
         walls = 2.0 * np.sort([np.hypot(*u.T), np.hypot(*v.T)], axis=0)
         spare = measures.FIT * walls - np.sort(forms.size[form, :2], axis=1).T
-        is_round = forms.hollows.is_round_vessel[hollow] > 0.0
-        least[is_sealed | is_round | (spare.min(axis=0) < GUARD)] = 0.0
+        least[is_sealed | (spare.min(axis=0) < GUARD)] = 0.0
         above = columns.bottom[i] - base
         stands = (above > measures.FLOOR_M - GUARD) & (above < (floor + lid) / 2 + GUARD) & (shared > 0.0)
         stands &= ~is_sealed

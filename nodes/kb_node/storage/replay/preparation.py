@@ -7,6 +7,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Final
 
+from semmap.nodes.kb_node.storage import body_shapes
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 from semmap.nodes.kb_node.storage.replay import journal_copy
 from semmap.nodes.kb_node.storage.replay.spans import Span, span_of
@@ -19,6 +20,8 @@ SOURCE: Final = f"replayed-{FILENAME}"
 
 def prepare(data: Path, folder: Path, *, since: When | None = None, until: When | None = None) -> Span:
     """Create the journals in `folder` for a replay of the map in `data`, and return its span.
+
+    The shapes of the bodies of its worlds are copied, too.
 
     Raises BadFile if there is no map. Raises Refused if it is damaged up to the end of the span or lacks
     the span, BadRequest for an invalid span.
@@ -33,6 +36,8 @@ def prepare(data: Path, folder: Path, *, since: When | None = None, until: When 
         raise journal_copy.name_original(error, source, data / FILENAME) from None
     shutil.copyfile(source, folder / FILENAME)
     journal_copy.truncate(folder / FILENAME, span.since)
+    if (shapes := data / body_shapes.FILENAME).is_file():
+        shutil.copyfile(shapes, folder / body_shapes.FILENAME)
     return span
 
 

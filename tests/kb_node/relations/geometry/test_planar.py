@@ -44,7 +44,7 @@ def test_within_means_clearly_less_than_the_half_side_in_both_directions(s, t, i
 
 def test_a_corner_is_on_a_square_top_but_not_on_a_round_one():
     s = t = np.array([0.8, 0.8, 0.5])
-    assert planar.are_on_top(s, t, np.array([0.0, 1.0, 1.0])).tolist() == [True, False, True]
+    assert planar.are_within_outline(s, t, np.array([0.0, 1.0, 1.0])).tolist() == [True, False, True]
 
 
 def test_bounds_contain_all_four_corners_and_touch_them():

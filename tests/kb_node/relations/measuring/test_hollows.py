@@ -11,7 +11,7 @@ from tests.kb_node.relations.facts.test_many_at_once import require_alike
 
 SEALED = sorted(name for name, shape in shapes().items() if any(room.is_sealed for room in shape.interiors))
 OPEN = sorted(name for name, shape in shapes().items() if any(room.open for room in shape.interiors))
-VESSELS = sorted(name for name, shape in shapes().items() if any(r.is_round_vessel for r in shape.interiors))
+ROUND = sorted(name for name in OPEN if any(room.round for room in shapes()[name].interiors))
 LYING = (math.sqrt(0.5), 0.0, math.sqrt(0.5), 0.0)
 
 
@@ -83,16 +83,41 @@ def test_an_open_hollow_contains_what_fits_in_it(model):
     assert not is_inside(outer, thing("thing1", middle, "", size=wide))
 
 
-@pytest.mark.parametrize("model", VESSELS)
-def test_an_object_beside_a_round_vessel_is_not_in_it(model):
-    """It stands in a corner of the box around the hollow."""
-    (room,) = (room for room in model_shape(model).interiors if room.is_round_vessel)
+def test_vessels_and_tableware_are_round():
+    assert {"bowl", "pan", "bucket", "plate", "pot", "glass", "cup", "vase", "jar", "flower_pot"} <= set(
+        ROUND
+    )
+    assert {"sink", "box", "tray", "basket"}.isdisjoint(ROUND)
+
+
+@pytest.mark.parametrize("model", ROUND)
+@pytest.mark.parametrize("yaw", [0.0, 0.6])
+def test_an_object_beside_a_round_hollow_is_not_in_it(model, yaw):
+    """It stands in a corner of the box around the hollow, low or on its floor, short or tall."""
+    (room,) = (room for room in model_shape(model).interiors if room.round)
     (x0, y0, z0), (x1, y1, z1) = room.low, room.high
-    vessel, wide = thing("outer1", (0.0, 0.0, TOP), model), 0.07 * (x1 - x0)
+    turn = (math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2))
+    wide = 0.07 * (x1 - x0)
 
-    def at(share, bottom, height):
-        x, y = ((low + high + share * (high - low)) / 2 for low, high in ((x0, x1), (y0, y1)))
-        return thing("thing1", (x, y, TOP + bottom), "", size=(wide, wide, height))
+    def at(share, bottom, height, way=(1, 1)):
+        x, y = (
+            (low + high + sign * share * (high - low)) / 2
+            for low, high, sign in zip((x0, y0), (x1, y1), way, strict=True)
+        )
+        x, y = x * math.cos(yaw) - y * math.sin(yaw), x * math.sin(yaw) + y * math.cos(yaw)
+        return thing("thing1", (x, y, TOP + bottom), "", size=(wide, wide, height), turn=turn)
 
-    assert not is_inside(vessel, at(0.85, 0.0, z1))
-    assert is_inside(vessel, at(0.5, z0, 0.5 * (z1 - z0)))
+    outer = thing("outer1", (0.0, 0.0, TOP), model, turn=turn)
+    for way in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
+        assert not is_inside(outer, at(0.85, 0.0, z1, way))
+        for height in (0.5 * (z1 - z0), 1.5 * z1):
+            assert not is_inside(outer, at(0.85, z0, height, way))
+            assert is_inside(outer, at(0.5, z0, 0.5 * (z1 - z0), way))
+    assert is_inside(outer, at(0.0, z0, 0.5 * (z1 - z0)))
+
+
+def test_a_tilted_bowl_does_not_contain_what_is_in_a_corner_of_its_box():
+    bowl = thing("bowl1", (0.0, 0.0, TOP), turn=(math.cos(0.1), math.sin(0.1), 0.0, 0.0))
+    size = (0.01, 0.01, 0.03)
+    assert is_inside(bowl, thing("thing1", (0.02, 0.02, TOP + 0.03), "", size=size))
+    assert not is_inside(bowl, thing("thing1", (0.064, 0.058, TOP + 0.03), "", size=size))

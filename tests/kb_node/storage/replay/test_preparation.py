@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage import body_shapes
 from semmap.nodes.kb_node.storage.compaction.compaction import compact
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
@@ -73,6 +74,12 @@ def test_a_replay_reproduces_the_map(data, folder, since):
         for seq, (_, _, snapshot) in enumerate(states, start=since):
             assert snapshot.entities == past.entities(seq)
     assert before[FILENAME]
+
+
+def test_the_shapes_of_bodies_are_copied(data, folder):
+    (data / body_shapes.FILENAME).write_bytes(b"{}")
+    prepare(data, folder)
+    assert (folder / body_shapes.FILENAME).read_bytes() == b"{}"
 
 
 def test_a_journal_in_use_can_be_copied(data, folder):

@@ -1,0 +1,47 @@
+"""The file with the shapes of bodies of world files, for starts without the simulator and past states."""
+
+from __future__ import annotations
+
+import logging
+from contextlib import suppress
+from pathlib import Path
+from typing import Final
+
+import msgspec
+
+from semmap.nodes.kb_node.storage.journal.layout import FILENAME as JOURNAL
+from semmap.ontology.model_shapes import WorldShapes, exchange_world
+from semmap.schemas import errors
+
+log = logging.getLogger(__name__)
+
+FILENAME: Final = f"{JOURNAL}.shapes"
+"""Beside the journal, with which it is archived if a new map is started."""
+
+
+def load(file: Path) -> str:
+    """Use the stored shapes, if any, and return the error text if they cannot be read, else ""."""
+    found, problem = WorldShapes(), ""
+    try:
+        found = msgspec.json.decode(file.read_bytes(), type=WorldShapes)
+    except FileNotFoundError:
+        pass
+    except (OSError, msgspec.DecodeError) as error:
+        log.warning("%s: %s", file, error)
+        problem = f"{file.name} cannot be read; relations use the models of classes; restart the simulator"
+    exchange_world(found)
+    return problem
+
+
+def write(file: Path, shapes: WorldShapes) -> None:
+    """Write the shapes completely or not at all. Raises Refused."""
+    beside = file.with_name(f"{file.name}.partly")
+    try:
+        beside.write_bytes(msgspec.json.encode(shapes))
+        beside.replace(file)
+    except OSError as error:
+        with suppress(OSError):
+            beside.unlink()
+        raise errors.Refused(
+            f"{file} cannot be written: {error.strerror}; free space and restart the system"
+        ) from None
