@@ -77,7 +77,7 @@ def _observation(
     probabilities: Numbers,
     expected_m: Numbers,
     detected: tuple[str, float] | None,
-    label: str,
+    label: str | None,
     learnt: RecognitionModel,
 ) -> Observation | Clutter:
     chances = dict(zip(learnt.classes, probabilities.tolist(), strict=True))
@@ -102,7 +102,8 @@ def _observation(
         points=thing.count,
         whole=thing.whole,
         shown=_as_shown(chances, class_, learnt),
-        label=label,
+        label=label or "",
+        labelled=label is not None,
     )
 
 

@@ -16,6 +16,15 @@ from semmap.nodes.perception_node.views.furniture_planes import EVERY, with_furn
 from semmap.nodes.perception_node.views.segments import Segment, cut_out, in_map
 from semmap.nodes.perception_node.views.supports import Support, support_of
 
+_TILTED = (
+    "no level surface is visible, so z is perpendicular to the largest plane and may not point up; state the"
+    " pose of the camera (--pose or map_from_camera)"
+)
+_UNPLACED = (
+    "no plane is visible, so poses are in the frame of the camera, where z points forward; state the pose of"
+    " the camera (--pose or map_from_camera)"
+)
+
 
 @dataclass(frozen=True)
 class SegmentedView:
@@ -25,7 +34,7 @@ class SegmentedView:
     one. `labels`: (H, W) the segment of each pixel, 0 for none. `carriers`: segments on which others may
     stand. `planes`: (H, W) the plane of each pixel, 0 for none. `supports`: level planes. `same`: (N, N) the
     probability that segments n + 1 and m + 1 are one thing, 0 if unknown. `unused_masks`: the numbers of a
-    detector's masks without a segment.
+    detector's masks without a segment. `notes`: doubts about the cloud and its pose, for the user.
     """
 
     cloud: Cloud
@@ -37,6 +46,7 @@ class SegmentedView:
     same: NDArray[np.float32]
     segments: tuple[Segment, ...] = ()
     unused_masks: tuple[int, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 def segment_cloud(cloud: Cloud) -> SegmentedView:
@@ -45,16 +55,18 @@ def segment_cloud(cloud: Cloud) -> SegmentedView:
         return _unorganised_view(cloud)
     placed = _placed(cloud)
     segmentation = segment(placed)
-    pose = placed.map_from_camera
+    pose, notes = placed.map_from_camera, cloud.notes
     if pose is None:
         pose = _above_largest(segmentation.planes)
+        if level_plane(segmentation.planes) is None:
+            notes += (_TILTED if segmentation.planes else _UNPLACED,)
     thin = in_map(cloud.points_camera[::EVERY, ::EVERY], pose)
     labels, carriers = segmentation.labels, frozenset[int]()
     if placed.map_from_camera is not None:  # else the largest plane counts as the floor
         labels, carriers = with_furniture(segmentation, thin)
     supports = _supports(segmentation, thin)
     bare = SegmentedView(
-        cloud, pose, labels, carriers, segmentation.plane_labels, supports, segmentation.same
+        cloud, pose, labels, carriers, segmentation.plane_labels, supports, segmentation.same, notes=notes
     )
     return with_labels(bare, labels, carriers)
 
