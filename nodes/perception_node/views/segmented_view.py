@@ -9,21 +9,17 @@ from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import Cloud, Floats
 from semmap.nodes.perception_node.segmentation import Plane, Segmentation, segment
-from semmap.nodes.perception_node.segmentation.gravity import level_plane, room_pose, standing_on
+from semmap.nodes.perception_node.segmentation.gravity import (
+    doubt_vertical,
+    level_plane,
+    room_pose,
+    standing_on,
+)
 from semmap.nodes.perception_node.segmentation.unorganised_cloud import as_image
 from semmap.nodes.perception_node.segmentation.working_image import grid_of
 from semmap.nodes.perception_node.views.furniture_planes import EVERY, with_furniture
 from semmap.nodes.perception_node.views.segments import Segment, cut_out, in_map
 from semmap.nodes.perception_node.views.supports import Support, support_of
-
-_TILTED = (
-    "no level surface is visible, so z is perpendicular to the largest plane and may not point up; state the"
-    " pose of the camera (--pose or map_from_camera)"
-)
-_UNPLACED = (
-    "no plane is visible, so poses are in the frame of the camera, where z points forward; state the pose of"
-    " the camera (--pose or map_from_camera)"
-)
 
 
 @dataclass(frozen=True)
@@ -58,8 +54,8 @@ def segment_cloud(cloud: Cloud) -> SegmentedView:
     pose, notes = placed.map_from_camera, cloud.notes
     if pose is None:
         pose = _above_largest(segmentation.planes)
-        if level_plane(segmentation.planes) is None:
-            notes += (_TILTED if segmentation.planes else _UNPLACED,)
+    if cloud.map_from_camera is None and (doubt := doubt_vertical(pose)):
+        notes += (doubt,)
     thin = in_map(cloud.points_camera[::EVERY, ::EVERY], pose)
     labels, carriers = segmentation.labels, frozenset[int]()
     if placed.map_from_camera is not None:  # else the largest plane counts as the floor
