@@ -19,7 +19,8 @@ _SLENDER, _LEG_M = 5.0, 0.25
 _EDGE_M = 0.1
 """A table has its legs within this distance of its edges; a thing below may be a piece of one."""
 
-_LIFTED_M = 0.03
+_LIFTED_M = 0.06
+"""Maximum height of the lowest visible point above the support; another thing may hide the foot."""
 _BESIDE_M = 0.015
 """A thing with this much clearance is not a piece of its neighbour."""
 _FEWEST, _FEWEST_BESIDE = 100, 500

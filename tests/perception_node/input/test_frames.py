@@ -136,6 +136,13 @@ def test_a_large_frame_is_thinned_and_its_points_stay_where_they_are():
         assert cloud.points_camera[row, column] == pytest.approx((x, y, 2.0), abs=1e-5)
 
 
+def test_unusual_intrinsics_are_used_and_noted():
+    assert read_cloud(pair()).notes == ()
+    cropped = pair(intrinsics=(60.0, 0, -20.0, 0, 60.0, 24.0, 0, 0, 1))
+    (note,) = read_cloud(cropped).notes
+    assert "cx is probably about 32, cy about 24" in note
+
+
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [

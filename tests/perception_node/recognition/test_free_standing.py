@@ -46,6 +46,10 @@ def test_things_with_some_room_between_them_stand_alone():
     assert standing(THING, WITH_ROOM, fragments=[THING, WITH_ROOM]) == [True, True]
 
 
+def test_the_foot_of_a_thing_may_be_hidden():
+    assert standing(replace(THING, lifted_m=0.05)) == [True]
+
+
 def test_a_slender_thing_that_is_low_is_no_leg():
     assert standing(TORCH) == [True]
 
