@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import gc
 import re
 import threading
@@ -63,6 +64,15 @@ def decode(payload: bytes | bytearray, kind: type[T] | Any) -> T:
     finally:
         if pauses:
             gc.enable()
+
+
+def decode_text(content: bytes) -> str:
+    """Return the text of a file in UTF-8, or in UTF-16 with a byte order mark, without that mark.
+
+    Raises UnicodeDecodeError for other content.
+    """
+    utf16 = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    return content.decode("utf-16" if utf16 else "utf-8-sig")
 
 
 def decoder(kind: Any) -> msgspec.msgpack.Decoder[Any]:

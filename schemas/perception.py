@@ -37,6 +37,8 @@ class Observation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     """Whether the class comes from an exemplar instead of training."""
     label: str = ""
     """The label of an external detector that matches no class, in its own words."""
+    labelled: bool = False
+    """Whether an external detector labelled it, with this label or a class."""
 
 
 class CameraView(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -100,11 +102,15 @@ class DroppedInFrame(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
 
 class FrameRow(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The objects in one frame of a dataset, and what was dropped; or an error."""
+    """The objects in one frame of a dataset, and what was dropped; or an error.
+
+    `notes` are doubts about the frame, such as unusual intrinsics.
+    """
 
     frame: str
     objects: tuple[SeenInFrame, ...] = ()
     dropped: tuple[DroppedInFrame, ...] = ()
+    notes: tuple[str, ...] = ()
     error: str = ""
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import msgspec
 
 from semmap.nodes.runtime import extras
-from semmap.schemas import errors
+from semmap.schemas import codec, errors
 from semmap.schemas.packing import LARGEST
 
 
@@ -33,8 +33,8 @@ def read_file(path: Path) -> bytes:
 def read_label_map(path: Path, of: str = "labels", example: str = "coffee mug") -> dict[str, str]:
     """Return the classes by label of a detector, or by name of a body, from a JSON file. Raises BadFile."""
     try:
-        return msgspec.json.decode(read_file(path), type=dict[str, str])
-    except (msgspec.DecodeError, RecursionError):
+        return msgspec.json.decode(codec.decode_text(read_file(path)), type=dict[str, str])
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
         raise errors.BadFile(
             f'{path} is not a JSON object of {of} and classes, such as {{"{example}": "Cup"}}'
         ) from None

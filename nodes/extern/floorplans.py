@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from semmap.nodes.extern.files import read_file, write_atomically
 from semmap.nodes.runtime import extras
-from semmap.schemas import errors
+from semmap.schemas import codec, errors
 from semmap.schemas.moments import When
 from semmap.schemas.plans import HEIGHTS_M, HeightRange
 
@@ -101,7 +101,7 @@ def read_plan(path: Path) -> LoadedPlan:
     from semmap.nodes.navigation.map_server import read_image, read_yaml
 
     try:
-        text = read_file(path).decode()
+        text = codec.decode_text(read_file(path))
     except UnicodeDecodeError:
         raise errors.BadFile(f"{path.name} is not a UTF-8 text file") from None
     described = read_yaml(text, path.name)

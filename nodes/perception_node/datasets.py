@@ -93,7 +93,9 @@ def _perceive_folder(
     objects = tuple(_object(*row) for row in zip(observations, boxes, strict=True))
     dropped = *_clutter(seen, frame), *_unused_masks(seen, masks, frame)
     return DatasetFrame(
-        FrameRow(frame=folder.name, objects=objects, dropped=dropped), labels, seen.unknown_labels
+        FrameRow(frame=folder.name, objects=objects, dropped=dropped, notes=seen.notes),
+        labels,
+        seen.unknown_labels,
     )
 
 

@@ -51,7 +51,8 @@ class FrameResult:
     In `labels`, 0 is background and n stands for `observations.observations[n - 1]`. `unknown_labels` are
     labels of a detector that match no class. `remembered` is the memory for the next frame. `things` are the
     things of the observations, in the same order. `dropped` are the things that are not reported.
-    `unused_masks` are the numbers of a detector's masks in each cloud that cover no surface.
+    `unused_masks` are the numbers of a detector's masks in each cloud that cover no surface. `notes` are
+    doubts about the clouds and their poses.
     """
 
     observations: Observations
@@ -61,6 +62,7 @@ class FrameResult:
     things: tuple[Thing, ...] = ()
     dropped: tuple[tuple[Thing, Clutter], ...] = ()
     unused_masks: tuple[tuple[int, ...], ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def camera_moves(self) -> bool:
@@ -132,6 +134,7 @@ def observe_views(
         remembered=before.after(sights, [thing.segments for thing in things], elsewhere),
         things=tuple(things[n] for n in kept),
         dropped=tuple((things[n], one) for n, one in enumerate(found) if isinstance(one, Clutter)),
+        notes=tuple(note for sight in sights for note in sight.notes),
     )
 
 

@@ -35,6 +35,12 @@ def test_a_map_of_labels(tmp_path):
     file = tmp_path / "map.json"
     file.write_text('{"coffee mug": "Cup"}')
     assert files.read_label_map(file) == {"coffee mug": "Cup"}
+    for mark in ("utf-8-sig", "utf-16"):
+        file.write_text('{"tasse": "Cup"}', mark)
+        assert files.read_label_map(file) == {"tasse": "Cup"}
+    file.write_bytes(b"\xff\xfe{")
+    with pytest.raises(errors.BadFile, match="not a JSON object of labels"):
+        files.read_label_map(file)
     file.write_text("[]")
     with pytest.raises(errors.BadFile, match="not a JSON object of labels"):
         files.read_label_map(file)

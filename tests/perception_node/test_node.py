@@ -212,7 +212,7 @@ NOTHING = "camera left has no depth values from 0.01 to 100 m"
 BAD = {
     "the past": ({"stamp_ns": -5_000_000_000}, "frame ignored: its stamp is not newer"),
     "sizes": ({"rgb": {"width": 32}}, "its colour image has 32 x 48 pixels, its depth 64 x 48"),
-    "intrinsics": ({"intrinsics": (0.0,) * 9}, "the intrinsics (0.0,"),
+    "intrinsics": ({"intrinsics": (0.0,) * 9}, "the intrinsics fx 0 fy 0"),
     "pose": ({"map_from_camera": (2.0,) * 16}, "map_from_camera is not a 4 x 4 pose"),
     "bytes": ({"pixels": b"123"}, "3 bytes are not a depth32f image"),
     "a fault": ({"depth_m": 0.1}, "processing a frame failed: ZeroDivisionError: too near"),

@@ -28,6 +28,16 @@ def test_what_is_decoded_is_what_was_encoded(kind, data):
     assert codec.decode(codec.encode_json(message), kind) == message
 
 
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_a_text_is_decoded_without_its_byte_order_mark(encoding):
+    assert codec.decode_text("tè caldo".encode(encoding)) == "tè caldo"
+
+
+def test_a_text_in_another_encoding_is_not_decoded():
+    with pytest.raises(UnicodeDecodeError):
+        codec.decode_text("tè caldo".encode("latin-1"))
+
+
 def test_the_wire_is_plain_messagepack():
     sent = Add(class_="Chair", at=(1, 2, 0.5))
     assert msgpack.unpackb(codec.encode(sent)) == {"verb": "add", "class": "Chair", "at": [1, 2, 0.5]}

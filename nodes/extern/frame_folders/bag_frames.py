@@ -17,8 +17,6 @@ from semmap.nodes.extern.frame_folders.images import colour_of, depth_of, encodi
 from semmap.nodes.extern.frame_folders.pairs import pairs
 from semmap.nodes.extern.frame_folders.pinhole import (
     from_camera_info,
-    from_pixel_centres,
-    read_pinhole,
     scale_intrinsics,
 )
 from semmap.nodes.extern.frame_folders.poses import MAPS, TransformTree, stamp_ns_of, strip_slash
@@ -31,6 +29,7 @@ from semmap.nodes.extern.frame_folders.topics import (
     choose,
 )
 from semmap.nodes.extern.ros.frames import Transform
+from semmap.nodes.perception_node.input.files.camera_files import load_camera
 from semmap.schemas.errors import BadFile, BadRequest, SemmapError
 from semmap.schemas.wording import few
 
@@ -158,8 +157,8 @@ class _Camera:
         self._size: tuple[int, int] | None = None
         _require_aligned(chosen, known)
         if intrinsics is not None:
-            camera = read_pinhole(intrinsics)
-            self._matrix = from_pixel_centres(camera.fx, camera.fy, camera.cx, camera.cy)
+            camera = load_camera(intrinsics)
+            self._matrix = camera.intrinsics
             self._scale_m = camera.depth_scale
             self._size = camera.size
             self.whence = str(intrinsics)

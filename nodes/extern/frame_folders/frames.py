@@ -83,7 +83,7 @@ def write(frame: RecordedFrame, dataset: Path) -> None:
     depth_mm = np.round(np.nan_to_num(frame.depth_m, posinf=0.0, neginf=0.0) * _MM)
     depth_mm[(depth_mm < 0) | (depth_mm > _FARTHEST_MM)] = 0
     (fx, _, cx), (_, fy, cy), _ = frame.intrinsics.tolist()
-    camera = {"fx": fx, "fy": fy, "cx": cx, "cy": cy, "width": width, "height": height}
+    camera = {"fx": fx, "fy": fy, "cx": cx, "cy": cy, "width": width, "height": height, "first_pixel": 0.5}
     if frame.map_from_camera is not None:
         camera["map_from_camera"] = frame.map_from_camera.tolist()
     unfinished = dataset / f".{frame.name}"

@@ -2,27 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from semmap.nodes.perception_node.input.files.camera_files import PinholeCamera, read_camera
-from semmap.nodes.perception_node.input.projection import fits
-from semmap.schemas.errors import BadFile
+from semmap.nodes.perception_node.input.projection import check_intrinsics
 
 _SAME_SHAPE = 0.02
-
-
-def read_pinhole(path: Path) -> PinholeCamera:
-    """Return the camera in a file, as for `semmap perceive --intrinsics`. Raises BadFile."""
-    try:
-        return read_camera(path)
-    except OSError as error:
-        raise BadFile(f"{path} cannot be read: {error.strerror}") from None
-    except ValueError as error:
-        raise BadFile(f"{path}: {error}") from None
 
 
 def from_pixel_centres(fx: float, fy: float, cx: float, cy: float) -> NDArray[np.float64]:
@@ -55,10 +42,5 @@ def scale_intrinsics(
             f"the intrinsics are for {of[0]} x {of[1]} pixels, the images have {width} x {height} pixels"
         )
     found = intrinsics * np.array([[across], [down], [1.0]])
-    if not fits(found, width, height):
-        numbers = " ".join(
-            f"{name} {n:g}"
-            for name, n in zip(("fx", "fy", "cx", "cy"), found[[0, 1, 0, 1], [0, 1, 2, 2]], strict=True)
-        )
-        raise ValueError(f"the intrinsics {numbers} do not fit an image of {width} x {height} pixels")
+    check_intrinsics(found, width, height)
     return np.asarray(found)

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from semmap.nodes.extern.frame_folders.frames import RecordedFrame, Recording, require_plausible_unit
 from semmap.nodes.extern.frame_folders.pairs import pairs
-from semmap.nodes.extern.frame_folders.pinhole import from_pixel_centres, read_pinhole, scale_intrinsics
+from semmap.nodes.extern.frame_folders.pinhole import from_pixel_centres, scale_intrinsics
 from semmap.nodes.extern.frame_folders.poses import Trajectory
-from semmap.nodes.perception_node.input.files.depth_files import is_depth
-from semmap.nodes.runtime.pictures import open_picture
+from semmap.nodes.perception_node.input.files.camera_files import load_camera
+from semmap.nodes.perception_node.input.files.depth_files import read_depth
+from semmap.nodes.perception_node.input.files.image_files import read_colour
 from semmap.schemas import errors
 from semmap.schemas.errors import BadFile, BadRequest, SemmapError
 
@@ -75,7 +76,7 @@ def _listed(folder: Path, kind: str) -> Listed:
     index = folder / f"{kind}.txt"
     try:
         if index.exists():
-            rows = [row.split() for row in index.read_text(errors="replace").splitlines()]
+            rows = [row.split() for row in index.read_text("utf-8-sig", "replace").splitlines()]
             found = [
                 (_stamp_ns(row[0], index), folder / row[1])
                 for row in rows
@@ -113,11 +114,8 @@ def _camera(
             " 1 m in the depth images, depth_scale"
         )
     if intrinsics is not None:
-        camera = read_pinhole(intrinsics)
-        matrix, scale_m = (
-            from_pixel_centres(camera.fx, camera.fy, camera.cx, camera.cy),
-            camera.depth_scale or _SCALE_M,
-        )
+        camera = load_camera(intrinsics)
+        matrix, scale_m = camera.intrinsics, camera.depth_scale or _SCALE_M
         whence, of_size = str(intrinsics), camera.size
     else:
         if dataset is None:
@@ -143,7 +141,7 @@ def _poses(path: Path) -> Trajectory | None:
     if not path.exists():
         return None
     found = Trajectory()
-    for number, row in enumerate(path.read_text(errors="replace").splitlines(), 1):
+    for number, row in enumerate(path.read_text("utf-8-sig", "replace").splitlines(), 1):
         words = row.split()
         if not words or words[0].startswith("#"):
             continue
@@ -157,8 +155,7 @@ def _poses(path: Path) -> Trajectory | None:
 
 def _colour(path: Path) -> NDArray[np.uint8]:
     try:
-        with open_picture(path) as image:
-            return np.asarray(image.convert("RGB"))
+        return read_colour(path)
     except OSError as error:
         raise BadFile(f"{path} cannot be read: {error.strerror}") from None
     except ValueError as error:
@@ -168,11 +165,8 @@ def _colour(path: Path) -> NDArray[np.uint8]:
 def _depth_m(path: Path, scale_m: float) -> NDArray[np.float32]:
     """Return the depth (H, W) [m] of an image; floats are in metres."""
     try:
-        if not is_depth(path):
-            raise BadFile(f"{path}: not a depth image with 16 bits in a single channel")
-        with open_picture(path) as image:
-            numbers = np.asarray(image, np.float32)
-            return numbers if image.mode == "F" else numbers * np.float32(scale_m)
+        numbers = read_depth(path)
+        return np.asarray(numbers * np.float32(1.0 if numbers.dtype.kind == "f" else scale_m), np.float32)
     except OSError as error:
         raise BadFile(f"{path} cannot be read: {error.strerror}") from None
     except ValueError as error:

@@ -24,7 +24,7 @@ class Cloud:
 
     `points_camera`: (H, W, 3), camera frame (x right, y down, z forward) [m], NaN for no measurement.
     `colors`: (H, W, 3) rgb, or None. `map_from_camera`: (4, 4), or None if unknown. `intrinsics`: (3, 3)
-    [pixel], or None for a cloud from a file.
+    [pixel], or None for a cloud from a file. `notes`: doubts about its source, for the user.
     """
 
     points_camera: Floats
@@ -33,6 +33,7 @@ class Cloud:
     intrinsics: Transform | None = None
     camera: str = ""
     stamp_ns: int = 0
+    notes: tuple[str, ...] = ()
 
     @property
     def organised(self) -> bool:

@@ -92,6 +92,8 @@ class FrameWorker:
         except BadRequest as error:
             self._complain(error.text)
             return None
+        for note in cloud.notes:
+            self._complain(f"camera {frame.camera}: {note}")
         step = thinning(frame.width, frame.height)
         if step > 1:
             size = f"{frame.width} x {frame.height} pixels"

@@ -15,7 +15,13 @@ from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import Cloud, Transform
 from semmap.nodes.perception_node.input.masks import Masks, masks_from_image, masks_from_runs
-from semmap.nodes.perception_node.input.projection import cloud_of, fits, is_pose, thinned, thinning
+from semmap.nodes.perception_node.input.projection import (
+    check_intrinsics,
+    cloud_of,
+    is_pose,
+    thinned,
+    thinning,
+)
 from semmap.schemas.errors import BadRequest
 from semmap.schemas.perception import DetectedMasks
 from semmap.schemas.scenes import CameraFrame
@@ -171,12 +177,13 @@ def read_cloud(pair: Pair) -> Cloud:
             f" {frame.width} x {frame.height}; they must have the same size"
         )
     shape = (frame.height, frame.width)
-    intrinsics, pose = _intrinsics(frame), _pose(frame)
+    (intrinsics, notes), pose = _intrinsics(frame), _pose(frame)
     depth_m = _pixels(pair.depth, np.float32, shape)
     rgb = _pixels(pair.rgb, np.uint8, (*shape, 3))
     step = thinning(frame.width, frame.height)
     depth_m, rgb, intrinsics = thinned(depth_m, rgb, intrinsics, step)
-    return cloud_of(depth_m, rgb, intrinsics, pose, camera=frame.camera, stamp_ns=frame.stamp_ns)
+    cloud = cloud_of(depth_m, rgb, intrinsics, pose, camera=frame.camera, stamp_ns=frame.stamp_ns)
+    return replace(cloud, notes=notes)
 
 
 def _pixels(plane: Plane, kind: type[T], shape: tuple[int, ...]) -> NDArray[T]:
@@ -189,14 +196,19 @@ def _pixels(plane: Plane, kind: type[T], shape: tuple[int, ...]) -> NDArray[T]:
     return np.frombuffer(content, np.dtype(kind).newbyteorder("<")).astype(kind, copy=False).reshape(shape)
 
 
-def _intrinsics(frame: CameraFrame) -> Transform:
+def _intrinsics(frame: CameraFrame) -> tuple[Transform, tuple[str, ...]]:
+    """Return the intrinsics (3, 3) and notes on doubtful ones. Raises BadRequest for impossible ones."""
     numbers = np.array(frame.intrinsics, dtype=float)
-    if numbers.size == 9 and fits(numbers.reshape(3, 3), frame.width, frame.height):
-        return numbers.reshape(3, 3)
-    raise BadRequest(
-        f"camera {frame.camera}: the intrinsics {frame.intrinsics} do not fit an image of {frame.width} x"
-        f" {frame.height} pixels; the format is fx 0 cx 0 fy cy 0 0 1"
-    )
+    if numbers.size != 9:
+        raise BadRequest(
+            f"camera {frame.camera}: the intrinsics have {numbers.size} numbers; the format is fx 0 cx 0 fy"
+            " cy 0 0 1"
+        )
+    try:
+        doubt = check_intrinsics(numbers.reshape(3, 3), frame.width, frame.height)
+    except ValueError as error:
+        raise BadRequest(f"camera {frame.camera}: {error}") from None
+    return numbers.reshape(3, 3), (doubt,) if doubt else ()
 
 
 def _pose(frame: CameraFrame) -> Transform:

@@ -80,20 +80,22 @@ def detector_class(thing: Thing, learnt: RecognitionModel, labels: LabelMap) -> 
     return max(detected, key=lambda one: one[1], default=None)
 
 
-def unknown_label(thing: Thing, labels: LabelMap) -> str:
-    """Return the label with the best score that matches no class, in one line; empty if there is none.
+def unknown_label(thing: Thing, labels: LabelMap) -> str | None:
+    """Return the label with the best score that matches no class, in one line.
 
-    The number of a class, which a detector gives without its names, is not a label.
+    Returns "" if all its labels match classes, and None if there is no label. The number of a class, which a
+    detector gives without its names, is not a label.
     """
-    unknown = [
+    words = [
         segment.detector_label
         for segment in thing.segments
-        if segment.detector_label
-        and not segment.detector_label.label.strip().isdecimal()
-        and labels.class_of(segment.detector_label.label) is None
+        if segment.detector_label and segment.detector_label.label.strip()
     ]
-    best = max(unknown, key=lambda one: one.score, default=None)
-    return "" if best is None else " ".join(best.label.split())[:_LONGEST]
+    unknown = [one for one in words if labels.class_of(one.label) is None]
+    named = [one for one in unknown if not one.label.strip().isdecimal()]
+    if not named:
+        return "" if len(words) > len(unknown) else None
+    return " ".join(max(named, key=lambda one: one.score).label.split())[:_LONGEST]
 
 
 def _leaves_of(class_: str | None, learnt: RecognitionModel) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:

@@ -19,18 +19,23 @@ _SLENDER, _LEG_M = 5.0, 0.25
 _EDGE_M = 0.1
 """A table has its legs within this distance of its edges; a thing below may be a piece of one."""
 
-_LIFTED_M = 0.03
+_LIFTED_M = 0.06
+"""Maximum height of the lowest visible point above the support; another thing may hide the foot."""
 _BESIDE_M = 0.015
 """A thing with this much clearance is not a piece of its neighbour."""
-_FEWEST = 100
+_FEWEST, _FEWEST_BESIDE = 100, 500
+"""Minimum number of points of a thing apart from others, and of one beside others."""
 _WORTH = 0.1
 """A neighbour with a smaller share of its points is itself a piece."""
+_PIECE = 4.0
+"""A thing may be a piece of a recognised neighbour with so many times its points."""
 
 
-def are_free_standing(things: Sequence[Thing]) -> NDArray[np.bool_]:
-    """Return (N,) whether each thing is compact, whole, on a support, and apart from others.
+def are_free_standing(things: Sequence[Thing], recognised: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return (N,) whether each thing is compact, whole, on a support, and not a piece of a neighbour.
 
-    A thing below an edge of a table is excluded.
+    It may be a piece of furniture, of other fragments, and of a much larger thing that is `recognised` (N,),
+    which is not classified as clutter. A thing below an edge of a table is excluded.
     """
     tables = [thing.box for thing in things if thing.carrier]
     alone = np.array(
@@ -39,7 +44,10 @@ def are_free_standing(things: Sequence[Thing]) -> NDArray[np.bool_]:
     )
     for a, b in near_pairs(things, _BESIDE_M):
         for one, other in ((a, b), (b, a)):
-            if things[other].count > _WORTH * things[one].count:
+            small = not things[other].carrier and things[other].box.size_m.max() <= _LARGEST_M
+            clear = small and recognised[other] and things[one].count >= _FEWEST_BESIDE
+            share = _PIECE if clear else _WORTH
+            if things[other].count > share * things[one].count:
                 alone[one] = False
     return alone
 

@@ -8,7 +8,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.recognition.detector_labels import (
     LabelMap,
@@ -52,7 +51,7 @@ def recognise(
     leaves. `labels` maps labels of detectors to classes.
     """
     labels = labels or LabelMap(learnt)
-    chances = _no_clutter(reclassify_trimmed(things, chances, learnt), are_free_standing(things), learnt)
+    chances = _no_clutter(things, reclassify_trimmed(things, chances, learnt), learnt)
     chances = with_detector_labels(chances, things, learnt, labels)
     expected = expected_sizes(chances, learnt.sizes_m)
     detected = [detector_class(thing, learnt, labels) for thing in things]
@@ -62,10 +61,11 @@ def recognise(
     ]
 
 
-def _no_clutter(chances: Numbers, alone: NDArray[np.bool_], learnt: RecognitionModel) -> Numbers:
-    """Return probabilities in which `alone` things that would be clutter are `UNKNOWN`."""
+def _no_clutter(things: Sequence[Thing], chances: Numbers, learnt: RecognitionModel) -> Numbers:
+    """Return probabilities in which free-standing things that would be clutter are `UNKNOWN`."""
     clutter, unknown = learnt.classes.index(CLUTTER), learnt.classes.index(UNKNOWN)
-    kept = alone & (chances[:, clutter] > _CLUTTER)
+    fragments = chances[:, clutter] > _CLUTTER
+    kept = fragments & are_free_standing(things, ~fragments)
     chances = chances.copy()
     chances[kept, unknown] += chances[kept, clutter]
     chances[kept, clutter] = 0.0
@@ -77,7 +77,7 @@ def _observation(
     probabilities: Numbers,
     expected_m: Numbers,
     detected: tuple[str, float] | None,
-    label: str,
+    label: str | None,
     learnt: RecognitionModel,
 ) -> Observation | Clutter:
     chances = dict(zip(learnt.classes, probabilities.tolist(), strict=True))
@@ -102,7 +102,8 @@ def _observation(
         points=thing.count,
         whole=thing.whole,
         shown=_as_shown(chances, class_, learnt),
-        label=label,
+        label=label or "",
+        labelled=label is not None,
     )
 
 

@@ -42,6 +42,20 @@ def level_plane(planes: tuple[Plane, ...]) -> Plane | None:
     return max(level, key=lambda plane: plane.points, default=None)
 
 
+def doubt_vertical(pose: Transform) -> str:
+    """Return the reason to doubt that z points up in the frame of an estimated pose (4, 4); "" if none."""
+    _, down, forward = pose[2, :3].tolist()  # of the axis z, in the frame of the camera
+    if down < -_UP:
+        return ""
+    if forward < -_DOWN:
+        found = "z points at the camera, as if it looked straight down at a level surface"
+    elif np.array_equal(pose, np.eye(4)):
+        found = "no plane is visible, so poses are in the frame of the camera, and z points forward"
+    else:
+        found = "no level surface is visible, so z is perpendicular to the largest plane and may not point up"
+    return f"{found}; if this is wrong, state the camera's pose (--pose or map_from_camera)"
+
+
 def standing_on(plane: Plane) -> Transform:
     """Return a map frame whose floor is that plane, with the camera above its origin, looking along x."""
     pose, up = np.eye(4), plane.normal

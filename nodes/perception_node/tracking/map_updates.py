@@ -214,10 +214,12 @@ def _described(
     changes: dict[str, Any] = {}
     if class_name:
         changes["class_"] = class_name
-        if entity.preferred_reference == classes.label(entity.class_):
-            changes["ref"] = track.label or classes.label(class_name)
-    elif track.label and entity.preferred_reference == classes.label(entity.class_):
-        changes["ref"] = track.label
+    reference = track.label or classes.label(class_name or entity.class_)
+    follows = track.labels.clear_winner is not None  # else an earlier process may have stored a label
+    if entity.preferred_reference != reference and (
+        follows or entity.preferred_reference == classes.label(entity.class_)
+    ):
+        changes["ref"] = reference
     if (
         track.whole
         and (track.part or track.outsized or _was_front(entity, track) or track.frames >= config.nudge_frames)

@@ -46,7 +46,8 @@ class Track:
     State: `whole`: it was seen completely. `map_pose`: the map's pose at the last frame. `left`: that place
     is seen empty. `kept`: the part of it that would be left is filled. `part`: the map has a size that an
     image edge cuts. `outsized`: the map's size is too large. `fit`: the fitted model since it rests.
-    `rejected_class`: the class that a fit rejected. `label`: a detector's last label that is not a class.
+    `rejected_class`: the class that a fit rejected. `label`: the label of a detector that is not a class.
+    `labels`: the votes of frames in which a detector labelled the thing, "" for a class.
     """
 
     pose: Pose
@@ -70,6 +71,7 @@ class Track:
     fit: KnownFit | None = None
     rejected_class: str = ""
     label: str = ""
+    labels: Votes = field(default_factory=Votes)
 
     @property
     def reported_pose(self) -> Pose:
@@ -94,8 +96,18 @@ class Track:
 
     def see(self, seen: Observation, config: TrackingConfig) -> Track:
         """Return the track with one more observation."""
-        if seen.label and seen.label != self.label:
-            return replace(self, label=seen.label).see(seen, config)
+        return self._count_label(seen)._count(seen, config)
+
+    def _count_label(self, seen: Observation) -> Track:
+        """Return the track with the vote of a detector's label; a clear majority replaces the label."""
+        if not (seen.labelled or seen.label):
+            return self
+        labels = self.labels.cast(seen.label, 1.0, _weight(seen))
+        winner = labels.clear_winner
+        return replace(self, labels=labels, label=self.label if winner is None else winner)
+
+    def _count(self, seen: Observation, config: TrackingConfig) -> Track:
+        """Return the track with pose, size and class of one more observation."""
         weight = _weight(seen)
         class_ = ANYTHING if seen.class_ == self.rejected_class else seen.class_
         votes = self.votes.cast(class_, seen.probability, weight)
@@ -173,6 +185,7 @@ class Track:
             part=self.part,
             rejected_class=self.rejected_class,
             label=self.label,
+            labels=self.labels,
         )
 
 

@@ -9,6 +9,8 @@ from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING, Clas
 
 _SURE = 0.4
 """Minimum share of the votes of a believed class."""
+_CLEAR = 0.6
+"""Minimum share of the votes of a clear winner."""
 _FORGET = 0.9
 """Weight of a vote after one frame."""
 
@@ -31,6 +33,12 @@ class Votes:
         weights = {name: weight * _FORGET for name, weight in self.weights.items()}
         weights[class_name] = weights.get(class_name, 0.0) + probability * weight
         return Votes(weights, self.frames * _FORGET + weight)
+
+    @property
+    def clear_winner(self) -> str | None:
+        """Return the name with a clear majority of all votes, regardless of classes; None without one."""
+        best = max(self.weights, key=self.weights.__getitem__, default=None)
+        return best if best is not None and self.weights[best] >= _CLEAR * self.frames else None
 
     def moved(self, class_name: str, to: str) -> Votes:
         """Return the votes with those for one class moved to another."""

@@ -9,7 +9,12 @@ from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import Cloud, Floats
 from semmap.nodes.perception_node.segmentation import Plane, Segmentation, segment
-from semmap.nodes.perception_node.segmentation.gravity import level_plane, room_pose, standing_on
+from semmap.nodes.perception_node.segmentation.gravity import (
+    doubt_vertical,
+    level_plane,
+    room_pose,
+    standing_on,
+)
 from semmap.nodes.perception_node.segmentation.unorganised_cloud import as_image
 from semmap.nodes.perception_node.segmentation.working_image import grid_of
 from semmap.nodes.perception_node.views.furniture_planes import EVERY, with_furniture
@@ -25,7 +30,7 @@ class SegmentedView:
     one. `labels`: (H, W) the segment of each pixel, 0 for none. `carriers`: segments on which others may
     stand. `planes`: (H, W) the plane of each pixel, 0 for none. `supports`: level planes. `same`: (N, N) the
     probability that segments n + 1 and m + 1 are one thing, 0 if unknown. `unused_masks`: the numbers of a
-    detector's masks without a segment.
+    detector's masks without a segment. `notes`: doubts about the cloud and its pose, for the user.
     """
 
     cloud: Cloud
@@ -37,6 +42,7 @@ class SegmentedView:
     same: NDArray[np.float32]
     segments: tuple[Segment, ...] = ()
     unused_masks: tuple[int, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 def segment_cloud(cloud: Cloud) -> SegmentedView:
@@ -45,16 +51,18 @@ def segment_cloud(cloud: Cloud) -> SegmentedView:
         return _unorganised_view(cloud)
     placed = _placed(cloud)
     segmentation = segment(placed)
-    pose = placed.map_from_camera
+    pose, notes = placed.map_from_camera, cloud.notes
     if pose is None:
         pose = _above_largest(segmentation.planes)
+    if cloud.map_from_camera is None and (doubt := doubt_vertical(pose)):
+        notes += (doubt,)
     thin = in_map(cloud.points_camera[::EVERY, ::EVERY], pose)
     labels, carriers = segmentation.labels, frozenset[int]()
     if placed.map_from_camera is not None:  # else the largest plane counts as the floor
         labels, carriers = with_furniture(segmentation, thin)
     supports = _supports(segmentation, thin)
     bare = SegmentedView(
-        cloud, pose, labels, carriers, segmentation.plane_labels, supports, segmentation.same
+        cloud, pose, labels, carriers, segmentation.plane_labels, supports, segmentation.same, notes=notes
     )
     return with_labels(bare, labels, carriers)
 

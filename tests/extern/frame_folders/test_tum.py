@@ -81,16 +81,24 @@ def test_a_frame_that_cannot_be_read_is_reported_and_the_others_go_on(recording,
         (["--every", "2"], "--every requires a recording"),
         (["desk", "out", "--format", "tree"], "--format tree applies to the frame tree only"),
         (["desk", "out", "--intrinsics", "lens.json", "--within", "0.001"], "use a larger --within"),
-        (["desk", "out", "--intrinsics", "small.json"], "do not fit an image of"),
+        (["desk", "out", "--intrinsics", "wrong.json"], "do not fit an image of"),
     ],
 )
 def test_what_cannot_be_done_is_reported_in_one_line(recording, tmp_path, capsys, words, said):
     (tmp_path / "empty").mkdir()
-    (tmp_path / "small.json").write_text(json.dumps({"fx": 100, "fy": 100, "cx": WIDTH, "cy": HEIGHT}))
+    (tmp_path / "wrong.json").write_text(json.dumps({"fx": 1, "fy": 1, "cx": WIDTH, "cy": HEIGHT}))
     assert execute(["frames", *words]) == 2
     error = capsys.readouterr().err
     assert said in error
     assert error.count("\n") == 1
+
+
+def test_intrinsics_of_another_resolution_are_noted(recording, tmp_path, capsys):
+    (tmp_path / "small.json").write_text(json.dumps({"fx": 100, "fy": 100, "cx": WIDTH, "cy": HEIGHT}))
+    assert execute(["frames", "desk", "out", "--intrinsics", "small.json"]) == 0
+    error = capsys.readouterr().err
+    assert error.count("note: desk: the intrinsics fx 100 ") == 1
+    assert f"cx {WIDTH / 2:g}, cy {HEIGHT / 2:g}" in error
 
 
 def test_colour_and_depth_of_two_sizes_are_reported(recording, capsys):

@@ -136,6 +136,13 @@ def test_a_large_frame_is_thinned_and_its_points_stay_where_they_are():
         assert cloud.points_camera[row, column] == pytest.approx((x, y, 2.0), abs=1e-5)
 
 
+def test_unusual_intrinsics_are_used_and_noted():
+    assert read_cloud(pair()).notes == ()
+    cropped = pair(intrinsics=(60.0, 0, -20.0, 0, 60.0, 24.0, 0, 0, 1))
+    (note,) = read_cloud(cropped).notes
+    assert "cx is probably about 32, cy about 24" in note
+
+
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [
@@ -145,7 +152,7 @@ def test_a_large_frame_is_thinned_and_its_points_stay_where_they_are():
         ),
         ({"intrinsics": (0.0,) * 9}, r"the intrinsics .* do not fit"),
         ({"intrinsics": (NAN,) * 9}, r"the intrinsics .* do not fit"),
-        ({"intrinsics": (1.0, 2.0)}, r"the intrinsics .* do not fit"),
+        ({"intrinsics": (1.0, 2.0)}, r"the intrinsics have 2 numbers; the format is fx 0 cx 0"),
         ({"intrinsics": (60.0, 0, 900.0, 0, 60.0, 24.0, 0, 0, 1)}, r"the intrinsics .* do not fit"),
         ({"map_from_camera": (1.0,) * 16}, r"map_from_camera is not a 4 x 4 pose"),
         ({"map_from_camera": ()}, r"map_from_camera is not a 4 x 4 pose"),

@@ -1,7 +1,9 @@
+import re
+
 import numpy as np
 import pytest
 
-from semmap.nodes.perception_node.input.projection import cloud_of, fits, is_pose
+from semmap.nodes.perception_node.input.projection import check_intrinsics, cloud_of, is_pose
 
 INTRINSICS = np.array([[100.0, 0.0, 2.0], [0.0, 100.0, 1.0], [0.0, 0.0, 1.0]])
 
@@ -27,30 +29,66 @@ def test_colours_of_another_size_are_told():
         cloud_of(np.ones((2, 2), np.float32), np.zeros((3, 2, 3), np.uint8), INTRINSICS)
 
 
+def pinhole(fx, fy, cx, cy):
+    return np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
+
+
 @pytest.mark.parametrize(
-    ("k", "width", "height", "fit"),
+    ("k", "width", "height", "doubt"),
     [
-        ((525.0, 525.0, 319.5, 239.5), 640, 480, True),
-        ((525.0, 525.0, 319.5, 239.5), 1280, 960, False),
-        ((525.0, 525.0, 319.5, 239.5), 320, 240, False),
-        ((525.0, 525.0, 319.5, 239.5), 4000, 3000, False),
-        ((262.5, 262.5, 160.0, 120.0), 640, 480, False),
-        ((262.5, 262.5, 166.0, 115.0), 640, 480, False),
-        ((525.0, 525.0, 380.0, 190.0), 640, 480, True),
-        ((-525.0, 525.0, 319.5, 239.5), 640, 480, False),
-        ((525.0, 0.5, 319.5, 239.5), 640, 480, False),
-        ((525.0, 525.0, 319.5, np.nan), 640, 480, False),
-        ((1e7, 1e7, 319.5, 239.5), 640, 480, False),
+        pytest.param((525, 525, 320, 240), 640, 480, "", id="usual"),
+        pytest.param((250, 250, 320, 240), 640, 480, "", id="wide"),
+        pytest.param((1800, 1800, 320, 240), 640, 480, "", id="tele"),
+        pytest.param((525, 525, 380, 190), 640, 480, "", id="a little off"),
+        pytest.param(
+            (100, 100, 320, 240), 640, 480, "view of 145 degrees.* fx and fy are probably about 576"
+        ),
+        pytest.param(
+            (2000, 2000, 320, 240), 640, 480, "view of 18 degrees.* fx and fy are probably about 576"
+        ),
+        pytest.param((525, 525, 600, 70), 640, 480, "cx is probably about 320, cy about 240", id="crop"),
+        pytest.param((525, 525, -200, 240), 320, 480, "cx is probably about 160, cy about 240", id="outside"),
+        pytest.param((525, 525, 20, 20), 40, 40, "view of 4 degrees", id="a small crop"),
+        pytest.param(
+            (525, 525, 320, 240), 320, 240, r"from 640 x 480 pixels, fx is about 262\.5", id="half the size"
+        ),
+        pytest.param(
+            (262.5, 262.5, 160, 120), 640, 480, "from 320 x 240 pixels, fx is about 525", id="twice"
+        ),
     ],
 )
-def test_the_intrinsics_of_another_picture_do_not_fit(k, width, height, fit):
-    fx, fy, cx, cy = k
-    intrinsics = np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
-    assert fits(intrinsics, width, height) is fit
-    assert not fits(intrinsics.T, width, height)
-    skewed = intrinsics.copy()
-    skewed[0, 1] = 1.0
-    assert not fits(skewed, width, height)
+def test_intrinsics_that_are_unusual_are_doubted_with_likely_values(k, width, height, doubt):
+    found = check_intrinsics(pinhole(*k), width, height)
+    assert re.search(doubt, found) if doubt else found == ""
+
+
+@pytest.mark.parametrize(
+    ("k", "reason"),
+    [
+        ((-525, 525, 320, 240), "do not fit .* not those of a pinhole"),
+        ((525, 525, 320, np.nan), "do not fit .* not those of a pinhole"),
+        ((525, 52.5, 320, 240), "fx and fy are too different; fx and fy are probably about 576"),
+        ((50, 50, 320, 240), r"162\.2 degrees; fx and fy are probably about 576"),
+        ((1e7, 1e7, 320, 240), r"0\.0 degrees; fx and fy are probably about 576"),
+        ((525, 525, 5000, 240), "cx is probably about 320, cy about 240"),
+    ],
+)
+def test_intrinsics_of_no_pinhole_camera_are_invalid(k, reason):
+    with pytest.raises(ValueError, match=reason):
+        check_intrinsics(pinhole(*k), 640, 480)
+
+
+def test_intrinsics_are_three_by_three_without_skew():
+    skewed = pinhole(525, 525, 320, 240)
+    for wrong in (skewed.T, skewed + np.eye(3, k=1)):
+        with pytest.raises(ValueError, match="without skew"):
+            check_intrinsics(wrong, 640, 480)
+
+
+def test_a_doubt_has_the_values_of_the_source():
+    found = check_intrinsics(pinhole(525, 525, 600, 70), 640, 480, first_pixel=0.0)
+    assert "cx 599.5 cy 69.5" in found
+    assert "cx is probably about 319.5, cy about 239.5" in found
 
 
 def test_a_pose_is_a_rotation_and_a_position():

@@ -137,5 +137,7 @@ def test_a_label_of_no_class_is_kept_in_one_line():
     told = thing(said("saucer", 0.4), said("fork", 0.9), None, said(" power\n drill ", 0.6))
     assert unknown_label(told, LABELS) == "power drill"
     assert unknown_label(thing(said("fork")), LABELS) == ""
-    assert unknown_label(thing(said("7", 0.9)), LABELS) == ""
+    assert unknown_label(thing(said("fork"), said("7", 0.9)), LABELS) == ""
+    assert unknown_label(thing(said("7", 0.9), said(" "), None), LABELS) is None
+    assert unknown_label(thing(None), LABELS) is None
     assert len(unknown_label(thing(said("x" * 5000)), LABELS)) == 100

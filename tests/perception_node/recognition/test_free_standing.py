@@ -13,24 +13,49 @@ FAR = block(((0.5, 0.0, 0.0), (0.6, 0.1, 0.1)))
 BESIDE = block(((0.202, 0.0, 0.0), (0.302, 0.1, 0.1)))
 WITH_ROOM = block(((0.23, 0.0, 0.0), (0.33, 0.1, 0.1)))
 TORCH = block(((0.5, 0.0, 0.0), (0.527, 0.026, 0.15)))
+SHELF = block(((0.202, 0.0, 0.0), (0.802, 0.1, 0.1)))
 SCRAP = block(((0.202, 0.0, 0.0), (0.222, 0.02, 0.05)))
 
 
-def test_things_apart_stand_alone_and_neighbours_do_not():
-    assert are_free_standing([THING, FAR]).tolist() == [True, True]
-    assert are_free_standing([THING, BESIDE, FAR]).tolist() == [False, False, True]
+def standing(*things, fragments=()):
+    return are_free_standing(
+        things, np.array([all(thing is not f for f in fragments) for thing in things])
+    ).tolist()
+
+
+def with_points(thing, count):
+    return replace(thing, segments=(replace(thing.segments[0], count=count),))
+
+
+def test_things_apart_stand_alone_and_fragments_side_by_side_do_not():
+    assert standing(THING, FAR, fragments=[THING, FAR]) == [True, True]
+    assert standing(THING, BESIDE, FAR, fragments=[THING, BESIDE, FAR]) == [False, False, True]
+
+
+def test_a_thing_beside_a_recognised_one_of_its_size_stands_alone():
+    thing, beside = with_points(THING, 1000), with_points(BESIDE, 3000)
+    assert standing(thing, beside, fragments=[thing])[0]
+    assert not standing(thing, beside, fragments=[thing, beside])[0]
+    assert not standing(thing, with_points(BESIDE, 5000), fragments=[thing])[0]
+    assert not standing(thing, with_points(SHELF, 3000), fragments=[thing])[0]
+    few = with_points(THING, 400)
+    assert not standing(few, with_points(BESIDE, 400), fragments=[few])[0]
 
 
 def test_things_with_some_room_between_them_stand_alone():
-    assert are_free_standing([THING, WITH_ROOM]).tolist() == [True, True]
+    assert standing(THING, WITH_ROOM, fragments=[THING, WITH_ROOM]) == [True, True]
+
+
+def test_the_foot_of_a_thing_may_be_hidden():
+    assert standing(replace(THING, lifted_m=0.05)) == [True]
 
 
 def test_a_slender_thing_that_is_low_is_no_leg():
-    assert are_free_standing([TORCH])[0]
+    assert standing(TORCH) == [True]
 
 
 def test_a_scrap_beside_a_thing_does_not_count():
-    assert are_free_standing([THING, SCRAP])[0]
+    assert standing(THING, SCRAP, fragments=[THING, SCRAP])[0]
 
 
 @pytest.mark.parametrize(
@@ -46,7 +71,7 @@ def test_a_scrap_beside_a_thing_does_not_count():
     ids=["in mid-air", "cut by the picture's edge", "of few points", "a table top", "large", "a leg"],
 )
 def test_what_may_be_a_piece_does_not_stand_alone(thing):
-    assert not are_free_standing([thing])[0]
+    assert standing(thing) == [False]
 
 
 def test_what_is_below_a_tables_edge_may_be_its_leg():
@@ -54,8 +79,8 @@ def test_what_is_below_a_tables_edge_may_be_its_leg():
     table = replace(top, segments=(replace(top.segments[0], carrier=True),))
     leg = block(((0.02, 0.02, 0.0), (0.1, 0.1, 0.3)))
     bin_ = block(((0.3, 0.3, 0.0), (0.5, 0.5, 0.3)))
-    assert are_free_standing([leg, bin_]).tolist() == [True, True]
-    assert are_free_standing([table, leg, bin_]).tolist() == [False, False, True]
+    assert standing(leg, bin_) == [True, True]
+    assert standing(table, leg, bin_) == [False, False, True]
 
 
 def test_what_stands_alone_is_an_object_however_much_it_looks_like_clutter():

@@ -291,9 +291,39 @@ def test_the_label_of_a_detector_is_kept_in_its_own_words():
     assert told(track(label="other mug"), cup(preferred_reference="my mug")) is None
 
 
-def test_a_track_keeps_the_last_label():
-    observed = structs.replace(seen("Cup", at(1, 1)), label="mug")
-    first = track().see(observed, CONFIG)
-    assert first.label == "mug"
-    assert first.see(structs.replace(observed, label=""), CONFIG).label == "mug"
-    assert first.see(structs.replace(observed, label="tumbler"), CONFIG).label == "tumbler"
+def with_labels(*labels):
+    """Return a track after observations with these labels; None for one without a detector's label."""
+    found = track()
+    for label in labels:
+        observed = structs.replace(seen("Cup", at(1, 1)), label=label or "", labelled=label is not None)
+        found = found.see(observed, CONFIG)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("labels", "expected"),
+    [
+        pytest.param(["mug"], "mug", id="first"),
+        pytest.param(["mug"] * 20 + [None] * 50, "mug", id="no detector"),
+        pytest.param(["mug"] * 20 + ["tumbler"], "mug", id="one other"),
+        pytest.param(["mug"] * 20 + ["tumbler"] * 15, "tumbler", id="replaced"),
+        pytest.param(["mug"] * 20 + [""] * 15, "", id="a class instead"),
+        pytest.param(["mug"] * 20 + ["tumbler", "mug"] * 20, "mug", id="alternating"),
+    ],
+)
+def test_a_label_is_replaced_by_a_clear_majority_of_recent_labels(labels, expected):
+    assert with_labels(*labels).label == expected
+
+
+def test_an_observation_of_another_program_counts_with_its_label_alone():
+    assert track().see(structs.replace(seen("Cup", at(1, 1)), label="mug"), CONFIG).label == "mug"
+
+
+@pytest.mark.parametrize(("later", "reference"), [("tumbler", "tumbler"), ("", CLASSES.label("Cup"))])
+def test_the_map_follows_the_label_of_a_track(later, reference):
+    mug = cup(preferred_reference="mug")
+    assert told(with_labels(*["mug"] * 20, later), mug) is None
+    changed = told(with_labels(*["mug"] * 20, *[later] * 15), mug)
+    assert isinstance(changed, Update)
+    assert changed.ref == reference
+    assert changed.class_ is None

@@ -17,7 +17,7 @@ from semmap.nodes.extern.cli.output import lines
 from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.client_commands import CommandMethods
 from semmap.nodes.extern.files import read_file
-from semmap.schemas import errors
+from semmap.schemas import codec, errors
 from semmap.schemas.commands import Command, Set, Unset, Update
 
 _COMMANDS: Final[dict[str, click.Command]] = {"update": update, "set": set_, "unset": unset}
@@ -38,7 +38,7 @@ def batch(client: Client, file: Path, **fields: Any) -> None:
     """
     content = sys.stdin.buffer.read() if str(file) == "-" else read_file(file)
     try:
-        changes = tuple(read_changes(content.decode()))
+        changes = tuple(read_changes(codec.decode_text(content)))
     except UnicodeDecodeError:
         raise errors.BadFile(f"{file} is not a UTF-8 text file") from None
     if not changes:

@@ -141,21 +141,27 @@ def _folders(
 
 def _write(found: Recording, path: Path, folder: Path, *, as_json: bool) -> None:
     from semmap.nodes.extern.frame_folders.frames import write
+    from semmap.nodes.perception_node.input.projection import check_intrinsics
 
     began_s = printed_s = time.monotonic()
     bad: list[errors.SemmapError] = []
     posed = 0
+    doubts = dict[str, None]()
     for number, frame in enumerate(found.frames, 1):
         if isinstance(frame, errors.SemmapError):
             bad.append(frame)
         else:
             write(frame, folder)
+            height, width = frame.depth_m.shape
+            doubts[check_intrinsics(frame.intrinsics, width, height)] = None
             posed += frame.map_from_camera is not None
         if (now_s := time.monotonic()) > printed_s + _PROGRESS_S:
             printed_s = now_s
             print_escaped(
                 f"semmap: {number} of {found.count} frames ({now_s - began_s:.0f} s)", file=sys.stderr
             )
+    for doubt in filter(None, doubts):
+        print_error(f"note: {path}: {doubt}")
     written = found.count - len(bad)
     if not written:
         raise errors.BadFile(f"{path}: no usable frames; first error: {bad[0].text}")

@@ -143,6 +143,8 @@ def perceive(
     records = []
     for file, cloud in clouds:
         sight = segment_cloud(cloud)
+        for note in sight.notes:
+            print_error(f"note: {file}: {note}")
         if detector is not None:
             masks_found = detector.masks_of(detector.file, sight.labels.shape)
             if unknown_here := detector.labels.unknown([masks_found]):
@@ -153,7 +155,8 @@ def perceive(
             observations = fit_view(sight, observations, surfaces())
         frame = "plane" if cloud.map_from_camera is None else "map"
         if format == "json":
-            records.append({"file": str(file), "frame": frame, "objects": as_records(sight, observations)})
+            objects = as_records(sight, observations)
+            records.append({"file": str(file), "frame": frame, "objects": objects, "notes": sight.notes})
         else:
             console().print(f"{file}: {wording.counted(len(observations), 'object')}; {_FRAMES[frame]}")
             if observations:
@@ -252,9 +255,12 @@ def _dataset(
         except OSError as error:
             raise errors.BadFile(f"{labels} cannot be created: {error.strerror}") from None
     rows, unknown, printed_s, began_s = [], set[str](), 0.0, time.monotonic()
+    noted = dict[str, list[str]]()
     for found in perceive_folders(folders, learnt, detector, surfaces() if fit else None):
         rows.append(found.row)
         unknown.update(found.unknown_labels)
+        for note in found.row.notes:
+            noted.setdefault(note, []).append(found.row.frame)
         if labels is not None and found.labels is not None:
             buffer = io.BytesIO()
             np.save(buffer, found.labels)
@@ -271,6 +277,8 @@ def _dataset(
         write_atomically(out, b"[\n" + lines + b"\n]\n")
     if unknown:
         print_error(wording.unknown_labels(sorted(unknown)))
+    for note, names in noted.items():
+        print_error(f"note: {wording.few(names)}: {note}")
     if out is None and format == "json":
         print_json(rows)
     else:

@@ -89,7 +89,7 @@ def _execute_message(client: Client, message: bytes, where: str) -> int:
 def _decode_lines(file: Path) -> list[tuple[int, str]]:
     """Return the requests of a file with their line numbers, without empty lines and # comments."""
     try:
-        lines = read_file(file).decode().splitlines()
+        lines = codec.decode_text(read_file(file)).splitlines()
     except UnicodeDecodeError:
         raise errors.BadFile(f"{file} is not a UTF-8 text file") from None
     stripped = ((number, line.strip()) for number, line in enumerate(lines, start=1))

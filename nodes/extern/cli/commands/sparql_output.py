@@ -13,7 +13,7 @@ from semmap.nodes.extern.cli.output.formats import Format
 from semmap.nodes.extern.cli.output.printable import print_escaped, write
 from semmap.nodes.extern.files import read_file
 from semmap.ontology import vocabulary as v
-from semmap.schemas import errors
+from semmap.schemas import codec, errors
 from semmap.schemas.sparql import Row
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def read_query(word: str) -> str:
     else:
         return word
     try:
-        return content.decode()
+        return codec.decode_text(content)
     except UnicodeDecodeError:
         raise errors.BadFile(f"{word} is not a UTF-8 text file") from None
 

@@ -12,25 +12,28 @@ import numpy as np
 from msgspec import Struct
 
 from semmap.nodes.perception_node.input.cloud import Transform
-from semmap.nodes.perception_node.input.projection import fits, is_pose
+from semmap.nodes.perception_node.input.projection import check_intrinsics, is_pose
 from semmap.schemas import codec
+from semmap.schemas.errors import BadFile
 from semmap.schemas.wording import sentence
 
+CAMERA = "camera.json"
+DEPTHS = ("depth.png", "depth.npy", "depth.npz", "depth.pgm", "depth.tiff", "depth.tif", "depth.exr")
+"""The files of a frame in its folder: its camera, and one of these depth images."""
 _WANTED = "expected fx, fy, cx and cy, a matrix K, Open3D's intrinsic_matrix, or a camera_info file of ROS"
 _MATRICES = ("intrinsic_matrix", "K", "k", "camera_matrix")
 _PROJECTIONS = ("P", "p", "projection_matrix")
 _DISTORTIONS = ("D", "d", "distortion_coefficients")
 _SIZES = (("width", "image_width"), ("height", "image_height"))
-_OPTIONAL = ("depth_scale", "map_from_camera")
+_OPTIONAL = ("depth_scale", "map_from_camera", "first_pixel")
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_FOCAL = (0.2, 3.0)
-"""Range of the focal length of depth cameras relative to the longer side: a view of 19 to 136 degrees."""
-_USUAL_FOCAL = 0.9
+_OWN = ("fx", "fy", "cx", "cy", "width", "height", *_OPTIONAL)
 
 
 class PinholeCamera(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A pinhole camera [pixel], with the centre of the first pixel at 0.
+    """A pinhole camera [pixel] with the values of its file.
 
+    `first_pixel`: the coordinate of the centre of the first pixel: 0, or 0.5 if the image corner is at 0.
     `depth_scale`: metres per unit of the depth image; by default integers are millimetres and floats metres.
     `width` and `height`: the image size, if given. `map_from_camera`: the (4, 4) pose of the camera, as
     sixteen numbers or four rows, if known.
@@ -44,25 +47,58 @@ class PinholeCamera(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     height: int | None = None
     depth_scale: float | None = None
     map_from_camera: tuple[Any, ...] | None = None
+    first_pixel: float = 0.0
 
     @property
     def size(self) -> tuple[int, int] | None:
         """Return width and height of the image, if given."""
         return (self.width, self.height) if self.width and self.height else None
 
+    @property
+    def intrinsics(self) -> Transform:
+        """Return the matrix (3, 3) with the image corner at 0, as in `Cloud`."""
+        corner = 0.5 - self.first_pixel
+        return np.array([[self.fx, 0.0, self.cx + corner], [0.0, self.fy, self.cy + corner], [0.0, 0.0, 1.0]])
+
+    def check(self, width: int, height: int) -> str:
+        """Return a doubt that this is the camera of an image of this size; see `check_intrinsics`.
+
+        Raises ValueError if it cannot be.
+        """
+        declared = self.width or width, self.height or height
+        if declared != (width, height):
+            raise ValueError(
+                f"the intrinsics are for images of {declared[0]} x {declared[1]}; this one has {width} x"
+                f" {height} pixels"
+            )
+        return check_intrinsics(self.intrinsics, width, height, self.first_pixel)
+
+
+def load_camera(path: Path) -> PinholeCamera:
+    """Read the camera in a file, as `read_camera`. Raises BadFile."""
+    try:
+        return read_camera(path)
+    except OSError as error:
+        raise BadFile(f"{path} cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise BadFile(f"{path}: {error}") from None
+
 
 def read_camera(path: Path) -> PinholeCamera:
     """Read the camera in a file. Raises ValueError and OSError.
 
     The file is JSON with fx, fy, cx and cy (or RealSense's ppx and ppy), JSON of Open3D, a `camera_info` of
-    ROS in YAML or JSON, or the nine numbers of a matrix as text. Its origin is the centre of the first pixel.
+    ROS in YAML or JSON, or the nine numbers of a matrix as text. The centre of the first pixel is at 0. In
+    the own format, `first_pixel` may be another coordinate, and it is 0.5 by default in the `camera.json` of
+    a frame's folder, from wherever the file is read. Keys that this format does not have are ignored there.
     """
+    own = path.name == CAMERA and any((path.parent / name).exists() for name in DEPTHS)
     try:
-        text = path.read_bytes().decode()
+        text = codec.decode_text(path.read_bytes())
         if re.fullmatch(rf"(?:[\s\[\](),;]|{_NUMBER})*", text) and re.search(r"\d", text):
             camera = _of_entries({"K": _numbers(text)})
         elif text.lstrip().startswith(("{", "[")):
-            camera = _of_json(text)
+            camera = _of_json(text, of_frame=own)
         else:
             camera = _of_entries(_yaml_entries(text))
     except UnicodeDecodeError:
@@ -71,6 +107,8 @@ def read_camera(path: Path) -> PinholeCamera:
         raise ValueError(f"invalid intrinsics: {sentence(error, PinholeCamera)}") from None
     if not (camera.fx > 0 and camera.fy > 0 and (camera.depth_scale is None or camera.depth_scale > 0)):
         raise ValueError("invalid intrinsics: fx, fy and depth_scale must be positive")
+    if not 0 <= camera.first_pixel <= 1:
+        raise ValueError("invalid intrinsics: first_pixel must be 0, or 0.5 if the image corner is at 0")
     pose_of(camera.map_from_camera)
     return camera
 
@@ -88,48 +126,17 @@ def pose_of(numbers: tuple[Any, ...] | None) -> Transform | None:
     return found.reshape(4, 4)
 
 
-def require_fit(
-    intrinsics: Transform,
-    width: int,
-    height: int,
-    declared: tuple[int, int] | None = None,
-    offset_px: float = 0.0,
-) -> None:
-    """Raise ValueError if intrinsics (3, 3) cannot be those of a depth image of this size [pixel].
-
-    The image corner is at 0, and at `-offset_px` in the file of the intrinsics. `declared`: width and height
-    that the file names. The message has the values of the file, and likely ones.
-    """
-    if declared not in (None, (width, height)):
-        raise ValueError(
-            f"the intrinsics are for images of {' x '.join(map(str, declared or ()))}; this one has {width} x"
-            f" {height} pixels"
-        )
-    fx, fy, cx, cy = (intrinsics[[0, 1, 0, 1], [0, 1, 2, 2]] - [0, 0, offset_px, offset_px]).tolist()
-    values, image = f"fx {fx:g} fy {fy:g} cx {cx:g} cy {cy:g}", f"an image of {width} x {height} pixels"
-    side = max(width, height)
-    if not all(_FOCAL[0] * side <= focal <= _FOCAL[1] * side for focal in (fx, fy)):
-        view = np.degrees(2 * np.arctan2(width / 2, fx))
-        raise ValueError(
-            f"the intrinsics {values} do not fit {image}: its view would be {view:.0f} degrees wide; fx and"
-            f" fy are probably about {_USUAL_FOCAL * side:.0f}"
-        )
-    if not fits(intrinsics, width, height):
-        raise ValueError(
-            f"the intrinsics {values} do not fit {image}; cx is probably about {width / 2 - offset_px:g}, cy"
-            f" about {height / 2 - offset_px:g}"
-        )
-
-
-def _of_json(text: str) -> PinholeCamera:
+def _of_json(text: str, *, of_frame: bool) -> PinholeCamera:
     found = msgspec.json.decode(text)
     if not isinstance(found, dict):
         raise ValueError(f"invalid intrinsics: {_WANTED}")
     if "ppx" in found and "ppy" in found:  # as RealSense's tools name them, beside a distortion
-        found = {key: found.get(key) for key in ("fx", "fy", "width", "height", *_OPTIONAL)} | {
+        found = {key: found[key] for key in _OWN if key in found} | {
             "cx": found["ppx"],
             "cy": found["ppy"],
         }
+    elif of_frame and "fx" in found:
+        found = {"first_pixel": 0.5} | {key: found[key] for key in _OWN if key in found}
     if any(name in found for name in _MATRICES):
         return _of_entries(found)
     return msgspec.convert(found, codec.prepared(PinholeCamera))

@@ -30,6 +30,7 @@ _DECODERS: dict[str, Callable[[bytes, Placement | None], Cloud]] = {".pcd": pcd.
 _PICTURES = (
     *(".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp", ".webp", ".ppm", ".pgm"),
     *depth_files.ARRAYS,
+    depth_files.OPENEXR,
 )
 
 
@@ -47,7 +48,7 @@ def read_frames(
     BadRequest.
     """
     if pose is None and camera is not None:
-        pose = camera_files.pose_of(_camera(camera).map_from_camera)
+        pose = camera_files.pose_of(camera_files.load_camera(camera).map_from_camera)
     waiting: Path | None = None  # an image without its partner
     for path in files:
         if path.suffix.lower() not in _PICTURES:
@@ -103,20 +104,11 @@ def checked(cloud: Cloud, path: Path) -> Cloud:
     return cloud
 
 
-def _camera(path: Path) -> camera_files.PinholeCamera:
-    try:
-        return camera_files.read_camera(path)
-    except OSError as error:
-        raise BadFile(f"{path} cannot be read: {error.strerror}") from None
-    except ValueError as error:
-        raise BadFile(f"{path}: {error}") from None
-
-
 def _frame(files: Sequence[Path], camera_file: Path | None, pose: Transform | None) -> tuple[Path, Cloud]:
     """Return the frame of one depth image and at most one colour image."""
     if camera_file is None:
         raise BadRequest(f"{files[0]} is an image; add the camera's intrinsics with --intrinsics FILE")
-    camera, of = _camera(camera_file), camera_file
+    camera, of = camera_files.load_camera(camera_file), camera_file
     try:
         depths = []
         for of in files:

@@ -16,6 +16,7 @@ from semmap.nodes.runtime.pictures import MAX_PIXELS, open_picture
 from semmap.schemas.wording import few
 
 ARRAYS = (".npy", ".npz")
+OPENEXR = ".exr"
 _MODES = ("I;16", "I;16B", "I;16L", "I", "F")
 _MM_M = 0.001
 _PGM = re.compile(rb"P([25])" + rb"\s+(?:#[^\n]*\n\s*)*(\d+)" * 3 + rb"\s")
@@ -23,7 +24,7 @@ _PGM = re.compile(rb"P([25])" + rb"\s+(?:#[^\n]*\n\s*)*(\d+)" * 3 + rb"\s")
 
 def is_depth(path: Path) -> bool:
     """Return whether an image is of depth: 16 bits or more in one channel. Raises ValueError, OSError."""
-    if path.suffix.lower() in ARRAYS:
+    if path.suffix.lower() in (*ARRAYS, OPENEXR):
         return True
     with open_picture(path) as image:
         return image.mode in _MODES
@@ -37,6 +38,10 @@ def read_depth(path: Path) -> NDArray[Any]:
             numbers = np.lib.format.open_memmap(path, mode="r")  # its header may claim any size
         case ".npz":
             numbers = _of_archive(path)
+        case ".exr":
+            raise ValueError(
+                "OpenEXR is not supported; convert it to a TIFF or .npy file of floats in metres"
+            )
         case _:
             numbers = _of_image(path)
     if numbers.ndim == 3 and 1 in (numbers.shape[0], numbers.shape[-1]):

@@ -19,6 +19,7 @@ from semmap.nodes.perception_node.input.masks import (
     masks_from_stack,
 )
 from semmap.nodes.runtime.pictures import open_picture
+from semmap.schemas import codec
 from semmap.schemas.errors import BadFile
 from semmap.schemas.perception import MaskRun
 from semmap.schemas.wording import few, sentence
@@ -108,9 +109,9 @@ def _yolo_runs(path: Path, height: int, width: int) -> list[MaskRun]:
     A line with four shares is a box: middle, width and height. Raises ValueError and OSError.
     """
     listed = next((file for of in path.absolute().parents[:2] if (file := of / _CLASSES).exists()), None)
-    names = [] if listed is None else listed.read_text(errors="replace").split("\n")
+    names = [] if listed is None else listed.read_text("utf-8-sig", "replace").split("\n")
     found = []
-    for number, line in enumerate(path.read_text(errors="replace").splitlines(), 1):
+    for number, line in enumerate(path.read_text("utf-8-sig", "replace").splitlines(), 1):
         if not (words := line.split()):
             continue
         try:
@@ -165,8 +166,8 @@ def _require_size(found: Mapping[str, Any], height: int, width: int) -> None:
 def _runs(data: bytes, height: int, width: int) -> list[MaskRun]:
     """Return masks, with labels if there are category names. Raises ValueError."""
     try:
-        found = msgspec.json.decode(data)
-    except msgspec.DecodeError as error:
+        found = msgspec.json.decode(codec.decode_text(data))
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
         raise ValueError(f"not JSON: {error}") from None
     names: dict[str, str] = {}
     if isinstance(found, dict):

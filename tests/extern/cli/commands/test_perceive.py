@@ -158,6 +158,27 @@ def test_what_a_dataset_is_not_is_reported(tmp_path, capsys, monkeypatch, argume
     assert said in capsys.readouterr().err
 
 
+def test_notes_on_a_frame_are_printed_once_and_are_in_its_row(tmp_path, capsys):
+    for name in ("first", "second"):
+        write_frame(tmp_path / "frames" / name)
+        camera = tmp_path / "frames" / name / "camera.json"
+        camera.write_text(json.dumps(json.loads(camera.read_text()) | {"cx": 20.0}))
+    out, first = tmp_path / "out.json", tmp_path / "frames" / "first"
+    assert execute(["perceive", "--frames", str(tmp_path / "frames"), "--json", str(out)]) == 0
+    doubt = "have the principal point far from the middle"
+    assert [doubt in note for row in json.loads(out.read_text()) for note in row["notes"]] == [True, True]
+    error = capsys.readouterr().err
+    assert error.count(doubt) == 1
+    assert "note: first and second: camera.json: the intrinsics" in error
+    pictures = [str(first / name) for name in ("rgb.png", "depth.png")]
+    assert (
+        execute(["perceive", *pictures, "--intrinsics", str(first / "camera.json"), "--format", "json"]) == 0
+    )
+    printed = capsys.readouterr()
+    assert f"note: {first / 'depth.png'}: the intrinsics" in printed.err
+    assert doubt in json.loads(printed.out)[0]["notes"][0]
+
+
 def test_masks_segment_a_frame_and_an_unknown_label_is_reported(tmp_path, capsys):
     write_frame(tmp_path / "frames" / "first")
     (height, width), box = SEEN.truth.shape, np.isin(SEEN.truth, [1])

@@ -9,7 +9,6 @@ from semmap.nodes.perception_node.input.files.camera_files import (
     PinholeCamera,
     pose_of,
     read_camera,
-    require_fit,
 )
 
 POSE = np.array([[0.0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]])
@@ -152,25 +151,35 @@ def test_a_file_of_something_else_is_refused(tmp_path):
         read_camera(path)
 
 
-@pytest.mark.parametrize(
-    ("values", "said"),
-    [
-        ((525, 525, 320, 240), None),
-        ((250, 250, 320, 240), None),
-        ((100, 100, 320, 240), r"145 degrees wide; fx and fy are probably about 576"),
-        ((2000, 2000, 320, 240), r"18 degrees wide; fx and fy are probably about 576"),
-        ((525, 52.5, 320, 240), r"fy 52\.5 .*; fx and fy are probably about 576"),
-        ((525, 525, 640, 360), r"cx is probably about 320, cy about 240"),
-    ],
-)
-def test_an_impossible_camera_is_told_with_likely_values(values, said):
-    fx, fy, cx, cy = values
-    intrinsics = np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1.0]])
-    if said is None:
-        require_fit(intrinsics, 640, 480)
-        return
-    with pytest.raises(ValueError, match=said):
-        require_fit(intrinsics, 640, 480)
+@pytest.mark.parametrize("folder", ["plain", "frame"])
+@pytest.mark.parametrize("mark", ["utf-8-sig", "utf-16"])
+def test_a_byte_order_mark_is_ignored(tmp_path, mark, folder):
+    path = tmp_path / "camera.json"
+    if folder == "frame":
+        (tmp_path / "depth.png").touch()
+    for text in (json.dumps({"fx": 525, "fy": 520, "cx": 1, "cy": 1}), json.dumps({"K": K}), CALIBRATION):
+        path.write_text(text, mark)
+        assert read_camera(path).fx == 525
+
+
+def test_the_camera_of_a_frame_has_its_own_origin_from_wherever_it_is_read(tmp_path):
+    path = camera(tmp_path)
+    assert read_camera(path).intrinsics[:2, 2].tolist() == [20.0, 15.0]
+    (tmp_path / "depth.npy").touch()
+    assert read_camera(path).intrinsics[:2, 2].tolist() == [19.5, 14.5]
+    path.write_text(json.dumps({"K": K, "note": "of another program"}))
+    assert read_camera(path).intrinsics[:2, 2].tolist() == [320.0, 240.0]
+
+
+def test_a_camera_may_state_the_origin_of_its_pixels(tmp_path):
+    path = camera(tmp_path, first_pixel=0.5)
+    assert read_camera(path).intrinsics[:2, 2].tolist() == [19.5, 14.5]
+    (tmp_path / "depth.png").touch()
+    assert read_camera(path).intrinsics[:2, 2].tolist() == [19.5, 14.5]
+    camera(tmp_path, first_pixel=0)
+    assert read_camera(path).intrinsics[:2, 2].tolist() == [20.0, 15.0]
+    with pytest.raises(ValueError, match=r"first_pixel must be 0, or 0\.5"):
+        read_camera(camera(tmp_path, first_pixel=320))
 
 
 def test_a_camera_is_for_pictures_of_its_size_where_both_sides_are_said():

@@ -51,8 +51,8 @@ def write_pictures(folder, *, color=(8, 6), depth=(8, 6)):
     values = np.full((depth[1], depth[0]), 2000, np.uint16)
     values[0, 0] = 0
     Image.fromarray(values).save(folder / "depth.png")
-    (folder / "camera.json").write_text(json.dumps(CAMERA))
-    return folder / "rgb.png", folder / "depth.png", folder / "camera.json"
+    (folder / "lens.json").write_text(json.dumps(CAMERA))
+    return folder / "rgb.png", folder / "depth.png", folder / "lens.json"
 
 
 @pytest.mark.parametrize("swapped", [False, True])
@@ -118,7 +118,7 @@ SCALED = [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]
 def test_bad_intrinsics_are_refused(tmp_path, content):
     rgb, depth, camera = write_pictures(tmp_path)
     camera.write_text(content)
-    with pytest.raises(BadFile, match=r"camera\.json"):
+    with pytest.raises(BadFile, match=r"lens\.json"):
         list(read_frames((rgb, depth), camera))
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from semmap.nodes.perception_node.input.files.cloud_files import read_frames
 from semmap.nodes.perception_node.input.files.frame_folders import frames_in, read_frame
 from semmap.schemas.errors import BadFile
 
@@ -64,9 +66,8 @@ def test_a_large_picture_is_thinned(tmp_path):
         ({"depth": np.full((48, 64), 200, np.uint8)}, "16 bits"),
         ({"depth": np.zeros((48, 64), np.uint16)}, "no depth"),
         ({"width": 640, "height": 480}, "images of 640 x 480; this one has 64 x 48 pixels"),
-        ({"cx": 320.0, "cy": 240.0, "fx": 600.0, "fy": 600.0}, "do not fit an image of 64 x 48 pixels"),
+        ({"cx": 320.0, "cy": 240.0, "fx": 60.0, "fy": 60.0}, "do not fit an image of 64 x 48 pixels"),
         ({"map_from_camera": [[1, 2], [3]]}, "4 x 4 pose matrix"),
-        ({"cx": 16.0, "cy": 12.0, "fx": 30.0, "fy": 30.0}, "cx is probably about 32, cy about 24"),
         ({"fx": 6.0, "fy": 6.0}, "fx and fy are probably about 58"),
         ({"fx": "wide"}, "fx"),
     ],
@@ -75,6 +76,40 @@ def test_what_is_wrong_is_said_with_the_frame_and_its_file(tmp_path, made, said)
     with pytest.raises(BadFile, match=said) as error:
         read_frame(write_frame(tmp_path / "table7", **made))
     assert error.value.text.startswith("table7/")
+
+
+@pytest.mark.parametrize(
+    ("camera", "note"),
+    [
+        ({}, ""),
+        (
+            {"cx": 16.0, "cy": 12.0, "fx": 30.0, "fy": 30.0},
+            r"from 32 x 24 pixels, fx is about 60.*cx 32,",
+        ),
+        ({"fx": 250.0, "fy": 250.0}, "fx and fy are probably about 58"),
+    ],
+)
+def test_unusual_intrinsics_are_noted(tmp_path, camera, note):
+    notes = " ".join(read_frame(write_frame(tmp_path / "table7", **camera)).cloud.notes)
+    assert re.search(f"^camera.json: .*{note}", notes) if note else notes == ""
+
+
+def test_a_frame_has_the_same_points_by_its_folder_and_by_its_files(tmp_path):
+    folder = write_frame(tmp_path / "table7", first_seen="by robot 3")
+    in_place = read_frame(folder).cloud
+    pictures = [folder / "rgb.png", folder / "depth.png"]
+    ((_, by_files),) = read_frames(pictures, folder / "camera.json")
+    assert by_files.points_camera.tolist() == in_place.points_camera.tolist()
+    assert by_files.intrinsics.tolist() == in_place.intrinsics.tolist()
+
+
+def test_openexr_is_told_what_to_convert_it_to(tmp_path):
+    folder = write_frame(tmp_path / "table7")
+    (folder / "depth.png").rename(folder / "depth.exr")
+    with pytest.raises(BadFile, match=r"table7/depth\.exr: OpenEXR is not supported; convert it to a TIFF"):
+        read_frame(folder)
+    with pytest.raises(BadFile, match="OpenEXR is not supported; convert it to a TIFF"):
+        list(read_frames([folder / "rgb.png", folder / "depth.exr"], folder / "camera.json"))
 
 
 def test_half_a_frame_is_told_what_it_lacks(tmp_path):

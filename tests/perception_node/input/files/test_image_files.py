@@ -60,6 +60,9 @@ def test_pictures_that_do_not_go_together_are_told(tmp_path):
     other = PinholeCamera(fx=50.0, fy=40.0, cx=19.5, cy=14.5, width=80, height=60)
     with pytest.raises(ValueError, match="for images of 80 x 60; this one has 40 x 30 pixels"):
         read_pictures(depth(tmp_path), None, other)
+    crop = PinholeCamera(fx=50.0, fy=40.0, cx=1.5, cy=14.5)
+    (note,) = read_pictures(depth(tmp_path), None, crop).notes
+    assert "cx 1.5 cy 14.5" in note
     wrong = PinholeCamera(fx=50.0, fy=40.0, cx=1900.5, cy=14.5)
     with pytest.raises(ValueError, match=r"fx 50 fy 40 cx 1900\.5 cy 14\.5 do not fit an image of 40 x 30"):
         read_pictures(depth(tmp_path), None, wrong)

@@ -25,6 +25,18 @@ def test_results_and_datasets_of_coco(tmp_path):
     assert found.labels.tolist() == [[0, 1, 1], [0, 0, 0]]
 
 
+@pytest.mark.parametrize("mark", ["utf-8-sig", "utf-16"])
+def test_a_byte_order_mark_is_ignored(tmp_path, mark):
+    (tmp_path / "a.json").write_text(json.dumps([{**FIRST, "category": "cup"}]), mark)
+    assert read_masks(tmp_path / "a.json", 2, 3).detector_labels == (DetectorLabel("cup", 0.7),)
+
+
+def test_yolo_s_files_may_have_a_byte_order_mark(tmp_path):
+    (tmp_path / "a.txt").write_text("0 0 0 1 0 1 1 0.9\n", "utf-8-sig")
+    (tmp_path / "classes.txt").write_text("cup\n", "utf-8-sig")
+    assert read_masks(tmp_path / "a.txt", 2, 3).detector_labels == (DetectorLabel("cup", 0.9),)
+
+
 @pytest.mark.parametrize(
     ("polygons", "pixels"),
     [
