@@ -45,7 +45,8 @@ class ClauseBoundaries:
         if self._wish(j):
             return True
         if (
-            g.match("negation", words, j)
+            (g.match("negation", words, j) and not self._excludes(j))
+            or self._phase(j)
             or g.match("condition", words, j)
             or self._found_at(j)
             or self._asks(j)
@@ -70,6 +71,16 @@ class ClauseBoundaries:
             and self._g.verb(self._words, i + 1)[0] > 0
             and not self._np.is_known(i + 1, i + 2)
         )
+
+    def _phase(self, i: int) -> int:
+        """Return the number of words before a verb that only state its phase: START cleaning; or 0."""
+        length = self._g.match("phase", self._words, i)
+        return length if length and self._is_activity(i + length, length) else 0
+
+    def _is_activity(self, i: int, after: int = 0) -> bool:
+        """Return whether a verb as the object of another one is at `i`: following Nora, (Italian) to follow."""
+        is_base = self._words[i - 1 : i] in (("to",), ("of",)) and (self._t.is_translated or after > 1)
+        return self._g.gerund(self._words, i)[0] > 0 or (is_base and self._g.verb(self._words, i)[0] > 0)
 
     def _is_gerund(self, i: int) -> bool:
         return self._words[i].endswith("ing") and (self._words[i],) not in self._g.verbs
@@ -275,6 +286,6 @@ class ClauseBoundaries:
 
     def _excludes(self, i: int) -> bool:
         """Return whether an exception begins at `i`: but not the milk."""
-        length = self._g.match("exclude", self._words, i)
+        length = self._np.exclusion(i)
         has_noun = self._opens_phrase(i + length) or (length == 2 and self._words[i + 1] == "no")
         return bool(length) and has_noun and not self._g.verb(self._words, i + length)[0]

@@ -22,6 +22,7 @@ from semmap.nodes.language.reference_resolution.description import (
 from semmap.nodes.language.reference_resolution.map_geometry import MapGeometry
 from semmap.nodes.language.reference_resolution.map_index import MapIndex
 from semmap.nodes.language.reference_resolution.resolver import Resolver, Scope
+from semmap.nodes.language.steps import quantities
 from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.tokens import Text
 from semmap.schemas.language import PlaceRelation, ThingDescription
@@ -103,6 +104,7 @@ class Meanings:
             meaning = self._person(phrase, places)
         else:
             meaning = self._thing(phrase, places, may_be_none=may_be_none, as_place=as_place, owner=owner)
+        self._count(phrase, meaning, may_be_none=may_be_none)
         if not phrase.alternatives or meaning.description is None:
             return meaning
         others = [self.of(other, places, may_be_none=may_be_none) for other in phrase.alternatives]
@@ -112,6 +114,20 @@ class Meanings:
         meaning.doubts += (doubt for other in others for doubt in other.doubts)
         meaning.description = structs.replace(meaning.description, alternatives=tuple(texts))
         return meaning
+
+    def _count(self, phrase: NounPhrase, meaning: Meaning, *, may_be_none: bool) -> None:
+        """Add the quantity of a phrase to its meaning, and the doubt that fewer are known."""
+        is_known = bool(meaning.names) and not may_be_none and not phrase.superlative
+        text = self._t.between(phrase.first, phrase.end)
+        doubt = quantities.count(phrase, len(meaning.names) if is_known else None, text)
+        meaning.doubts += [doubt] if doubt else []
+        if meaning.description is not None:
+            meaning.description = structs.replace(
+                meaning.description,
+                quantity="all" if phrase.all_of and phrase.quantity is None else phrase.quantity,
+                at_least=phrase.amount.at_least,
+                at_most=phrase.amount.at_most,
+            )
 
     # Places
 
@@ -185,7 +201,6 @@ class Meanings:
             attributes=tuple(phrase.attributes),
             relation=tuple(self._relation(place, names) for place, names in relations),
             superlative=phrase.superlative,
-            quantity=phrase.quantity if phrase.quantity is not None else ("all" if phrase.all_of else None),
             excluded=tuple(self._t.between(other.first, other.end) for other in phrase.excluded),
         )
         key = phrase.key if phrase.kind == "thing" else self.key(phrase.name) if phrase.name else ""
@@ -287,6 +302,7 @@ class Meanings:
             and not phrase.is_plural
             and not phrase.superlative
             and not is_any
+            and not phrase.amount.is_other
         ):
             labelled = self._nouns.exact.get(phrase.key, {})
             exact = [name for name in names if name in labelled] or [
@@ -296,15 +312,6 @@ class Meanings:
         if phrase.superlative and names and not is_open:
             ordered = self._ordered(names, phrase)
             meaning.is_unordered, names = ordered is None, names if ordered is None else ordered
-        elif (
-            phrase.quantity is not None
-            and len(names) < phrase.quantity
-            and meaning.alike
-            and not is_open
-            and not may_be_none
-            and (not meaning.doubts)
-        ):
-            meaning.doubts.append(f"'{text}': there {'is' if len(names) == 1 else 'are'} only {len(names)}")
         wants_one = (
             phrase.is_definite
             and not phrase.is_plural
@@ -528,7 +535,6 @@ class Meanings:
                 self._relation(place, others) for place, others in relations[: len(phrase.places)]
             ),
             superlative=phrase.superlative,
-            quantity=phrase.quantity if phrase.quantity is not None else ("all" if phrase.all_of else None),
             purpose=phrase.purpose,
             owner="" if phrase.owner is None else self._t.between(phrase.owner.first, phrase.owner.end),
             excluded=tuple(self._t.between(other.first, other.end) for other in phrase.excluded),

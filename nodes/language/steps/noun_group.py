@@ -7,6 +7,7 @@ from typing import Final
 
 from semmap.nodes.language.lexicon.commands import Grammar
 from semmap.nodes.language.reference_resolution.map_index import MOST_WORDS, Nouns
+from semmap.nodes.language.steps import quantities
 from semmap.nodes.language.steps.phrase import NounPhrase
 from semmap.nodes.language.steps.tokens import Text
 
@@ -65,6 +66,8 @@ class NounGroupReader:
         """
         self.takes_that = False
         """Whether *that* may begin a message in the clause that is read, and not a relative clause."""
+        self.takes_with = False
+        """Whether *with* after a thing belongs to the verb: fill the glass WITH water."""
         self._t, self._g, self._nouns, self._starts_clause = text, grammar, nouns, starts_clause
         self._above = above
         self._words = text.words
@@ -85,10 +88,19 @@ class NounGroupReader:
     def _determiners(self, phrase: NounPhrase, i: int) -> int:
         g, words = self._g, self._words
         while i < len(words):
+            if (bound := self.read_bound(i)) is not None:
+                i, bounded = bound
+                phrase.quantity, phrase.amount = bounded.quantity, bounded.amount
+                phrase.is_plural = bounded.is_plural
+                continue
+            if length := quantities.read_amount(g, words, i, phrase):
+                i += length
+                continue
             number = g.number(words[i])
             every, length = g.match("all", words, i), g.match("determiner", words, i)
             if every and every >= length:
                 phrase.all_of, phrase.is_plural, phrase.determiner = True, True, phrase.determiner or "all"
+                phrase.amount.total = 2 if g.contains("pair", " ".join(words[i : i + every])) else None
                 i += every
             elif length and not (phrase.determiner and words[i] == "one"):  # the ONE OF THE kitchen
                 text = " ".join(words[i : i + length])
@@ -108,11 +120,20 @@ class NounGroupReader:
                 and (words[i] != "one" or not phrase.determiner)
                 and self._group_end(j := self._after_of(i + 1)) > j
             ):
-                phrase.quantity, phrase.is_plural = number, number > 1
+                if phrase.quantity is None:
+                    phrase.quantity, phrase.is_plural = number, number > 1
+                else:
+                    phrase.amount.total, phrase.is_plural = number, True  # two of the three cups
                 i = j
             else:
                 break
         return i
+
+    def read_bound(self, i: int) -> tuple[int, NounPhrase] | None:
+        """Return the index of the noun after a number with a bound at `i`, and its quantity; or None."""
+        found = quantities.read_bound(self._g, self._words, i)
+        j = self._after_of(found[0]) if found is not None else i
+        return None if found is None or self._group_end(j) == j else (j, found[1])
 
     def _after_of(self, i: int) -> int:
         """Return the index after *of the* at `i`, or `i`."""
@@ -157,7 +178,9 @@ class NounGroupReader:
                 break  # let ANNA know
             if seen and word.endswith("s") and (word[:-1],) in g.verbs:
                 break  # how the person looks
-            if seen and (g.match("time", words, i) or word in ("called", "named")):
+            if seen and (
+                g.match("time", words, i) or g.match("at_most_after", words, i) or word in ("called", "named")
+            ):
                 break
             seen = seen or self.is_known(i, i + 1) or g.is_a(self._bases[i], "person") or self._is_kind(i)
             seen = seen or g.is_a(self._bases[i], "anything") or self._t.tokens[i].is_capital
@@ -262,7 +285,10 @@ class NounGroupReader:
             elif number is not None:
                 phrase.quantity, phrase.is_plural = number, phrase.is_plural or number > 1
                 i += 1
-            elif self._words[i] in ("very", "other", "same", "own", "whole", "entire", "little"):
+            elif quantities.is_other(self._words[i]):
+                phrase.amount.is_other = True
+                i += 1
+            elif self._words[i] in ("very", "same", "own", "whole", "entire", "little"):
                 i += 1
             else:
                 phrase.attributes.append(self._words[i])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from semmap.nodes.language.steps import quantities
 from semmap.nodes.language.steps.noun_group import NounGroupReader
 from semmap.nodes.language.steps.phrase import Kind, NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.times import starts_time
@@ -22,6 +23,8 @@ class NounPhraseReader(NounGroupReader):
             if phrase.kind == "person":
                 self._after_the_noun(phrase, with_places)
             return phrase
+        if (all_but := self._all_but(i)) is not None:
+            return all_but
         start = self._determiners(phrase, i)
         if start > i and self._words[start - 1 : start] == ("of",) and self._read_pronoun_at(phrase, start):
             return phrase
@@ -32,6 +35,9 @@ class NounPhraseReader(NounGroupReader):
             if self._words[i] in ("this", "that", "these", "those", "all", "both", "another"):
                 phrase.kind, phrase.head, phrase.end, phrase.noun = "pronoun", i, start, self._words[i]
                 return phrase
+            if phrase.amount.is_other:
+                phrase.noun, phrase.head, phrase.end = "ones" if phrase.is_plural else "one", start - 1, start
+                return phrase
             if phrase.quantity is None:
                 return None
             phrase.noun, phrase.head, phrase.end = self._words[start - 1], start - 1, start
@@ -40,6 +46,27 @@ class NounPhraseReader(NounGroupReader):
         if phrase.end < len(self._words) and self._is_possessive(phrase.end):
             return self._owned(phrase, i, with_places)
         self._after_the_noun(phrase, with_places)
+        return phrase
+
+    def _all_but(self, i: int) -> NounPhrase | None:
+        """Return the phrase of *all but two cups* or *all except the red cup* at `i`, or None."""
+        g, words = self._g, self._words
+        j = i + g.is_a(words[i], "all")
+        length = int(words[j : j + 1] == ("but",)) or g.match("exclude", words, j) if j > i else 0
+        other = self.read(j + length) if length else None
+        if other is None:
+            return None
+        phrase = NounPhrase(
+            i, other.end, other.head, noun=other.noun, key=other.key, is_plural=True, all_of=True
+        )
+        if other.key not in self._nouns.classes:  # of *red cup* only *cup*
+            phrase.noun = words[other.head]
+            phrase.key = self.key(other.head, other.head + 1)
+        phrase.determiner, phrase.places = "all", other.places
+        if other.determiner == "one of the" or (other.quantity is not None and not other.determiner):
+            phrase.amount.all_but = other.quantity or 1
+        else:
+            phrase.excluded, other.places = [other], []
         return phrase
 
     def _read_pronoun(self, phrase: NounPhrase) -> bool:
@@ -135,6 +162,11 @@ class NounPhraseReader(NounGroupReader):
                 break
         return found
 
+    def exclusion(self, i: int) -> int:
+        """Return the number of words before an exception at `i` (except, but not), or 0."""
+        length = self._g.match("exclude", self._words, i)
+        return 0 if self._words[i + length : i + length + 1] == ("that",) else length
+
     def _joins(self, i: int) -> bool:
         """Return whether a list goes on at `i`: a comma only before a determiner."""
         word = self._words[i] if i < len(self._words) else ""
@@ -166,7 +198,9 @@ class NounPhraseReader(NounGroupReader):
         """Read what follows the noun: places, relative clauses, participles, purposes, exceptions."""
         g, words = self._g, self._words
         while (i := phrase.end) < len(words):
-            if (length := g.match("exclude", words, i)) and not self._is_verb(i + length):
+            if length := quantities.limit_after(g, words, phrase):
+                phrase.end = i + length
+            elif (length := self.exclusion(i)) and not self._is_verb(i + length):
                 excluded = self.read_excluded(i + length)
                 if not excluded:
                     return
@@ -301,7 +335,8 @@ class NounPhraseReader(NounGroupReader):
         return True
 
     def _is_with(self, i: int) -> bool:
-        return not self._t.is_mark(i + 1)
+        """Return whether *with* at `i` describes a thing, and is not of the verb or of the robot's hand."""
+        return not (self.takes_with or self._t.is_mark(i + 1) or self._words[i + 1] == "your")
 
     def _is_clothing(self, i: int) -> bool:
         """Return whether the words at `i` are clothes or a colour, and not a place of the map."""

@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Final
 
+from msgspec import structs
+
 from semmap.nodes.language.lexicon import commands
 from semmap.nodes.language.steps import tokens
 from semmap.nodes.language.steps.answers import answer
@@ -22,7 +24,7 @@ _LOCATED_BY: Final = {
     "Locating": "Ground",
 }
 """Frames with the role that states where their object is."""
-_WORDS_ONLY: Final = frozenset(("Message", "Trigger", "Desired_state", "Manner", "Direction"))
+_WORDS_ONLY: Final = frozenset(("Message", "Trigger", "Desired_state", "Manner", "Direction", "Activity"))
 _PEOPLE: Final = frozenset(
     ("Cotheme", "Guiding", "Make_acquaintance", "Greeting", "Introducing", "Being_located", "Locating")
 )
@@ -52,6 +54,25 @@ class _Mention:
     is_plural: bool
     is_place: bool
     phrase: NounPhrase | None = None
+
+
+def _is_same(frame: str, other: str) -> bool:
+    """Return whether two frames are of the same action if one of them is negated."""
+    return frame == other or {frame, other} == {"Taking", "Bringing"}
+
+
+def _contains(filler: Filler, other: Filler) -> bool:
+    """Return whether a filler denotes more things than another one, and these too."""
+    return set(other.entities) < set(filler.entities)
+
+
+def _without(filler: Filler, other: Filler) -> Filler:
+    """Return a filler without what another one denotes."""
+    names = tuple(name for name in filler.entities if name not in other.entities)
+    description = filler.description
+    if description is not None:
+        description = structs.replace(description, excluded=(*description.excluded, other.text))
+    return structs.replace(filler, entities=names, description=description)
 
 
 def read_steps(text: str, world: World, scene: Scene | None = None) -> Steps:
@@ -86,6 +107,7 @@ class _StepReader:
                 )
                 self._mentions.append(mention)
             found.steps.append(self._step(clause, len(found.steps) + 1))
+            self._except(clause)
         found.unknown = list(dict.fromkeys(parsed.unknown))
         for condition in dict.fromkeys(text for clause in parsed.clauses for text in clause.conditions):
             found.doubts.append(f"'{condition}' is a condition; it is not checked")
@@ -112,6 +134,48 @@ class _StepReader:
             "; ".join(dict.fromkeys(clause.conditions)),
             "; ".join(dict.fromkeys(clause.times)),
         )
+
+    def _except(self, clause: Clause) -> None:
+        """Read *leave the blue one* and *do not take it* after *the cups* as an exception of them."""
+        step = self._found.steps[-1]
+        is_left = clause.verb.lower() == "leave" and step.frame == "Placing" and "Goal" not in step.roles
+        things = [filler for role in step.roles.values() for filler in role if len(filler.entities)]
+        if not (is_left or step.negated) or len(things) != 1:
+            return
+        for k, earlier in enumerate(self._found.steps[:-1]):
+            if earlier.negated or not (is_left or _is_same(earlier.frame, step.frame)):
+                continue
+            for role, fillers in earlier.roles.items():
+                if role in _PLACES or not any(_contains(filler, things[0]) for filler in fillers):
+                    continue
+                rest = tuple(_without(f, things[0]) if _contains(f, things[0]) else f for f in fillers)
+                for mention in self._mentions:
+                    if mention.step == k + 1 and mention.filler in fillers:
+                        mention.filler = rest[fillers.index(mention.filler)]
+                self._found.steps[k] = structs.replace(earlier, roles={**earlier.roles, role: rest})
+                if is_left:
+                    step = structs.replace(step, frame=earlier.frame, negated=True)
+                    self._found.steps[-1] = step
+                self._found.doubts.append(f"'{things[0].text}' is read as an exception")
+
+    def _leave_mentioned(self, phrase: NounPhrase, meaning: Meaning, now: list[_Mention], text: str) -> None:
+        """Exclude what was mentioned before from the meaning of *another cup* or *the other cups*."""
+        before = [
+            mention.filler
+            for mention in (*self._mentions, *now)
+            if mention.is_person == meaning.is_person
+            and not mention.is_place
+            and (not meaning.names or not set(meaning.names).isdisjoint(mention.filler.entities))
+        ]
+        if not before:
+            meaning.doubts.append(f"'{text}': nothing of the kind was mentioned before")
+        left = Filler(text, "", meaning.names, meaning.description)
+        for filler in before:
+            left = _without(left, filler)
+        meaning.names, meaning.description = left.entities, left.description
+        meaning.ambiguous = meaning.ambiguous and len(meaning.names) > 1
+        if before and meaning.alike and not meaning.names:
+            meaning.doubts.append(f"'{text}': no other {phrase.noun} is known")
 
     def _guide(self, clause: Clause) -> None:
         """Change the frame of *take them to the kitchen* if a pronoun refers to a person."""
@@ -172,6 +236,11 @@ class _StepReader:
                 as_place=role.role in _PLACES,
                 owner=owner,
             )
+            if phrase.amount.is_other:
+                self._leave_mentioned(phrase, meaning, mentions, text)
+            if phrase.amount.is_none and clause.frame not in ("Telling", "Counting"):
+                clause.negated = len(role.phrases) == 1 or clause.negated  # take none of the cups
+                meaning.doubts += [] if len(role.phrases) == 1 else [f"'{text}' is not meant"]
             filler = Filler(text, head, meaning.names, meaning.description)
             self._note(meaning)
             if role.role == "Topic" and (message := clause.role("Message")) is not None:
