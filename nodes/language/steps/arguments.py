@@ -44,7 +44,11 @@ class ArgumentReader(FrameCompletion):
                 objects[-1].excluded += excluded
                 i = excluded[-1].end
             elif words[i] == "but" and (excluded := self._np.read_excluded(i + 1)):
-                if objects and (objects[-1].all_of or g.is_a(objects[-1].noun, "anything")):
+                if objects and (
+                    objects[-1].all_of
+                    or objects[-1].determiner == "any"
+                    or g.is_a(objects[-1].noun, "anything")
+                ):
                     objects[-1].excluded += excluded  # all cups but the red one
                 else:
                     self.found.unused.append(self._t.between(i, excluded[-1].end))
@@ -120,7 +124,7 @@ class ArgumentReader(FrameCompletion):
         return None if phrase is None or phrase.end == i or is_particle else phrase
 
     def _is_bounded(self, clause: Clause, i: int, objects: list[NounPhrase]) -> bool:
-        """Return whether the object begins with a bound at `i` that is a preposition elsewhere: UP TO two cups."""
+        """Return whether the object begins with a bound like a preposition at `i`: UP TO two cups."""
         last = objects[-1] if objects else None
         is_open = last is None or last.kind in ("speaker", "pronoun") or self._is_person(last)
         return (
@@ -228,6 +232,7 @@ class ArgumentReader(FrameCompletion):
         if self._words[i] == "or":
             last.phrases[-1].alternatives.append(phrase)
         else:
+            last.phrases[-1].amount.total = None  # both cups and plates
             last.phrases.append(phrase)
         last.end = phrase.end
         return phrase.end

@@ -75,12 +75,18 @@ class ClauseBoundaries:
     def _phase(self, i: int) -> int:
         """Return the number of words before a verb that only state its phase: START cleaning; or 0."""
         length = self._g.match("phase", self._words, i)
-        return length if length and self._is_activity(i + length, length) else 0
+        return self._activity(i + length) - i if length and self._activity(i + length) else 0
 
-    def _is_activity(self, i: int, after: int = 0) -> bool:
-        """Return whether a verb as the object of another one is at `i`: following Nora, (Italian) to follow."""
-        is_base = self._words[i - 1 : i] in (("to",), ("of",)) and (self._t.is_translated or after > 1)
-        return self._g.gerund(self._words, i)[0] > 0 or (is_base and self._g.verb(self._words, i)[0] > 0)
+    def _activity(self, i: int) -> int:
+        """Return the index of the verb that is the object of a verb before `i`, or 0.
+
+        It is *following Nora* or *to follow Nora*, and in Italian *di seguire Nora*.
+        """
+        j = i
+        while self._t.is_translated and self._words[j : j + 1] in (("it",), ("of",), ("to",)):
+            j += 1  # smettila di seguirmi
+        is_base = j > i or self._words[i - 1 : i] == ("to",)
+        return j if self._g.gerund(self._words, j)[0] or (is_base and self._g.verb(self._words, j)[0]) else 0
 
     def _is_gerund(self, i: int) -> bool:
         return self._words[i].endswith("ing") and (self._words[i],) not in self._g.verbs

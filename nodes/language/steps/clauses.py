@@ -230,10 +230,7 @@ class ClauseReader(MessageReader):
         length, frame = self._g.verb(self._words, i)
         if frame != "Activity_stop" and self._words[i : i + length] != ("stop",):
             return 0
-        j = i + length
-        while self._t.is_translated and self._words[j : j + 1] in (("it",), ("of",), ("to",)):
-            j += 1  # smettila di seguirmi
-        return j if self._is_activity(j) else 0
+        return self._activity(i + length)
 
     def _end_activity(self, i: int, j: int) -> int:
         """Read a clause that ends an activity: its roles are those of the verb at `j`."""

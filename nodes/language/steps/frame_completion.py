@@ -43,7 +43,7 @@ class FrameCompletion(ClauseBoundaries):
                 phrase.end = main.end = place.first
                 both = [place.other] if place.other.second is None else [place.other, place.other.second]
                 clause.roles.append(Role(roles["place"], place.first, place.end, place.other.head, both))
-        if self._t.is_translated and clause.frame in ("Bringing", "Guiding"):
+        if self._t.is_translated and clause.frame in ("Bringing", "Guiding", "Emptying"):
             self._move_goal(clause, main)
         given = clause.role("Theme")
         is_left = clause.verb.lower() == "leave" and given is not None and clause.role("Goal") is None
@@ -88,7 +88,8 @@ class FrameCompletion(ClauseBoundaries):
         phrase = main.phrases[-1] if main is not None and main.phrases else None
         if main is None or phrase is None or not phrase.places or clause.role("Goal") is not None:
             return
-        if self._np.is_place(phrase.places[-1].other) and not phrase.places[-1].negated:
+        goes = clause.frame == "Emptying" or self._np.is_place(phrase.places[-1].other)
+        if goes and not phrase.places[-1].negated:
             place = phrase.places.pop()
             phrase.end = main.end = min(phrase.end, place.first)
             clause.roles.append(Role("Goal", place.first, place.end, place.other.head, [place.other]))
@@ -124,7 +125,7 @@ class FrameCompletion(ClauseBoundaries):
             clause.frame, shown.role = "Guiding", "Cotheme"
 
     def _operate(self, clause: Clause) -> None:
-        """Read *stop* without a device as the end of an activity, and note a person who cannot be a device."""
+        """Read *stop* without a device as the end of an activity, and note a person who is no device."""
         device = clause.role("Device")
         if device is not None and device.phrases and self._is_person(device.phrases[0]):
             self.found.unused.append(self._t.between(device.first, device.end))

@@ -93,7 +93,7 @@ class NounGroupReader:
                 phrase.quantity, phrase.amount = bounded.quantity, bounded.amount
                 phrase.is_plural = bounded.is_plural
                 continue
-            if length := quantities.read_amount(g, words, i, phrase):
+            if length := quantities.read_amount(g, words, i, phrase, self.is_known(i + 1, i + 2)):
                 i += length
                 continue
             number = g.number(words[i])
@@ -118,7 +118,7 @@ class NounGroupReader:
             elif (
                 number is not None
                 and (words[i] != "one" or not phrase.determiner)
-                and self._group_end(j := self._after_of(i + 1)) > j
+                and (self._group_end(j := self._after_of(i + 1)) > j or g.is_a(words[j - 1], "of"))
             ):
                 if phrase.quantity is None:
                     phrase.quantity, phrase.is_plural = number, number > 1
@@ -139,7 +139,8 @@ class NounGroupReader:
         """Return the index after *of the* at `i`, or `i`."""
         is_of = self._words[i : i + 1] == ("of",)
         article = self._g.match("determiner", self._words, i + 1) if is_of else 0
-        return i + 1 + article if article else i
+        is_pronoun = is_of and self._words[i + 1 : i + 2] in (("them",), ("these",), ("those",))
+        return i + 1 + (0 if is_pronoun else article) if article or is_pronoun else i
 
     def _group_end(self, start: int) -> int:
         """Return the index after the words before and of the noun that begin at `start`."""
@@ -179,7 +180,7 @@ class NounGroupReader:
             if seen and word.endswith("s") and (word[:-1],) in g.verbs:
                 break  # how the person looks
             if seen and (
-                g.match("time", words, i) or g.match("at_most_after", words, i) or word in ("called", "named")
+                g.match("time", words, i) or g.match("limit", words, i) or word in ("called", "named")
             ):
                 break
             seen = seen or self.is_known(i, i + 1) or g.is_a(self._bases[i], "person") or self._is_kind(i)
@@ -247,6 +248,8 @@ class NounGroupReader:
             or (several and words[head] not in describing.pluralia)
             or words[head] == "people"
         )
+        if phrase.all_of and phrase.amount.total and not (several or self._t.is_translated):
+            phrase.all_of, phrase.is_plural, phrase.amount.total = False, False, None  # both the cup and ...
         self._modifiers(phrase, start, noun)
 
     def _unknown_noun(self, start: int, end: int) -> int:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from semmap.nodes.language.steps import quantities
-from semmap.nodes.language.steps.noun_group import NounGroupReader
-from semmap.nodes.language.steps.phrase import Kind, NounPhrase, PlacePhrase
+from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
+from semmap.nodes.language.steps.pronoun_reader import PronounReader
 from semmap.nodes.language.steps.times import starts_time
 
 
-class NounPhraseReader(NounGroupReader):
+class NounPhraseReader(PronounReader):
     """Reads noun phrases of one text."""
 
     def read(self, i: int, *, with_places: bool = True) -> NounPhrase | None:
@@ -32,11 +32,11 @@ class NounPhraseReader(NounGroupReader):
         if end == start:
             if start == i:
                 return None
-            if self._words[i] in ("this", "that", "these", "those", "all", "both", "another"):
-                phrase.kind, phrase.head, phrase.end, phrase.noun = "pronoun", i, start, self._words[i]
-                return phrase
             if phrase.amount.is_other:
                 phrase.noun, phrase.head, phrase.end = "ones" if phrase.is_plural else "one", start - 1, start
+                return phrase
+            if self._words[i] in ("this", "that", "these", "those", "all", "both", "another"):
+                phrase.kind, phrase.head, phrase.end, phrase.noun = "pronoun", i, start, self._words[i]
                 return phrase
             if phrase.quantity is None:
                 return None
@@ -68,59 +68,6 @@ class NounPhraseReader(NounGroupReader):
         else:
             phrase.excluded, other.places = [other], []
         return phrase
-
-    def _read_pronoun(self, phrase: NounPhrase) -> bool:
-        return self._read_pronoun_at(phrase, phrase.first)
-
-    def _read_pronoun_at(self, phrase: NounPhrase, i: int) -> bool:
-        """Read a pronoun at `i`, unless it is a determiner there."""
-        g, words = self._g, self._words
-        word = words[i] if i < len(words) else ""
-        kind: Kind | None = None
-        if g.is_a(word, "speaker"):
-            kind = "speaker"
-        elif g.is_a(word, "robot"):
-            kind = "robot"
-        elif length := g.match("here", words, i):
-            phrase.kind, phrase.head, phrase.end, phrase.noun = "here", i, i + length, word
-            return True
-        elif length := g.match("pronoun", words, i):
-            if not self._is_determiner(i, length) and g.match("determiner", words, i) <= length:
-                phrase.kind, phrase.head, phrase.end = "pronoun", i + length - 1, i + length
-                phrase.noun = " ".join(words[i : i + length])
-                is_all = g.is_a(word, "several_pronoun") and words[phrase.end : phrase.end + 1] in (
-                    ("both",),
-                    ("all",),
-                )
-                phrase.end += is_all and self._group_end(phrase.end + 1) == phrase.end + 1  # them both
-                return True
-        elif word in (
-            "everyone",
-            "everybody",
-            "someone",
-            "somebody",
-            "anyone",
-            "anybody",
-            "nobody",
-            "folks",
-            "whoever",
-        ):
-            phrase.kind, phrase.head, phrase.end, phrase.noun = "person", i, i + 1, word
-            phrase.all_of = g.is_a(word, "everyone")
-            return True
-        if kind is None:
-            return False
-        phrase.kind, phrase.head, phrase.end, phrase.noun = kind, i, i + 1, word
-        return True
-
-    def _is_determiner(self, i: int, length: int) -> bool:
-        """Return whether the word at `i` precedes a noun: her phone, that cup, this one."""
-        word = self._words[i]
-        if length > 1 or not (
-            self._g.is_a(word, "determiner") or self._g.is_a(word, "possessive") or word == "one"
-        ):
-            return False
-        return self._group_end(i + 1) > i + 1
 
     def _is_possessive(self, i: int) -> bool:
         """Return whether the word at `i` is a possessive ending, and not *is*."""
@@ -154,18 +101,14 @@ class NounPhraseReader(NounGroupReader):
         """
         found: list[NounPhrase] = []
         while (other := self.read(i, with_places=False)) is not None:
-            if other.noun in ("one", "ones"):
+            if other.noun in ("one", "ones") and not other.attributes:
                 other = self.read(i) or other
-            found.append(other)
+            found += [other, *other.excluded]
+            other.excluded = []
             i = other.end + 1
             if not self._joins(other.end) or self._starts_clause(other.end) or self._starts_clause(i):
                 break
         return found
-
-    def exclusion(self, i: int) -> int:
-        """Return the number of words before an exception at `i` (except, but not), or 0."""
-        length = self._g.match("exclude", self._words, i)
-        return 0 if self._words[i + length : i + length + 1] == ("that",) else length
 
     def _joins(self, i: int) -> bool:
         """Return whether a list goes on at `i`: a comma only before a determiner."""

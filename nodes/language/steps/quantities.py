@@ -6,8 +6,11 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Final
 
+from msgspec import structs
+
 from semmap.nodes.language.lexicon.commands import Grammar
 from semmap.nodes.language.steps.phrase import Amount, NounPhrase
+from semmap.schemas.language import ThingDescription
 
 _BOUNDS: Final = ("at_least", "at_most", "more_than", "fewer_than", "exactly", "roughly")
 _AFTER: Final = ("at_least_after", "at_most_after")
@@ -77,10 +80,11 @@ def limit_after(g: Grammar, words: Sequence[str], phrase: NounPhrase) -> int:
     return 0
 
 
-def read_amount(g: Grammar, words: Sequence[str], i: int, phrase: NounPhrase) -> int:
+def read_amount(g: Grammar, words: Sequence[str], i: int, phrase: NounPhrase, is_noun: bool) -> int:
     """Return the number of words of an amount before a noun at `i`, and add it to the phrase; or 0.
 
-    Examples are *half of*, *most of*, *none of*, *several*, *the rest of*, *only*.
+    Examples are *half of*, *most of*, *none of*, *several*, *the rest of*, *only*. `is_noun` tells whether a
+    noun is at `i + 1`: *most cups*, but *most expensive cup*.
     """
     amount = phrase.amount
     length = max(g.match(kind, words, i) for kind in ("share", "vague", "none", "several", "rest", "exactly"))
@@ -95,7 +99,7 @@ def read_amount(g: Grammar, words: Sequence[str], i: int, phrase: NounPhrase) ->
     of = i + length + (words[i + length : i + length + 1] == ("of",))
     is_partitive = any(g.match(kind, words, of) for kind in ("determiner", "possessive", "all"))
     if g.contains("share", text):
-        if of == i + length and not is_partitive:
+        if of == i + length and not is_partitive and not (is_noun and text == "most"):
             return 0  # the most expensive cup
         amount.share, phrase.is_plural = g.shares[text], True
     elif g.contains("vague", text):
@@ -132,13 +136,10 @@ def count(phrase: NounPhrase, known: int | None, text: str) -> str:
         return f"'{text}': how many are meant is not clear"
     if known is None:
         return ""
-    is_bounded = amount.at_least is not None or amount.at_most is not None
-    if (
-        amount.total is None
-        and phrase.is_definite
-        and not (is_bounded or amount.is_other or phrase.superlative)
-    ):
-        amount.total = phrase.quantity  # the two cups
+    is_exact = amount.at_least is None and amount.at_most is None and not amount.is_other
+    if amount.total is None and is_exact and not phrase.superlative:
+        is_definite = phrase.is_definite or phrase.determiner in ("these", "those")
+        amount.total = phrase.quantity if is_definite else None  # the two cups
     if amount.total not in (None, known):
         return f"'{text}': {there}{'only ' if known < (amount.total or 0) else ''}{known}"
     if amount.share == Fraction(1):  # most of them
@@ -152,3 +153,12 @@ def count(phrase: NounPhrase, known: int | None, text: str) -> str:
         phrase.quantity = max(0, known - amount.all_but)
     needed = amount.at_least or (phrase.quantity if amount.at_most is None else None)
     return f"'{text}': {there}only {known}" if needed is not None and known < needed else ""
+
+
+def describe(phrase: NounPhrase, description: ThingDescription | None) -> ThingDescription | None:
+    """Return a description with the quantity of a phrase."""
+    if description is None:
+        return None
+    quantity = "all" if phrase.all_of and phrase.quantity is None else phrase.quantity
+    amount = phrase.amount
+    return structs.replace(description, quantity=quantity, at_least=amount.at_least, at_most=amount.at_most)

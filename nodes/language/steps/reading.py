@@ -9,12 +9,14 @@ from typing import Final
 from msgspec import structs
 
 from semmap.nodes.language.lexicon import commands
-from semmap.nodes.language.steps import tokens
+from semmap.nodes.language.steps import quantities, tokens
 from semmap.nodes.language.steps.answers import answer
 from semmap.nodes.language.steps.clause import Clause, Role
 from semmap.nodes.language.steps.clauses import ClauseReader
-from semmap.nodes.language.steps.meaning import Meaning, Meanings, Names, World
-from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
+from semmap.nodes.language.steps.entity_tests import Meaning, Names, World
+from semmap.nodes.language.steps.exclusions import PLACES, except_last, leave_mentioned
+from semmap.nodes.language.steps.meaning import Meanings
+from semmap.nodes.language.steps.phrase import Amount, NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.translation import translate
 from semmap.nodes.language.understanding.grounding import Scene
 from semmap.schemas.language import Antecedent, CommandStep, Filler
@@ -29,7 +31,6 @@ _PEOPLE: Final = frozenset(
     ("Cotheme", "Guiding", "Make_acquaintance", "Greeting", "Introducing", "Being_located", "Locating")
 )
 """Frames whose object is a person, if a pronoun may refer to one."""
-_PLACES: Final = frozenset(("Goal", "Source", "Ground", "Location", "Path"))
 
 
 @dataclass(slots=True)
@@ -54,25 +55,6 @@ class _Mention:
     is_plural: bool
     is_place: bool
     phrase: NounPhrase | None = None
-
-
-def _is_same(frame: str, other: str) -> bool:
-    """Return whether two frames are of the same action if one of them is negated."""
-    return frame == other or {frame, other} == {"Taking", "Bringing"}
-
-
-def _contains(filler: Filler, other: Filler) -> bool:
-    """Return whether a filler denotes more things than another one, and these too."""
-    return set(other.entities) < set(filler.entities)
-
-
-def _without(filler: Filler, other: Filler) -> Filler:
-    """Return a filler without what another one denotes."""
-    names = tuple(name for name in filler.entities if name not in other.entities)
-    description = filler.description
-    if description is not None:
-        description = structs.replace(description, excluded=(*description.excluded, other.text))
-    return structs.replace(filler, entities=names, description=description)
 
 
 def read_steps(text: str, world: World, scene: Scene | None = None) -> Steps:
@@ -137,45 +119,20 @@ class _StepReader:
 
     def _except(self, clause: Clause) -> None:
         """Read *leave the blue one* and *do not take it* after *the cups* as an exception of them."""
-        step = self._found.steps[-1]
-        is_left = clause.verb.lower() == "leave" and step.frame == "Placing" and "Goal" not in step.roles
-        things = [filler for role in step.roles.values() for filler in role if len(filler.entities)]
-        if not (is_left or step.negated) or len(things) != 1:
-            return
-        for k, earlier in enumerate(self._found.steps[:-1]):
-            if earlier.negated or not (is_left or _is_same(earlier.frame, step.frame)):
-                continue
-            for role, fillers in earlier.roles.items():
-                if role in _PLACES or not any(_contains(filler, things[0]) for filler in fillers):
-                    continue
-                rest = tuple(_without(f, things[0]) if _contains(f, things[0]) else f for f in fillers)
-                for mention in self._mentions:
-                    if mention.step == k + 1 and mention.filler in fillers:
-                        mention.filler = rest[fillers.index(mention.filler)]
-                self._found.steps[k] = structs.replace(earlier, roles={**earlier.roles, role: rest})
-                if is_left:
-                    step = structs.replace(step, frame=earlier.frame, negated=True)
-                    self._found.steps[-1] = step
-                self._found.doubts.append(f"'{things[0].text}' is read as an exception")
+        is_left = clause.verb.lower() == "leave" and clause.frame == "Placing"
+        is_but = is_left and clause.first > 0 and self._t.words[clause.first - 1] == "but"
+        for before, after in except_last(self._found.steps, is_left, is_but):
+            text = after.description.excluded[-1] if after.description is not None else after.text
+            self._found.doubts.append(f"'{text}' is read as an exception")
+            for mention in self._mentions:
+                mention.filler = after if mention.filler is before else mention.filler
 
-    def _leave_mentioned(self, phrase: NounPhrase, meaning: Meaning, now: list[_Mention], text: str) -> None:
+    def _leave_mentioned(self, phrase: NounPhrase, meaning: Meaning, now: list[_Mention]) -> None:
         """Exclude what was mentioned before from the meaning of *another cup* or *the other cups*."""
-        before = [
-            mention.filler
-            for mention in (*self._mentions, *now)
-            if mention.is_person == meaning.is_person
-            and not mention.is_place
-            and (not meaning.names or not set(meaning.names).isdisjoint(mention.filler.entities))
-        ]
-        if not before:
-            meaning.doubts.append(f"'{text}': nothing of the kind was mentioned before")
-        left = Filler(text, "", meaning.names, meaning.description)
-        for filler in before:
-            left = _without(left, filler)
-        meaning.names, meaning.description = left.entities, left.description
-        meaning.ambiguous = meaning.ambiguous and len(meaning.names) > 1
-        if before and meaning.alike and not meaning.names:
-            meaning.doubts.append(f"'{text}': no other {phrase.noun} is known")
+        mentions = (m for m in (*self._mentions, *now) if m.is_person == meaning.is_person and not m.is_place)
+        leave_mentioned(
+            meaning, [mention.filler for mention in mentions], self._t.between(phrase.first, phrase.end)
+        )
 
     def _guide(self, clause: Clause) -> None:
         """Change the frame of *take them to the kitchen* if a pronoun refers to a person."""
@@ -214,30 +171,31 @@ class _StepReader:
             first = role.first if k == 0 else phrase.first
             end = role.end if k == len(role.phrases) - 1 else phrase.end
             text, head = self._t.between(first, end), self._t.word(phrase.head)
-            if phrase.noun == "there" and role.role in _PLACES:
+            if phrase.noun == "there" and role.role in PLACES:
                 yield self._there(text, head, number)
                 continue
             if phrase.kind in ("speaker", "robot", "here"):
                 yield Filler(text, head)
                 continue
             if phrase.kind == "pronoun":
-                yield self._pronoun(phrase, text, head, clause, role, number, mentions)
+                filler = self._pronoun(phrase, text, head, clause, role, number, mentions)
+                yield self._part(phrase, filler, clause)
                 continue
             self._complete(phrase, mentions)
             for other in (*phrase.excluded, *phrase.alternatives):
                 if other.noun in ("one", "ones"):  # any cup but not the red one
                     self._take_noun(other, phrase)
-            places = where if is_object and role.role not in _PLACES else []
+            places = where if is_object and role.role not in PLACES else []
             owner = self._owner(phrase)
             meaning = self._meanings.of(
                 phrase,
                 places,
                 may_be_none=role.role == "Topic" or clause.frame in ("Counting", "Being_located", "Removing"),
-                as_place=role.role in _PLACES,
+                as_place=role.role in PLACES,
                 owner=owner,
             )
             if phrase.amount.is_other:
-                self._leave_mentioned(phrase, meaning, mentions, text)
+                self._leave_mentioned(phrase, meaning, mentions)
             if phrase.amount.is_none and clause.frame not in ("Telling", "Counting"):
                 clause.negated = len(role.phrases) == 1 or clause.negated  # take none of the cups
                 meaning.doubts += [] if len(role.phrases) == 1 else [f"'{text}' is not meant"]
@@ -254,11 +212,22 @@ class _StepReader:
                     filler,
                     meaning.is_person,
                     phrase.is_plural,
-                    role.role in _PLACES or meaning.is_place,
+                    (role.role in PLACES and not is_object) or meaning.is_place,
                     phrase,
                 )
             )
             yield filler
+
+    def _part(self, phrase: NounPhrase, filler: Filler, clause: Clause) -> Filler:
+        """Return the filler of a pronoun with its quantity: two of them, none of them."""
+        amount = phrase.amount
+        if amount == Amount() and phrase.quantity is None:
+            return filler
+        clause.negated = clause.negated or amount.is_none
+        amount.is_vague = amount.is_vague or amount.is_other
+        doubt = quantities.count(phrase, len(filler.entities) or None, filler.text)
+        self._found.doubts += [doubt] if doubt else []
+        return structs.replace(filler, description=quantities.describe(phrase, filler.description))
 
     def _complete(self, phrase: NounPhrase, now: list[_Mention]) -> None:
         """Give a phrase without a noun that of the last thing: the red one."""
@@ -367,7 +336,7 @@ class _StepReader:
             return next((m for m in reversed(mentions) if not m.is_place), None)
         things = [m for m in mentions if not m.is_person]
         if (
-            role.role in _PLACES
+            role.role in PLACES
             and (theme := next((m for m in now if not m.is_place and not m.is_person), None)) is not None
         ):
             things = [
