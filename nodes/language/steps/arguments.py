@@ -41,7 +41,7 @@ class ArgumentReader(FrameCompletion):
                 and objects
                 and (excluded := self._np.read_excluded(i + self._np.exclusion(i)))
             ):
-                objects[-1].excluded += excluded
+                objects[-1].exclude(excluded)
                 i = excluded[-1].end
             elif words[i] == "but" and (excluded := self._np.read_excluded(i + 1)):
                 if objects and (
@@ -49,7 +49,7 @@ class ArgumentReader(FrameCompletion):
                     or objects[-1].determiner == "any"
                     or g.is_a(objects[-1].noun, "anything")
                 ):
-                    objects[-1].excluded += excluded  # all cups but the red one
+                    objects[-1].exclude(excluded)  # all cups but the red one
                 else:
                     self.found.unused.append(self._t.between(i, excluded[-1].end))
                 i = excluded[-1].end

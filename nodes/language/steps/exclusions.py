@@ -43,6 +43,16 @@ def except_last(steps: list[CommandStep], is_left: bool, is_but: bool) -> list[t
     return changed
 
 
+def keep_mentioned(meaning: Meaning, mentioned: list[Filler], text: str) -> None:
+    """Keep only the last `mentioned` things in the meaning of the phrase `text`, such as *the same cup*."""
+    names = set(meaning.names)
+    last = next((f for f in reversed(mentioned) if names.issuperset(f.entities) and f.entities), None)
+    if last is None:
+        meaning.doubts.append(f"'{text}': nothing of the kind was mentioned before")
+    else:
+        meaning.names, meaning.ambiguous = last.entities, False
+
+
 def leave_mentioned(meaning: Meaning, mentioned: list[Filler], text: str) -> None:
     """Exclude what was `mentioned` from the meaning of the phrase `text`, such as *the other cups*."""
     names = set(meaning.names)

@@ -150,6 +150,9 @@ class Meanings(EntityTests):
         names = self._owned(names, phrase, owner, meaning)
         for other in phrase.excluded:
             excluded = self.of(other, may_be_none=True)
+            is_unknown = not (excluded.alike or other.key or excluded.is_person or other.attributes)
+            if is_unknown and not other.noun.endswith(("one", "ones")):
+                meaning.doubts.append(f"'{other.noun}' is not known")
             if not excluded.names and (excluded.alike or not other.key):
                 is_open = True  # the map cannot tell which one is broken
             if other is not phrase.excluded[0] and set(excluded.names).isdisjoint(meaning.alike):
@@ -171,7 +174,7 @@ class Meanings(EntityTests):
             and not phrase.is_plural
             and not phrase.superlative
             and not is_any
-            and not phrase.amount.is_other
+            and not (phrase.amount.is_other or phrase.amount.is_same)
         ):
             labelled = self._nouns.exact.get(phrase.key, {})
             exact = [name for name in names if name in labelled] or [

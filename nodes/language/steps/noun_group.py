@@ -120,6 +120,7 @@ class NounGroupReader:
                 and (words[i] != "one" or not phrase.determiner)
                 and (self._group_end(j := self._after_of(i + 1)) > j or g.is_a(words[j - 1], "of"))
             ):
+                phrase.amount.is_none = phrase.amount.is_none or number == 0
                 if phrase.quantity is None:
                     phrase.quantity, phrase.is_plural = number, number > 1
                 else:
@@ -291,7 +292,16 @@ class NounGroupReader:
             elif quantities.is_other(self._words[i]):
                 phrase.amount.is_other = True
                 i += 1
-            elif self._words[i] in ("very", "same", "own", "whole", "entire", "little"):
+            elif self._words[i] == "same":
+                phrase.amount.is_same = True
+                i += 1
+            elif self._words[i] == "single":
+                phrase.quantity = 1
+                i += 1
+            elif self._words[i][0].isdigit():
+                phrase.amount.is_vague = True  # 1.5 cups
+                i += 1
+            elif self._words[i] in ("very", "own", "whole", "entire"):
                 i += 1
             else:
                 phrase.attributes.append(self._words[i])

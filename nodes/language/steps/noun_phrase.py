@@ -103,6 +103,8 @@ class NounPhraseReader(PronounReader):
         while (other := self.read(i, with_places=False)) is not None:
             if other.noun in ("one", "ones") and not other.attributes:
                 other = self.read(i) or other
+            if not (other.determiner or other.attributes or other.quantity):
+                other.quantity = self._g.number(other.noun)  # all cups except two
             found += [other, *other.excluded]
             other.excluded = []
             i = other.end + 1
@@ -147,7 +149,7 @@ class NounPhraseReader(PronounReader):
                 excluded = self.read_excluded(i + length)
                 if not excluded:
                     return
-                phrase.excluded += excluded
+                phrase.exclude(excluded)
                 phrase.end = excluded[-1].end
             elif words[i] in ("called", "named") and not self._t.is_mark(i + 1):
                 end = self._group_end(i + 1)

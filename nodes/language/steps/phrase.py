@@ -22,6 +22,8 @@ class Amount:
     """How many things fit: two for *both cups*, three for *two of the three cups*."""
     is_none: bool = False
     is_vague: bool = False
+    is_same: bool = False
+    """Whether the thing was mentioned before: the same cup."""
     is_other: bool = False
     """Whether things that were mentioned before are excluded: another cup, the rest of the cups."""
 
@@ -69,6 +71,14 @@ class NounPhrase:
     excluded: list[NounPhrase] = field(default_factory=list)
     alternatives: list[NounPhrase] = field(default_factory=list)
     """The other things after *or*, any of which will do as well."""
+
+    def exclude(self, others: list[NounPhrase]) -> None:
+        """Add an exception: the red one, or two of them."""
+        for other in others:
+            if other.quantity is not None and not (other.key or other.places or other.determiner):
+                self.amount.all_but += other.quantity
+            else:
+                self.excluded.append(other)
 
     @property
     def is_definite(self) -> bool:

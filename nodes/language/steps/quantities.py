@@ -106,6 +106,8 @@ def read_amount(g: Grammar, words: Sequence[str], i: int, phrase: NounPhrase, is
         amount.is_vague = True
     elif g.contains("none", text):
         amount.is_none, phrase.determiner = True, phrase.determiner or "no"
+    elif text == "only" and phrase.determiner:
+        amount.total = 1  # the only cup
     elif g.contains("several", text):
         amount.at_least, phrase.is_plural = 2, True
     elif g.contains("rest", text):

@@ -14,7 +14,7 @@ from semmap.nodes.language.steps.answers import answer
 from semmap.nodes.language.steps.clause import Clause, Role
 from semmap.nodes.language.steps.clauses import ClauseReader
 from semmap.nodes.language.steps.entity_tests import Meaning, Names, World
-from semmap.nodes.language.steps.exclusions import PLACES, except_last, leave_mentioned
+from semmap.nodes.language.steps.exclusions import PLACES, except_last, keep_mentioned, leave_mentioned
 from semmap.nodes.language.steps.meaning import Meanings
 from semmap.nodes.language.steps.phrase import Amount, NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.translation import translate
@@ -127,12 +127,12 @@ class _StepReader:
             for mention in self._mentions:
                 mention.filler = after if mention.filler is before else mention.filler
 
-    def _leave_mentioned(self, phrase: NounPhrase, meaning: Meaning, now: list[_Mention]) -> None:
-        """Exclude what was mentioned before from the meaning of *another cup* or *the other cups*."""
+    def _compare_mentioned(self, phrase: NounPhrase, meaning: Meaning, now: list[_Mention]) -> None:
+        """Compare the meaning of *another cup* or *the same cup* with what was mentioned."""
         mentions = (m for m in (*self._mentions, *now) if m.is_person == meaning.is_person and not m.is_place)
-        leave_mentioned(
-            meaning, [mention.filler for mention in mentions], self._t.between(phrase.first, phrase.end)
-        )
+        compare = keep_mentioned if phrase.amount.is_same else leave_mentioned
+        text = self._t.between(phrase.first, phrase.end)
+        compare(meaning, [mention.filler for mention in mentions], text)
 
     def _guide(self, clause: Clause) -> None:
         """Change the frame of *take them to the kitchen* if a pronoun refers to a person."""
@@ -194,11 +194,13 @@ class _StepReader:
                 as_place=role.role in PLACES,
                 owner=owner,
             )
-            if phrase.amount.is_other:
-                self._leave_mentioned(phrase, meaning, mentions)
+            if phrase.amount.is_other or phrase.amount.is_same:
+                self._compare_mentioned(phrase, meaning, mentions)
             if phrase.amount.is_none and clause.frame not in ("Telling", "Counting"):
-                clause.negated = len(role.phrases) == 1 or clause.negated  # take none of the cups
-                meaning.doubts += [] if len(role.phrases) == 1 else [f"'{text}' is not meant"]
+                # take none of the cups; neither the cup nor the plate
+                is_all = len(role.phrases) == 1 or self._t.words[role.phrases[0].first] == "neither"
+                clause.negated = clause.negated or is_all
+                meaning.doubts += [] if is_all else [f"'{text}' is not meant"]
             filler = Filler(text, head, meaning.names, meaning.description)
             self._note(meaning)
             if role.role == "Topic" and (message := clause.role("Message")) is not None:

@@ -14,7 +14,7 @@ from tests.kb_node import home
 
 @pytest.fixture(scope="session")
 def read(tmp_path_factory):
-    """Parse a command in the shipped flat with two more cups on its table, and Nora in its kitchen."""
+    """Return a function that parses a command in the shipped flat, with a person, cups and masses added."""
     flat = SemanticMap(home.new_household_journal(tmp_path_factory.mktemp("flat")))
     abox = rdf.parse(FLAT_TTL.read_bytes(), "flat.ttl", label_prefix="f")
     flat.commit(Transaction(id="flat", source="file", insert=tuple(abox)))

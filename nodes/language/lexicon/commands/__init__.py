@@ -79,7 +79,11 @@ class Grammar:
 
     def number(self, word: str) -> int | None:
         """Return the value of a number word or numeral below 1000."""
-        return int(word) if re.fullmatch(r"\d{1,3}", word) else self.numbers.get(word)
+        if re.fullmatch(r"\d{1,3}", word):
+            return int(word)
+        tens, _, ones = word.partition("-")  # twenty-one
+        parts = [self.numbers[part] for part in (tens, ones) if part in self.numbers]
+        return sum(parts) if len(parts) == 1 + bool(ones) else None
 
 
 @functools.cache
