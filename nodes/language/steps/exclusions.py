@@ -14,33 +14,34 @@ PLACES: Final = frozenset(("Goal", "Source", "Ground", "Location", "Path"))
 _MOVING: Final = frozenset(("Taking", "Bringing", "Giving", "Placing"))
 
 
-def except_last(steps: list[CommandStep], is_left: bool, is_but: bool) -> list[tuple[Filler, Filler]]:
-    """Exclude the thing of the last step from earlier steps if it must be left, or not be acted on.
+def except_things(
+    steps: list[CommandStep], last: CommandStep, is_left: bool, is_but: bool
+) -> tuple[CommandStep, list[tuple[Filler, Filler]]]:
+    """Exclude the thing of the step after `steps` from them if it must be left, or not be acted on.
 
-    `is_left` tells whether the step is *leave*, and `is_but` whether it is *but leave*. Without a place, the
-    step is then a negated earlier one. Return the fillers that were changed, each with what it became.
+    `is_left` tells whether the step is *leave*, and `is_but` whether it is *but leave*. Return the step,
+    which without a place is a negated earlier one, and the fillers that were changed with their new values.
     """
-    last = steps[-1]
     stays = is_left and "Goal" not in last.roles
     things = [f for role, fillers in last.roles.items() if role not in PLACES for f in fillers if f.entities]
-    if not (stays or is_but or last.negated) or len(things) != 1:
-        return []
     changed: list[tuple[Filler, Filler]] = []
-    for k, step in enumerate(steps[:-1]):
+    if not (stays or is_but or last.negated) or len(things) != 1:
+        return last, changed
+    (thing,) = things
+    meant = last
+    for k, step in enumerate(steps):
         if step.negated or not (is_left or _is_same(step.frame, last.frame)):
             continue
         roles = dict(step.roles)
         for role, fillers in step.roles.items():
-            found = [f for f in fillers if role not in PLACES and set(things[0].entities) < set(f.entities)]
-            changed += ((filler, _without(filler, things[0])) for filler in found)
-            roles[role] = tuple(_without(f, things[0]) if f in found else f for f in fillers)
-            if found and stays:
-                steps[-1] = structs.replace(last, frame=step.frame, negated=True)
+            found = [f for f in fillers if role not in PLACES and set(thing.entities) < set(f.entities)]
+            changed += ((filler, _without(filler, thing)) for filler in found)
+            roles[role] = tuple(_without(f, thing) if f in found else f for f in fillers)
+        is_apart = not any(set(thing.entities) & set(f.entities) for f in roles.get("Theme", ()))
+        if stays and is_apart and step.frame in _MOVING:  # leave the others
+            meant = structs.replace(last, frame=step.frame, negated=True)
         steps[k] = structs.replace(step, roles=roles)
-        is_apart = not any(set(things[0].entities) & set(f.entities) for f in roles.get("Theme", ()))
-        if stays and is_apart and step.frame in _MOVING and not changed:
-            steps[-1] = structs.replace(last, frame=step.frame, negated=True)  # leave the others
-    return changed
+    return meant, changed
 
 
 def keep_mentioned(meaning: Meaning, mentioned: list[Filler], text: str) -> None:

@@ -46,7 +46,9 @@ class PronounReader(NounGroupReader):
             "folks",
             "whoever",
         ):
-            phrase.kind, phrase.head, phrase.end, phrase.noun = "person", i, i + 1, word
+            phrase.kind, phrase.head, phrase.noun = "person", i, word
+            phrase.amount.is_other = words[i + 1 : i + 2] == ("else",)
+            phrase.end = i + 1 + phrase.amount.is_other
             phrase.all_of, phrase.amount.is_none = g.is_a(word, "everyone"), word == "nobody"
             return True
         if kind is None:

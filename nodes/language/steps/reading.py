@@ -14,7 +14,7 @@ from semmap.nodes.language.steps.answers import answer
 from semmap.nodes.language.steps.clause import Clause, Role
 from semmap.nodes.language.steps.clauses import ClauseReader
 from semmap.nodes.language.steps.entity_tests import Meaning, Names, World
-from semmap.nodes.language.steps.exclusions import PLACES, except_last, keep_mentioned, leave_mentioned
+from semmap.nodes.language.steps.exclusions import PLACES, except_things, keep_mentioned, leave_mentioned
 from semmap.nodes.language.steps.meaning import Meanings
 from semmap.nodes.language.steps.phrase import Amount, NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.translation import translate
@@ -89,7 +89,6 @@ class _StepReader:
                 )
                 self._mentions.append(mention)
             found.steps.append(self._step(clause, len(found.steps) + 1))
-            self._except(clause)
         found.unknown = list(dict.fromkeys(parsed.unknown))
         for condition in dict.fromkeys(text for clause in parsed.clauses for text in clause.conditions):
             found.doubts.append(f"'{condition}' is a condition; it is not checked")
@@ -108,7 +107,7 @@ class _StepReader:
             fillers = tuple(self._fillers(clause, role, number, where, mentions))
             roles[role.role] = (*roles.get(role.role, ()), *fillers)
         self._mentions += mentions
-        return CommandStep(
+        step = CommandStep(
             clause.frame,
             self._t.word(clause.first) if self._t.is_translated else clause.verb.lower(),
             roles,
@@ -116,16 +115,19 @@ class _StepReader:
             "; ".join(dict.fromkeys(clause.conditions)),
             "; ".join(dict.fromkeys(clause.times)),
         )
+        return self._except(clause, step)
 
-    def _except(self, clause: Clause) -> None:
+    def _except(self, clause: Clause, step: CommandStep) -> CommandStep:
         """Read *leave the blue one* and *do not take it* after *the cups* as an exception of them."""
         is_left = clause.verb.lower() == "leave" and clause.frame == "Placing"
         is_but = is_left and clause.first > 0 and self._t.words[clause.first - 1] == "but"
-        for before, after in except_last(self._found.steps, is_left, is_but):
+        step, changed = except_things(self._found.steps, step, is_left, is_but)
+        for before, after in changed:
             text = after.description.excluded[-1] if after.description is not None else after.text
             self._found.doubts.append(f"'{text}' is read as an exception")
             for mention in self._mentions:
                 mention.filler = after if mention.filler is before else mention.filler
+        return step
 
     def _compare_mentioned(self, phrase: NounPhrase, meaning: Meaning, now: list[_Mention]) -> None:
         """Compare the meaning of *another cup* or *the same cup* with what was mentioned."""
