@@ -83,7 +83,8 @@ class ThingDescription(Struct, frozen=True, rename={"class_": "class"}, omit_def
     """What a command says of a thing or person.
 
     `class_` is a class of the TBox, `called` the noun if it is not a label of that class, and `name` the name
-    of a person. `quantity` is a number or `all`. `purpose` is what something is for (*to drink*).
+    of a person. `quantity` is a number or `all`. If `at_least` or `at_most` bounds the number (*up to two*),
+    `quantity` is a number within the bounds. `purpose` is what something is for (*to drink*).
     `alternatives` are other things any of which will do as well (*or a knife*).
     """
 
@@ -94,10 +95,20 @@ class ThingDescription(Struct, frozen=True, rename={"class_": "class"}, omit_def
     relation: tuple[PlaceRelation, ...] = ()
     superlative: str = ""
     quantity: int | Literal["all"] | None = None
+    at_least: int | None = None
+    at_most: int | None = None
     purpose: str = ""
     owner: str = ""
     excluded: tuple[str, ...] = ()
     alternatives: tuple[str, ...] = ()
+
+    def number_of(self, there: int) -> str:
+        """Return `2 of ` or `at most 2 of ` if not all of the things that are `there` are meant, or ""."""
+        if self.at_least is not None and self.at_most is not None:
+            return f"{self.at_least} to {self.at_most} of "
+        if self.at_least is not None or self.at_most is not None:
+            return f"at least {self.at_least} of " if self.at_most is None else f"at most {self.at_most} of "
+        return "" if self.quantity in (None, "all", there) else f"{self.quantity} of "
 
 
 class Antecedent(Struct, frozen=True):
@@ -123,8 +134,9 @@ class Filler(Struct, frozen=True, omit_defaults=True):
 
     @property
     def shown(self) -> str:
-        """The entities' names, or the words."""
-        return "|".join(self.entities) or f'"{self.text}"'
+        """The entities' names with how many of them are meant, or the words."""
+        number = "" if self.description is None else self.description.number_of(len(self.entities))
+        return number + "|".join(self.entities) if self.entities else f'"{self.text}"'
 
 
 class CommandStep(Struct, frozen=True, omit_defaults=True):

@@ -26,7 +26,7 @@ from semmap.nodes.language.reference_resolution.map_index import Item, MapIndex,
 from semmap.nodes.language.reference_resolution.missing import Missing, missing
 from semmap.nodes.language.reference_resolution.resolution import find
 from semmap.nodes.language.reference_resolution.resolver import Resolver
-from semmap.nodes.language.steps.meaning import World
+from semmap.nodes.language.steps.entity_tests import World
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commands import Find, WasWhen

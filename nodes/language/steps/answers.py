@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from semmap.nodes.language.steps.meaning import Meaning, World, number_of
+from semmap.nodes.language.steps.entity_tests import Meaning, World, number_of
 
 _MOST: Final = 5
 """Names in one answer."""

@@ -6,25 +6,14 @@ from collections.abc import Mapping
 from typing import Final
 
 from semmap.nodes.language.steps.clause import Clause, Role
-from semmap.nodes.language.steps.clause_boundaries import ClauseBoundaries
+from semmap.nodes.language.steps.frame_completion import FrameCompletion
 from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.times import starts_time
 
-_PLACED: Final = (
-    "Locating",
-    "Placing",
-    "Being_located",
-    "Motion",
-    "Arriving",
-    "Inspecting",
-    "Pouring",
-    "Perception_active",
-)
-"""Frames of which a place after the object is a role of its own."""
 _MOVING: Final = ("Motion", "Arriving", "Guiding", "Bringing")
 
 
-class ArgumentReader(ClauseBoundaries):
+class ArgumentReader(FrameCompletion):
     """Reads the arguments of a clause."""
 
     def _arguments(self, clause: Clause, i: int) -> int:
@@ -50,13 +39,17 @@ class ArgumentReader(ClauseBoundaries):
             elif (
                 self._excludes(i)
                 and objects
-                and (excluded := self._np.read_excluded(i + g.match("exclude", words, i)))
+                and (excluded := self._np.read_excluded(i + self._np.exclusion(i)))
             ):
-                objects[-1].excluded += excluded
+                objects[-1].exclude(excluded)
                 i = excluded[-1].end
             elif words[i] == "but" and (excluded := self._np.read_excluded(i + 1)):
-                if objects and (objects[-1].all_of or g.is_a(objects[-1].noun, "anything")):
-                    objects[-1].excluded += excluded  # all cups but the red one
+                if objects and (
+                    objects[-1].all_of
+                    or objects[-1].determiner == "any"
+                    or g.is_a(objects[-1].noun, "anything")
+                ):
+                    objects[-1].exclude(excluded)  # all cups but the red one
                 else:
                     self.found.unused.append(self._t.between(i, excluded[-1].end))
                 i = excluded[-1].end
@@ -81,6 +74,10 @@ class ArgumentReader(ClauseBoundaries):
             elif "direction" in roles and g.is_a(words[i], "direction"):
                 clause.roles.append(Role("Direction", i, i + 1, i))
                 i += 1
+            elif self._is_bounded(clause, i, objects) and (phrase := self._object(clause, i)) is not None:
+                objects.append(phrase)
+                i = phrase.end
+                self._add_object(clause, objects, phrase)
             elif (found := self._prepositional(clause, i)) is not None:
                 i = found
             elif (particle := self._particle(clause, i)) is not None:
@@ -121,7 +118,18 @@ class ArgumentReader(ClauseBoundaries):
 
     def _object(self, clause: Clause, i: int) -> NounPhrase | None:
         phrase = self._np.read(i)
-        return None if phrase is None or phrase.end == i else phrase
+        is_particle = (
+            phrase is not None and phrase.kind == "name" and self._g.is_a(self._words[i], "particle")
+        )
+        return None if phrase is None or phrase.end == i or is_particle else phrase
+
+    def _is_bounded(self, clause: Clause, i: int, objects: list[NounPhrase]) -> bool:
+        """Return whether the object begins with a bound like a preposition at `i`: UP TO two cups."""
+        last = objects[-1] if objects else None
+        is_open = last is None or last.kind in ("speaker", "pronoun") or self._is_person(last)
+        return (
+            is_open and "object" in self._g.frames[clause.frame].roles and self._np.read_bound(i) is not None
+        )
 
     def _add_object(self, clause: Clause, objects: list[NounPhrase], phrase: NounPhrase) -> None:
         """Add an object: of two, the first is the receiver (bring me the cup)."""
@@ -164,6 +172,10 @@ class ArgumentReader(ClauseBoundaries):
             first.role = roles["receiver"]
             if clause.frame == "Taking":  # get me a drink
                 clause.frame = "Bringing"
+        is_bare = phrase.kind == "name" and not self._t.tokens[phrase.first].is_capital
+        if is_bare and clause.role(role) is not None and len(objects) > 1:
+            self.found.unused.append(self._t.between(phrase.first, phrase.end))
+            return
         if (first := clause.role(role)) is not None and len(objects) > 1:
             first.phrases.append(phrase)  # a list without "and"
             first.end = phrase.end
@@ -220,6 +232,7 @@ class ArgumentReader(ClauseBoundaries):
         if self._words[i] == "or":
             last.phrases[-1].alternatives.append(phrase)
         else:
+            last.phrases[-1].amount.total = None  # both cups and plates
             last.phrases.append(phrase)
         last.end = phrase.end
         return phrase.end
@@ -247,6 +260,9 @@ class ArgumentReader(ClauseBoundaries):
         if kind == "for" and phrase.kind == "speaker" and "for" not in roles:
             return phrase.end
         role = self._role(clause, kind, roles, phrase)
+        if kind == "with" and role is not None:
+            clause.roles.insert(0, Role(role, i, phrase.end, phrase.head, [phrase]))
+            return phrase.end
         object_role = clause.role(roles.get("object", "")) if "object" in roles else None
         if phrase.excluded and object_role is not None and object_role.phrases:
             object_role.phrases[-1].excluded += phrase.excluded  # any drink from the table but not the milk
@@ -288,76 +304,6 @@ class ArgumentReader(ClauseBoundaries):
         if kind == "path":
             return "Path" if clause.frame in ("Motion", "Cotheme", "Guiding") else None
         return roles.get(kind)
-
-    def _finish(self, clause: Clause) -> None:
-        """Give places after the object their role, and the frame its name for a person."""
-        roles = self._g.frames[clause.frame].roles
-        main = clause.role(roles.get("object", "")) if "object" in roles else None
-        if main is not None and main.phrases and clause.frame in _PLACED and "place" in roles:
-            phrase = main.phrases[-1]
-            is_last = phrase.places and phrase.end == phrase.places[-1].end and not phrase.places[-1].negated
-            if is_last and clause.role(roles["place"]) is None:
-                place = phrase.places.pop()
-                phrase.end = main.end = place.first
-                both = [place.other] if place.other.second is None else [place.other, place.other.second]
-                clause.roles.append(Role(roles["place"], place.first, place.end, place.other.head, both))
-        if self._t.is_translated and clause.frame in ("Bringing", "Guiding"):
-            self._move_goal(clause, main)
-        given = clause.role("Theme")
-        is_left = clause.verb.lower() == "leave" and given is not None and clause.role("Goal") is None
-        if is_left and given is not None and self._np.is_place(given.phrases[0]):  # leave the kitchen
-            clause.frame, given.role = "Motion", "Source"
-            return
-        if (
-            clause.frame == "Giving"
-            and given is not None
-            and given.phrases
-            and self._g.is_a(self._words[given.head], "property")
-        ):
-            self._tells(clause, given)
-        if clause.frame == "Taking" and clause.role("Goal") is not None:
-            clause.frame = "Bringing"
-        if clause.frame == "Taking" and clause.role("Beneficiary") is not None:
-            clause.frame = "Bringing"
-        theme = clause.role("Theme")
-        if (
-            clause.frame in self._g.persons
-            and theme is not None
-            and theme.phrases
-            and self._is_person(theme.phrases[0])
-        ):
-            clause.frame, theme.role = self._g.persons[clause.frame], "Cotheme"
-            for role in clause.roles:
-                role.role = "Goal" if role.role == "Beneficiary" else role.role
-        if (
-            clause.frame == "Closure"
-            and (opened := clause.role("Containing_object")) is not None
-            and opened.phrases
-        ) and (
-            any(name in ("Door", "Window") for name in self._nouns.classes.get(opened.phrases[0].key, ()))
-            or opened.phrases[0].noun.endswith("door")
-        ):
-            opened.role = "Container_portal"
-
-    def _move_goal(self, clause: Clause, main: Role | None) -> None:
-        """Make a Goal of the place after the object: Italian *in* is also *to*."""
-        phrase = main.phrases[-1] if main is not None and main.phrases else None
-        if main is None or phrase is None or not phrase.places or clause.role("Goal") is not None:
-            return
-        if self._np.is_place(phrase.places[-1].other) and not phrase.places[-1].negated:
-            place = phrase.places.pop()
-            phrase.end = main.end = min(phrase.end, place.first)
-            clause.roles.append(Role("Goal", place.first, place.end, place.other.head, [place.other]))
-
-    def _tells(self, clause: Clause, given: Role) -> None:
-        """Make Telling of *give me the name of the person*."""
-        of = given.phrases[0].of
-        clause.frame, given.role = "Telling", "Message"
-        for role in clause.roles:
-            role.role = "Addressee" if role.role == "Recipient" else role.role
-        if of is not None:
-            end, given.end, given.phrases = given.end, given.head + 1, []
-            clause.roles.append(Role("Topic", given.head + 1, end, of.head, [of]))
 
     def _unread(self, i: int) -> int:
         """Note the words of a clause that cannot be read, if there are any; return where it ends."""

@@ -45,7 +45,8 @@ class ClauseBoundaries:
         if self._wish(j):
             return True
         if (
-            g.match("negation", words, j)
+            (g.match("negation", words, j) and not self._excludes(j))
+            or self._phase(j)
             or g.match("condition", words, j)
             or self._found_at(j)
             or self._asks(j)
@@ -70,6 +71,22 @@ class ClauseBoundaries:
             and self._g.verb(self._words, i + 1)[0] > 0
             and not self._np.is_known(i + 1, i + 2)
         )
+
+    def _phase(self, i: int) -> int:
+        """Return the number of words before a verb that only state its phase: START cleaning; or 0."""
+        length = self._g.match("phase", self._words, i)
+        return self._activity(i + length) - i if length and self._activity(i + length) else 0
+
+    def _activity(self, i: int) -> int:
+        """Return the index of the verb that is the object of a verb before `i`, or 0.
+
+        It is *following Nora* or *to follow Nora*, and in Italian *di seguire Nora*.
+        """
+        j = i
+        while self._t.is_translated and self._words[j : j + 1] in (("it",), ("of",), ("to",)):
+            j += 1  # smettila di seguirmi
+        is_base = j > i or self._words[i - 1 : i] == ("to",)
+        return j if self._g.gerund(self._words, j)[0] or (is_base and self._g.verb(self._words, j)[0]) else 0
 
     def _is_gerund(self, i: int) -> bool:
         return self._words[i].endswith("ing") and (self._words[i],) not in self._g.verbs
@@ -275,6 +292,6 @@ class ClauseBoundaries:
 
     def _excludes(self, i: int) -> bool:
         """Return whether an exception begins at `i`: but not the milk."""
-        length = self._g.match("exclude", self._words, i)
+        length = self._np.exclusion(i)
         has_noun = self._opens_phrase(i + length) or (length == 2 and self._words[i + 1] == "no")
         return bool(length) and has_noun and not self._g.verb(self._words, i + length)[0]

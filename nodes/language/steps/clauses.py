@@ -76,6 +76,8 @@ class ClauseReader(MessageReader):
                 i += 1  # go get the milk
             elif (fronted := self._fronted(i)) is not None:
                 front, i = fronted, fronted[1].end
+            elif phase := self._phase(i):
+                i += phase
             elif self._g.verb(self._words, i)[0] or self._lets_know(i):
                 before = len(self.found.clauses)
                 i = self._clause(i)
@@ -179,14 +181,17 @@ class ClauseReader(MessageReader):
 
     def _clause(self, i: int) -> int:
         length, frame = self._g.verb(self._words, i) if not self._lets_know(i) else (1, "Telling")
+        if activity := self._ended(i):
+            return self._end_activity(i, activity)
         clause = Clause(frame, " ".join(self._words[i : i + length]), i)
         self.found.clauses.append(clause)
         self._np.takes_that = frame in ("Telling", "Questioning")
+        self._np.takes_with = "with" in self._g.frames[frame].roles
         j = i + length
         match frame:
             case "Telling":
                 return self._tell(clause, j)
-            case "Guiding" if self._shows_question(clause, j):
+            case "Cause_to_perceive" if self._shows_question(clause, j):
                 clause.frame = "Telling"  # show Anna where the bathroom is
                 return self._tell(clause, j)
             case "Questioning":
@@ -219,6 +224,26 @@ class ClauseReader(MessageReader):
                 clause.roles.append(Role("Desired_state", j, end, j))
                 return end
         return self._arguments(clause, j)
+
+    def _ended(self, i: int) -> int:
+        """Return the index of the verb of an activity that a verb at `i` ends: stop FOLLOWING Nora; or 0."""
+        length, frame = self._g.verb(self._words, i)
+        if frame != "Activity_stop" and self._words[i : i + length] != ("stop",):
+            return 0
+        return self._activity(i + length)
+
+    def _end_activity(self, i: int, j: int) -> int:
+        """Read a clause that ends an activity: its roles are those of the verb at `j`."""
+        before, ended = (
+            len(self.found.clauses),
+            " ".join(self._words[i : i + self._g.verb(self._words, i)[0]]),
+        )
+        end = self._clause(j)
+        for clause in self.found.clauses[before:]:
+            verb = clause.first + len(clause.verb.split())
+            clause.roles.insert(0, Role("Activity", clause.first, verb, clause.first))
+            clause.frame, clause.verb, clause.first = "Activity_stop", ended, i
+        return end
 
     def _stated(self, i: int) -> NounPhrase | None:
         """Return the phrase at `i` of which the following words state something."""

@@ -7,6 +7,7 @@ from typing import Final
 
 from semmap.nodes.language.lexicon.commands import Grammar
 from semmap.nodes.language.reference_resolution.map_index import MOST_WORDS, Nouns
+from semmap.nodes.language.steps import quantities
 from semmap.nodes.language.steps.phrase import NounPhrase
 from semmap.nodes.language.steps.tokens import Text
 
@@ -65,6 +66,8 @@ class NounGroupReader:
         """
         self.takes_that = False
         """Whether *that* may begin a message in the clause that is read, and not a relative clause."""
+        self.takes_with = False
+        """Whether *with* after a thing belongs to the verb: fill the glass WITH water."""
         self._t, self._g, self._nouns, self._starts_clause = text, grammar, nouns, starts_clause
         self._above = above
         self._words = text.words
@@ -85,10 +88,19 @@ class NounGroupReader:
     def _determiners(self, phrase: NounPhrase, i: int) -> int:
         g, words = self._g, self._words
         while i < len(words):
+            if (bound := self.read_bound(i)) is not None:
+                i, bounded = bound
+                phrase.quantity, phrase.amount = bounded.quantity, bounded.amount
+                phrase.is_plural = bounded.is_plural
+                continue
+            if length := quantities.read_amount(g, words, i, phrase, self.is_known(i + 1, i + 2)):
+                i += length
+                continue
             number = g.number(words[i])
             every, length = g.match("all", words, i), g.match("determiner", words, i)
             if every and every >= length:
                 phrase.all_of, phrase.is_plural, phrase.determiner = True, True, phrase.determiner or "all"
+                phrase.amount.total = 2 if g.contains("pair", " ".join(words[i : i + every])) else None
                 i += every
             elif length and not (phrase.determiner and words[i] == "one"):  # the ONE OF THE kitchen
                 text = " ".join(words[i : i + length])
@@ -106,19 +118,30 @@ class NounGroupReader:
             elif (
                 number is not None
                 and (words[i] != "one" or not phrase.determiner)
-                and self._group_end(j := self._after_of(i + 1)) > j
+                and (self._group_end(j := self._after_of(i + 1)) > j or g.is_a(words[j - 1], "of"))
             ):
-                phrase.quantity, phrase.is_plural = number, number > 1
+                phrase.amount.is_none = phrase.amount.is_none or number == 0
+                if phrase.quantity is None:
+                    phrase.quantity, phrase.is_plural = number, number > 1
+                else:
+                    phrase.amount.total, phrase.is_plural = number, True  # two of the three cups
                 i = j
             else:
                 break
         return i
 
+    def read_bound(self, i: int) -> tuple[int, NounPhrase] | None:
+        """Return the index of the noun after a number with a bound at `i`, and its quantity; or None."""
+        found = quantities.read_bound(self._g, self._words, i)
+        j = self._after_of(found[0]) if found is not None else i
+        return None if found is None or self._group_end(j) == j else (j, found[1])
+
     def _after_of(self, i: int) -> int:
         """Return the index after *of the* at `i`, or `i`."""
         is_of = self._words[i : i + 1] == ("of",)
         article = self._g.match("determiner", self._words, i + 1) if is_of else 0
-        return i + 1 + article if article else i
+        is_pronoun = is_of and self._words[i + 1 : i + 2] in (("them",), ("these",), ("those",))
+        return i + 1 + (0 if is_pronoun else article) if article or is_pronoun else i
 
     def _group_end(self, start: int) -> int:
         """Return the index after the words before and of the noun that begin at `start`."""
@@ -157,7 +180,9 @@ class NounGroupReader:
                 break  # let ANNA know
             if seen and word.endswith("s") and (word[:-1],) in g.verbs:
                 break  # how the person looks
-            if seen and (g.match("time", words, i) or word in ("called", "named")):
+            if seen and (
+                g.match("time", words, i) or g.match("limit", words, i) or word in ("called", "named")
+            ):
                 break
             seen = seen or self.is_known(i, i + 1) or g.is_a(self._bases[i], "person") or self._is_kind(i)
             seen = seen or g.is_a(self._bases[i], "anything") or self._t.tokens[i].is_capital
@@ -224,6 +249,8 @@ class NounGroupReader:
             or (several and words[head] not in describing.pluralia)
             or words[head] == "people"
         )
+        if phrase.all_of and phrase.amount.total and not (several or self._t.is_translated):
+            phrase.all_of, phrase.is_plural, phrase.amount.total = False, False, None  # both the cup and ...
         self._modifiers(phrase, start, noun)
 
     def _unknown_noun(self, start: int, end: int) -> int:
@@ -262,7 +289,19 @@ class NounGroupReader:
             elif number is not None:
                 phrase.quantity, phrase.is_plural = number, phrase.is_plural or number > 1
                 i += 1
-            elif self._words[i] in ("very", "other", "same", "own", "whole", "entire", "little"):
+            elif quantities.is_other(self._words[i]):
+                phrase.amount.is_other = True
+                i += 1
+            elif self._words[i] == "same":
+                phrase.amount.is_same = True
+                i += 1
+            elif self._words[i] == "single":
+                phrase.quantity = 1
+                i += 1
+            elif self._words[i][0].isdigit():
+                phrase.amount.is_vague = True  # 1.5 cups
+                i += 1
+            elif self._words[i] in ("very", "own", "whole", "entire"):
                 i += 1
             else:
                 phrase.attributes.append(self._words[i])

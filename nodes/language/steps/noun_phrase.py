@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from semmap.nodes.language.steps.noun_group import NounGroupReader
-from semmap.nodes.language.steps.phrase import Kind, NounPhrase, PlacePhrase
+from semmap.nodes.language.steps import quantities
+from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
+from semmap.nodes.language.steps.pronoun_reader import PronounReader
 from semmap.nodes.language.steps.times import starts_time
 
 
-class NounPhraseReader(NounGroupReader):
+class NounPhraseReader(PronounReader):
     """Reads noun phrases of one text."""
 
     def read(self, i: int, *, with_places: bool = True) -> NounPhrase | None:
@@ -22,6 +23,8 @@ class NounPhraseReader(NounGroupReader):
             if phrase.kind == "person":
                 self._after_the_noun(phrase, with_places)
             return phrase
+        if (all_but := self._all_but(i)) is not None:
+            return all_but
         start = self._determiners(phrase, i)
         if start > i and self._words[start - 1 : start] == ("of",) and self._read_pronoun_at(phrase, start):
             return phrase
@@ -29,6 +32,9 @@ class NounPhraseReader(NounGroupReader):
         if end == start:
             if start == i:
                 return None
+            if phrase.amount.is_other:
+                phrase.noun, phrase.head, phrase.end = "ones" if phrase.is_plural else "one", start - 1, start
+                return phrase
             if self._words[i] in ("this", "that", "these", "those", "all", "both", "another"):
                 phrase.kind, phrase.head, phrase.end, phrase.noun = "pronoun", i, start, self._words[i]
                 return phrase
@@ -42,58 +48,26 @@ class NounPhraseReader(NounGroupReader):
         self._after_the_noun(phrase, with_places)
         return phrase
 
-    def _read_pronoun(self, phrase: NounPhrase) -> bool:
-        return self._read_pronoun_at(phrase, phrase.first)
-
-    def _read_pronoun_at(self, phrase: NounPhrase, i: int) -> bool:
-        """Read a pronoun at `i`, unless it is a determiner there."""
+    def _all_but(self, i: int) -> NounPhrase | None:
+        """Return the phrase of *all but two cups* or *all except the red cup* at `i`, or None."""
         g, words = self._g, self._words
-        word = words[i] if i < len(words) else ""
-        kind: Kind | None = None
-        if g.is_a(word, "speaker"):
-            kind = "speaker"
-        elif g.is_a(word, "robot"):
-            kind = "robot"
-        elif length := g.match("here", words, i):
-            phrase.kind, phrase.head, phrase.end, phrase.noun = "here", i, i + length, word
-            return True
-        elif length := g.match("pronoun", words, i):
-            if not self._is_determiner(i, length) and g.match("determiner", words, i) <= length:
-                phrase.kind, phrase.head, phrase.end = "pronoun", i + length - 1, i + length
-                phrase.noun = " ".join(words[i : i + length])
-                is_all = g.is_a(word, "several_pronoun") and words[phrase.end : phrase.end + 1] in (
-                    ("both",),
-                    ("all",),
-                )
-                phrase.end += is_all and self._group_end(phrase.end + 1) == phrase.end + 1  # them both
-                return True
-        elif word in (
-            "everyone",
-            "everybody",
-            "someone",
-            "somebody",
-            "anyone",
-            "anybody",
-            "nobody",
-            "folks",
-            "whoever",
-        ):
-            phrase.kind, phrase.head, phrase.end, phrase.noun = "person", i, i + 1, word
-            phrase.all_of = g.is_a(word, "everyone")
-            return True
-        if kind is None:
-            return False
-        phrase.kind, phrase.head, phrase.end, phrase.noun = kind, i, i + 1, word
-        return True
-
-    def _is_determiner(self, i: int, length: int) -> bool:
-        """Return whether the word at `i` precedes a noun: her phone, that cup, this one."""
-        word = self._words[i]
-        if length > 1 or not (
-            self._g.is_a(word, "determiner") or self._g.is_a(word, "possessive") or word == "one"
-        ):
-            return False
-        return self._group_end(i + 1) > i + 1
+        j = i + g.is_a(words[i], "all")
+        length = int(words[j : j + 1] == ("but",)) or g.match("exclude", words, j) if j > i else 0
+        other = self.read(j + length) if length else None
+        if other is None:
+            return None
+        phrase = NounPhrase(
+            i, other.end, other.head, noun=other.noun, key=other.key, is_plural=True, all_of=True
+        )
+        if other.key not in self._nouns.classes:  # of *red cup* only *cup*
+            phrase.noun = words[other.head]
+            phrase.key = self.key(other.head, other.head + 1)
+        phrase.determiner, phrase.places = "all", other.places
+        if other.determiner == "one of the" or (other.quantity is not None and not other.determiner):
+            phrase.amount.all_but = other.quantity or 1
+        else:
+            phrase.excluded, other.places = [other], []
+        return phrase
 
     def _is_possessive(self, i: int) -> bool:
         """Return whether the word at `i` is a possessive ending, and not *is*."""
@@ -127,9 +101,12 @@ class NounPhraseReader(NounGroupReader):
         """
         found: list[NounPhrase] = []
         while (other := self.read(i, with_places=False)) is not None:
-            if other.noun in ("one", "ones"):
+            if other.noun in ("one", "ones") and not other.attributes:
                 other = self.read(i) or other
-            found.append(other)
+            if not (other.determiner or other.attributes or other.quantity):
+                other.quantity = self._g.number(other.noun)  # all cups except two
+            found += [other, *other.excluded]
+            other.excluded = []
             i = other.end + 1
             if not self._joins(other.end) or self._starts_clause(other.end) or self._starts_clause(i):
                 break
@@ -166,11 +143,13 @@ class NounPhraseReader(NounGroupReader):
         """Read what follows the noun: places, relative clauses, participles, purposes, exceptions."""
         g, words = self._g, self._words
         while (i := phrase.end) < len(words):
-            if (length := g.match("exclude", words, i)) and not self._is_verb(i + length):
+            if length := quantities.limit_after(g, words, phrase):
+                phrase.end = i + length
+            elif (length := self.exclusion(i)) and not self._is_verb(i + length):
                 excluded = self.read_excluded(i + length)
                 if not excluded:
                     return
-                phrase.excluded += excluded
+                phrase.exclude(excluded)
                 phrase.end = excluded[-1].end
             elif words[i] in ("called", "named") and not self._t.is_mark(i + 1):
                 end = self._group_end(i + 1)
@@ -301,7 +280,8 @@ class NounPhraseReader(NounGroupReader):
         return True
 
     def _is_with(self, i: int) -> bool:
-        return not self._t.is_mark(i + 1)
+        """Return whether *with* at `i` describes a thing, and is not of the verb or of the robot's hand."""
+        return not (self.takes_with or self._t.is_mark(i + 1) or self._words[i + 1] == "your")
 
     def _is_clothing(self, i: int) -> bool:
         """Return whether the words at `i` are clothes or a colour, and not a place of the map."""

@@ -3,9 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import Literal
 
 Kind = Literal["thing", "person", "name", "pronoun", "speaker", "robot", "here"]
+
+
+@dataclass(slots=True)
+class Amount:
+    """How many things a phrase denotes, other than a number or all of them."""
+
+    at_least: int | None = None
+    at_most: int | None = None
+    share: Fraction | None = None
+    """The part of the things that fit, or 1 for more than half of them."""
+    all_but: int = 0
+    total: int | None = None
+    """How many things fit: two for *both cups*, three for *two of the three cups*."""
+    is_none: bool = False
+    is_vague: bool = False
+    is_same: bool = False
+    """Whether the thing was mentioned before: the same cup."""
+    is_other: bool = False
+    """Whether things that were mentioned before are excluded: another cup, the rest of the cups."""
 
 
 @dataclass(slots=True)
@@ -40,6 +60,7 @@ class NounPhrase:
     superlative: str = ""
     quantity: int | None = None
     all_of: bool = False
+    amount: Amount = field(default_factory=Amount)
     purpose: str = ""
     is_plural: bool = False
     places: list[PlacePhrase] = field(default_factory=list)
@@ -50,6 +71,14 @@ class NounPhrase:
     excluded: list[NounPhrase] = field(default_factory=list)
     alternatives: list[NounPhrase] = field(default_factory=list)
     """The other things after *or*, any of which will do as well."""
+
+    def exclude(self, others: list[NounPhrase]) -> None:
+        """Add an exception: the red one, or two of them."""
+        for other in others:
+            if other.quantity is not None and not (other.key or other.places or other.determiner):
+                self.amount.all_but += other.quantity
+            else:
+                self.excluded.append(other)
 
     @property
     def is_definite(self) -> bool:

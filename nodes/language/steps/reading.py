@@ -6,13 +6,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Final
 
+from msgspec import structs
+
 from semmap.nodes.language.lexicon import commands
-from semmap.nodes.language.steps import tokens
+from semmap.nodes.language.steps import quantities, tokens
 from semmap.nodes.language.steps.answers import answer
 from semmap.nodes.language.steps.clause import Clause, Role
 from semmap.nodes.language.steps.clauses import ClauseReader
-from semmap.nodes.language.steps.meaning import Meaning, Meanings, Names, World
-from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
+from semmap.nodes.language.steps.entity_tests import Meaning, Names, World
+from semmap.nodes.language.steps.exclusions import PLACES, except_things, keep_mentioned, leave_mentioned
+from semmap.nodes.language.steps.meaning import Meanings
+from semmap.nodes.language.steps.phrase import Amount, NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.translation import translate
 from semmap.nodes.language.understanding.grounding import Scene
 from semmap.schemas.language import Antecedent, CommandStep, Filler
@@ -22,12 +26,11 @@ _LOCATED_BY: Final = {
     "Locating": "Ground",
 }
 """Frames with the role that states where their object is."""
-_WORDS_ONLY: Final = frozenset(("Message", "Trigger", "Desired_state", "Manner", "Direction"))
+_WORDS_ONLY: Final = frozenset(("Message", "Trigger", "Desired_state", "Manner", "Direction", "Activity"))
 _PEOPLE: Final = frozenset(
     ("Cotheme", "Guiding", "Make_acquaintance", "Greeting", "Introducing", "Being_located", "Locating")
 )
 """Frames whose object is a person, if a pronoun may refer to one."""
-_PLACES: Final = frozenset(("Goal", "Source", "Ground", "Location", "Path"))
 
 
 @dataclass(slots=True)
@@ -104,7 +107,7 @@ class _StepReader:
             fillers = tuple(self._fillers(clause, role, number, where, mentions))
             roles[role.role] = (*roles.get(role.role, ()), *fillers)
         self._mentions += mentions
-        return CommandStep(
+        step = CommandStep(
             clause.frame,
             self._t.word(clause.first) if self._t.is_translated else clause.verb.lower(),
             roles,
@@ -112,6 +115,26 @@ class _StepReader:
             "; ".join(dict.fromkeys(clause.conditions)),
             "; ".join(dict.fromkeys(clause.times)),
         )
+        return self._except(clause, step)
+
+    def _except(self, clause: Clause, step: CommandStep) -> CommandStep:
+        """Read *leave the blue one* and *do not take it* after *the cups* as an exception of them."""
+        is_left = clause.verb.lower() == "leave" and clause.frame == "Placing"
+        is_but = is_left and clause.first > 0 and self._t.words[clause.first - 1] == "but"
+        step, changed = except_things(self._found.steps, step, is_left, is_but)
+        for before, after in changed:
+            text = after.description.excluded[-1] if after.description is not None else after.text
+            self._found.doubts.append(f"'{text}' is read as an exception")
+            for mention in self._mentions:
+                mention.filler = after if mention.filler is before else mention.filler
+        return step
+
+    def _compare_mentioned(self, phrase: NounPhrase, meaning: Meaning, now: list[_Mention]) -> None:
+        """Compare the meaning of *another cup* or *the same cup* with what was mentioned."""
+        mentions = (m for m in (*self._mentions, *now) if m.is_person == meaning.is_person and not m.is_place)
+        compare = keep_mentioned if phrase.amount.is_same else leave_mentioned
+        text = self._t.between(phrase.first, phrase.end)
+        compare(meaning, [mention.filler for mention in mentions], text)
 
     def _guide(self, clause: Clause) -> None:
         """Change the frame of *take them to the kitchen* if a pronoun refers to a person."""
@@ -150,28 +173,36 @@ class _StepReader:
             first = role.first if k == 0 else phrase.first
             end = role.end if k == len(role.phrases) - 1 else phrase.end
             text, head = self._t.between(first, end), self._t.word(phrase.head)
-            if phrase.noun == "there" and role.role in _PLACES:
+            if phrase.noun == "there" and role.role in PLACES:
                 yield self._there(text, head, number)
                 continue
             if phrase.kind in ("speaker", "robot", "here"):
                 yield Filler(text, head)
                 continue
             if phrase.kind == "pronoun":
-                yield self._pronoun(phrase, text, head, clause, role, number, mentions)
+                filler = self._pronoun(phrase, text, head, clause, role, number, mentions)
+                yield self._part(phrase, filler, clause)
                 continue
             self._complete(phrase, mentions)
             for other in (*phrase.excluded, *phrase.alternatives):
                 if other.noun in ("one", "ones"):  # any cup but not the red one
                     self._take_noun(other, phrase)
-            places = where if is_object and role.role not in _PLACES else []
+            places = where if is_object and role.role not in PLACES else []
             owner = self._owner(phrase)
             meaning = self._meanings.of(
                 phrase,
                 places,
                 may_be_none=role.role == "Topic" or clause.frame in ("Counting", "Being_located", "Removing"),
-                as_place=role.role in _PLACES,
+                as_place=role.role in PLACES,
                 owner=owner,
             )
+            if phrase.amount.is_other or phrase.amount.is_same:
+                self._compare_mentioned(phrase, meaning, mentions)
+            if phrase.amount.is_none and clause.frame not in ("Telling", "Counting"):
+                # take none of the cups; neither the cup nor the plate
+                is_all = len(role.phrases) == 1 or self._t.words[role.phrases[0].first] == "neither"
+                clause.negated = clause.negated or is_all
+                meaning.doubts += [] if is_all else [f"'{text}' is not meant"]
             filler = Filler(text, head, meaning.names, meaning.description)
             self._note(meaning)
             if role.role == "Topic" and (message := clause.role("Message")) is not None:
@@ -185,11 +216,22 @@ class _StepReader:
                     filler,
                     meaning.is_person,
                     phrase.is_plural,
-                    role.role in _PLACES or meaning.is_place,
+                    (role.role in PLACES and not is_object) or meaning.is_place,
                     phrase,
                 )
             )
             yield filler
+
+    def _part(self, phrase: NounPhrase, filler: Filler, clause: Clause) -> Filler:
+        """Return the filler of a pronoun with its quantity: two of them, none of them."""
+        amount = phrase.amount
+        if amount == Amount() and phrase.quantity is None:
+            return filler
+        clause.negated = clause.negated or amount.is_none
+        amount.is_vague = amount.is_vague or amount.is_other
+        doubt = quantities.count(phrase, len(filler.entities) or None, filler.text)
+        self._found.doubts += [doubt] if doubt else []
+        return structs.replace(filler, description=quantities.describe(phrase, filler.description))
 
     def _complete(self, phrase: NounPhrase, now: list[_Mention]) -> None:
         """Give a phrase without a noun that of the last thing: the red one."""
@@ -298,7 +340,7 @@ class _StepReader:
             return next((m for m in reversed(mentions) if not m.is_place), None)
         things = [m for m in mentions if not m.is_person]
         if (
-            role.role in _PLACES
+            role.role in PLACES
             and (theme := next((m for m in now if not m.is_place and not m.is_person), None)) is not None
         ):
             things = [

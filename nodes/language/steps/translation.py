@@ -65,7 +65,8 @@ def _with_superlatives(tokens: list[Token]) -> list[Token]:
             found.insert(k, word)
             i += 2
         else:
-            found.append(tokens[i])
+            is_end = tokens[i].word == "most" and any(token.word == "not" for token in found)
+            found.append(replace(tokens[i], word="anymore") if is_end else tokens[i])  # non seguirmi più
             i += 1
     return found
 

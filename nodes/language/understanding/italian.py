@@ -151,7 +151,8 @@ class _Glossing:
             return 1
         for length in range(min(_LONGEST + 2, len(self._pieces) - i), 0, -1):
             words = tuple(p.text for p in self._pieces[i : i + length])
-            if words[-1] == "di" and self._counts(i + length):  # "a sinistra di 90 gradi" is by how much
+            than = self._known.expressions.get(words, "").endswith(" than")
+            if words[-1] == "di" and not than and self._counts(i + length):  # "a sinistra di 90 gradi"
                 if length == 1:
                     self._say("by", i, i, "prep")
                     return 1

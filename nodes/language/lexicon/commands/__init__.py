@@ -7,6 +7,7 @@ import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from importlib import resources
 
 Words = tuple[str, ...]
@@ -32,6 +33,7 @@ class Grammar:
     longest: Mapping[str, int]  # class of expressions -> words of its longest
     persons: Mapping[str, str]  # frame -> frame with a person as its object
     numbers: Mapping[str, int]
+    shares: Mapping[str, Fraction]  # expression -> part of the things; 1 for more than half
     purposes: Mapping[str, str]  # verb -> class of things: something to drink
 
     def match(self, kind: str, words: Sequence[str], i: int) -> int:
@@ -62,6 +64,11 @@ class Grammar:
                 return 1, self.verbs[(base,)]
         return 0, ""
 
+    def gerund(self, words: Sequence[str], i: int) -> tuple[int, str]:
+        """Return the number of words and the frame of a verb that begins with a gerund at `i`, or (0, "")."""
+        base = self._gerund(words[i]) if i < len(words) else ""
+        return self.verb((base, *words[i + 1 :]), 0) if base else (0, "")
+
     def _gerund(self, word: str) -> str:
         """Return the base form of a verb that ends in -ing: bringing, putting."""
         stem = word.removesuffix("ing")
@@ -72,7 +79,11 @@ class Grammar:
 
     def number(self, word: str) -> int | None:
         """Return the value of a number word or numeral below 1000."""
-        return int(word) if re.fullmatch(r"\d{1,3}", word) else self.numbers.get(word)
+        if re.fullmatch(r"\d{1,3}", word):
+            return int(word)
+        tens, _, ones = word.partition("-")  # twenty-one
+        parts = [self.numbers[part] for part in (tens, ones) if part in self.numbers]
+        return sum(parts) if len(parts) == 1 + bool(ones) else None
 
 
 @functools.cache
@@ -85,7 +96,8 @@ def load() -> Grammar:
         frames[name] = FrameRoles(name, {key: role for key, role in entry.items() if key != "verbs"})
         for verb in entry["verbs"]:
             verbs.setdefault(tuple(verb.split()), name)
-    kinds = {kind: {tuple(text.split()): None for text in texts} for kind, texts in table["words"].items()}
+    words = {**table["words"], "share": list(table["shares"])}
+    kinds = {kind: {tuple(text.split()): None for text in texts} for kind, texts in words.items()}
     return Grammar(
         frames,
         verbs,
@@ -95,5 +107,6 @@ def load() -> Grammar:
         {kind: max(map(len, texts)) for kind, texts in kinds.items()},
         table["persons"],
         table["numbers"],
+        {text: Fraction(share) for text, share in table["shares"].items()},
         table["purposes"],
     )
