@@ -82,6 +82,7 @@ class CommandParser:
             doubts=tuple(read.doubts),
             unknown=tuple(read.unknown),
             answer="; ".join(read.answers),
+            **({"mood": "question", "frames": (), "groundings": ()} if read.asks else {}),
         )
 
     def _doubts(self, frame: SemanticFrame) -> Iterator[str]:

@@ -34,7 +34,7 @@ class ArgumentReader(ClauseBoundaries):
         objects: list[NounPhrase] = []
         while i < len(words) and not self._ends_clause(i):
             if (end := self._condition(i)) > i:
-                clause.conditions.append(self._t.between(i, end))
+                self._add_condition(clause, i, end)
                 i = end
             elif length := starts_time(g, words, i):
                 clause.times.append(self._t.between(i, i + length))
@@ -98,6 +98,7 @@ class ArgumentReader(ClauseBoundaries):
                 while (
                     end < len(words)
                     and not self._ends_clause(end)
+                    and not self._subordinates(end)
                     and not g.match("place", words, end)
                     and not g.match("to", words, end)
                 ):
@@ -383,16 +384,3 @@ class ArgumentReader(ClauseBoundaries):
             self.found.unused.append(text)
         self._mention_all(i, end)
         return end
-
-    def _mention_all(self, i: int, end: int) -> None:
-        """Note the things and persons from `i` to before `end`, to which a later pronoun may refer."""
-        while i < end:
-            is_verb = self._g.verb(self._words, i)[0] and not self._np.is_known(i, i + 1)
-            phrase = None if is_verb else self._np.read(i)
-            if phrase is None or phrase.end <= i:
-                i += 1
-                continue
-            is_name = self._is_person(phrase) and self._t.tokens[phrase.head].is_capital
-            if phrase.kind == "person" or is_name or (phrase.key and phrase.determiner):
-                self.found.context.append((len(self.found.clauses), phrase))
-            i = phrase.end

@@ -78,7 +78,8 @@ class NounPhraseReader(NounGroupReader):
             "folks",
             "whoever",
         ):
-            phrase.kind, phrase.head, phrase.end, phrase.noun = "person", i, i + 1, word
+            phrase.kind, phrase.head, phrase.noun = "person", i, word
+            phrase.end = i + 1 + (words[i + 1 : i + 2] == ("else",))
             phrase.all_of = g.is_a(word, "everyone")
             return True
         if kind is None:
@@ -241,6 +242,7 @@ class NounPhraseReader(NounGroupReader):
             or self._starts_time(i)
             or self._g.match("manner", self._words, i)
             or self._g.match("here", self._words, i)
+            or self._g.match("condition", self._words, i) > length
         ):
             return None
         preposition = " ".join(self._words[i : i + length])
