@@ -236,6 +236,8 @@ class ArgumentReader(ClauseBoundaries):
         length, kind = best
         if not length or self._is_infinitive(i):
             return None
+        if self._subordinates(i + length) or starts_time(g, words, i + length):
+            return None  # turn it off every time Anna leaves
         phrase = self._np.read(i + length)
         if phrase is None or phrase.end == i + length:
             return None

@@ -39,7 +39,7 @@ _BEFORE_ELSE: Final = frozenset(
 )
 """Words to which *else* belongs: someone else."""
 _BEFORE_OTHERWISE: Final = frozenset(("told", "say", "says", "said", "instructed", "stated"))
-"""Verbs to which *otherwise* belongs: unless told otherwise."""
+"""Verbs to which *otherwise* and *so* belong: unless told otherwise."""
 
 
 class ClauseBoundaries:
@@ -65,7 +65,7 @@ class ClauseBoundaries:
         g, words = self._g, self._words
         j = i
         while j < len(words) and (
-            length := 1 if words[j] == "," else max(g.match("then", words, j), g.match("polite", words, j))
+            length := 1 if words[j] == "," else max(self._then(j), g.match("polite", words, j))
         ):
             if words[j] == "you" or g.verb(words, j)[0] >= length:
                 break
@@ -238,13 +238,16 @@ class ClauseBoundaries:
             if not is_fronted and j > start and self._connects(j):
                 return j
             if j > start and not self._continues_verb(j):
+                length = self._g.match("negation", words, j)
+                if length and self._orders(j + length) and self._has_verb(start, j):
+                    return j
                 verb, _ = self._g.verb(words, j)
                 opens = verb > 0 and not self._is_gerund(j) and self._opens_phrase(j + verb)
                 if self._has_verb(start, j):
                     if opens and j > start + 1:
                         return j
                     with_verb = with_verb or (j if self._orders(j) else 0)
-                elif opens and not self._np.is_known(j, j + 1):
+                elif self._orders(j):
                     without = without or j  # after lunch close the door
                 if words[j] in ("please", "could", "can") and self._g.match("polite", words, j):
                     return j
@@ -252,13 +255,21 @@ class ClauseBoundaries:
         is_apart = is_fronted or (i > 0 and words[i - 1] == ",")
         return (is_apart and (with_verb or without)) or j
 
+    def _then(self, i: int) -> int:
+        """Return the number of words of *and*, *then* or *when you are done* at `i`, or 0."""
+        length, words = self._g.match("then", self._words, i), self._words
+        belongs = words[i : i + 1] == ("so",) and i > 0 and words[i - 1] in _BEFORE_OTHERWISE  # if I say so
+        following = words[i + length] if i + length < len(words) else ""
+        is_begun = following == "with" or (words[i + length - 1] == "there" and self._g.is_a(following, "be"))
+        return 0 if belongs or (length and is_begun) else length
+
     def _subordinates(self, i: int) -> int:
         """Return the number of words of a conjunction at `i` that begins a subordinate clause, or 0."""
         g, words = self._g, self._words
         length = g.match("condition", words, i)
         if (span := self._np.duration(i)) and words[i + span : i + span + 1] in (("before",), ("after",)):
             return span + 1  # five minutes after Anna leaves
-        if length and (g.match("then", words, i) >= length or starts_time(g, words, i)):
+        if length and (self._then(i) >= length or starts_time(g, words, i)):
             return 0
         is_first = (
             not length and words[i : i + 1] == ("should",) and self._t.is_mark(i - 1 if i else len(words))
@@ -280,7 +291,7 @@ class ClauseBoundaries:
         """Return whether *and* at `i` joins the main clause, and not a subordinate one, with another."""
         g, words = self._g, self._words
         j = i
-        while j < len(words) and (length := g.match("then", words, j)):
+        while j < len(words) and (length := self._then(j)):
             j += length
         j += g.match("polite", words, j) if j > i else 0
         j += starts_time(g, words, j) if j > i else 0

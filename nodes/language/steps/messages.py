@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from semmap.nodes.language.steps.clause import Clause, Role
-from semmap.nodes.language.steps.questions import REASONS, QuestionReader
+from semmap.nodes.language.steps.questions import QuestionReader
 from semmap.nodes.language.steps.times import starts_time
 
 
@@ -114,7 +114,7 @@ class MessageReader(QuestionReader):
         while end < len(words) and not self._ends_clause(end):
             if starts_time(self._g, words, end) and words[end] in ("at", "in"):
                 break
-            if clause.frame == "Request" and self._subordinates(end) and words[end] not in REASONS:
+            if clause.frame == "Request" and self._delays(end):
                 break
             end += 1
         head = i + 1 if words[i] == "to" and end > i + 1 else i
@@ -167,6 +167,7 @@ class MessageReader(QuestionReader):
             clause.roles.append(Role("Addressee", i, i + 1, i, [phrase.owner]))
         if (
             words[end : end + 1] in (("from",), ("of",), ("by",))
+            and not self._subordinates(end)
             and (asker := self._np.read(end + 1)) is not None
         ):
             clause.roles.append(Role("Addressee", end, asker.end, asker.head, [asker]))

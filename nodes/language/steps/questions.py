@@ -9,7 +9,7 @@ from semmap.nodes.language.steps.clause import Clause, Role
 from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.times import starts_time
 
-REASONS: Final = ("because", "since", "so", "in", "instead", "without", "although", "though", "wherever")
+_REASONS: Final = ("because", "since", "so", "instead", "without", "although", "though", "wherever")
 """First words of subordinate clauses that belong to a message."""
 
 
@@ -255,6 +255,11 @@ class QuestionReader(ArgumentReader):
             or (is_any and bool(phrase.places or phrase.superlative))
         )
 
+    def _delays(self, i: int) -> bool:
+        """Return whether a condition begins at `i` that is not a part of a message, as a reason is."""
+        is_reason = self._words[i] in _REASONS or self._words[i : i + 2] == ("in", "order")
+        return self._subordinates(i) > 0 and not is_reason
+
     def _message_end(self, i: int) -> int:
         """Return the end of a message in words: before its addressee, or the end of the clause."""
         words = self._words
@@ -269,7 +274,7 @@ class QuestionReader(ArgumentReader):
                 break
             if j > i and starts_time(self._g, words, j) and words[j] in ("at", "in", "every"):
                 break
-            if j > i and (words[j] == "please" or (self._subordinates(j) and words[j] not in REASONS)):
+            if j > i and (words[j] == "please" or self._delays(j)):
                 break
             j += 1
         return j

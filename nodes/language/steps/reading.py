@@ -40,6 +40,8 @@ class Steps:
     doubts: list[str] = field(default_factory=list)
     unknown: list[str] = field(default_factory=list)
     answers: list[str] = field(default_factory=list)
+    commands: bool = False
+    """Whether the text begins as a command does: with a verb or a condition."""
     asks: bool = False
     """Whether all of the steps are direct questions."""
 
@@ -89,6 +91,8 @@ class _StepReader:
                 )
                 self._mentions.append(mention)
             found.steps.append(self._step(clause, len(found.steps) + 1))
+        is_condition = bool(self._g.match("condition", self._t.words, 0))
+        found.commands = is_condition or self._g.verb(self._t.words, 0)[0] > 0
         found.asks = bool(parsed.clauses) and all(clause.asks for clause in parsed.clauses)
         found.unknown = list(dict.fromkeys(parsed.unknown))
         conditions = dict.fromkeys(text for clause in parsed.clauses for text in clause.conditions)

@@ -288,21 +288,21 @@ class _Glossing:
         following = self._pieces[i + 1] if i + 1 < len(self._pieces) else None
         if following is not None and following.is_clitic:  # "se è freddo portalo"
             return True
-        if before is not None and (
-            before.kind == "det" or (before.kind == "adj" and self._called(i, 1) is not None)
-        ):
+        takes = following is not None and (
+            self._known.expressions.get((following.text,)) in _DETERMINERS or following.text == "di"
+        )
+        is_noun = self._called(i, 1) is not None
+        if before is not None and (before.kind == "det" or (before.kind == "adj" and is_noun and not takes)):
             return False
         if (text,) in self._known.expressions:  # "da", "sei"
             return False
         if text.endswith((*_INFINITIVE, "r")):
             return True
-        if self._called(i, 1) is not None or (
-            before is not None and before.text in ("in", "of", "from", "on")
-        ):
-            takes = following is not None and (
-                self._known.expressions.get((following.text,)) in _DETERMINERS or following.text == "di"
-            )
-            return opens or (takes and self._follows("noun"))
+        is_after_preposition = (
+            before is not None and before.kind != "adj" and before.text in ("in", "of", "from", "on")
+        )
+        if is_noun or is_after_preposition:  # "se è freddo porta la tazza"
+            return opens or (takes and before is not None and before.kind in ("noun", "adj", "verb", None))
         return True
 
     def _follows_hour(self) -> bool:

@@ -1,5 +1,7 @@
 """Conditions in commands: which steps they hold for, and that none of their words are lost."""
 
+import itertools
+
 import pytest
 
 ENGLISH = [
@@ -102,6 +104,56 @@ def test_a_condition_is_that_of_its_steps_and_ends_where_the_next_clause_begins(
     doubts = " ".join(understood.doubts)
     parts = [part for condition in conditions for part in condition.split("; ")]
     assert all(part.removeprefix("not (").removesuffix(")") in doubts for part in parts)
+
+
+CONJUNCTIONS = [
+    *(
+        "if",
+        "only if",
+        "when",
+        "whenever",
+        "unless",
+        "until",
+        "while",
+        "once",
+        "after",
+        "before",
+        "as soon as",
+    ),
+    *(
+        "as long as",
+        "in case",
+        "provided that",
+        "every time",
+        "the moment",
+        "by the time",
+        "even if",
+        "only when",
+    ),
+]
+CLAUSES = [
+    *("the milk is cold", "the door opens", "you see Ben", "Ben and Nora leave", "you are done with it"),
+    *("there is a cup on the table", "it is not hot", "I say so"),
+]
+
+
+@pytest.mark.parametrize(
+    "pattern",
+    [
+        "take the milk {} and turn it off",
+        "go to the kitchen {}, then come back",
+        "{} do not open the fridge and follow Nora",
+        "{}, tell me the time and find the kettle",
+        "put the cup in the fridge, {}, and give me the milk",
+        "count the plates on the table and go there {}",
+        "ask Nora to come and then answer her question {}",
+    ],
+)
+def test_no_step_loses_its_condition_nor_a_condition_a_word(read, pattern):
+    for conjunction, clause in zip(CONJUNCTIONS, itertools.cycle(CLAUSES), strict=False):
+        condition = f"{conjunction} {clause}"
+        steps = read(pattern.format(condition)).steps
+        assert [condition in step.condition for step in steps] == [True, True]
 
 
 def test_a_condition_of_what_is_not_understood_is_not_that_of_the_sentence_before(read):
