@@ -20,6 +20,7 @@ class NounPhraseReader(NounGroupReader):
         phrase = NounPhrase(i)
         if self._read_pronoun(phrase):
             if phrase.kind == "person":
+                phrase.end += self._words[phrase.end : phrase.end + 1] == ("else",)  # someone else
                 self._after_the_noun(phrase, with_places)
             return phrase
         start = self._determiners(phrase, i)
@@ -78,8 +79,7 @@ class NounPhraseReader(NounGroupReader):
             "folks",
             "whoever",
         ):
-            phrase.kind, phrase.head, phrase.noun = "person", i, word
-            phrase.end = i + 1 + (words[i + 1 : i + 2] == ("else",))
+            phrase.kind, phrase.head, phrase.end, phrase.noun = "person", i, i + 1, word
             phrase.all_of = g.is_a(word, "everyone")
             return True
         if kind is None:
