@@ -143,7 +143,7 @@ class CommandStep(Struct, frozen=True, omit_defaults=True):
     """One action of a command, in the order of the words: a frame, its verb and its roles.
 
     A `negated` step must not be done. A step with a `condition` or a `time` must not be done unconditionally
-    or now.
+    or now. A condition with `not (...)` is that the one in parentheses does not hold.
     """
 
     frame: str

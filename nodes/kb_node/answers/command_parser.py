@@ -61,13 +61,15 @@ class CommandParser:
         questions = (self._search.question(names, found.language) for names in open_still)
         doubts = dict.fromkeys(doubt for frame in found.frames for doubt in self._doubts(frame))
         found = structs.replace(found, question=" ".join(questions), doubts=tuple(doubts))
-        return self._with_steps(query.text, found) if found.mood != "past" else found
+        return self._with_steps(query.text, found)
 
     def _with_steps(self, text: str, found: Understood) -> Understood:
         """Add the steps; if there are any, doubts, unknown verbs and questions are about them."""
         scene = self._there()
         with self._search.world(scene.vocabulary.above, self._seen) as world:
             read = read_steps(text, world, None if found.language == "english" else scene)
+        if found.mood == "past" and not (read.steps and read.commands):
+            return found
         if not read.steps:
             return structs.replace(
                 found,
@@ -82,6 +84,7 @@ class CommandParser:
             doubts=tuple(read.doubts),
             unknown=tuple(read.unknown),
             answer="; ".join(read.answers),
+            **({"mood": "question", "frames": (), "groundings": ()} if read.asks else {"mood": "command"}),
         )
 
     def _doubts(self, frame: SemanticFrame) -> Iterator[str]:

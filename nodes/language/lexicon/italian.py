@@ -66,7 +66,7 @@ def italian() -> Italian:
     for english, infinitives in table["verbs"].items():  # "da" is of dare, and "di" of dire
         verbs.update((form, english) for infinitive in infinitives for form in irregular.get(infinitive, ()))
     return Italian(
-        {tuple(text.split()): english for english, words in table["words"].items() for text in words},
+        {tuple(_pieces(text)): english for english, words in table["words"].items() for text in words},
         {text: english for english, words in table["relative"].items() for text in words},
         verbs,
         table["clitics"],
@@ -90,6 +90,12 @@ def singulars(word: str) -> Iterator[str]:
     ):  # fmt: skip
         if word.endswith(plural) and len(word) > len(plural) + 1:
             yield word[: -len(plural)] + singular
+
+
+def _pieces(text: str) -> Iterator[str]:
+    """Yield the words of an expression; an articulated preposition is two words, as in a command."""
+    for word in text.split():
+        yield from ARTICULATED.get(word, (word,)) if " " in text else (word,)
 
 
 def _forms(infinitive: str) -> Iterator[str]:

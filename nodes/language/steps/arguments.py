@@ -23,7 +23,7 @@ class ArgumentReader(FrameCompletion):
         objects: list[NounPhrase] = []
         while i < len(words) and not self._ends_clause(i):
             if (end := self._condition(i)) > i:
-                clause.conditions.append(self._t.between(i, end))
+                self._add_condition(clause, i, end)
                 i = end
             elif length := starts_time(g, words, i):
                 clause.times.append(self._t.between(i, i + length))
@@ -95,6 +95,7 @@ class ArgumentReader(FrameCompletion):
                 while (
                     end < len(words)
                     and not self._ends_clause(end)
+                    and not self._subordinates(end)
                     and not g.match("place", words, end)
                     and not g.match("to", words, end)
                 ):
@@ -248,6 +249,8 @@ class ArgumentReader(FrameCompletion):
         length, kind = best
         if not length or self._is_infinitive(i):
             return None
+        if self._subordinates(i + length) or starts_time(g, words, i + length):
+            return None  # turn it off every time Anna leaves
         phrase = self._np.read(i + length)
         if phrase is None or phrase.end == i + length:
             return None
@@ -329,16 +332,3 @@ class ArgumentReader(FrameCompletion):
             self.found.unused.append(text)
         self._mention_all(i, end)
         return end
-
-    def _mention_all(self, i: int, end: int) -> None:
-        """Note the things and persons from `i` to before `end`, to which a later pronoun may refer."""
-        while i < end:
-            is_verb = self._g.verb(self._words, i)[0] and not self._np.is_known(i, i + 1)
-            phrase = None if is_verb else self._np.read(i)
-            if phrase is None or phrase.end <= i:
-                i += 1
-                continue
-            is_name = self._is_person(phrase) and self._t.tokens[phrase.head].is_capital
-            if phrase.kind == "person" or is_name or (phrase.key and phrase.determiner):
-                self.found.context.append((len(self.found.clauses), phrase))
-            i = phrase.end

@@ -3,15 +3,43 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Final
 
 from semmap.nodes.language.lexicon.commands import Grammar
 from semmap.nodes.language.reference_resolution.map_index import Nouns
-from semmap.nodes.language.steps.clause import Parsed
+from semmap.nodes.language.steps.clause import Clause, Parsed
 from semmap.nodes.language.steps.noun_group import ALWAYS_VERBS
 from semmap.nodes.language.steps.noun_phrase import NounPhraseReader
 from semmap.nodes.language.steps.phrase import NounPhrase
 from semmap.nodes.language.steps.times import starts_time
 from semmap.nodes.language.steps.tokens import Text
+
+_BEFORE_VERB: Final = frozenset(
+    ("to", "not", "n't", "and", "or", "'s", "the", "a", "i", "you", "we", "they", "my", "your", "cannot")
+)
+"""Words after which a verb begins no clause."""
+_AFTER_VERB: Final = ("to", "from", "place", "about", "here", "question", "direction")
+"""Classes of expressions that may follow the verb of a command."""
+_BEFORE_ELSE: Final = frozenset(
+    (
+        *(
+            "what",
+            "who",
+            "where",
+            "how",
+            "anywhere",
+            "somewhere",
+            "everywhere",
+            "nowhere",
+            "nothing",
+            "nobody",
+        ),
+        *(start + end for start in ("some", "any", "every") for end in ("one", "body", "thing")),
+    )
+)
+"""Words to which *else* belongs: someone else."""
+_BEFORE_OTHERWISE: Final = frozenset(("told", "say", "says", "said", "instructed", "stated"))
+"""Verbs to which *otherwise* and *so* belong: unless told otherwise."""
 
 
 class ClauseBoundaries:
@@ -25,13 +53,19 @@ class ClauseBoundaries:
         self._np = NounPhraseReader(text, grammar, nouns, self.starts_clause, above)
         self._nouns = nouns
         self.found = Parsed()
+        self._ending: set[str] = set()
+        """Conditions that are over when the clause after theirs begins: until she stops."""
+        self._unused = 0
+        """The number of unused texts before the sentence."""
+        self._denied: set[str] = set()
+        """Conditions that state that one before does not hold: otherwise."""
 
     def starts_clause(self, i: int) -> bool:
         """Return whether a new clause begins at `i`, possibly after *and then*."""
         g, words = self._g, self._words
         j = i
         while j < len(words) and (
-            length := 1 if words[j] == "," else max(g.match("then", words, j), g.match("polite", words, j))
+            length := 1 if words[j] == "," else max(self._then(j), g.match("polite", words, j))
         ):
             if words[j] == "you" or g.verb(words, j)[0] >= length:
                 break
@@ -48,6 +82,7 @@ class ClauseBoundaries:
             (g.match("negation", words, j) and not self._excludes(j))
             or self._phase(j)
             or g.match("condition", words, j)
+            or self._anaphoric(j)
             or self._found_at(j)
             or self._asks(j)
         ):
@@ -197,63 +232,107 @@ class ClauseBoundaries:
             i += 1
         return i
 
-    def _condition(self, i: int) -> int:
-        """Return the end of a subordinate clause that begins at `i`, or `i`."""
-        if length := self._g.match("anaphoric", self._words, i):
+    def _condition(self, i: int, *, is_fronted: bool = False) -> int:
+        """Return the end of a subordinate clause that begins at `i`, or `i`.
+
+        One that `is_fronted` stands before its main clause: a verb after *and* may still belong to it.
+        """
+        words = self._words
+        if length := self._anaphoric(i):
             return i + length
-        length = self._g.match("condition", self._words, i)
-        if (
-            not length
-            or self._g.match("then", self._words, i) >= length
-            or starts_time(self._g, self._words, i)
-        ):
+        start = i + self._subordinates(i)
+        if start == i:
             return i
-        j = i + length
-        while j < len(self._words) and not self._t.ends_sentence(j):
-            if self._words[j] == "," and (self.starts_clause(j + 1) or not self._continues(j + 1)):
+        with_verb = without = 0  # where the main clause begins if nothing else shows it
+        j = start
+        while not self._t.ends_sentence(j):
+            if words[j] == "," and (self.starts_clause(j + 1) or not self._continues(j + 1)):
                 return j
-            if self._words[j] == "then":
+            if j > start and self._anaphoric(j):
+                return j - (words[j - 1] == "and")
+            if words[j] == "then":
+                return j - (words[j - 1] in ("and", "but"))
+            if not is_fronted and j > start and self._connects(j):
                 return j
-            if (
-                j > i + length + 1
-                and self._words[j - 1]
-                not in (
-                    "to",
-                    "not",
-                    "n't",
-                    "and",
-                    "or",
-                    "'s",
-                    "the",
-                    "a",
-                    "i",
-                    "you",
-                    "we",
-                    "they",
-                    "he",
-                    "she",
-                    "it",
-                    "my",
-                    "your",
-                )
-                and (
-                    not self._g.is_a(self._words[j - 1], "modal")
-                    and not self._g.is_a(self._words[j - 1], "be")
-                    and not self._g.is_a(self._words[j - 1], "determiner")
-                )
-            ):
-                verb, _ = self._g.verb(self._words, j)
-                if (
-                    verb
-                    and not self._is_gerund(j)
-                    and self._opens_phrase(j + verb)
-                    and self._has_verb(i + length, j)
-                ):
+            if j > start and not self._continues_verb(j):
+                length = self._g.match("negation", words, j)
+                if length and self._orders(j + length) and self._has_verb(start, j):
                     return j
-                if self._words[j] in ("please", "could", "can") and self._g.match("polite", self._words, j):
+                verb, _ = self._g.verb(words, j)
+                opens = verb > 0 and not self._is_gerund(j) and self._opens_phrase(j + verb)
+                if self._has_verb(start, j):
+                    if opens and j > start + 1:
+                        return j
+                    with_verb = with_verb or (j if self._orders(j) else 0)
+                elif self._orders(j):
+                    without = without or j  # after lunch close the door
+                if words[j] in ("please", "could", "can") and self._g.match("polite", words, j):
                     return j
             j += 1
-        return j
+        is_apart = is_fronted or (i > 0 and words[i - 1] == ",")
+        return (is_apart and (with_verb or without)) or j
+
+    def _then(self, i: int) -> int:
+        """Return the number of words of *and*, *then* or *when you are done* at `i`, or 0."""
+        length, words = self._g.match("then", self._words, i), self._words
+        belongs = words[i : i + 1] == ("so",) and i > 0 and words[i - 1] in _BEFORE_OTHERWISE  # if I say so
+        following = words[i + length] if i + length < len(words) else ""
+        is_begun = following == "with" or (words[i + length - 1] == "there" and self._g.is_a(following, "be"))
+        return 0 if belongs or (length and is_begun) else length
+
+    def _subordinates(self, i: int) -> int:
+        """Return the number of words of a conjunction at `i` that begins a subordinate clause, or 0."""
+        g, words = self._g, self._words
+        length = g.match("condition", words, i)
+        if (span := self._np.duration(i)) and words[i + span : i + span + 1] in (("before",), ("after",)):
+            return span + 1  # five minutes after Anna leaves
+        if length and (self._then(i) >= length or starts_time(g, words, i)):
+            return 0
+        is_first = (
+            not length and words[i : i + 1] == ("should",) and self._t.is_mark(i - 1 if i else len(words))
+        )
+        return int(is_first and words[i + 1 : i + 2] != ("i",)) or length  # should Anna arrive, greet her
+
+    def _anaphoric(self, i: int) -> int:
+        """Return the number of words of a condition on what was said before at `i` (otherwise), or 0."""
+        length = self._g.match("anaphoric", self._words, i)
+        before = self._words[i - 1] if i else ""
+        if length and before in (_BEFORE_ELSE if self._words[i] == "else" else _BEFORE_OTHERWISE):
+            return 0
+        is_open = length and self._words[i] == "if" and not self._t.is_mark(i + length)
+        if is_open and (self._t.is_translated and self._words[i + 1] == "not"):  # se non trovi il latte
+            return 0
+        return 0 if is_open and not self.starts_clause(i + length) else length  # if not too cold
+
+    def _connects(self, i: int) -> bool:
+        """Return whether *and* at `i` joins the main clause, and not a subordinate one, with another."""
+        g, words = self._g, self._words
+        j = i
+        while j < len(words) and (length := self._then(j)):
+            j += length
+        j += g.match("polite", words, j) if j > i else 0
+        j += starts_time(g, words, j) if j > i else 0
+        if j == i or self._t.is_mark(j):
+            return False
+        if self._subordinates(j) or self._wish(j):
+            return True
+        j += g.match("negation", words, j)
+        return j < len(words) and (self._orders(j) or self._lets_know(j))
+
+    def _orders(self, i: int) -> bool:
+        """Return whether a verb is at `i` that begins a command: TAKE it, GO; but not (it is) open."""
+        g, words = self._g, self._words
+        length, frame = g.verb(words, i)
+        if not length or self._is_gerund(i) or self._np.is_known(i, i + length):
+            return False
+        end = i + length
+        follows = any(g.match(kind, words, end) for kind in _AFTER_VERB) or self._opens_phrase(end)
+        return length > 1 or frame == "Motion" or follows or self._np.is_known(end, end + 1)
+
+    def _continues_verb(self, j: int) -> bool:
+        """Return whether the word before `j` makes a verb at `j` part of the same clause: to GO, you GO."""
+        word = self._words[j - 1]
+        return word in _BEFORE_VERB or any(self._g.is_a(word, kind) for kind in ("modal", "be", "determiner"))
 
     def _continues(self, i: int) -> bool:
         """Return whether a list goes on at `i`, so that a comma before it ends no clause."""
@@ -265,7 +344,11 @@ class ClauseBoundaries:
             self._g.is_a(word, "be")
             or self._g.is_a(word, "have")
             or self._g.is_a(word, "modal")
-            or (word.endswith(("s", "ed", "ing")) and not self._np.is_known(k, k + 1))
+            or (
+                (word.endswith(("s", "ed", "ing")) or self._g.verb(self._words, k)[0] > 0 or k == first)
+                and not self._np.is_known(k, k + 1)
+                and not self._opens_phrase(k)
+            )
             for k, word in enumerate(self._words[first:end], first)
         )
 
@@ -276,14 +359,49 @@ class ClauseBoundaries:
         word = self._words[i]
         if self._excludes(i):
             return False
-        if self._g.match("anaphoric", self._words, i):
+        if self._anaphoric(i):
             return True
+        if word == "," and self._inserts(i + 1):
+            return False
         verb = self._g.verb(self._words, i)[0] if word in ALWAYS_VERBS else 0
         if verb and self._opens_phrase(i + verb):  # go to the kitchen find the milk
             return True
         if word == "," or self._g.is_a(word, "and") or self._g.match("then", self._words, i):
             return self.starts_clause(i)
         return self._found_at(i) and word not in ("there", "it") and not self._t.tokens[i].is_capital
+
+    def _subordinate(self, i: int, end: int) -> str:
+        """Return the text of a condition; note whether it no longer holds for what follows it."""
+        g, words = self._g, self._words
+        text = self._t.between(i, end)
+        if g.match("until", words, i) or (g.match("lasting", words, i) and "then" in words[end : end + 2]):
+            self._ending.add(text)
+        return text
+
+    def _mention_all(self, i: int, end: int, *, only_persons: bool = False) -> None:
+        """Note the things and persons from `i` to before `end`, to which a later pronoun may refer."""
+        while i < end:
+            is_verb = self._g.verb(self._words, i)[0] and not self._np.is_known(i, i + 1)
+            phrase = None if is_verb else self._np.read(i)
+            if phrase is None or phrase.end <= i:
+                i += 1
+                continue
+            is_name = self._is_person(phrase) and self._t.tokens[phrase.head].is_capital
+            is_thing = bool(phrase.key and phrase.determiner) and not only_persons
+            if phrase.kind == "person" or is_name or is_thing:
+                self.found.context.append((len(self.found.clauses), phrase))
+            i = phrase.end
+
+    def _add_condition(self, clause: Clause, i: int, end: int) -> None:
+        """Add a condition to the clause before it; a later pronoun may refer to the persons in it."""
+        clause.conditions.append(self._subordinate(i, end))
+        self._mention_all(i, end, only_persons=True)
+
+    def _inserts(self, i: int) -> bool:
+        """Return whether a condition between commas is at `i`, with more of the clause after it."""
+        end = self._condition(i) if self._subordinates(i) else i
+        is_last = self.starts_clause(end) and not self._is_infinitive(end + 1)
+        return self._words[end : end + 1] == (",",) and end > i and not is_last
 
     def _clause_end(self, i: int) -> int:
         while i < len(self._words) and not self._ends_clause(i):

@@ -27,16 +27,22 @@ class ClauseReader(MessageReader):
             if self._t.ends_sentence(i):
                 self._close(first_of_sentence, conditions)
                 self._keep_times(first_of_sentence, [] if has_time else times)
+                self._unused = len(self.found.unused)
                 first_of_sentence, conditions, times, negated = len(self.found.clauses), [], [], False
                 i += 1
             elif self._t.is_mark(i):
                 i += 1
-            elif (end := self._condition(i)) > i:
-                if first_of_sentence < len(self.found.clauses) and self._holds_from(i, end):
+            elif (end := self._condition(i, is_fronted=self._is_fronted(i, first_of_sentence))) > i:
+                if first_of_sentence < len(self.found.clauses) and self._holds_from(i, end, bool(conditions)):
                     self._close(first_of_sentence, conditions)
+                    if self._words[i - 1] == ",":  # if it is cold take it, if it is hot leave it
+                        conditions = []
                     first_of_sentence = len(self.found.clauses)
-                conditions.append(self._t.between(i, end))
-                self._mention_all(i + self._g.match("condition", self._words, i), end)
+                if self._g.match("contrary", self._words, i) and self._anaphoric(i):
+                    conditions = self._contrary(self._t.between(i, end), conditions)
+                else:
+                    conditions.append(self._subordinate(i, end))
+                self._mention_all(i + self._subordinates(i), end)
                 i = end
             elif length := starts_time(self._g, self._words, i):
                 times, has_time = [*([] if has_time else times), self._t.between(i, i + length)], False
@@ -60,7 +66,7 @@ class ClauseReader(MessageReader):
                 self.found.clauses[-1].negated = negated
                 self.found.clauses[-1].times += times
                 has_time, negated = True, False
-            elif self._asks(i) or self._found_at(i):
+            elif self._asks(i) or self._found_at(i) or self._declares(i):
                 before = len(self.found.clauses)
                 i = self._special(i, conditions, times)
                 has_time = has_time or len(self.found.clauses) > before
@@ -89,7 +95,10 @@ class ClauseReader(MessageReader):
                 has_time, negated, front = True, False, None
             else:
                 negated = negated and self._t.is_mark(i - 1)  # not the red one, take the blue one
-                i = self._unread(i)
+                start, i = i, self._unread(i)
+                if waits := self._waits(start, i):
+                    self._close(first_of_sentence, conditions)
+                    first_of_sentence, conditions = len(self.found.clauses), conditions + waits
         self._close(first_of_sentence, conditions)
         if front is not None:
             self.found.unused.append(self._t.between(front[1].first, front[1].end))
@@ -105,17 +114,50 @@ class ClauseReader(MessageReader):
         else:
             self.found.unused += times
 
-    def _holds_from(self, i: int, end: int) -> bool:
+    def _holds_from(self, i: int, end: int, is_further: bool) -> bool:
         """Return whether a condition from `i` to before `end` is only one of the clauses after it.
 
-        It is one of what was said before (otherwise), or stands after *and* and before its clause.
+        It is one of what was said before (otherwise), or stands before its clause and after *and*, or it
+        `is_further`: a clause with a condition is before it.
         """
-        if self._g.match("anaphoric", self._words, i):
+        if self._anaphoric(i):
             return True
-        before = i - 1 - (self._words[i - 1] == ",")
-        is_next = self._g.is_a(self._words[before], "and") or self._words[before] == "then"
-        j = end + (self._words[end : end + 1] in ((",",), ("then",)))
+        is_next = self._follows_and(i) or is_further or bool(self.found.clauses[-1].conditions)
+        j = end
+        while self._words[j : j + 1] == (",",) or self._g.match("then", self._words, j):
+            if self._words[j] == "and" and not self._follows_and(i):
+                return False
+            j += self._g.match("then", self._words, j) or 1
         return is_next and not self._t.is_mark(j) and self._g.verb(self._words, j)[0] > 0
+
+    def _follows_and(self, i: int) -> bool:
+        """Return whether *and* or *then* is before `i`."""
+        before = i - 1 - (self._words[i - 1] == ",")
+        return self._g.is_a(self._words[before], "and") or self._words[before] == "then"
+
+    def _is_fronted(self, i: int, first: int) -> bool:
+        """Return whether a condition at `i` stands before its clause; clause `first` begins the sentence."""
+        is_next = first == len(self.found.clauses) or self._follows_and(i)
+        return is_next and self._words[i] != "wait"
+
+    def _contrary(self, text: str, conditions: list[str]) -> list[str]:
+        """Return the conditions of what follows *otherwise*: those of the clause before do not hold."""
+        before = conditions
+        if self.found.clauses and (not conditions or self.found.clauses[-1].conditions):
+            before = self.found.clauses[-1].conditions
+        denied = [one for one in before if one in self._denied]
+        others = [one for one in before if one not in self._denied]
+        added = f"{text}: not ({'; '.join(others)})" if others else text
+        self._denied.add(added)
+        return [*denied, added]
+
+    def _waits(self, i: int, end: int) -> list[str]:
+        """Return the conditions among words from `i` to before `end` that are not understood."""
+        for j in range(i, end):
+            if self._subordinates(j):
+                text = self._subordinate(j, end)
+                return [f"not ({text})" if text in self._ending else text]
+        return []
 
     def _dislocated(self, i: int) -> NounPhrase | None:
         """Return the object before its clause, which has a pronoun for it: the towel, bring IT to Anna."""
@@ -171,10 +213,14 @@ class ClauseReader(MessageReader):
         every = list(
             dict.fromkeys((*conditions, *(text for clause in clauses for text in clause.conditions)))
         )
+        over: set[str] = set()  # conditions that do not hold for later clauses
         for clause in clauses:
-            clause.conditions = list(every)
+            ending = self._ending.intersection(clause.conditions)
+            clause.conditions = [f"not ({text})" if text in over else text for text in every]
+            over |= ending
         if conditions and not clauses:
-            if self.found.clauses:
+            is_added = len(self.found.unused) == self._unused  # take the milk. If it is cold.
+            if self.found.clauses and is_added and not self._denied.intersection(conditions):
                 self.found.clauses[-1].conditions += conditions
             else:
                 self.found.unused += conditions
@@ -221,6 +267,7 @@ class ClauseReader(MessageReader):
             ):
                 clause.frame = "Inspecting"
                 end = self._clause_end(j)
+                self._mention_all(j, end)
                 clause.roles.append(Role("Desired_state", j, end, j))
                 return end
         return self._arguments(clause, j)
@@ -261,14 +308,16 @@ class ClauseReader(MessageReader):
     def _special(self, i: int, conditions: list[str], times: list[str]) -> int:
         """Read a question, or where something can be found."""
         before = len(self.found.clauses)
-        if self._asks(i):
-            clause = Clause("Telling", self._words[i], i, asks=True)
+        declared = self._declares(i)
+        if declared or self._asks(i):
+            clause = Clause("Telling", self._words[declared or i], i, asks=True)
             self.found.clauses.append(clause)
-            end = (
-                self._question(clause, i)
-                if self._g.match("question", self._words, i)
-                else self._yes_no(clause, i)
-            )
+            if declared:
+                end = self._declared(clause, i, declared)
+            elif self._g.match("question", self._words, i):
+                end = self._question(clause, i)
+            else:
+                end = self._yes_no(clause, i)
         else:
             end = self._being_located(i)
         for clause in self.found.clauses[before:]:

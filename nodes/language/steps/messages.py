@@ -51,8 +51,10 @@ class MessageReader(QuestionReader):
         if i >= len(words) or self._ends_clause(i):
             return i
         if (end := self._condition(i)) > i and words[i] not in ("if", "whether", "when"):
-            clause.conditions.append(self._t.between(i, end))
+            self._add_condition(clause, i, end)
             return self._told(clause, end)
+        if words[i] == "," and (inserted := self._inserted(clause, i)) > i:
+            return self._told(clause, inserted)
         if words[i] == "," and not self.starts_clause(i):
             return self._told(clause, i + 1)
         if (length := starts_time(g, words, i)) and self._ends_clause(i + length):
@@ -75,6 +77,14 @@ class MessageReader(QuestionReader):
             return self._addressed(clause, end)
         return self._told_of(clause, i)
 
+    def _inserted(self, clause: Clause, i: int) -> int:
+        """Read a condition between commas at `i` (tell Anna, if she is there, to come); return its end."""
+        if self._words[i : i + 1] != (",",) or not self._inserts(i + 1):
+            return i
+        end = self._condition(i + 1)
+        self._add_condition(clause, i + 1, end)
+        return end + 1
+
     def _ask(self, clause: Clause, i: int) -> int:
         """Read *ask her to leave* as a Request and *ask her where she is from* as Questioning."""
         words = self._words
@@ -95,6 +105,7 @@ class MessageReader(QuestionReader):
             and self._is_person(phrase.owner)
         ):
             pass
+        i = self._inserted(clause, i)
         if i >= len(words) or (self._ends_clause(i) and words[i] != ","):
             return i
         if words[i] in ("to", "not"):
@@ -102,6 +113,8 @@ class MessageReader(QuestionReader):
         end = i + 1
         while end < len(words) and not self._ends_clause(end):
             if starts_time(self._g, words, end) and words[end] in ("at", "in"):
+                break
+            if clause.frame == "Request" and self._delays(end):
                 break
             end += 1
         head = i + 1 if words[i] == "to" and end > i + 1 else i
@@ -154,6 +167,7 @@ class MessageReader(QuestionReader):
             clause.roles.append(Role("Addressee", i, i + 1, i, [phrase.owner]))
         if (
             words[end : end + 1] in (("from",), ("of",), ("by",))
+            and not self._subordinates(end)
             and (asker := self._np.read(end + 1)) is not None
         ):
             clause.roles.append(Role("Addressee", end, asker.end, asker.head, [asker]))

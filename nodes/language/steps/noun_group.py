@@ -164,10 +164,14 @@ class NounGroupReader:
                 any(g.is_a(word, kind) for kind in _NEVER_INSIDE)
                 or (word in _ADVERBS and not self._follows_article(i))
                 or word.startswith("n't")
+                or g.match("condition", words, i) > 1
+                or (seen and self.duration(i))
             ):
                 break
             if seen and word == "left" and self._t.is_mark(i + 1):
                 break
+            if word == "else" and seen and not g.is_a(words[i - 1], "anything"):
+                break  # the cup ELSE the bowl; but something else
             if word == "one" and (i > start or self._is_the_one(i)):
                 return i + 1
             if any(g.is_a(word, kind) for kind in _ONLY_FIRST) and not self.is_known(i, i + 1):
@@ -188,6 +192,12 @@ class NounGroupReader:
             seen = seen or g.is_a(self._bases[i], "anything") or self._t.tokens[i].is_capital
             i += 1
         return i
+
+    def duration(self, i: int) -> int:
+        """Return the number of words of a number with a unit of time at `i` (five minutes), or 0."""
+        words = self._words[i : i + 2]
+        is_unit = len(words) == 2 and self._g.is_a(words[1].removesuffix("s"), "unit")
+        return 2 if is_unit and (words[0] in ("a", "an") or self._g.number(words[0]) is not None) else 0
 
     def _is_the_one(self, i: int) -> bool:
         return i > 0 and self._words[i - 1] == "the" and not self.is_known(i + 1, i + 2)

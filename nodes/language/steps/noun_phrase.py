@@ -21,6 +21,7 @@ class NounPhraseReader(PronounReader):
         phrase = NounPhrase(i)
         if self._read_pronoun(phrase):
             if phrase.kind == "person":
+                phrase.end += self._words[phrase.end : phrase.end + 1] == ("else",)  # someone else
                 self._after_the_noun(phrase, with_places)
             return phrase
         if (all_but := self._all_but(i)) is not None:
@@ -220,6 +221,7 @@ class NounPhraseReader(PronounReader):
             or self._starts_time(i)
             or self._g.match("manner", self._words, i)
             or self._g.match("here", self._words, i)
+            or self._g.match("condition", self._words, i) > length
         ):
             return None
         preposition = " ".join(self._words[i : i + length])

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from semmap.nodes.language.steps.arguments import ArgumentReader
 from semmap.nodes.language.steps.clause import Clause, Role
 from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.times import starts_time
+
+_REASONS: Final = ("because", "since", "so", "instead", "without", "although", "though", "wherever")
+"""First words of subordinate clauses that belong to a message."""
 
 
 class QuestionReader(ArgumentReader):
@@ -152,17 +157,63 @@ class QuestionReader(ArgumentReader):
                     clause.roles.append(Role("Topic", kind + 2, topic.end, topic.head, [topic]))
                     return self._addressed(clause, topic.end)
         end = self._message_end(i)
+        if text in ("if", "whether"):
+            self._mention_all(j, end)
         clause.roles.append(Role("Message", i, max(end, i + 1), min(i + length - 1, end) if end > i else i))
         return self._addressed(clause, max(end, i + 1))
 
     def _yes_no(self, clause: Clause, i: int) -> int:
-        """Read *is the milk on the desk*."""
+        """Read *is the milk on the desk*; of a translation also *is on the desk the milk*."""
         j = i + 1 + (self._words[i + 1 : i + 2] == ("there",))
-        phrase = self._np.read(j)
         clause.roles.append(Role("Message", i, j, i))
+        place = self._np.read_place(j)
+        phrase = self._np.read(j if place is None else place.end)
         if phrase is None:
             return self._unread(j)
-        self._np.continue_phrase(phrase, after_be=True)
+        if place is not None:
+            phrase.places.append(place)
+            phrase.first = place.first
+        self._read_state(phrase)
+        clause.roles.append(Role("Topic", phrase.first, phrase.end, phrase.head, [phrase]))
+        return self._addressed(clause, phrase.end)
+
+    def _read_state(self, phrase: NounPhrase) -> None:
+        """Add to a phrase what a question with *is* states of it: (is the milk) not on the desk."""
+        length = self._g.match("negation", self._words, phrase.end)
+        place = self._np.read_place(phrase.end + length) if length else None
+        if place is None:
+            self._np.continue_phrase(phrase, after_be=True)
+            return
+        place.negated = True
+        phrase.places.append(place)
+        phrase.end = place.end
+
+    def _declares(self, i: int) -> int:
+        """Return the index of *is* in a question with the words of a statement at `i`, or 0.
+
+        The milk is in the fridge? There is milk?
+        """
+        words = self._words
+        is_first = i == 0 or self._t.is_mark(i - 1)
+        end = next((j for j in range(i, len(words)) if self._t.ends_sentence(j)), len(words))
+        if words[end : end + 1] != ("?",) or not is_first or self._clause_end(i + 1) < end:
+            return 0
+        phrase = None if self._g.match("question", words, i) else self._np.read(i)
+        if phrase is None or phrase.kind == "speaker" or phrase.end + 1 >= end:
+            return 0
+        is_state = words[phrase.end] in ("is", "are", "'s", "'re")
+        return phrase.end if is_state and not self._g.match("question", words, phrase.end + 1) else 0
+
+    def _declared(self, clause: Clause, i: int, be: int) -> int:
+        """Read *the milk is on the desk?*."""
+        clause.roles.append(Role("Message", be, be + 1, be))
+        phrase = self._np.read(i)
+        if phrase is not None and phrase.kind == "here":  # there is milk
+            phrase = self._np.read(be + 1)
+        if phrase is None:
+            return self._unread(be)
+        phrase.end = max(phrase.end, be + 1)
+        self._read_state(phrase)
         clause.roles.append(Role("Topic", phrase.first, phrase.end, phrase.head, [phrase]))
         return self._addressed(clause, phrase.end)
 
@@ -204,6 +255,11 @@ class QuestionReader(ArgumentReader):
             or (is_any and bool(phrase.places or phrase.superlative))
         )
 
+    def _delays(self, i: int) -> bool:
+        """Return whether a condition begins at `i` that is not a part of a message, as a reason is."""
+        is_reason = self._words[i] in _REASONS or self._words[i : i + 2] == ("in", "order")
+        return self._subordinates(i) > 0 and not is_reason
+
     def _message_end(self, i: int) -> int:
         """Return the end of a message in words: before its addressee, or the end of the clause."""
         words = self._words
@@ -218,7 +274,7 @@ class QuestionReader(ArgumentReader):
                 break
             if j > i and starts_time(self._g, words, j) and words[j] in ("at", "in", "every"):
                 break
-            if j > i and words[j] in ("if", "unless", "when", "until", "before", "after", "please"):
+            if j > i and (words[j] == "please" or self._delays(j)):
                 break
             j += 1
         return j
@@ -233,7 +289,7 @@ class QuestionReader(ArgumentReader):
                 i = phrase.end
         while i < len(words) and not self._ends_clause(i):
             if (end := self._condition(i)) > i:
-                clause.conditions.append(self._t.between(i, end))
+                self._add_condition(clause, i, end)
             elif length := starts_time(self._g, words, i):
                 clause.times.append(self._t.between(i, end := i + length))
             elif words[i] == "," or self._g.match("polite", words, i):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -19,6 +19,7 @@ from semmap.nodes.language.steps.meaning import Meanings
 from semmap.nodes.language.steps.phrase import Amount, NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.translation import translate
 from semmap.nodes.language.understanding.grounding import Scene
+from semmap.nodes.language.understanding.pronouns import AFFORDANCES
 from semmap.schemas.language import Antecedent, CommandStep, Filler
 
 _LOCATED_BY: Final = {
@@ -42,6 +43,10 @@ class Steps:
     doubts: list[str] = field(default_factory=list)
     unknown: list[str] = field(default_factory=list)
     answers: list[str] = field(default_factory=list)
+    commands: bool = False
+    """Whether the text begins as a command does: with a verb or a condition."""
+    asks: bool = False
+    """Whether all of the steps are direct questions."""
 
 
 @dataclass(slots=True)
@@ -89,8 +94,14 @@ class _StepReader:
                 )
                 self._mentions.append(mention)
             found.steps.append(self._step(clause, len(found.steps) + 1))
+        is_condition = bool(self._g.match("condition", self._t.words, 0))
+        found.commands = is_condition or self._g.verb(self._t.words, 0)[0] > 0
+        found.asks = bool(parsed.clauses) and all(clause.asks for clause in parsed.clauses)
         found.unknown = list(dict.fromkeys(parsed.unknown))
-        for condition in dict.fromkeys(text for clause in parsed.clauses for text in clause.conditions):
+        conditions = dict.fromkeys(text for clause in parsed.clauses for text in clause.conditions)
+        for condition in conditions:
+            if condition.startswith("not (") and condition[5:-1] in conditions:
+                continue
             found.doubts.append(f"'{condition}' is a condition; it is not checked")
         for time in dict.fromkeys(text for clause in parsed.clauses for text in clause.times):
             found.doubts.append(f"'{time}' is a time; nothing is done then by itself")
@@ -275,6 +286,19 @@ class _StepReader:
 
     # Pronouns
 
+    def _affords(self, mention: _Mention, roles: Mapping[str, str], role: str) -> bool:
+        """Return whether a thing affords an action, by its class or because it had such a role before.
+
+        `roles` maps the roles of the action to classes.
+        """
+        wanted = roles[role]
+        names, index = mention.filler.entities, self._world.index
+        if not names and (description := mention.filler.description) is not None:
+            names = tuple(index.members.get(description.class_, ()))
+        return mention.role in roles or (
+            bool(names) and all(wanted in index.items[name].types for name in names)
+        )
+
     def _pronoun(
         self,
         phrase: NounPhrase,
@@ -291,6 +315,11 @@ class _StepReader:
                 return Filler(text, head)
             self._found.doubts.append(f"'{phrase.noun}' refers to nothing that was mentioned")
             return Filler(text, head)
+        roles = AFFORDANCES.get(clause.frame, {})
+        is_known = role.role not in roles or self._affords(antecedent, roles, role.role)
+        if antecedent.filler.entities and not is_known:
+            kind = roles[role.role].removesuffix("_Thing").lower()
+            self._found.doubts.append(f"'{text}': {antecedent.filler.shown} is not known to be {kind}")
         meant = [antecedent.filler]
         if self._g.is_a(phrase.noun, "several_pronoun"):  # all things of a list
             meant = [
@@ -317,6 +346,14 @@ class _StepReader:
     ) -> _Mention | None:
         g, word = self._g, phrase.noun
         mentions = [mention for mention in self._mentions if mention.filler.text]
+        roles = AFFORDANCES.get(clause.frame, {})
+        if role.role in roles:  # take the milk out of the fridge and close IT
+            suited = [m for m in reversed(mentions) if self._affords(m, roles, role.role)]
+            if g.is_a(word, "several_pronoun"):
+                suited = [m for m in suited if m.is_plural] or suited
+            if suited:  # of one step rather its object than a place
+                step = suited[0].step
+                return next((m for m in suited if m.step == step and not m.is_place), suited[0])
         if role.role in ("Beneficiary", "Recipient", "Addressee") or g.is_a(word, "person_pronoun"):
             return next((m for m in reversed(mentions) if m.is_person), None)
         if g.is_a(word, "several_pronoun"):

@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 from semmap.nodes.language.lexicon.commands import Grammar
+
+_AFTER_HOUR: Final = frozenset(
+    ("", ",", ".", "!", "?", "and", "then", "please", "today", "tomorrow", "if", "unless")
+)
+"""Words after which a number before them is an hour: at ten."""
 
 
 def starts_time(g: Grammar, words: Sequence[str], i: int) -> int:
@@ -36,7 +42,7 @@ def starts_time(g: Grammar, words: Sequence[str], i: int) -> int:
         if g.number(at(k)) is not None:
             if g.is_a(at(k + 1), "clock"):
                 return k + 3
-            if at(k + 1) in ("", ",", ".", "!", "?", "and", "then", "please", "today", "tomorrow"):
+            if at(k + 1) in _AFTER_HOUR:
                 return k + 2
             if (
                 word == "at"
@@ -59,6 +65,8 @@ def starts_time(g: Grammar, words: Sequence[str], i: int) -> int:
         ):
             return 3
     if word in ("every", "each", "this", "next", "on") and at(0):
+        if at(0) == "time" and at(1) not in ("", ",", ".", "!", "?", ";", "and", "then", "please"):
+            return 0  # every time Anna comes
         if word == "on" and not at(0).removesuffix("s").endswith("day"):
             return 0
         k = int(g.number(at(0)) is not None)

@@ -27,6 +27,8 @@ _DETERMINERS: Final = ("the", "a", "this", "that", "my", "your", "his", "our", "
 _POSSESSIVES: Final = ("my", "your", "his", "our", "their")
 _PLURAL: Final = ("i", "gli", "le")
 _GIVING: Final = ("give", "hand", "offer")
+_INFINITIVE: Final = ("are", "ere", "ire")
+_AFTER_GIVING: Final = ("the", "a", "this", "that", "some", "to")
 _NUMBERS: Final = (
     *("two", "three", "four", "five", "seven", "eight", "nine", "ten"),
     *("eleven", "twelve", "thirty", "ninety"),
@@ -67,10 +69,14 @@ def _tokens(text: str) -> list[str]:
     """Return the words; clitics at the end of a verb are separate and begin with `-`."""
     known = italian()
     found: list[str] = []
-    for word in _WORD.findall(normalise(plain(text))):
+    words = _WORD.findall(normalise(plain(text)))
+    for k, word in enumerate(words):
+        following = words[k + 1] if k + 1 < len(words) else ""
         previous = found[-1] if found else ""
         nominal = previous in ARTICULATED or known.expressions.get((previous,), "") in _DETERMINERS
         opens = not found or previous == "favore" or known.expressions.get((previous,), "") in _OPENING
+        first = ARTICULATED.get(following, (following,))[0]
+        opens = opens or known.expressions.get((first,), "") in _AFTER_GIVING  # "dalle il latte"
         apart = None if nominal and not previous.startswith("-") else _parted(word, opens, known)
         found += [word] if apart is None else [apart[0], *(f"-{clitic}" for clitic in apart[1])]
     return found
@@ -146,7 +152,8 @@ class _Glossing:
         if self._stands_before_verb(i):
             self._clitic(i)
             return 1
-        if (english := self._known.adjectives.get(piece.text)) and self._follows("noun"):
+        english = self._known.adjectives.get(piece.text)
+        if english and self._follows("noun") and not self._begins_expression(i):
             self._adjective(english, i)
             return 1
         for length in range(min(_LONGEST + 2, len(self._pieces) - i), 0, -1):
@@ -180,6 +187,8 @@ class _Glossing:
 
     def _expression(self, english: str, i: int, length: int) -> int:
         following = self._pieces[i + 1].text if i + 1 < len(self._pieces) else ""
+        if english == "of" and following in self._known.verbs and following.endswith(_INFINITIVE):
+            english = "to"  # "chiedi a Nora di venire"
         if english == "of" and self._is_partitive(i):
             self._say("some", i, i + 1, "det")
             return 2
@@ -256,8 +265,8 @@ class _Glossing:
             (self._found if behind else self._before_verb).append(Glossed(english, token, token, token, kind))
 
     def _stands_before_verb(self, i: int) -> bool:
-        """Return whether piece i is a clitic before its verb: `mi porti`, `lo prendi`."""
-        if self._pieces[i].text not in self._known.clitics:
+        """Return whether piece i is a clitic before its verb: `mi porti`, `lo prendi`; not `si trova`."""
+        if self._pieces[i].text not in self._known.clitics or self._begins_expression(i):
             return False
         j = i + 1
         while j < len(self._pieces) and self._pieces[j].text in self._known.clitics and j < i + 2:
@@ -277,20 +286,24 @@ class _Glossing:
             return False
         before = self._found[-1] if self._found else None
         opens = before is None or bool(self._before_verb) or before.text in _OPENING or self._follows_hour()
-        if before is not None and before.kind in ("det", "adj"):
-            return False
         following = self._pieces[i + 1] if i + 1 < len(self._pieces) else None
-        if (text,) in self._known.expressions:  # "da", "sei"
-            return opens and following is not None and following.is_clitic
-        if text.endswith(("are", "ere", "ire", "r")) or (following is not None and following.is_clitic):
+        if following is not None and following.is_clitic:  # "se è freddo portalo"
             return True
-        if self._called(i, 1) is not None or (
-            before is not None and before.text in ("in", "of", "from", "on")
-        ):
-            takes = following is not None and (
-                self._known.expressions.get((following.text,)) in _DETERMINERS or following.text == "di"
-            )
-            return opens or (takes and self._follows("noun"))
+        takes = following is not None and (
+            self._known.expressions.get((following.text,)) in _DETERMINERS or following.text == "di"
+        )
+        is_noun = self._called(i, 1) is not None
+        if before is not None and (before.kind == "det" or (before.kind == "adj" and is_noun and not takes)):
+            return False
+        if (text,) in self._known.expressions:  # "da", "sei"
+            return False
+        if text.endswith((*_INFINITIVE, "r")):
+            return True
+        is_after_preposition = (
+            before is not None and before.kind != "adj" and before.text in ("in", "of", "from", "on")
+        )
+        if is_noun or is_after_preposition:  # "se è freddo porta la tazza"
+            return opens or (takes and before is not None and before.kind in ("noun", "adj", "verb", None))
         return True
 
     def _follows_hour(self) -> bool:
@@ -300,6 +313,11 @@ class _Glossing:
 
     def _follows(self, kind: PartOfSpeech) -> bool:
         return bool(self._found) and self._found[-1].kind == kind
+
+    def _begins_expression(self, i: int) -> bool:
+        """Return whether an expression of several words begins at piece i: `prima di`, `si trova`."""
+        texts = tuple(piece.text for piece in self._pieces[i : i + _LONGEST + 2])
+        return any(texts[:length] in self._known.expressions for length in range(2, len(texts) + 1))
 
     def _ends(self, i: int) -> bool:
         """Return whether the noun phrase ends at piece i."""

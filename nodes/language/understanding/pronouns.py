@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 from semmap.nodes.language.understanding.grounding import Scene
@@ -19,10 +19,11 @@ _ACTED_ON: Final = (
 
 
 _FOR_OPENING: Final = dict.fromkeys(("Containing_object", "Container_portal"), "Openable_Thing")
-_WANTED: Final = {  # frame -> role -> class of the household TBox with this affordance
+AFFORDANCES: Final[Mapping[str, Mapping[str, str]]] = {
     "Closure": _FOR_OPENING,
     "Change_operational_state": {"Device": "Switchable_Thing"},
 }
+"""For the roles of a frame, the class of the household TBox whose things afford the action."""
 _WHERE: Final = {  # preposition -> class of its object
     **dict.fromkeys(("in", "into", "inside", "out of"), "Containing_Thing"),
     **dict.fromkeys(("on", "onto", "on top of"), "Supporting_Thing"),
@@ -47,7 +48,7 @@ def antecedent(
     named = list(dict.fromkeys(_mentioned(before, pronoun in _SEVERAL)))
     if frame in _CARRYING and role in _ACTED_ON:
         named = [names for names in named if not any(_NEVER_CARRIED & scene.kinds_of(name) for name in names)]
-    wanted = _WHERE.get(preposition) or _WANTED.get(frame, {}).get(role)
+    wanted = _WHERE.get(preposition) or AFFORDANCES.get(frame, {}).get(role)
     suited = (
         names for names in named if wanted is None or all(wanted in scene.kinds_of(name) for name in names)
     )
