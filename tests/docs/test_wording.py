@@ -22,6 +22,7 @@ QUOTED = frozenset(
         "benchmarks/README.md",
         "tests/docs/test_wording.py",
         "tests/kb_node/answers/test_entity_search.py",  # what a person may type
+        "tests/language/steps/test_commands.py",
         "nodes/language/steps/noun_phrase.py",
     }
 )

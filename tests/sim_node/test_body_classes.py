@@ -47,7 +47,7 @@ def test_most_names_of_published_worlds_have_a_class():
         ("akita_black_bowl_1_main", "akita black bowl"),
         ("KitchenCabinet_3_right", "kitchen cabinet"),
         ("iPhone", "iphone"),
-        ("red_4d2f_mug", "red mug"),  # what converters add is no word, wherever it is
+        ("red_4d2f_mug", "red mug"),  # a hash of a converter is not a word
         ("red_mug_4d2f_1", "red mug"),
         ("tazza_rossa_1", "tazza rossa"),
         ("desk_caddy_1", "desk caddy"),

@@ -7,6 +7,7 @@ from msgspec import structs
 
 from semmap.nodes.coordinator.commands.attachment import attach, detach
 from semmap.nodes.coordinator.commands.map_view import MapView
+from semmap.nodes.coordinator.commands.registration import HANDLERS
 from semmap.nodes.coordinator.kb_coroutines import run
 from semmap.schemas import commands as c
 from semmap.schemas import errors
@@ -153,3 +154,7 @@ def test_a_detached_entity_keeps_the_pose_that_its_holder_gave_it():
 def test_only_an_attached_entity_is_detached():
     with pytest.raises(errors.Refused, match=r"^cup1 is not attached$"):
         Kb(CUP, HAND).run(detach, c.Detach(name="cup1"))
+
+
+def test_both_are_registered_as_handlers():
+    assert (HANDLERS[c.Attach], HANDLERS[c.Detach]) == (attach, detach)
