@@ -117,6 +117,11 @@ def test_shapes_remain_for_a_start_without_the_simulator_and_repeated_ones_chang
     assert model_shapes.world() == known
 
 
+def test_shapes_of_bodies_that_are_not_in_the_map_yet_are_passed_on(flat, handlers):
+    handlers.on_shapes(message(unknown1=solid((1.0, 1.0, 1.0))))
+    assert handlers.told == [frozenset()]
+
+
 def test_invalid_shapes_change_nothing(flat, handlers):
     nowhere = WorldShapes({}, {BOWL: ("world/none",)})
     unnamed = WorldShapes({}, {BOWL: ()})
