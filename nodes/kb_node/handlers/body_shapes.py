@@ -22,7 +22,7 @@ class ShapeHandlers:
     def __init__(
         self, semantic_map: SemanticMap, file: Path, on_changed: Callable[[Collection[str]], None]
     ) -> None:
-        """Store shapes in `file`. After each change, `on_changed` is called with entities that it concerns."""
+        """Store shapes in `file`. After each change, `on_changed` is called with the concerned entities."""
         self._map, self._file, self._on_changed = semantic_map, file, on_changed
 
     def handlers(self) -> dict[str, Handler]:
