@@ -28,7 +28,7 @@ def load(file: Path) -> str:
         pass
     except (OSError, msgspec.DecodeError) as error:
         log.warning("%s: %s", file, error)
-        problem = f"{file.name} cannot be read; relations use the models of classes; restart the simulator"
+        problem = f"{file.name} cannot be read; relations use the models of classes until sim_node sends shapes"
     exchange_world(found)
     return problem
 
