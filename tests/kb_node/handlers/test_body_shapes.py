@@ -86,7 +86,7 @@ def test_relations_follow_shapes_that_arrive_and_are_those_of_a_start_with_them(
 
 
 def test_a_start_after_shapes_were_stored_but_not_yet_followed_has_their_relations(flat, handlers):
-    """The checkpoint has relations of the former shapes: the process was killed after it had written the file."""
+    """The process was killed after it had written the file; the checkpoint has the former relations."""
     flat.derive_all()
     before = state(flat)
     flat.checkpoint()
