@@ -26,7 +26,7 @@ _CLOCK = r"\d\d:\d\d(?::\d\d(?:[.,]\d+)?)?(?:Z|[+-]\d\d:?\d\d)?"
 _OF_A_DAY = re.compile(rf"(?P<day>today|yesterday)?(?:(?(day)(?: at)? )(?P<clock>{_CLOCK}))?", re.IGNORECASE)
 _AGO = re.compile(
     r"(?P<number>an?|one|\d+(?:\.\d+)?) ?"
-    r"(?:(?P<seconds>s|sec|seconds?)|(?P<minutes>m|min|minutes?)|(?P<hours>h|hours?)|(?P<days>d|days?)"
+    r"(?:(?P<seconds>s|secs?|seconds?)|(?P<minutes>m|mins?|minutes?)|(?P<hours>h|hrs?|hours?)|(?P<days>d|days?)"
     r"|(?P<weeks>w|weeks?))(?: ago)?",
     re.IGNORECASE,
 )

@@ -146,7 +146,7 @@ class KnowledgeBase:
         self.map.clean_up()
 
     def _on_shapes(self, names: Collection[str]) -> None:
-        """Pass on relations that have changed without a commit."""
+        """Pass on shapes, and relations that have changed without a commit."""
         self._sparql.reload()
         self._location_queries.follow(self.map.seq, names)
         self._publisher.publish_entities(filter(None, map(self.map.find, names)))

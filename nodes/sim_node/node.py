@@ -5,9 +5,9 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from concurrent.futures import Future
+from functools import partial
 from typing import Any, Literal, TypeVar
 
-import msgspec
 import numpy as np
 from msgspec import structs
 
@@ -20,14 +20,13 @@ from semmap.nodes.sim_node.models.sources import Models
 from semmap.nodes.sim_node.physics.build import run_in_background
 from semmap.nodes.sim_node.robots.base_controller import Outcome
 from semmap.nodes.sim_node.scene_state import FILENAME, SceneStore
+from semmap.nodes.sim_node.shape_sender import ShapeSender
 from semmap.nodes.sim_node.vision.video_renderer import Plane, SceneSnapshot, VideoRenderer
 from semmap.nodes.sim_node.vision.view import FROM_ABOVE, View, camera_view, overview
 from semmap.nodes.sim_node.window import Window
 from semmap.nodes.sim_node.world_file import is_scene, names_classes, open_world
 from semmap.nodes.sim_node.world_shapes import world_shapes
-from semmap.ontology.model_shapes import WorldShapes
 from semmap.schemas import codec, errors, keys, wording
-from semmap.schemas.bridge import ShapeBodies
 from semmap.schemas.calls import by_verb
 from semmap.schemas.commands import Classes, Pause, Reset, StepOnce
 from semmap.schemas.plans import Outline, WallsQuery
@@ -150,15 +149,9 @@ class Simulator:
         if config.world is None or is_scene(config.world):
             return
         found = run_in_background(lambda: world_shapes(self._world), self._node.tick)
-        if not found:
-            return
-
-        def report(sent: Future[Done]) -> None:
-            if isinstance(error := sent.exception(), errors.SemmapError):
-                self._node.report(f"relations do not use the shapes of the world's bodies: {error.text}")
-
-        message = ShapeBodies(content=msgspec.json.encode(WorldShapes.of(found)))
-        self._node.ask_later(keys.BRIDGE, message, patience_s=config.patience_s).add_done_callback(report)
+        if found:
+            send = partial(self._node.ask_later, keys.BRIDGE, patience_s=config.patience_s)
+            self._node.follow(keys.HEALTH, ShapeSender(found, send, self._node.report).on_health)
 
     def close(self) -> None:
         """Store the scene, stop the renderer and the reader of models, and close the window."""

@@ -75,16 +75,26 @@ def _starved_s(pid: int) -> float:
         return 0.0
 
 
-def stopped_processes(nodes: Mapping[str, int]) -> dict[int, str]:
+class Stopped(NamedTuple):
+    """A stopped process and its CPU time, which grows if it is only slowed down, as `cpulimit` does."""
+
+    pid: int
+    worked_s: float
+
+
+def stopped_processes(nodes: Mapping[str, int]) -> dict[Stopped, str]:
     """Return the stopped processes that nodes started, with their nodes; a node leads a process group."""
     leaders = {pid: node for node, pid in nodes.items()}
     stopped = {}
-    for process in psutil.process_iter():
+    for pid in psutil.pids():
         with contextlib.suppress(psutil.Error, OSError):
-            if process.status() == psutil.STATUS_STOPPED and process.pid not in leaders:
-                leader = os.getpgid(process.pid)
-                if leader in leaders:
-                    stopped[process.pid] = leaders[leader]
+            node = leaders.get(os.getpgid(pid))
+            if node is None or pid in leaders:
+                continue
+            process = psutil.Process(pid)
+            if process.status() == psutil.STATUS_STOPPED:
+                times = process.cpu_times()
+                stopped[Stopped(pid, times.user + times.system)] = node
     return stopped
 
 
@@ -95,11 +105,11 @@ class StoppedProcesses:
         self,
         *,
         clock: Callable[[], float] = time.monotonic,
-        stopped_among: Callable[[Mapping[str, int]], Mapping[int, str]] = stopped_processes,
+        stopped_among: Callable[[Mapping[str, int]], Mapping[Stopped, str]] = stopped_processes,
     ) -> None:
         self._clock = clock
         self._stopped_among = stopped_among
-        self._looks: Counter[int] = Counter()
+        self._looks: Counter[Stopped] = Counter()
         self._next_look_s = clock()
 
     def find(self, nodes: Mapping[str, int]) -> Iterator[Hang]:
@@ -112,10 +122,10 @@ class StoppedProcesses:
             return
         self._next_look_s = now_s + _BETWEEN_LOOKS_S
         stopped = self._stopped_among(nodes)
-        self._looks = Counter({pid: self._looks[pid] + 1 for pid in stopped})
-        for pid, node in stopped.items():
-            if self._looks[pid] >= _STOPPED_LOOKS:
-                yield Hang(node, pid, f"its process {pid} was stopped (SIGSTOP)")
+        self._looks = Counter({process: self._looks[process] + 1 for process in stopped})
+        for process, node in stopped.items():
+            if self._looks[process] >= _STOPPED_LOOKS:
+                yield Hang(node, process.pid, f"its process {process.pid} was stopped (SIGSTOP)")
 
 
 class Watchdog:

@@ -74,6 +74,8 @@ def test_today_and_yesterday_are_dates(text, day, clock):
         ("10 min", 600),
         ("90s", 90),
         ("2h", 7200),
+        ("5 mins ago", 300),
+        ("2 hrs ago", 7200),
         ("1.5 hours ago", 5400),
         ("an hour ago", 3600),
         ("A day ago", 86_400),

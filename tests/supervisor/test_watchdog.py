@@ -12,6 +12,7 @@ from semmap.nodes.supervisor.watchdog import (
     ENDLESS_S,
     SILENT_S,
     UNHEARD_S,
+    Stopped,
     StoppedProcesses,
     Watchdog,
     stopped_processes,
@@ -153,7 +154,7 @@ class Pausing:
 def test_a_process_of_a_node_that_stays_stopped_is_found_within_five_seconds():
     world = Pausing()
     world.pass_time(10)
-    world.stopped = {7: "kb_node"}
+    world.stopped = {Stopped(7, 0.5): "kb_node"}
     assert world.pass_time(SILENT_S - 1) == []
     assert world.pass_time(2)[0] == ("kb_node", 7)
 
@@ -161,15 +162,23 @@ def test_a_process_of_a_node_that_stays_stopped_is_found_within_five_seconds():
 def test_a_process_that_continues_is_not_found():
     world = Pausing()
     for _ in range(10):
-        world.stopped = {7: "kb_node"}
+        world.stopped = {Stopped(7, 0.5): "kb_node"}
         assert world.pass_time(SILENT_S - 1) == []
         world.stopped = {}
         assert world.pass_time(2) == []
 
 
+def test_a_process_that_works_between_the_looks_is_not_found():
+    """As under cpulimit, which stops and continues a process many times a second."""
+    world = Pausing()
+    for tick in range(10):
+        world.stopped = {Stopped(7, tick / 100): "kb_node"}
+        assert world.pass_time(1) == []
+
+
 def test_a_pause_of_the_whole_system_is_not_counted():
     world = Pausing()
-    world.stopped = {7: "kb_node"}
+    world.stopped = {Stopped(7, 0.5): "kb_node"}
     assert world.pass_time(1) == []
     world.now_s += 1000.0
     assert world.pass_time(1) == []
@@ -187,7 +196,16 @@ def test_stopped_processes_belong_to_the_node_that_started_them():
         assert stopped_processes({"kb_node": nodes[0].pid}) == {}
         for node in nodes:
             os.killpg(node.pid, signal.SIGSTOP)
-        until(lambda: stopped_processes({"kb_node": nodes[0].pid}) == {child.pid: "kb_node"}, "it is listed")
+        until(
+            lambda: (
+                [
+                    (process.pid, node)
+                    for process, node in stopped_processes({"kb_node": nodes[0].pid}).items()
+                ]
+                == [(child.pid, "kb_node")]
+            ),
+            "it is listed",
+        )
     finally:
         for node in nodes:
             os.killpg(node.pid, signal.SIGKILL)

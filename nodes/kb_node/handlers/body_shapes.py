@@ -22,7 +22,7 @@ class ShapeHandlers:
     def __init__(
         self, semantic_map: SemanticMap, file: Path, on_changed: Callable[[Collection[str]], None]
     ) -> None:
-        """Store shapes in `file`. `on_changed` is called with entities whose relations may have changed."""
+        """Store shapes in `file`. After each change, `on_changed` is called with the concerned entities."""
         self._map, self._file, self._on_changed = semantic_map, file, on_changed
 
     def handlers(self) -> dict[str, Handler]:
@@ -41,6 +41,5 @@ class ShapeHandlers:
             raise errors.BadRequest(f"the shapes of the world's bodies are invalid: {error}") from None
         if now != world():
             body_shapes.write(self._file, now)
-            if concerned := self._map.exchange_shapes(now):
-                self._on_changed(concerned)
+            self._on_changed(self._map.exchange_shapes(now))
         return Done(text=f"shapes of {wording.bodies(len(sent.bodies))}")

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from msgspec import Raw, Struct, msgpack
+from msgspec import Raw, Struct, field, msgpack
 
 from semmap.nodes.kb_node.derived_facts import UNCHANGED, DerivedChanges
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.sparql.triples.dataset import Delta
+from semmap.ontology.model_shapes import AddedShapes, added_shapes
 from semmap.schemas import codec
 from semmap.schemas.commands import Renew, Watch
 from semmap.schemas.errors import ErrorMessage
@@ -22,6 +23,8 @@ class Placements(Struct, frozen=True, kw_only=True, tag=True):
 
     placed: tuple[PlacedEntity, ...]
     limits: Thresholds
+    shapes: AddedShapes = field(default_factory=added_shapes)
+    """The shapes that are not of the library, which the other process lacks."""
 
 
 class Load(Struct, frozen=True, kw_only=True, tag=True):

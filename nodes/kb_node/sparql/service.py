@@ -171,7 +171,7 @@ class SparqlService:
             )
 
     def reload(self) -> None:
-        """Send the computed facts to the process again, because they have changed without a commit.
+        """Send computed facts and shapes to the process again, because they have changed without a commit.
 
         A query that comes at the same moment may still see the earlier ones.
         """

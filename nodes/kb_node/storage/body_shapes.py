@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import shutil
 from contextlib import suppress
 from pathlib import Path
 from typing import Final
@@ -28,9 +29,17 @@ def load(file: Path) -> str:
         pass
     except (OSError, msgspec.DecodeError) as error:
         log.warning("%s: %s", file, error)
-        problem = f"{file.name} cannot be read; relations use the models of classes; restart the simulator"
+        problem = (
+            f"{file.name} cannot be read; relations use the models of classes until sim_node sends shapes"
+        )
     exchange_world(found)
     return problem
+
+
+def copy(source: Path, target: Path) -> None:
+    """Copy the shapes of one data folder to another one, if there are any."""
+    if (file := source / FILENAME).is_file():
+        shutil.copyfile(file, target / FILENAME)
 
 
 def write(file: Path, shapes: WorldShapes) -> None:

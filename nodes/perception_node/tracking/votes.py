@@ -13,6 +13,8 @@ _CLEAR = 0.6
 """Minimum share of the votes of a clear winner."""
 _FORGET = 0.9
 """Weight of a vote after one frame."""
+_FORGOTTEN = 1e-4
+"""Votes with less weight are dropped: a detector that describes in words may give new ones in each frame."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,7 @@ class Votes:
 
     def cast(self, class_name: str, probability: float, weight: float = 1.0) -> Votes:
         """Return the votes with one more, of this weight."""
-        weights = {name: weight * _FORGET for name, weight in self.weights.items()}
+        weights = {name: weight * _FORGET for name, weight in self.weights.items() if weight > _FORGOTTEN}
         weights[class_name] = weights.get(class_name, 0.0) + probability * weight
         return Votes(weights, self.frames * _FORGET + weight)
 

@@ -85,6 +85,23 @@ def test_relations_follow_shapes_that_arrive_and_are_those_of_a_start_with_them(
     again._journal.close()
 
 
+def test_a_start_after_shapes_were_stored_but_not_yet_followed_has_their_relations(flat, handlers):
+    """The process was killed after it had written the file; the checkpoint has the former relations."""
+    flat.derive_all()
+    before = state(flat)
+    flat.checkpoint()
+    shapes = WorldShapes.of({BOWL: solid(size_of(flat, BOWL))})
+    body_shapes.write(handlers._file, shapes)
+    assert body_shapes.load(handlers._file) == ""
+    again = home.reopened(flat)
+    again.derive_all()
+    found = state(again)
+    again._journal.close()
+    model_shapes.exchange_world(WorldShapes())
+    flat.exchange_shapes(shapes)
+    assert found == state(flat) != before
+
+
 def test_every_shape_of_the_flat_can_be_exchanged_with_asserted_locations(flat, handlers):
     (first, *_) = sorted(contents_after_start(flat))
     asserted = (v.iri(flat.entity(first).iri), v.dm("isInside"), v.iri(flat.entity(BOWL).iri))
@@ -115,6 +132,11 @@ def test_shapes_remain_for_a_start_without_the_simulator_and_repeated_ones_chang
     model_shapes.exchange_world(WorldShapes())
     assert body_shapes.load(file) == ""
     assert model_shapes.world() == known
+
+
+def test_shapes_of_bodies_that_are_not_in_the_map_yet_are_passed_on(flat, handlers):
+    handlers.on_shapes(message(unknown1=solid((1.0, 1.0, 1.0))))
+    assert handlers.told == [frozenset()]
 
 
 def test_invalid_shapes_change_nothing(flat, handlers):

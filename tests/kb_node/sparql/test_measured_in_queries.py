@@ -10,6 +10,7 @@ from semmap.nodes.kb_node.relations.relation_reports import explain_relation
 from semmap.nodes.kb_node.sparql.protocol import Placements
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.ontology import vocabulary as v
+from semmap.ontology.model_shapes import ConvexPart, ModelShape, WorldShapes
 from semmap.schemas.commands import Sparql, Watch
 from semmap.schemas.commits import Edit, Transaction
 
@@ -86,6 +87,24 @@ def test_a_query_has_the_rows_of_relations(flat, service, name):
     for s, o in list(rows)[:20]:
         if name != "touches":  # an object on another touches it, too, possibly with a gap
             assert explain_relation(space, by_iri[s], name, by_iri[o]).holds
+
+
+def test_queries_measure_the_shapes_of_the_bodies_of_a_world(flat, service):
+    """The process for SPARQL is another one, and may have been started before the shapes arrived."""
+    before = ask(service, flat, ALL.format("isNextTo"))
+    posts = {}
+    for entity in flat.entities():
+        if not entity.place and entity.pose is not None and entity.size_m is not None:
+            x, y, z = entity.size_m
+            axes = ((x / 20, 0.0, 0.0), (0.0, y / 20, 0.0), (0.0, 0.0, z / 2))
+            part = ConvexPart(centre=(0.0, 0.0, z / 2), straight=axes)
+            posts[entity.name] = ModelShape(size_m=entity.size_m, parts=(part,), turns=False)
+    try:
+        assert flat.exchange_shapes(WorldShapes.of(posts))
+        service.reload()
+        assert ask(service, flat, ALL.format("isNextTo")) == mirrored(flat, "isNextTo") != before
+    finally:
+        flat.exchange_shapes(WorldShapes())
 
 
 def test_measurements_are_up_to_date_after_each_commit(flat, service):

@@ -64,3 +64,10 @@ def test_a_look_that_is_worth_more_outweighs_others():
     votes = cast(*[("Cup", 0.9)] * 4).cast("Bottle", 0.9, 8.0)
     assert votes.belief(CLASSES) == "Bottle"
     assert cast(*[("Cup", 0.9)] * 4).cast("Bottle", 0.9).belief(CLASSES) == "Cup"
+
+
+def test_old_votes_are_forgotten_however_many_names_there_are():
+    votes = Votes()
+    for number in range(1000):
+        votes = votes.cast(f"a mug, frame {number}", 1.0)
+    assert len(votes.weights) < 100

@@ -14,6 +14,7 @@ from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.sparql.protocol import Placements
 from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, Delta
 from semmap.ontology import vocabulary as v
+from semmap.ontology.model_shapes import add_shapes
 from semmap.schemas.explanations import Term, Triple
 from semmap.schemas.relations import RelationName
 
@@ -61,6 +62,7 @@ class MeasuredRelations:
     def __init__(self, derived: PairProperties, dataset: Dataset, placements: Placements) -> None:
         self._derived = derived
         self._dataset = dataset
+        add_shapes(placements.shapes)
         self._pairs = PairFacts(Space(placements.placed, placements.limits))
         self._iris: dict[str, Term] = {}
         self._names: dict[Term, str] = {}

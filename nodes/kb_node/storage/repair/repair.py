@@ -21,7 +21,7 @@ from msgspec import structs
 from semmap.nodes.kb_node.documents import ontology_files, rdf
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
 from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.nodes.kb_node.storage import seed
+from semmap.nodes.kb_node.storage import body_shapes, seed
 from semmap.nodes.kb_node.storage.journal import FILENAME, Checkpoint, Journal, write_ahead
 from semmap.nodes.kb_node.storage.journal.sqlite_file import InUse, NotWritten
 from semmap.nodes.kb_node.storage.journal.verification import verify
@@ -61,6 +61,8 @@ def repair(data: Path, tell: Callable[[str], None] = lambda text: None, *, tbox:
     finally:
         damaged.close()
     kept = seed.install_journal(new, path)
+    if kept is not None:
+        body_shapes.copy(kept, data)
     return (
         f"the map continues from commit {last} ({salvage_run.describe()}); the damaged file is kept in {kept}"
     )

@@ -36,8 +36,7 @@ def prepare(data: Path, folder: Path, *, since: When | None = None, until: When 
         raise journal_copy.name_original(error, source, data / FILENAME) from None
     shutil.copyfile(source, folder / FILENAME)
     journal_copy.truncate(folder / FILENAME, span.since)
-    if (shapes := data / body_shapes.FILENAME).is_file():
-        shutil.copyfile(shapes, folder / body_shapes.FILENAME)
+    body_shapes.copy(data, folder)
     return span
 
 

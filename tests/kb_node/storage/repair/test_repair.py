@@ -7,6 +7,7 @@ import shutil
 import pytest
 
 from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage import body_shapes
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
 from semmap.nodes.kb_node.storage.repair import repair as repair_module
@@ -60,6 +61,7 @@ def test_intact_commits_after_a_damaged_one_are_kept(data, broken):
     _, commits = opened(data)
     flip(data / FILENAME, "commits", broken)
     damaged = (data / FILENAME).read_bytes()
+    (data / body_shapes.FILENAME).write_bytes(b"{}")
     with pytest.raises(errors.Refused, match=f"commit {broken} is damaged; .* semmap repair --data {data} "):
         opened(data)
     said = repair(data)
@@ -68,6 +70,7 @@ def test_intact_commits_after_a_damaged_one_are_kept(data, broken):
     )
     (kept,) = (data / "kept").iterdir()
     assert (kept / FILENAME).read_bytes() == damaged
+    assert (data / body_shapes.FILENAME).read_bytes() == b"{}"
     (seq, _, snapshot), repaired = opened(data)
     assert seq == 8
     assert repaired[: broken - 1] == commits[: broken - 1]
