@@ -34,6 +34,8 @@ class ArgumentReader(FrameCompletion):
                 )
                 self.found.clauses.append(further)
                 return self._arguments(further, to)
+            elif words[i] == "," and (phrase := self._next_place(clause, i + 1)) is not None:
+                i = self._coordinate(clause, i, phrase)
             elif words[i] == ",":
                 i += 1
             elif (
@@ -50,10 +52,14 @@ class ArgumentReader(FrameCompletion):
                     or g.is_a(objects[-1].noun, "anything")
                 ):
                     objects[-1].exclude(excluded)  # all cups but the red one
+                elif self._is_negated:
+                    return self._contrast(clause, i + 1)
                 else:
                     self.found.unused.append(self._t.between(i, excluded[-1].end))
                 i = excluded[-1].end
             elif words[i] == "but" and any(g.match(kind, words, i + 1) for kind in ("to", "from", "place")):
+                if self._is_negated:
+                    return self._contrast(clause, i + 1)
                 end = self._clause_end(i + 1)  # not to Nora but to me
                 self.found.unused.append(self._t.between(i, end))
                 i = end
@@ -203,28 +209,15 @@ class ArgumentReader(FrameCompletion):
 
     def _coordinate(self, clause: Clause, i: int, phrase: NounPhrase) -> int:
         """Read *and* with a noun phrase: one more thing, or a clause without its verb (and a fork in it)."""
-        self._finish(clause)
         last = clause.roles[-1] if clause.roles else None
-        roles = self._g.frames[clause.frame].roles
-        if (
-            last is not None
-            and last.phrases
-            and last.role != roles.get("object")
-            and clause.role(roles.get("object", ""))
-        ):
-            is_gap = (
-                bool(phrase.places)
-                or self._g.match("to", self._words, phrase.end)
-                or self._g.match("from", self._words, phrase.end)
-            )
-            if is_gap or (
-                clause.frame in ("Giving", "Bringing") and self._g.match("place", self._words, phrase.end)
-            ):
-                other = Clause(
-                    clause.frame, clause.verb, i + 1, conditions=clause.conditions, times=clause.times
-                )
-                self.found.clauses.append(other)
-                return self._arguments(other, i + 1)
+        opens = last is None or (bool(last.phrases) and last.phrases[-1].kind in ("speaker", "pronoun"))
+        if opens and self._words[i] == "or" and self._words[phrase.end : phrase.end + 1] == ("or",):
+            return i + 1  # Italian "o il latte o l'acqua"
+        self._finish(clause)
+        if self._has_place(clause) and self._is_gap(clause, phrase):
+            other = Clause(clause.frame, clause.verb, i + 1, conditions=clause.conditions, times=clause.times)
+            self.found.clauses.append(other)
+            return self._arguments(other, i + 1)
         if phrase.kind == "name" and not self._t.tokens[phrase.head].is_capital:
             return self._unread(i + 1)
         if last is None or not last.phrases:
@@ -237,6 +230,37 @@ class ArgumentReader(FrameCompletion):
             last.phrases.append(phrase)
         last.end = phrase.end
         return phrase.end
+
+    def _contrast(self, clause: Clause, i: int) -> int:
+        """Read what is to be done instead of a negated clause: (do not take the milk but) THE WATER."""
+        self._finish(clause)
+        other = Clause(clause.frame, clause.verb, i, conditions=clause.conditions, contrasts=True)
+        self.found.clauses.append(other)
+        self._is_negated = False
+        end = self._arguments(other, i)
+        known = {role.role for role in other.roles}
+        other.roles = [*(role for role in clause.roles if role.role not in known), *other.roles]
+        return end
+
+    def _has_place(self, clause: Clause) -> bool:
+        """Return whether another role than the object was read last, after an object."""
+        last = clause.roles[-1] if clause.roles else None
+        name = self._g.frames[clause.frame].roles.get("object", "")
+        return last is not None and bool(last.phrases) and last.role != name and clause.role(name) is not None
+
+    def _is_gap(self, clause: Clause, phrase: NounPhrase) -> bool:
+        """Return whether a phrase is the object of a clause without its verb: (and) the cup TO NORA."""
+        takes = "place" in self._g.frames[clause.frame].roles or clause.frame in ("Giving", "Bringing")
+        kinds = ("to", "from", "place") if takes else ("to", "from")
+        return bool(phrase.places) or any(self._g.match(kind, self._words, phrase.end) for kind in kinds)
+
+    def _next_place(self, clause: Clause, i: int) -> NounPhrase | None:
+        """Return the phrase at `i`, after a comma, if a list of places or of objects with places goes on."""
+        phrase = None if self._t.is_mark(i) else self._np.read(i)
+        if phrase is None or not (phrase.key or phrase.amount.is_other):
+            return None
+        self._finish(clause)
+        return phrase if self._has_place(clause) else None
 
     def _prepositional(self, clause: Clause, i: int) -> int | None:
         """Read a phrase with a preposition as a role; return its end."""

@@ -53,6 +53,8 @@ class ClauseBoundaries:
         self._np = NounPhraseReader(text, grammar, nouns, self.starts_clause, above)
         self._nouns = nouns
         self.found = Parsed()
+        self._is_negated = False
+        """Whether the clause that is read is negated."""
         self._ending: set[str] = set()
         """Conditions that are over when the clause after theirs begins: until she stops."""
         self._unused = 0
@@ -286,8 +288,8 @@ class ClauseBoundaries:
         length = g.match("condition", words, i)
         if (span := self._np.duration(i)) and words[i + span : i + span + 1] in (("before",), ("after",)):
             return span + 1  # five minutes after Anna leaves
-        if length and (self._then(i) >= length or starts_time(g, words, i)):
-            return 0
+        if length and (self._then(i) >= length or starts_time(g, words, i) or g.match("manner", words, i) > length):
+            return 0  # as soon as possible
         is_first = (
             not length and words[i : i + 1] == ("should",) and self._t.is_mark(i - 1 if i else len(words))
         )
@@ -387,9 +389,12 @@ class ClauseBoundaries:
                 i += 1
                 continue
             is_name = self._is_person(phrase) and self._t.tokens[phrase.head].is_capital
-            is_thing = bool(phrase.key and phrase.determiner) and not only_persons
-            if phrase.kind == "person" or is_name or is_thing:
-                self.found.context.append((len(self.found.clauses), phrase))
+            is_counted = bool(phrase.determiner or phrase.quantity is not None or phrase.is_plural)
+            is_thing = bool(phrase.key and is_counted) and not only_persons
+            others = [place.other for place in phrase.places if place.other.key and not only_persons]
+            if (phrase.kind == "person" or is_name or is_thing) and not phrase.amount.is_none:
+                others.append(phrase)  # the last one, to which a pronoun refers first
+            self.found.context += ((len(self.found.clauses), other) for other in others)
             i = phrase.end
 
     def _add_condition(self, clause: Clause, i: int, end: int) -> None:

@@ -37,7 +37,10 @@ def except_things(
             found = [f for f in fillers if role not in PLACES and set(thing.entities) < set(f.entities)]
             changed += ((filler, _without(filler, thing)) for filler in found)
             roles[role] = tuple(_without(f, thing) if f in found else f for f in fillers)
-        is_apart = not any(set(thing.entities) & set(f.entities) for f in roles.get("Theme", ()))
+        left = () if thing.description is None else thing.description.excluded  # one cup: the others are apart
+        is_apart = not any(
+            set(thing.entities) & set(f.entities) and f.text not in left for f in roles.get("Theme", ())
+        )
         if stays and is_apart and step.frame in _MOVING:  # leave the others
             meant = structs.replace(last, frame=step.frame, negated=True)
         steps[k] = structs.replace(step, roles=roles)
@@ -54,17 +57,29 @@ def keep_mentioned(meaning: Meaning, mentioned: list[Filler], text: str) -> None
         meaning.names, meaning.ambiguous = last.entities, False
 
 
-def leave_mentioned(meaning: Meaning, mentioned: list[Filler], text: str) -> None:
-    """Exclude what was `mentioned` from the meaning of the phrase `text`, such as *the other cups*."""
+def leave_mentioned(meaning: Meaning, mentioned: list[tuple[Filler, bool]], text: str) -> None:
+    """Exclude what was `mentioned` from the meaning of the phrase `text`, such as *the other cups*.
+
+    Each filler is with whether only some of its entities are meant: the description then excludes them in
+    words, because any of them may be left.
+    """
     names = set(meaning.names)
-    before = [f for f in mentioned if not names or (names & set(f.entities) and not names <= set(f.entities))]
-    if not before:
+    some = [f for f, is_some in mentioned if is_some and names & set(f.entities)]
+    if some and meaning.description is not None:
+        excluded = (*meaning.description.excluded, *(filler.text for filler in some))
+        meaning.description = structs.replace(meaning.description, excluded=excluded)
+    before = [
+        f
+        for f, is_some in mentioned
+        if not is_some and (not names or (names & set(f.entities) and not names <= set(f.entities)))
+    ]
+    if not before and not some:
         meaning.doubts.append(f"'{text}': nothing of the kind was mentioned before")
     left = Filler(text, "", meaning.names, meaning.description)
     for filler in before:
         left = _without(left, filler)
     meaning.names, meaning.description = left.entities, left.description
-    meaning.ambiguous = meaning.ambiguous and len(meaning.names) > 1
+    meaning.ambiguous = meaning.ambiguous and not some and len(meaning.names) > 1
     if names and not meaning.names:
         meaning.doubts.append(f"'{text}': no other one is known")
 

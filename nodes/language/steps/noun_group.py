@@ -164,7 +164,7 @@ class NounGroupReader:
                 any(g.is_a(word, kind) for kind in _NEVER_INSIDE)
                 or (word in _ADVERBS and not self._follows_article(i))
                 or word.startswith("n't")
-                or g.match("condition", words, i) > 1
+                or max(g.match("condition", words, i), g.match("manner", words, i)) > 1
                 or (seen and self.duration(i))
             ):
                 break
@@ -242,8 +242,9 @@ class NounGroupReader:
             phrase.noun, phrase.key = words[start], self.key(start, start + 1)
             self._modifiers(phrase, start + 1, end)
             return
-        if noun is None and self._t.is_translated and self._is_modifier(head):  # quella rossa
-            phrase.noun = "one"
+        is_chosen = self._words[end : end + 1] == ("of",) and self._superlative(head, end + 1) > 0
+        if noun is None and (is_chosen or (self._t.is_translated and self._is_modifier(head))):
+            phrase.noun = "one"  # the biggest of the plates, quella rossa
             self._modifiers(phrase, start, end)
             return
         if noun is None:

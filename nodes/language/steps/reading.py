@@ -44,7 +44,7 @@ class Steps:
     unknown: list[str] = field(default_factory=list)
     answers: list[str] = field(default_factory=list)
     commands: bool = False
-    """Whether the text begins as a command does: with a verb or a condition."""
+    """Whether the text begins as a command does: with a verb, a wish or a condition."""
     asks: bool = False
     """Whether all of the steps are direct questions."""
 
@@ -60,6 +60,16 @@ class _Mention:
     is_plural: bool
     is_place: bool
     phrase: NounPhrase | None = None
+
+    @property
+    def denotes_some(self) -> bool:
+        """Return whether only some of the filler's entities are meant: a cup, two of the three cups."""
+        description = self.filler.description
+        if description is not None and isinstance(description.quantity, int):
+            return description.quantity < len(self.filler.entities)
+        phrase = self.phrase
+        is_any = phrase is not None and not (phrase.is_plural or phrase.is_definite or phrase.all_of)
+        return is_any and len(self.filler.entities) > 1
 
 
 def read_steps(text: str, world: World, scene: Scene | None = None) -> Steps:
@@ -95,7 +105,9 @@ class _StepReader:
                 self._mentions.append(mention)
             found.steps.append(self._step(clause, len(found.steps) + 1))
         is_condition = bool(self._g.match("condition", self._t.words, 0))
-        found.commands = is_condition or self._g.verb(self._t.words, 0)[0] > 0
+        first = self._g.match("polite", self._t.words, 0)
+        is_wish = any(self._g.match("wish", self._t.words, i) for i in (0, first))
+        found.commands = is_condition or is_wish or self._g.verb(self._t.words, 0)[0] > 0
         found.asks = bool(parsed.clauses) and all(clause.asks for clause in parsed.clauses)
         found.unknown = list(dict.fromkeys(parsed.unknown))
         conditions = dict.fromkeys(text for clause in parsed.clauses for text in clause.conditions)
@@ -142,10 +154,12 @@ class _StepReader:
 
     def _compare_mentioned(self, phrase: NounPhrase, meaning: Meaning, now: list[_Mention]) -> None:
         """Compare the meaning of *another cup* or *the same cup* with what was mentioned."""
-        mentions = (m for m in (*self._mentions, *now) if m.is_person == meaning.is_person and not m.is_place)
-        compare = keep_mentioned if phrase.amount.is_same else leave_mentioned
+        mentions = [m for m in (*self._mentions, *now) if m.is_person == meaning.is_person and not m.is_place]
         text = self._t.between(phrase.first, phrase.end)
-        compare(meaning, [mention.filler for mention in mentions], text)
+        if phrase.amount.is_same:
+            keep_mentioned(meaning, [mention.filler for mention in mentions], text)
+        else:
+            leave_mentioned(meaning, [(m.filler, m.denotes_some) for m in mentions], text)
 
     def _guide(self, clause: Clause) -> None:
         """Change the frame of *take them to the kitchen* if a pronoun refers to a person."""
@@ -192,7 +206,7 @@ class _StepReader:
                 continue
             if phrase.kind == "pronoun":
                 filler = self._pronoun(phrase, text, head, clause, role, number, mentions)
-                yield self._part(phrase, filler, clause)
+                yield self._part(phrase, filler, clause, mentions)
                 continue
             self._complete(phrase, mentions)
             for other in (*phrase.excluded, *phrase.alternatives):
@@ -233,7 +247,7 @@ class _StepReader:
             )
             yield filler
 
-    def _part(self, phrase: NounPhrase, filler: Filler, clause: Clause) -> Filler:
+    def _part(self, phrase: NounPhrase, filler: Filler, clause: Clause, now: list[_Mention]) -> Filler:
         """Return the filler of a pronoun with its quantity: two of them, none of them."""
         amount = phrase.amount
         if amount == Amount() and phrase.quantity is None:
@@ -242,7 +256,10 @@ class _StepReader:
         amount.is_vague = amount.is_vague or amount.is_other
         doubt = quantities.count(phrase, len(filler.entities) or None, filler.text)
         self._found.doubts += [doubt] if doubt else []
-        return structs.replace(filler, description=quantities.describe(phrase, filler.description))
+        part = structs.replace(filler, description=quantities.describe(phrase, filler.description))
+        for mention in now:
+            mention.filler = part if mention.filler is filler else mention.filler
+        return part
 
     def _complete(self, phrase: NounPhrase, now: list[_Mention]) -> None:
         """Give a phrase without a noun that of the last thing: the red one."""
