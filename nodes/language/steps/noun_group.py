@@ -242,9 +242,10 @@ class NounGroupReader:
             phrase.noun, phrase.key = words[start], self.key(start, start + 1)
             self._modifiers(phrase, start + 1, end)
             return
-        is_chosen = self._words[end : end + 1] == ("of",) and self._superlative(head, end + 1) > 0
+        may_be_chosen = words[head].endswith("est") or words[end : end + 1] == ("of",)
+        is_chosen = may_be_chosen and self._superlative(head, end + 1) > 0
         if noun is None and (is_chosen or (self._t.is_translated and self._is_modifier(head))):
-            phrase.noun = "one"  # the biggest of the plates, quella rossa
+            phrase.noun = "one"  # the biggest (of the plates), quella rossa
             self._modifiers(phrase, start, end)
             return
         if noun is None:

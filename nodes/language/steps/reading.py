@@ -14,7 +14,13 @@ from semmap.nodes.language.steps.answers import answer
 from semmap.nodes.language.steps.clause import Clause, Role
 from semmap.nodes.language.steps.clauses import ClauseReader
 from semmap.nodes.language.steps.entity_tests import Meaning, Names, World
-from semmap.nodes.language.steps.exclusions import PLACES, except_things, keep_mentioned, leave_mentioned
+from semmap.nodes.language.steps.exclusions import (
+    PLACES,
+    Mention,
+    except_things,
+    keep_mentioned,
+    leave_mentioned,
+)
 from semmap.nodes.language.steps.meaning import Meanings
 from semmap.nodes.language.steps.phrase import Amount, NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.translation import translate
@@ -49,29 +55,6 @@ class Steps:
     """Whether all of the steps are direct questions."""
 
 
-@dataclass(slots=True)
-class _Mention:
-    """A filler that a later pronoun may refer to."""
-
-    step: int
-    role: str
-    filler: Filler
-    is_person: bool
-    is_plural: bool
-    is_place: bool
-    phrase: NounPhrase | None = None
-
-    @property
-    def denotes_some(self) -> bool:
-        """Return whether only some of the filler's entities are meant: a cup, two of the three cups."""
-        description = self.filler.description
-        if description is not None and isinstance(description.quantity, int):
-            return description.quantity < len(self.filler.entities)
-        phrase = self.phrase
-        is_any = phrase is not None and not (phrase.is_plural or phrase.is_definite or phrase.all_of)
-        return is_any and len(self.filler.entities) > 1
-
-
 def read_steps(text: str, world: World, scene: Scene | None = None) -> Steps:
     """Return the steps of a command in English, or in Italian if the labels of a `scene` are given."""
     return _StepReader(tokens.read(text) if scene is None else translate(text, scene), world).read()
@@ -82,7 +65,7 @@ class _StepReader:
         self._t, self._world = text, world
         self._g = commands.load()
         self._meanings = Meanings(text, self._g, world)
-        self._mentions: list[_Mention] = []
+        self._mentions: list[Mention] = []
         self._found = Steps()
 
     def read(self) -> Steps:
@@ -99,7 +82,7 @@ class _StepReader:
                     meaning.names,
                     meaning.description,
                 )
-                mention = _Mention(
+                mention = Mention(
                     0, "", filler, meaning.is_person, phrase.is_plural, meaning.is_place, phrase
                 )
                 self._mentions.append(mention)
@@ -123,7 +106,7 @@ class _StepReader:
 
     def _step(self, clause: Clause, number: int) -> CommandStep:
         roles: dict[str, tuple[Filler, ...]] = {}
-        mentions: list[_Mention] = []
+        mentions: list[Mention] = []
         where = self._where(clause)
         self._guide(clause)
         for role in clause.roles:
@@ -152,14 +135,11 @@ class _StepReader:
                 mention.filler = after if mention.filler is before else mention.filler
         return step
 
-    def _compare_mentioned(self, phrase: NounPhrase, meaning: Meaning, now: list[_Mention]) -> None:
+    def _compare_mentioned(self, phrase: NounPhrase, meaning: Meaning, now: list[Mention]) -> None:
         """Compare the meaning of *another cup* or *the same cup* with what was mentioned."""
         mentions = [m for m in (*self._mentions, *now) if m.is_person == meaning.is_person and not m.is_place]
-        text = self._t.between(phrase.first, phrase.end)
-        if phrase.amount.is_same:
-            keep_mentioned(meaning, [mention.filler for mention in mentions], text)
-        else:
-            leave_mentioned(meaning, [(m.filler, m.denotes_some) for m in mentions], text)
+        compare = keep_mentioned if phrase.amount.is_same else leave_mentioned
+        compare(meaning, mentions, self._t.between(phrase.first, phrase.end))
 
     def _guide(self, clause: Clause) -> None:
         """Change the frame of *take them to the kitchen* if a pronoun refers to a person."""
@@ -188,7 +168,7 @@ class _StepReader:
         return [PlacePhrase(preposition or "in", other, role.first, role.end, names=names)]
 
     def _fillers(
-        self, clause: Clause, role: Role, number: int, where: list[PlacePhrase], mentions: list[_Mention]
+        self, clause: Clause, role: Role, number: int, where: list[PlacePhrase], mentions: list[Mention]
     ) -> Iterator[Filler]:
         if role.role in _WORDS_ONLY or not role.phrases:
             yield Filler(self._t.between(role.first, role.end), self._t.word(role.head))
@@ -235,7 +215,7 @@ class _StepReader:
                 asked_of = self._t.words[message.head]
                 self._found.answers.append(answer(asked, asked_of, text, meaning, self._world))
             mentions.append(
-                _Mention(
+                Mention(
                     number,
                     role.role,
                     filler,
@@ -247,7 +227,7 @@ class _StepReader:
             )
             yield filler
 
-    def _part(self, phrase: NounPhrase, filler: Filler, clause: Clause, now: list[_Mention]) -> Filler:
+    def _part(self, phrase: NounPhrase, filler: Filler, clause: Clause, now: list[Mention]) -> Filler:
         """Return the filler of a pronoun with its quantity: two of them, none of them."""
         amount = phrase.amount
         if amount == Amount() and phrase.quantity is None:
@@ -261,7 +241,7 @@ class _StepReader:
             mention.filler = part if mention.filler is filler else mention.filler
         return part
 
-    def _complete(self, phrase: NounPhrase, now: list[_Mention]) -> None:
+    def _complete(self, phrase: NounPhrase, now: list[Mention]) -> None:
         """Give a phrase without a noun that of the last thing: the red one."""
         if phrase.noun in ("one", "ones"):
             before = (
@@ -272,7 +252,8 @@ class _StepReader:
             if (like := next(before, None)) is not None:
                 self._take_noun(phrase, like)
             else:
-                self._found.doubts.append(f"'{phrase.noun}' refers to nothing that was mentioned")
+                word = self._t.word(phrase.head)
+                self._found.doubts.append(f"'{word}' refers to nothing that was mentioned")
 
     def _take_noun(self, phrase: NounPhrase, like: NounPhrase) -> None:
         """Give a phrase the noun of another one: of *red cup* only *cup*."""
@@ -303,7 +284,7 @@ class _StepReader:
 
     # Pronouns
 
-    def _affords(self, mention: _Mention, roles: Mapping[str, str], role: str) -> bool:
+    def _affords(self, mention: Mention, roles: Mapping[str, str], role: str) -> bool:
         """Return whether a thing affords an action, by its class or because it had such a role before.
 
         `roles` maps the roles of the action to classes.
@@ -324,7 +305,7 @@ class _StepReader:
         clause: Clause,
         role: Role,
         number: int,
-        mentions: list[_Mention],
+        mentions: list[Mention],
     ) -> Filler:
         antecedent = self._antecedent(phrase, clause, role, mentions)
         if antecedent is None:
@@ -352,15 +333,15 @@ class _StepReader:
             Antecedent(antecedent.step, antecedent.role) if antecedent.step else None,
         )
         mentions.append(
-            _Mention(
+            Mention(
                 number, role.role, filler, antecedent.is_person, antecedent.is_plural, antecedent.is_place
             )
         )
         return filler
 
     def _antecedent(
-        self, phrase: NounPhrase, clause: Clause, role: Role, now: list[_Mention]
-    ) -> _Mention | None:
+        self, phrase: NounPhrase, clause: Clause, role: Role, now: list[Mention]
+    ) -> Mention | None:
         g, word = self._g, phrase.noun
         mentions = [mention for mention in self._mentions if mention.filler.text]
         roles = AFFORDANCES.get(clause.frame, {})

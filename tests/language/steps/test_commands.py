@@ -184,7 +184,8 @@ def test_a_part_that_does_not_fit_is_named(read, text, doubt):
 
 
 @pytest.mark.parametrize(
-    "text", ["take the cup and not the plate", "take the cup, not the plate", "take the cup but not the plate"]
+    "text",
+    ["take the cup and not the plate", "take the cup, not the plate", "take the cup but not the plate"],
 )
 def test_the_description_names_what_is_not_meant(read, text):
     understood = read(text)
