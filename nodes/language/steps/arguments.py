@@ -34,8 +34,10 @@ class ArgumentReader(FrameCompletion):
                 )
                 self.found.clauses.append(further)
                 return self._arguments(further, to)
-            elif words[i] == "," and (phrase := self._next_place(clause, i + 1)) is not None:
-                i = self._coordinate(clause, i, phrase)
+            elif (phrase := self._next_place(clause, j := self._after_then(i))) is not None:
+                i = self._coordinate(clause, j - 1, phrase)
+            elif g.is_a(words[i], "and") and self._is_receiver_gap(clause, i + 1):
+                return self._gapped(clause, i + 1)
             elif words[i] == ",":
                 i += 1
             elif (
@@ -118,10 +120,14 @@ class ArgumentReader(FrameCompletion):
 
     def _next_goal(self, i: int) -> int:
         """Return the index of another goal after *then* at `i`, or 0: to the desk, then TO THE SHELF."""
-        j = i
-        while j < len(self._words) and (self._words[j] == "," or self._g.match("then", self._words, j)):
-            j += max(1, self._g.match("then", self._words, j))
+        j = self._after_then(i)
         return j if j > i and self._g.match("to", self._words, j) else 0
+
+    def _after_then(self, i: int) -> int:
+        """Return the index after commas and words such as *then* at `i`."""
+        while i < len(self._words) and (self._words[i] == "," or self._g.match("then", self._words, i)):
+            i += max(1, self._g.match("then", self._words, i))
+        return i
 
     def _object(self, clause: Clause, i: int) -> NounPhrase | None:
         phrase = self._np.read(i)
@@ -215,9 +221,7 @@ class ArgumentReader(FrameCompletion):
             return i + 1  # Italian "o il latte o l'acqua"
         self._finish(clause)
         if self._has_place(clause) and self._is_gap(clause, phrase):
-            other = Clause(clause.frame, clause.verb, i + 1, conditions=clause.conditions, times=clause.times)
-            self.found.clauses.append(other)
-            return self._arguments(other, i + 1)
+            return self._gapped(clause, i + 1)
         if phrase.kind == "name" and not self._t.tokens[phrase.head].is_capital:
             return self._unread(i + 1)
         if last is None or not last.phrases:
@@ -230,6 +234,24 @@ class ArgumentReader(FrameCompletion):
             last.phrases.append(phrase)
         last.end = phrase.end
         return phrase.end
+
+    def _gapped(self, clause: Clause, i: int) -> int:
+        """Read a clause without its verb, which is that of the clause before."""
+        self._finish(clause)
+        other = Clause(clause.frame, clause.verb, i, conditions=clause.conditions, times=clause.times)
+        self.found.clauses.append(other)
+        return self._arguments(other, i)
+
+    def _is_receiver_gap(self, clause: Clause, i: int) -> bool:
+        """Return whether another receiver with an object is at `i`: (give Nora milk and) ME WATER."""
+        roles = self._g.frames[clause.frame].roles
+        receiver, given = clause.role(roles.get("receiver", "")), clause.role(roles.get("object", ""))
+        if receiver is None or given is None or receiver is given:
+            return False
+        to = self._np.read(i + self._g.match("to", self._words, i))
+        if to is None or self._t.is_mark(to.end) or not (to.kind == "speaker" or self._is_person(to)):
+            return False
+        return self._np.read(to.end) is not None and not self._g.is_a(self._words[to.end], "and")
 
     def _contrast(self, clause: Clause, i: int) -> int:
         """Read what is to be done instead of a negated clause: (do not take the milk but) THE WATER."""
@@ -255,8 +277,9 @@ class ArgumentReader(FrameCompletion):
         return bool(phrase.places) or any(self._g.match(kind, self._words, phrase.end) for kind in kinds)
 
     def _next_place(self, clause: Clause, i: int) -> NounPhrase | None:
-        """Return the phrase at `i`, after a comma, if a list of places or of objects with places goes on."""
-        phrase = None if self._t.is_mark(i) else self._np.read(i)
+        """Return the phrase at `i`, after a comma or *then*, if a list of objects or places goes on there."""
+        is_next = i > 0 and (self._words[i - 1] == "," or self._words[i - 1] == "then")
+        phrase = self._np.read(i) if is_next and not self._t.is_mark(i) else None
         if phrase is None or not (phrase.key or phrase.amount.is_other):
             return None
         self._finish(clause)

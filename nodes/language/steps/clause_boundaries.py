@@ -64,6 +64,11 @@ class ClauseBoundaries(ClauseStarts):
         """Return the number of words of a conjunction at `i` that begins a subordinate clause, or 0."""
         g, words = self._g, self._words
         length = g.match("condition", words, i)
+        negation = i + (words[i : i + 1] == ("but",))
+        if words[negation : negation + 1] == ("not",) and (
+            denied := g.match("condition", words, negation + 1)
+        ):
+            return negation + 1 + denied - i  # but not if it is hot
         if (span := self._np.duration(i)) and words[i + span : i + span + 1] in (("before",), ("after",)):
             return span + 1  # five minutes after Anna leaves
         if length and (
@@ -128,7 +133,7 @@ class ClauseBoundaries(ClauseStarts):
         if self._t.ends_sentence(i):
             return True
         word = self._words[i]
-        if self._excludes(i):
+        if self._excludes(i) or (word in ("but", "not") and self._subordinates(i)):
             return False
         if self._anaphoric(i):
             return True

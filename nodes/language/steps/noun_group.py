@@ -242,6 +242,10 @@ class NounGroupReader:
             phrase.noun, phrase.key = words[start], self.key(start, start + 1)
             self._modifiers(phrase, start + 1, end)
             return
+        number = g.number(words[head]) if end - start == 1 and words[head] != "one" else None
+        if noun is None and number is not None:  # bring one cup to Nora and TWO to me
+            phrase.noun, phrase.quantity, phrase.is_plural = "ones", number, number > 1
+            return
         may_be_chosen = words[head].endswith("est") or words[end : end + 1] == ("of",)
         is_chosen = may_be_chosen and self._superlative(head, end + 1) > 0
         if noun is None and (is_chosen or (self._t.is_translated and self._is_modifier(head))):

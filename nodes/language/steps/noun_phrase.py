@@ -43,7 +43,11 @@ class NounPhraseReader(PronounReader):
                 return phrase
             if phrase.quantity is None:
                 return None
-            phrase.noun, phrase.head, phrase.end = self._words[start - 1], start - 1, start
+            phrase.noun, phrase.head, phrase.end = (
+                "ones",
+                start - 1,
+                start,
+            )  # bring one cup to Nora, TWO to me
             return phrase
         self._group(phrase, start, end)
         if phrase.end < len(self._words) and self._is_possessive(phrase.end):
@@ -104,7 +108,9 @@ class NounPhraseReader(PronounReader):
         """
         found: list[NounPhrase] = []
         while (other := self.read(i, with_places=False)) is not None:
-            if other.noun in ("one", "ones") and not (other.attributes or other.superlative):
+            if other.noun in ("one", "ones") and not (
+                other.attributes or other.superlative or other.quantity
+            ):
                 other = self.read(i) or other
             if not (other.determiner or other.attributes or other.quantity):
                 other.quantity = self._g.number(other.noun)  # all cups except two
@@ -236,6 +242,8 @@ class NounPhraseReader(PronounReader):
             or self._starts_time(i)
             or self._g.match("manner", self._words, i)
             or self._g.match("here", self._words, i)
+            or self._g.match("at_least", self._words, i)
+            or self._g.match("at_most", self._words, i)
             or self._g.match("condition", self._words, i) > length
         ):
             return None

@@ -208,6 +208,8 @@ class _StepReader:
                 is_all = len(role.phrases) == 1 or self._t.words[role.phrases[0].first] == "neither"
                 clause.negated = clause.negated or is_all
                 meaning.doubts += [] if is_all else [f"'{text}' is not meant"]
+            if phrase.amount.is_none and role.role == "Topic" and meaning.description is not None:
+                meaning.description = structs.replace(meaning.description, at_most=0)  # are there no cups
             filler = Filler(text, head, meaning.names, meaning.description)
             self._note(meaning)
             if role.role == "Topic" and (message := clause.role("Message")) is not None:

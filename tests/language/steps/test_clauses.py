@@ -41,6 +41,29 @@ def texts(understood):
             ['Bringing(Beneficiary="me", Theme=milk1, Theme=plate1|plate2, Theme=bowl1)'],
         ),
         (
+            "put the milk on the table, then the kettle on the desk",
+            ["Placing(Theme=milk1, Goal=table1)", "Placing(Theme=kettle1, Goal=desk1)"],
+        ),
+        (
+            "give Nora the milk and me the kettle and go to the kitchen",
+            [
+                "Giving(Recipient=nora1, Theme=milk1)",
+                'Giving(Recipient="me", Theme=kettle1)',
+                "Motion(Goal=kitchen1)",
+            ],
+        ),
+        (
+            "porta a Nora il latte e a me il bollitore",
+            ["Bringing(Beneficiary=nora1, Theme=milk1)", 'Bringing(Beneficiary="a me", Theme=kettle1)'],
+        ),
+        (
+            "bring one cup to Nora and two to me",
+            [
+                "Bringing(Theme=1 of bluecup|cup1|redcup, Beneficiary=nora1)",
+                'Bringing(Theme=2 of bluecup|cup1|redcup, Beneficiary="to me")',
+            ],
+        ),
+        (
             "porta il latte sul tavolo e i piatti sulla scrivania",
             ["Bringing(Theme=milk1, Goal=table1)", "Bringing(Theme=plate1|plate2, Goal=desk1)"],
         ),
@@ -97,6 +120,7 @@ def test_what_is_to_be_done_instead_is_a_step_of_its_own(read, text, steps):
         ("bring two cups to Nora and the rest to the sofa", "Bringing", "two cups"),
         ("take a plate and put the other one on the sofa", "Placing", "a plate"),
         ("metti un piatto sulla scrivania e un altro sul divano", "Placing", "un piatto"),
+        ("metti una tazza sulla scrivania e un'altra sul divano", "Placing", "una tazza"),
     ],
 )
 def test_the_other_one_is_not_the_one_before_although_any_may_be_that(read, text, last, excluded):
@@ -139,6 +163,44 @@ def test_a_condition_after_but_is_only_that_of_its_own_clause(read):
 
 
 @pytest.mark.parametrize(
+    ("text", "condition"),
+    [
+        ("take the cup but not if it is red", "but not if it is red"),
+        ("take the cup, but not when Nora is here", "but not when Nora is here"),
+        ("prendi la tazza ma non se è rossa", "ma non se è rossa"),
+    ],
+)
+def test_a_negated_condition_keeps_its_negation(read, text, condition):
+    understood = read(text)
+    (step,) = understood.steps
+    assert (step.negated, step.condition) == (False, condition)
+    assert understood.doubts == (f"'{condition}' {OPEN_CONDITION}",)
+
+
+@pytest.mark.parametrize(
+    ("text", "answer"),
+    [
+        ("are there more than two plates on the table", "no: 2: plate1, plate2"),
+        ("are there at least two plates on the table", "yes: plate1, plate2"),
+        ("is at least one cup on the table", "yes: bluecup, redcup"),
+        ("are there three cups on the table", "no: 2: bluecup, redcup"),
+        ("are there at most two cups on the table", "yes: bluecup, redcup"),
+        ("are there fewer than three cups in the oven", "yes: 0"),
+        ("are there no cups on the table", "no: 2: bluecup, redcup"),
+        (
+            "are all the cups on the table",
+            "no: bluecup is on table1, cup1 is on desk1, redcup is on table1",
+        ),
+        ("are all the plates on the table", "yes: plate1, plate2"),
+        ("which of the books is the smallest", "book3"),
+    ],
+)
+def test_an_answer_respects_the_number_that_is_asked_for(read, text, answer):
+    understood = read(text)
+    assert (understood.answer, understood.doubts) == (answer, ())
+
+
+@pytest.mark.parametrize(
     ("text", "step"),
     [
         ("can I have the milk", 'Bringing(Beneficiary="I", Theme=milk1)'),
@@ -156,6 +218,10 @@ def test_a_condition_after_but_is_only_that_of_its_own_clause(read):
         ("bring me the water instead", 'Bringing(Beneficiary="me", Theme=water1)'),
         ("portami invece l'acqua", 'Bringing(Beneficiary="mi", Theme=water1)'),
         ("assicurati che il frigo sia chiuso", 'Inspecting(Desired_state="che il frigo sia chiuso")'),
+        ("posso avere il latte?", 'Bringing(Beneficiary="posso avere", Theme=milk1)'),
+        ("d'accordo, prendi il latte", "Taking(Theme=milk1)"),
+        ("metti la tazza all'interno del frigo", "Placing(Theme=cup1, Goal=fridge1)"),
+        ("portami uno dei due piatti", 'Bringing(Beneficiary="mi", Theme=1 of plate1|plate2)'),
         ("segui Nora fino in cucina", "Cotheme(Cotheme=nora1, Goal=kitchen1)"),
         ("take the bigger of the two plates", "Taking(Theme=plate1)"),
         ("take the smallest of the books", "Taking(Theme=book3)"),
