@@ -197,7 +197,9 @@ class _StepReader:
             meaning = self._meanings.of(
                 phrase,
                 places,
-                may_be_none=role.role == "Topic" or clause.frame in ("Counting", "Being_located", "Removing"),
+                may_be_none=role.role == "Topic"
+                or clause.frame in ("Counting", "Being_located", "Removing")
+                or (clause.negated and phrase.amount.at_least is not None),  # never take more than two
                 as_place=role.role in PLACES,
                 owner=owner,
             )

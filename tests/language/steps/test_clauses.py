@@ -215,6 +215,7 @@ def test_an_answer_respects_the_number_that_is_asked_for(read, text, answer):
             "bring the plates one by one to the kitchen",
             'Bringing(Theme=plate1|plate2, Manner="one by one", Goal=kitchen1)',
         ),
+        ("never take more than two plates", "not Taking(Theme=at least 3 of plate1|plate2)"),
         ("bring me the water instead", 'Bringing(Beneficiary="me", Theme=water1)'),
         ("portami invece l'acqua", 'Bringing(Beneficiary="mi", Theme=water1)'),
         ("assicurati che il frigo sia chiuso", 'Inspecting(Desired_state="che il frigo sia chiuso")'),
