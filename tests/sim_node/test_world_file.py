@@ -7,7 +7,7 @@ from semmap.nodes.runtime.class_names import ClassNames
 from semmap.nodes.sim_node.models.sources import Models
 from semmap.nodes.sim_node.physics import base_scene
 from semmap.nodes.sim_node.vision.view import camera_names, camera_view
-from semmap.nodes.sim_node.world_file import names_classes, open_world, require_world, write_world
+from semmap.nodes.sim_node.world_file import names_classes, open_world, require_world
 from semmap.schemas.entities import ClassInfo
 from semmap.schemas.errors import BadFile
 from tests.household import household_classes
@@ -200,13 +200,6 @@ def test_bodies_of_a_scene_in_json_depend_on_classes_and_those_of_no_world_do_no
     path.write_text(json.dumps(SCENE))
     assert names_classes(path)
     assert not names_classes(None)
-
-
-def test_a_scene_in_json_has_no_shapes_of_its_own(tmp_path):
-    path, target = tmp_path / "world.json", tmp_path / "shapes" / "world_shapes.json"
-    path.write_text(json.dumps(SCENE))
-    write_world(path, Models(), target)
-    assert not target.parent.exists()
 
 
 def test_a_world_is_checked_without_being_opened(tmp_path):

@@ -126,7 +126,7 @@ class FrameCompletion(ClauseBoundaries):
             clause.frame, shown.role = "Guiding", "Cotheme"
 
     def _operate(self, clause: Clause) -> None:
-        """Read *stop* without a device as the end of an activity, and note a person who is no device."""
+        """Read *stop* without a device as the end of an activity, and report a person as not understood."""
         device = clause.role("Device")
         if device is not None and device.phrases and self._is_person(device.phrases[0]):
             self.found.unused.append(self._t.between(device.first, device.end))

@@ -26,7 +26,7 @@ ROOM = structs.replace(
 @pytest.fixture
 def world(monkeypatch):
     shape = model_shapes.ModelShape(size_m=FRIDGE.size_m)
-    monkeypatch.setattr(model_shapes, "_world", {"world/fridge1": shape})
+    monkeypatch.setattr(model_shapes, "_world", model_shapes.WorldShapes.of({"fridge1": shape}))
 
 
 def test_the_parts_of_an_entity_are_kept():
@@ -74,7 +74,8 @@ def test_joints_are_as_drawn_unless_the_map_states_them():
 
 @pytest.mark.usefixtures("world")
 def test_the_body_of_the_world_file_stands_for_the_entity_of_its_name_and_size():
-    assert model_of(FRIDGE) == "world/fridge1"
+    assert model_shapes.shape_named(model_of(FRIDGE)).size_m == FRIDGE.size_m
+    assert model_of(FRIDGE) != "fridge"
     assert name_shape_source(FRIDGE) == "world"
     assert model_of(structs.replace(FRIDGE, name="fridge2")) == "fridge"
     assert model_of(structs.replace(FRIDGE, size_m=(9.0, 9.0, 9.0))) == "fridge"
