@@ -34,10 +34,10 @@ class ArgumentReader(FrameCompletion):
                 )
                 self.found.clauses.append(further)
                 return self._arguments(further, to)
-            elif (phrase := self._next_place(clause, j := self._after_then(i))) is not None:
+            elif (j := self._after_then(i)) > i and self._is_receiver_gap(clause, j):
+                return self._gapped(clause, j)
+            elif (phrase := self._next_place(clause, j)) is not None:
                 i = self._coordinate(clause, j - 1, phrase)
-            elif g.is_a(words[i], "and") and self._is_receiver_gap(clause, i + 1):
-                return self._gapped(clause, i + 1)
             elif words[i] == ",":
                 i += 1
             elif (
@@ -52,6 +52,7 @@ class ArgumentReader(FrameCompletion):
                     objects[-1].all_of
                     or objects[-1].determiner == "any"
                     or g.is_a(objects[-1].noun, "anything")
+                    or (objects[-1].is_plural and excluded[0].noun in ("one", "ones"))
                 ):
                     objects[-1].exclude(excluded)  # all cups but the red one
                 elif self._is_negated:
@@ -278,12 +279,13 @@ class ArgumentReader(FrameCompletion):
 
     def _next_place(self, clause: Clause, i: int) -> NounPhrase | None:
         """Return the phrase at `i`, after a comma or *then*, if a list of objects or places goes on there."""
-        is_next = i > 0 and (self._words[i - 1] == "," or self._words[i - 1] == "then")
-        phrase = self._np.read(i) if is_next and not self._t.is_mark(i) else None
-        if phrase is None or not (phrase.key or phrase.amount.is_other):
+        before = self._words[i - 1]
+        phrase = self._np.read(i) if before in (",", "then") and not self._t.is_mark(i) else None
+        if phrase is None or not (phrase.key or phrase.amount.is_other or phrase.noun in ("one", "ones")):
             return None
         self._finish(clause)
-        return phrase if self._has_place(clause) else None
+        goes_on = self._has_place(clause) and (before == "," or self._is_gap(clause, phrase))
+        return phrase if goes_on else None
 
     def _prepositional(self, clause: Clause, i: int) -> int | None:
         """Read a phrase with a preposition as a role; return its end."""

@@ -53,6 +53,14 @@ def texts(understood):
             ],
         ),
         (
+            "give Nora the milk, me the kettle",
+            ["Giving(Recipient=nora1, Theme=milk1)", 'Giving(Recipient="me", Theme=kettle1)'],
+        ),
+        (
+            "put the red cup on the desk, the blue one on the sofa",
+            ["Placing(Theme=redcup, Goal=desk1)", "Placing(Theme=bluecup, Goal=couch1)"],
+        ),
+        (
             "porta a Nora il latte e a me il bollitore",
             ["Bringing(Beneficiary=nora1, Theme=milk1)", 'Bringing(Beneficiary="a me", Theme=kettle1)'],
         ),
@@ -102,6 +110,7 @@ def test_each_object_of_a_list_has_its_own_place(read, text, steps):
         ("do not take the red cup but the blue one", ["not Taking(Theme=redcup)", "Taking(Theme=bluecup)"]),
         ("non prendere né il latte né l'acqua", ["not Taking(Theme=milk1|water1)"]),
         ("non portarmi né il latte né l'acqua", ['not Bringing(Beneficiary="mi", Theme=milk1|water1)']),
+        ("do not take the plates but the biggest one", ["not Taking(Theme=plate2)"]),
         ("take all plates but the biggest", ["Taking(Theme=plate2)"]),
     ],
 )
