@@ -94,8 +94,9 @@ def singulars(word: str) -> Iterator[str]:
 
 def _pieces(text: str) -> Iterator[str]:
     """Yield the words of an expression; an articulated preposition is two words, as in a command."""
-    for word in text.split():
-        yield from ARTICULATED.get(word, (word,)) if " " in text else (word,)
+    words = text.replace("'", "' ").split()
+    for word in words:
+        yield from ARTICULATED.get(word, (word,)) if len(words) > 1 else (word,)
 
 
 def _forms(infinitive: str) -> Iterator[str]:

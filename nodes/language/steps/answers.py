@@ -37,7 +37,7 @@ def answer(message: str, head: str, topic: str, meaning: Meaning, world: World) 
     words = message.replace("'s", " is").replace("'re", " are").split()
     wanted = _PROPERTIES.get(head)
     if words[:1] in (["is"], ["are"]):
-        return _with_evidence("yes", names, world) if names else _no(topic, meaning, world)
+        return _yes_or_no(topic, meaning, world)
     if words[:2] in (["how", "many"], ["how", "much"]) or wanted == "number":
         return _with_evidence(str(len(names)), names, world) if names else f"0: {_none(topic)}"
     if not names:
@@ -57,6 +57,23 @@ def _is_open(meaning: Meaning) -> bool:
 
 def _none(topic: str) -> str:
     return f"'{topic}': none is known; look there"
+
+
+def _yes_or_no(topic: str, meaning: Meaning, world: World) -> str:
+    """Return whether there are things of a description, as many as it states: are there two cups."""
+    description, names = meaning.description, meaning.names
+    least, most, number = None, None, None
+    if description is not None:
+        least, most, number = description.at_least, description.at_most, description.quantity
+    if least is None and most is None and isinstance(number, int):
+        least = number
+    if not names:
+        return _no(topic, meaning, world) if most is None or least is not None else "yes: 0"
+    if number == "all" and not set(meaning.alike) <= set(names):
+        return _no(topic, meaning, world)
+    if (least is not None and len(names) < least) or (most is not None and len(names) > most):
+        return _with_evidence(f"no: {len(names)}", names, world)
+    return _with_evidence("yes", names, world)
 
 
 def _no(topic: str, meaning: Meaning, world: World) -> str:

@@ -34,6 +34,10 @@ class ArgumentReader(FrameCompletion):
                 )
                 self.found.clauses.append(further)
                 return self._arguments(further, to)
+            elif (j := self._after_then(i)) > i and self._is_receiver_gap(clause, j):
+                return self._gapped(clause, j)
+            elif (phrase := self._next_place(clause, j)) is not None:
+                i = self._coordinate(clause, j - 1, phrase)
             elif words[i] == ",":
                 i += 1
             elif (
@@ -48,12 +52,17 @@ class ArgumentReader(FrameCompletion):
                     objects[-1].all_of
                     or objects[-1].determiner == "any"
                     or g.is_a(objects[-1].noun, "anything")
+                    or (objects[-1].is_plural and excluded[0].noun in ("one", "ones"))
                 ):
                     objects[-1].exclude(excluded)  # all cups but the red one
+                elif self._is_negated:
+                    return self._contrast(clause, i + 1)
                 else:
                     self.found.unused.append(self._t.between(i, excluded[-1].end))
                 i = excluded[-1].end
             elif words[i] == "but" and any(g.match(kind, words, i + 1) for kind in ("to", "from", "place")):
+                if self._is_negated:
+                    return self._contrast(clause, i + 1)
                 end = self._clause_end(i + 1)  # not to Nora but to me
                 self.found.unused.append(self._t.between(i, end))
                 i = end
@@ -112,10 +121,14 @@ class ArgumentReader(FrameCompletion):
 
     def _next_goal(self, i: int) -> int:
         """Return the index of another goal after *then* at `i`, or 0: to the desk, then TO THE SHELF."""
-        j = i
-        while j < len(self._words) and (self._words[j] == "," or self._g.match("then", self._words, j)):
-            j += max(1, self._g.match("then", self._words, j))
+        j = self._after_then(i)
         return j if j > i and self._g.match("to", self._words, j) else 0
+
+    def _after_then(self, i: int) -> int:
+        """Return the index after commas and words such as *then* at `i`."""
+        while i < len(self._words) and (self._words[i] == "," or self._g.match("then", self._words, i)):
+            i += max(1, self._g.match("then", self._words, i))
+        return i
 
     def _object(self, clause: Clause, i: int) -> NounPhrase | None:
         phrase = self._np.read(i)
@@ -203,28 +216,13 @@ class ArgumentReader(FrameCompletion):
 
     def _coordinate(self, clause: Clause, i: int, phrase: NounPhrase) -> int:
         """Read *and* with a noun phrase: one more thing, or a clause without its verb (and a fork in it)."""
-        self._finish(clause)
         last = clause.roles[-1] if clause.roles else None
-        roles = self._g.frames[clause.frame].roles
-        if (
-            last is not None
-            and last.phrases
-            and last.role != roles.get("object")
-            and clause.role(roles.get("object", ""))
-        ):
-            is_gap = (
-                bool(phrase.places)
-                or self._g.match("to", self._words, phrase.end)
-                or self._g.match("from", self._words, phrase.end)
-            )
-            if is_gap or (
-                clause.frame in ("Giving", "Bringing") and self._g.match("place", self._words, phrase.end)
-            ):
-                other = Clause(
-                    clause.frame, clause.verb, i + 1, conditions=clause.conditions, times=clause.times
-                )
-                self.found.clauses.append(other)
-                return self._arguments(other, i + 1)
+        opens = last is None or (bool(last.phrases) and last.phrases[-1].kind in ("speaker", "pronoun"))
+        if opens and self._words[i] == "or" and self._words[phrase.end : phrase.end + 1] == ("or",):
+            return i + 1  # Italian "o il latte o l'acqua"
+        self._finish(clause)
+        if self._has_place(clause) and self._is_gap(clause, phrase):
+            return self._gapped(clause, i + 1)
         if phrase.kind == "name" and not self._t.tokens[phrase.head].is_capital:
             return self._unread(i + 1)
         if last is None or not last.phrases:
@@ -237,6 +235,57 @@ class ArgumentReader(FrameCompletion):
             last.phrases.append(phrase)
         last.end = phrase.end
         return phrase.end
+
+    def _gapped(self, clause: Clause, i: int) -> int:
+        """Read a clause without its verb, which is that of the clause before."""
+        self._finish(clause)
+        other = Clause(clause.frame, clause.verb, i, conditions=clause.conditions, times=clause.times)
+        self.found.clauses.append(other)
+        return self._arguments(other, i)
+
+    def _is_receiver_gap(self, clause: Clause, i: int) -> bool:
+        """Return whether another receiver with an object is at `i`: (give Nora milk and) ME WATER."""
+        roles = self._g.frames[clause.frame].roles
+        receiver, given = clause.role(roles.get("receiver", "")), clause.role(roles.get("object", ""))
+        if receiver is None or given is None or receiver is given:
+            return False
+        to = self._np.read(i + self._g.match("to", self._words, i))
+        if to is None or self._t.is_mark(to.end) or not (to.kind == "speaker" or self._is_person(to)):
+            return False
+        return self._np.read(to.end) is not None and not self._g.is_a(self._words[to.end], "and")
+
+    def _contrast(self, clause: Clause, i: int) -> int:
+        """Read what is to be done instead of a negated clause: (do not take the milk but) THE WATER."""
+        self._finish(clause)
+        other = Clause(clause.frame, clause.verb, i, conditions=clause.conditions, contrasts=True)
+        self.found.clauses.append(other)
+        self._is_negated = False
+        end = self._arguments(other, i)
+        known = {role.role for role in other.roles}
+        other.roles = [*(role for role in clause.roles if role.role not in known), *other.roles]
+        return end
+
+    def _has_place(self, clause: Clause) -> bool:
+        """Return whether another role than the object was read last, after an object."""
+        last = clause.roles[-1] if clause.roles else None
+        name = self._g.frames[clause.frame].roles.get("object", "")
+        return last is not None and bool(last.phrases) and last.role != name and clause.role(name) is not None
+
+    def _is_gap(self, clause: Clause, phrase: NounPhrase) -> bool:
+        """Return whether a phrase is the object of a clause without its verb: (and) the cup TO NORA."""
+        takes = "place" in self._g.frames[clause.frame].roles or clause.frame in ("Giving", "Bringing")
+        kinds = ("to", "from", "place") if takes else ("to", "from")
+        return bool(phrase.places) or any(self._g.match(kind, self._words, phrase.end) for kind in kinds)
+
+    def _next_place(self, clause: Clause, i: int) -> NounPhrase | None:
+        """Return the phrase at `i`, after a comma or *then*, if a list of objects or places goes on there."""
+        before = self._words[i - 1]
+        phrase = self._np.read(i) if before in (",", "then") and not self._t.is_mark(i) else None
+        if phrase is None or not (phrase.key or phrase.amount.is_other or phrase.noun in ("one", "ones")):
+            return None
+        self._finish(clause)
+        goes_on = self._has_place(clause) and (before == "," or self._is_gap(clause, phrase))
+        return phrase if goes_on else None
 
     def _prepositional(self, clause: Clause, i: int) -> int | None:
         """Read a phrase with a preposition as a role; return its end."""

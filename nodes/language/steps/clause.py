@@ -30,6 +30,8 @@ class Clause:
     conditions: list[str] = field(default_factory=list)
     times: list[str] = field(default_factory=list)
     asks: bool = False
+    contrasts: bool = False
+    """Whether it is to be done although the words before it are negated: not the milk but THE WATER."""
 
     def role(self, name: str) -> Role | None:
         """Return the first filler of a role."""

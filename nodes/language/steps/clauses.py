@@ -62,6 +62,7 @@ class ClauseReader(MessageReader):
                 self.found.context.append((len(self.found.clauses), topic))
                 i = topic.end + 1
             elif wish := self._wish(i):
+                self._is_negated = negated
                 i = self._wished(i, wish)
                 self.found.clauses[-1].negated = negated
                 self.found.clauses[-1].times += times
@@ -86,9 +87,10 @@ class ClauseReader(MessageReader):
                 i += phase
             elif self._g.verb(self._words, i)[0] or self._lets_know(i):
                 before = len(self.found.clauses)
+                self._is_negated = negated
                 i = self._clause(i)
                 for clause in self.found.clauses[before:]:
-                    clause.negated = negated
+                    clause.negated = negated and not clause.contrasts
                     clause.times += times
                 if front is not None:
                     self._add_front(self.found.clauses[before], *front)
@@ -131,9 +133,10 @@ class ClauseReader(MessageReader):
         return is_next and not self._t.is_mark(j) and self._g.verb(self._words, j)[0] > 0
 
     def _follows_and(self, i: int) -> bool:
-        """Return whether *and* or *then* is before `i`."""
+        """Return whether *and*, *but* or *then* is before `i`."""
         before = i - 1 - (self._words[i - 1] == ",")
-        return self._g.is_a(self._words[before], "and") or self._words[before] == "then"
+        is_but = self._words[before] == "but" and self._words[i] != "only"
+        return is_but or self._g.is_a(self._words[before], "and") or self._words[before] == "then"
 
     def _is_fronted(self, i: int, first: int) -> bool:
         """Return whether a condition at `i` stands before its clause; clause `first` begins the sentence."""

@@ -2,16 +2,41 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 from msgspec import structs
 
 from semmap.nodes.language.steps.entity_tests import Meaning
+from semmap.nodes.language.steps.phrase import NounPhrase
 from semmap.schemas.language import CommandStep, Filler
 
 PLACES: Final = frozenset(("Goal", "Source", "Ground", "Location", "Path"))
 """Roles of places."""
 _MOVING: Final = frozenset(("Taking", "Bringing", "Giving", "Placing"))
+
+
+@dataclass(slots=True)
+class Mention:
+    """A filler that a later pronoun may refer to."""
+
+    step: int
+    role: str
+    filler: Filler
+    is_person: bool
+    is_plural: bool
+    is_place: bool
+    phrase: NounPhrase | None = None
+
+    @property
+    def denotes_some(self) -> bool:
+        """Return whether only some of the filler's entities are meant: a cup, two of the three cups."""
+        description = self.filler.description
+        if description is not None and isinstance(description.quantity, int):
+            return description.quantity < len(self.filler.entities)
+        phrase = self.phrase
+        is_any = phrase is not None and not (phrase.is_plural or phrase.is_definite or phrase.all_of)
+        return is_any and len(self.filler.entities) > 1
 
 
 def except_things(
@@ -37,34 +62,48 @@ def except_things(
             found = [f for f in fillers if role not in PLACES and set(thing.entities) < set(f.entities)]
             changed += ((filler, _without(filler, thing)) for filler in found)
             roles[role] = tuple(_without(f, thing) if f in found else f for f in fillers)
-        is_apart = not any(set(thing.entities) & set(f.entities) for f in roles.get("Theme", ()))
+        # the other cups are apart from one cup, although any of them may be that one
+        left = () if thing.description is None else thing.description.excluded
+        is_apart = not any(
+            set(thing.entities) & set(f.entities) and f.text not in left for f in roles.get("Theme", ())
+        )
         if stays and is_apart and step.frame in _MOVING:  # leave the others
             meant = structs.replace(last, frame=step.frame, negated=True)
         steps[k] = structs.replace(step, roles=roles)
     return meant, changed
 
 
-def keep_mentioned(meaning: Meaning, mentioned: list[Filler], text: str) -> None:
+def keep_mentioned(meaning: Meaning, mentioned: list[Mention], text: str) -> None:
     """Keep only the last `mentioned` things in the meaning of the phrase `text`, such as *the same cup*."""
     names = set(meaning.names)
-    last = next((f for f in reversed(mentioned) if names.issuperset(f.entities) and f.entities), None)
+    fillers = (m.filler for m in reversed(mentioned))
+    last = next((f for f in fillers if names.issuperset(f.entities) and f.entities), None)
     if last is None:
         meaning.doubts.append(f"'{text}': nothing of the kind was mentioned before")
     else:
         meaning.names, meaning.ambiguous = last.entities, False
 
 
-def leave_mentioned(meaning: Meaning, mentioned: list[Filler], text: str) -> None:
-    """Exclude what was `mentioned` from the meaning of the phrase `text`, such as *the other cups*."""
+def leave_mentioned(meaning: Meaning, mentioned: list[Mention], text: str) -> None:
+    """Exclude what was `mentioned` from the meaning of the phrase `text`, such as *the other cups*.
+
+    If only some of the entities of a mention are meant, any of them may be left: only the description
+    excludes them.
+    """
     names = set(meaning.names)
-    before = [f for f in mentioned if not names or (names & set(f.entities) and not names <= set(f.entities))]
-    if not before:
+    some = [m.filler for m in mentioned if m.denotes_some and names & set(m.filler.entities)]
+    if some and meaning.description is not None:
+        excluded = (*meaning.description.excluded, *(filler.text for filler in some))
+        meaning.description = structs.replace(meaning.description, excluded=excluded)
+    fillers = (m.filler for m in mentioned if not m.denotes_some)
+    before = [f for f in fillers if not names or (names & set(f.entities) and not names <= set(f.entities))]
+    if not before and not some:
         meaning.doubts.append(f"'{text}': nothing of the kind was mentioned before")
     left = Filler(text, "", meaning.names, meaning.description)
     for filler in before:
         left = _without(left, filler)
     meaning.names, meaning.description = left.entities, left.description
-    meaning.ambiguous = meaning.ambiguous and len(meaning.names) > 1
+    meaning.ambiguous = meaning.ambiguous and not some and len(meaning.names) > 1
     if names and not meaning.names:
         meaning.doubts.append(f"'{text}': no other one is known")
 

@@ -89,6 +89,7 @@ class FrameCompletion(ClauseBoundaries):
         if main is None or phrase is None or not phrase.places or clause.role("Goal") is not None:
             return
         goes = clause.frame == "Emptying" or self._np.is_place(phrase.places[-1].other)
+        goes = goes or (clause.verb == "bring" and clause.role("Beneficiary") is None)  # porta X sul tavolo
         if goes and not phrase.places[-1].negated:
             place = phrase.places.pop()
             phrase.end = main.end = min(phrase.end, place.first)

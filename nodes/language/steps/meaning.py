@@ -201,7 +201,7 @@ class Meanings(EntityTests):
             and not relations
             and not phrase.attributes
             and not phrase.purpose
-            and not phrase.superlative
+            and (not phrase.superlative or phrase.noun in ("one", "ones"))
         ) or (is_any and wants_one and len(meaning.names) > 1):
             meaning.names = ()
         meaning.description = self._description(phrase, names or meaning.alike, relations, is_any)

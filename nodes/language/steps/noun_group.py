@@ -164,7 +164,7 @@ class NounGroupReader:
                 any(g.is_a(word, kind) for kind in _NEVER_INSIDE)
                 or (word in _ADVERBS and not self._follows_article(i))
                 or word.startswith("n't")
-                or g.match("condition", words, i) > 1
+                or max(g.match("condition", words, i), g.match("manner", words, i)) > 1
                 or (seen and self.duration(i))
             ):
                 break
@@ -242,8 +242,14 @@ class NounGroupReader:
             phrase.noun, phrase.key = words[start], self.key(start, start + 1)
             self._modifiers(phrase, start + 1, end)
             return
-        if noun is None and self._t.is_translated and self._is_modifier(head):  # quella rossa
-            phrase.noun = "one"
+        number = g.number(words[head]) if end - start == 1 and words[head] != "one" else None
+        if noun is None and number is not None:  # bring one cup to Nora and TWO to me
+            phrase.noun, phrase.quantity, phrase.is_plural = "ones", number, number > 1
+            return
+        may_be_chosen = words[head].endswith("est") or words[end : end + 1] == ("of",)
+        is_chosen = may_be_chosen and self._superlative(head, end + 1) > 0
+        if noun is None and (is_chosen or (self._t.is_translated and self._is_modifier(head))):
+            phrase.noun = "one"  # the biggest (of the plates), quella rossa
             self._modifiers(phrase, start, end)
             return
         if noun is None:

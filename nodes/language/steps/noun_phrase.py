@@ -35,13 +35,19 @@ class NounPhraseReader(PronounReader):
                 return None
             if phrase.amount.is_other:
                 phrase.noun, phrase.head, phrase.end = "ones" if phrase.is_plural else "one", start - 1, start
+                phrase.end += self._words[start : start + 1] in (("one",), ("ones",))  # the other one
+                self._after_the_noun(phrase, with_places)
                 return phrase
             if self._words[i] in ("this", "that", "these", "those", "all", "both", "another"):
                 phrase.kind, phrase.head, phrase.end, phrase.noun = "pronoun", i, start, self._words[i]
                 return phrase
             if phrase.quantity is None:
                 return None
-            phrase.noun, phrase.head, phrase.end = self._words[start - 1], start - 1, start
+            phrase.noun, phrase.head, phrase.end = (
+                "ones",
+                start - 1,
+                start,
+            )  # bring one cup to Nora, TWO to me
             return phrase
         self._group(phrase, start, end)
         if phrase.end < len(self._words) and self._is_possessive(phrase.end):
@@ -102,7 +108,9 @@ class NounPhraseReader(PronounReader):
         """
         found: list[NounPhrase] = []
         while (other := self.read(i, with_places=False)) is not None:
-            if other.noun in ("one", "ones") and not other.attributes:
+            if other.noun in ("one", "ones") and not (
+                other.attributes or other.superlative or other.quantity
+            ):
                 other = self.read(i) or other
             if not (other.determiner or other.attributes or other.quantity):
                 other.quantity = self._g.number(other.noun)  # all cups except two
@@ -190,7 +198,7 @@ class NounPhraseReader(PronounReader):
                 other = self.read(i + 1, with_places=with_places)
                 if other is None:
                     return
-                phrase.of, phrase.end = other, other.end
+                self._add_whole(phrase, other)
             elif with_places and (place := self._place(i)) is not None:
                 phrase.places.append(place)
                 phrase.end = place.end
@@ -199,6 +207,19 @@ class NounPhraseReader(PronounReader):
                     place.other.excluded = []
             else:
                 return
+
+    def _add_whole(self, phrase: NounPhrase, other: NounPhrase) -> None:
+        """Add the thing after *of*: that of which one is a part, or those of which it is one."""
+        phrase.end = other.end
+        if phrase.superlative and phrase.noun == "one" and other.key:  # the biggest of the two plates
+            phrase.noun, phrase.key, phrase.amount.total = other.noun, other.key, other.quantity
+            phrase.attributes += other.attributes
+            phrase.places += other.places
+            phrase.excluded += other.excluded
+        elif phrase.superlative and other.quantity is not None and not other.key:  # the biggest of the two
+            phrase.amount.total = other.quantity
+        else:
+            phrase.of = other
 
     def _is_verb(self, i: int) -> bool:
         """Return whether a verb is at `i`: the kitchen, but not ENTER the studio."""
@@ -221,6 +242,8 @@ class NounPhraseReader(PronounReader):
             or self._starts_time(i)
             or self._g.match("manner", self._words, i)
             or self._g.match("here", self._words, i)
+            or self._g.match("at_least", self._words, i)
+            or self._g.match("at_most", self._words, i)
             or self._g.match("condition", self._words, i) > length
         ):
             return None

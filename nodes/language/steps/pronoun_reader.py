@@ -24,11 +24,12 @@ class PronounReader(NounGroupReader):
         elif length := g.match("here", words, i):
             phrase.kind, phrase.head, phrase.end, phrase.noun = "here", i, i + length, word
             return True
-        elif length := g.match("pronoun", words, i):
+        elif (length := g.match("pronoun", words, i)) and not self._is_part(i):
             longer = max(g.match("determiner", words, i), g.match("rest", words, i))
             if not self._is_determiner(i, length) and longer <= length:
                 phrase.kind, phrase.head, phrase.end = "pronoun", i + length - 1, i + length
                 phrase.noun = " ".join(words[i : i + length])
+                phrase.quantity = 1 if phrase.noun == "one" else phrase.quantity
                 is_all = g.is_a(word, "several_pronoun") and words[phrase.end : phrase.end + 1] in (
                     ("both",),
                     ("all",),
@@ -64,6 +65,10 @@ class PronounReader(NounGroupReader):
         ):
             return False
         return self._group_end(i + 1) > i + 1
+
+    def _is_part(self, i: int) -> bool:
+        """Return whether *one of them* is at `i`."""
+        return self._words[i : i + 2] == ("one", "of") and self._after_of(i + 1) > i + 1
 
     def exclusion(self, i: int) -> int:
         """Return the number of words before an exception at `i` (except, but not), or 0."""

@@ -32,6 +32,8 @@ class QuestionReader(ArgumentReader):
         if text == "which" and words[j : j + 1] == ("of",) and (topic := self._np.read(j + 1)) is not None:
             clause.roles.append(Role("Message", i, j, i))
             topic = self._predicate(topic)
+            if topic.superlative:  # which of the two cups is the biggest
+                topic.is_plural, topic.all_of, topic.quantity = False, False, None
             clause.roles.append(Role("Topic", j, topic.end, topic.head, [topic]))
             return self._addressed(clause, topic.end)
         if (

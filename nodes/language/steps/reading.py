@@ -14,7 +14,13 @@ from semmap.nodes.language.steps.answers import answer
 from semmap.nodes.language.steps.clause import Clause, Role
 from semmap.nodes.language.steps.clauses import ClauseReader
 from semmap.nodes.language.steps.entity_tests import Meaning, Names, World
-from semmap.nodes.language.steps.exclusions import PLACES, except_things, keep_mentioned, leave_mentioned
+from semmap.nodes.language.steps.exclusions import (
+    PLACES,
+    Mention,
+    except_things,
+    keep_mentioned,
+    leave_mentioned,
+)
 from semmap.nodes.language.steps.meaning import Meanings
 from semmap.nodes.language.steps.phrase import Amount, NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.translation import translate
@@ -44,22 +50,9 @@ class Steps:
     unknown: list[str] = field(default_factory=list)
     answers: list[str] = field(default_factory=list)
     commands: bool = False
-    """Whether the text begins as a command does: with a verb or a condition."""
+    """Whether the text begins as a command does: with a verb, a wish or a condition."""
     asks: bool = False
     """Whether all of the steps are direct questions."""
-
-
-@dataclass(slots=True)
-class _Mention:
-    """A filler that a later pronoun may refer to."""
-
-    step: int
-    role: str
-    filler: Filler
-    is_person: bool
-    is_plural: bool
-    is_place: bool
-    phrase: NounPhrase | None = None
 
 
 def read_steps(text: str, world: World, scene: Scene | None = None) -> Steps:
@@ -72,7 +65,7 @@ class _StepReader:
         self._t, self._world = text, world
         self._g = commands.load()
         self._meanings = Meanings(text, self._g, world)
-        self._mentions: list[_Mention] = []
+        self._mentions: list[Mention] = []
         self._found = Steps()
 
     def read(self) -> Steps:
@@ -89,13 +82,15 @@ class _StepReader:
                     meaning.names,
                     meaning.description,
                 )
-                mention = _Mention(
+                mention = Mention(
                     0, "", filler, meaning.is_person, phrase.is_plural, meaning.is_place, phrase
                 )
                 self._mentions.append(mention)
             found.steps.append(self._step(clause, len(found.steps) + 1))
         is_condition = bool(self._g.match("condition", self._t.words, 0))
-        found.commands = is_condition or self._g.verb(self._t.words, 0)[0] > 0
+        first = self._g.match("polite", self._t.words, 0)
+        is_wish = any(self._g.match("wish", self._t.words, i) for i in (0, first))
+        found.commands = is_condition or is_wish or self._g.verb(self._t.words, 0)[0] > 0
         found.asks = bool(parsed.clauses) and all(clause.asks for clause in parsed.clauses)
         found.unknown = list(dict.fromkeys(parsed.unknown))
         conditions = dict.fromkeys(text for clause in parsed.clauses for text in clause.conditions)
@@ -111,7 +106,7 @@ class _StepReader:
 
     def _step(self, clause: Clause, number: int) -> CommandStep:
         roles: dict[str, tuple[Filler, ...]] = {}
-        mentions: list[_Mention] = []
+        mentions: list[Mention] = []
         where = self._where(clause)
         self._guide(clause)
         for role in clause.roles:
@@ -140,12 +135,11 @@ class _StepReader:
                 mention.filler = after if mention.filler is before else mention.filler
         return step
 
-    def _compare_mentioned(self, phrase: NounPhrase, meaning: Meaning, now: list[_Mention]) -> None:
+    def _compare_mentioned(self, phrase: NounPhrase, meaning: Meaning, now: list[Mention]) -> None:
         """Compare the meaning of *another cup* or *the same cup* with what was mentioned."""
-        mentions = (m for m in (*self._mentions, *now) if m.is_person == meaning.is_person and not m.is_place)
+        mentions = [m for m in (*self._mentions, *now) if m.is_person == meaning.is_person and not m.is_place]
         compare = keep_mentioned if phrase.amount.is_same else leave_mentioned
-        text = self._t.between(phrase.first, phrase.end)
-        compare(meaning, [mention.filler for mention in mentions], text)
+        compare(meaning, mentions, self._t.between(phrase.first, phrase.end))
 
     def _guide(self, clause: Clause) -> None:
         """Change the frame of *take them to the kitchen* if a pronoun refers to a person."""
@@ -174,7 +168,7 @@ class _StepReader:
         return [PlacePhrase(preposition or "in", other, role.first, role.end, names=names)]
 
     def _fillers(
-        self, clause: Clause, role: Role, number: int, where: list[PlacePhrase], mentions: list[_Mention]
+        self, clause: Clause, role: Role, number: int, where: list[PlacePhrase], mentions: list[Mention]
     ) -> Iterator[Filler]:
         if role.role in _WORDS_ONLY or not role.phrases:
             yield Filler(self._t.between(role.first, role.end), self._t.word(role.head))
@@ -192,7 +186,7 @@ class _StepReader:
                 continue
             if phrase.kind == "pronoun":
                 filler = self._pronoun(phrase, text, head, clause, role, number, mentions)
-                yield self._part(phrase, filler, clause)
+                yield self._part(phrase, filler, clause, mentions)
                 continue
             self._complete(phrase, mentions)
             for other in (*phrase.excluded, *phrase.alternatives):
@@ -203,7 +197,9 @@ class _StepReader:
             meaning = self._meanings.of(
                 phrase,
                 places,
-                may_be_none=role.role == "Topic" or clause.frame in ("Counting", "Being_located", "Removing"),
+                may_be_none=role.role == "Topic"
+                or clause.frame in ("Counting", "Being_located", "Removing")
+                or (clause.negated and phrase.amount.at_least is not None),  # never take more than two
                 as_place=role.role in PLACES,
                 owner=owner,
             )
@@ -214,6 +210,8 @@ class _StepReader:
                 is_all = len(role.phrases) == 1 or self._t.words[role.phrases[0].first] == "neither"
                 clause.negated = clause.negated or is_all
                 meaning.doubts += [] if is_all else [f"'{text}' is not meant"]
+            if phrase.amount.is_none and role.role == "Topic" and meaning.description is not None:
+                meaning.description = structs.replace(meaning.description, at_most=0)  # are there no cups
             filler = Filler(text, head, meaning.names, meaning.description)
             self._note(meaning)
             if role.role == "Topic" and (message := clause.role("Message")) is not None:
@@ -221,7 +219,7 @@ class _StepReader:
                 asked_of = self._t.words[message.head]
                 self._found.answers.append(answer(asked, asked_of, text, meaning, self._world))
             mentions.append(
-                _Mention(
+                Mention(
                     number,
                     role.role,
                     filler,
@@ -233,7 +231,7 @@ class _StepReader:
             )
             yield filler
 
-    def _part(self, phrase: NounPhrase, filler: Filler, clause: Clause) -> Filler:
+    def _part(self, phrase: NounPhrase, filler: Filler, clause: Clause, now: list[Mention]) -> Filler:
         """Return the filler of a pronoun with its quantity: two of them, none of them."""
         amount = phrase.amount
         if amount == Amount() and phrase.quantity is None:
@@ -242,9 +240,12 @@ class _StepReader:
         amount.is_vague = amount.is_vague or amount.is_other
         doubt = quantities.count(phrase, len(filler.entities) or None, filler.text)
         self._found.doubts += [doubt] if doubt else []
-        return structs.replace(filler, description=quantities.describe(phrase, filler.description))
+        part = structs.replace(filler, description=quantities.describe(phrase, filler.description))
+        for mention in now:
+            mention.filler = part if mention.filler is filler else mention.filler
+        return part
 
-    def _complete(self, phrase: NounPhrase, now: list[_Mention]) -> None:
+    def _complete(self, phrase: NounPhrase, now: list[Mention]) -> None:
         """Give a phrase without a noun that of the last thing: the red one."""
         if phrase.noun in ("one", "ones"):
             before = (
@@ -255,7 +256,8 @@ class _StepReader:
             if (like := next(before, None)) is not None:
                 self._take_noun(phrase, like)
             else:
-                self._found.doubts.append(f"'{phrase.noun}' refers to nothing that was mentioned")
+                word = self._t.word(phrase.head)
+                self._found.doubts.append(f"'{word}' refers to nothing that was mentioned")
 
     def _take_noun(self, phrase: NounPhrase, like: NounPhrase) -> None:
         """Give a phrase the noun of another one: of *red cup* only *cup*."""
@@ -286,7 +288,7 @@ class _StepReader:
 
     # Pronouns
 
-    def _affords(self, mention: _Mention, roles: Mapping[str, str], role: str) -> bool:
+    def _affords(self, mention: Mention, roles: Mapping[str, str], role: str) -> bool:
         """Return whether a thing affords an action, by its class or because it had such a role before.
 
         `roles` maps the roles of the action to classes.
@@ -307,7 +309,7 @@ class _StepReader:
         clause: Clause,
         role: Role,
         number: int,
-        mentions: list[_Mention],
+        mentions: list[Mention],
     ) -> Filler:
         antecedent = self._antecedent(phrase, clause, role, mentions)
         if antecedent is None:
@@ -335,15 +337,15 @@ class _StepReader:
             Antecedent(antecedent.step, antecedent.role) if antecedent.step else None,
         )
         mentions.append(
-            _Mention(
+            Mention(
                 number, role.role, filler, antecedent.is_person, antecedent.is_plural, antecedent.is_place
             )
         )
         return filler
 
     def _antecedent(
-        self, phrase: NounPhrase, clause: Clause, role: Role, now: list[_Mention]
-    ) -> _Mention | None:
+        self, phrase: NounPhrase, clause: Clause, role: Role, now: list[Mention]
+    ) -> Mention | None:
         g, word = self._g, phrase.noun
         mentions = [mention for mention in self._mentions if mention.filler.text]
         roles = AFFORDANCES.get(clause.frame, {})

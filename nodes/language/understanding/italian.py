@@ -222,7 +222,7 @@ class _Glossing:
         before = self._found[-1] if self._found else None
         return joined and (
             before is None
-            or before.kind in ("verb", "pron")
+            or (before.kind in ("verb", "pron") and before.text != "one")
             or before.text in ("like", "need", "is", "are", "want", "please", "there")
         )
 

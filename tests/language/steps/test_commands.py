@@ -184,6 +184,18 @@ def test_a_part_that_does_not_fit_is_named(read, text, doubt):
 
 
 @pytest.mark.parametrize(
+    "text",
+    ["take the cup and not the plate", "take the cup, not the plate", "take the cup but not the plate"],
+)
+def test_the_description_names_what_is_not_meant(read, text):
+    understood = read(text)
+    (step,) = understood.steps
+    (theme,) = step.roles["Theme"]
+    assert (theme.entities, theme.description.excluded) == (("cup1",), ("the plate",))
+    assert understood.doubts == ()
+
+
+@pytest.mark.parametrize(
     ("text", "steps"),
     [
         ("let me know where the kettle is", ['Telling(Addressee="me", Message="where", Topic=kettle1)']),
