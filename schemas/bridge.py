@@ -24,6 +24,7 @@ from semmap.schemas.commands import (
     Properties,
     Relations,
     Renew,
+    Rules,
     Sparql,
     Tell,
     Understand,
@@ -316,6 +317,7 @@ BRIDGE: dict[str, type[Call]] = {
         *(
             Classes,
             Properties,
+            Rules,
             Get,
             Check,
             Infer,
