@@ -281,7 +281,7 @@ def properties(client: Client, format: str) -> None:
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
 @with_client
 def rules(client: Client, format: str) -> None:
-    """List the SWRL rules of the TBox, and how often each holds now."""
+    """List the SWRL rules of the TBox, with how often each holds."""
     found = client.rules()
     if format == "json":
         print_json(found)

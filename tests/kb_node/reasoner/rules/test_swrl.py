@@ -179,3 +179,24 @@ def test_rules_of_functional_syntax_and_owl_xml_are_applied():
         reasoner = Reasoner(rdf.parse(text.encode(), name))
         reasoner.apply(insert=[triple(":i a :A")])
         assert reasoner.holds(triple(":i a :B")), name
+
+
+@random_(tries(60))
+@given(_CHANGES)
+def test_the_rules_use_computed_facts_and_release_them(changes):
+    reasoner, computed = Reasoner(TBOX), list[tuple[str, str, str]]()
+    for removed, added in changes:
+        remove = list(dict.fromkeys(computed[i % len(computed)] for i in removed if computed))
+        add = [fact for fact in added if fact[1].startswith("<http://example.org/")]
+        after = list(dict.fromkeys([*(fact for fact in computed if fact not in remove), *add]))
+        clash = Closure([*TBOX, *after]).clash
+        try:
+            reasoner.update_computed(remove=remove, add=add)
+        except Inconsistent:
+            rejected = True
+        else:
+            rejected, computed = False, after
+        assert rejected == (clash is not None)
+        closure = Closure([*TBOX, *computed])
+        assert set(reasoner.inferred()) == promised(closure, TBOX)
+        assert reasoner.is_compiled
