@@ -7,6 +7,7 @@ interchangeable: a match with one of them is a match with all.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import islice
 
 from semmap.nodes.kb_node.reasoner.abox.abox import ABox
 from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
@@ -41,13 +42,19 @@ class RuleMatching:
         atoms = self._order(rule, at, frozenset(start[0]))
         return list(self._join(atoms, 0, start[0], (Applied(rule), *claims, *start[1])))
 
-    def of_head(self, rule: SwrlRule, nodes: Sequence[int]) -> Match | None:
-        """Return a match in which the arguments of the head are the given nodes."""
+    def of_head(self, rule: SwrlRule, nodes: Sequence[int]) -> list[Match]:
+        """Return a match in which the arguments of the head are the given nodes, if there is one.
+
+        If an argument is calculated, all matches with the other arguments are returned.
+        """
         start = None if rule.head is None else self._bind(rule.head, nodes)
         if start is None:
-            return None
-        atoms = self._order(rule, NONE, frozenset(start[0]))
-        return next(self._join(atoms, 0, start[0], (Applied(rule), *start[1])), None)
+            return []
+        matched = swrl.find_matched(rule.body)
+        bound = {variable: node for variable, node in start[0].items() if variable in matched}
+        atoms = self._order(rule, NONE, frozenset(bound))
+        found = self._join(atoms, 0, bound, (Applied(rule), *start[1]))
+        return list(found if len(bound) < len(start[0]) else islice(found, 1))
 
     def node(self, argument: Term, bound: Bound) -> int:
         """Return the node of an argument of a head, which is created if it does not exist."""
@@ -158,6 +165,13 @@ class RuleMatching:
         if atom.kind == swrl.SAME:
             if one != other and self._abox.is_same(one, other):
                 yield {}, (Same(one, other),)
+            return
+        members = [self._abox.members(node) for node in (one, other)]
+        terms = [[self._store.terms[member] for member in nodes] for nodes in members]
+        if axiom := swrl.find_all_different(self._abox.schema.closure, *terms):
+            apart = Applied(SwrlRule(axiom[0][0], (), None, axiom))
+            ends = zip((one, other), members, strict=True)
+            yield {}, (apart, *(Same(end, node) for end, nodes in ends for node in nodes if node != end))
             return
         for x, y in ((one, other), (other, one)):
             if (edge := self._abox.find(x, (DIFFERENT, False), y)) != NONE:

@@ -227,8 +227,7 @@ class Saturation:
     def apply_rules_for(self, subject: int, predicate: int, object_: int) -> None:
         """Apply the SWRL rules that may imply an edge of a property."""
         for rule in self._abox.schema.rules_by_head.get(predicate, ()):
-            if (found := self._matching.of_head(rule, (subject, object_))) is not None:
-                self._conclude(rule, [found])
+            self._conclude(rule, self._matching.of_head(rule, (subject, object_)))
 
     def count_matches(self, rule: SwrlRule) -> int:
         """Return how often a SWRL rule holds: the number of matches, in which equal individuals are one."""

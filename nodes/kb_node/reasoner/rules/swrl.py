@@ -97,10 +97,11 @@ def ordered(body: Iterable[Atom], bound: Set[Term]) -> tuple[Atom, ...]:
     Raises ValueError if a variable cannot be bound.
     """
     rest, bound = list(body), set(bound)
+    matched = find_matched(rest)
     found: list[Atom] = []
     while rest:
-        best = min(rest, key=lambda atom: _rank(atom, bound))
-        if _rank(best, bound) == _NEVER:
+        best = min(rest, key=lambda atom: _rank(atom, bound, matched))
+        if _rank(best, bound, matched) == _NEVER:
             raise ValueError(f"unbound variable in {best.kind}")
         rest.remove(best)
         found.append(best)
@@ -111,16 +112,37 @@ def ordered(body: Iterable[Atom], bound: Set[Term]) -> tuple[Atom, ...]:
 _NEVER: Final = 9
 
 
-def _rank(atom: Atom, bound: Set[Term]) -> int:
-    """Return how early an atom is matched: a small number if it has few matches."""
+def find_matched(body: Iterable[Atom]) -> set[Term]:
+    """Return the variables of classes and properties. The others are calculated."""
+    return set[Term]().union(*(atom.variables for atom in body if atom.kind in (CLASS, PROPERTY)))
+
+
+def _rank(atom: Atom, bound: Set[Term], matched: Set[Term]) -> int:
+    """Return how early an atom is matched: a small number if it has few matches.
+
+    A `matched` variable is compared with the result of a calculation, and not bound by it.
+    """
     unknown = atom.variables - bound
     if not unknown:
         return 0
     if atom.kind == BUILT_IN and not builtins.is_comparison(atom.predicate):
-        return 1 if not set(filter(is_variable, atom.arguments[1:])) - bound else _NEVER
+        needed = set(filter(is_variable, atom.arguments[1:])) | (matched & set(atom.arguments[:1]))
+        return _NEVER if needed - bound else 1
     if atom.kind == PROPERTY:
         return 2 if len(unknown) < len(atom.arguments) else 4
     return 3 if atom.kind == CLASS else _NEVER
+
+
+def find_all_different(facts: Facts, ones: Iterable[Term], others: Iterable[Term]) -> tuple[Triple, ...]:
+    """Return the triples of an AllDifferent axiom that lists two different individuals, or ()."""
+    ones, others = set(ones), set(others)
+    for kind in facts.match(None, TYPE, _ALL_DIFFERENT):
+        for predicate in _LISTS:
+            for head in facts.match(kind[0], predicate):
+                members, cells = facts.members(head[2]) or ([], ())
+                if not (ones.isdisjoint(members) or others.isdisjoint(members) or ones & others):
+                    return (kind, head, *cells)
+    return ()
 
 
 class _Reader:
@@ -213,6 +235,8 @@ class _Reader:
         return found
 
 
+_ALL_DIFFERENT: Final = iri("owl:AllDifferent")
+_LISTS: Final = iri("owl:members"), iri("owl:distinctMembers")
 _VARIABLE: Final = f"{NAMESPACE}Variable>"
 _ATOMS: Final = {
     "ClassAtom": (CLASS, "classPredicate"),

@@ -20,7 +20,7 @@ AXIOMS = """
 :Some owl:onProperty :tra ; owl:someValuesFrom :C .
 :Has owl:onProperty :p ; owl:hasValue :i1 . :H rdfs:subClassOf :Has .
 :p a owl:ObjectProperty . :q a owl:ObjectProperty . :d a owl:DatatypeProperty . :dd a owl:DatatypeProperty .
-:i0 a :Z .
+:i0 a :Z . [] a owl:AllDifferent ; owl:members ( :i2 :i3 ) .
 """
 RULES = (
     "A(x), p(x, y) -> C(y)",
@@ -38,6 +38,9 @@ RULES = (
     "-> G(i3)",
     "sameAs(x, y), G(x), D(y) -> fun(x, i0)",
     "fun(x, y), d(x, 3) -> p(x, y)",
+    "q(x, y), sameAs(x, i2) -> tra(y, y)",
+    "d(x, v), dd(x, w), b.multiply(w, v, 1) -> H(x)",
+    "tra(x, y), differentFrom(x, i3) -> H(y)",
 )
 TBOX = graph(*RULES, axioms=AXIOMS)
 _NODES = st.sampled_from([f":i{n}" for n in range(4)])
