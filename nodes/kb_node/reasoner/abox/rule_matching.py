@@ -7,12 +7,13 @@ interchangeable: a match with one of them is a match with all.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from itertools import islice
 
 from semmap.nodes.kb_node.reasoner.abox.abox import ABox
 from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
 from semmap.nodes.kb_node.reasoner.explain.reasons import Applied, Claim, Edge, Member, Same
-from semmap.nodes.kb_node.reasoner.explanations import Term
+from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.rules import builtins, swrl
 from semmap.nodes.kb_node.reasoner.rules.swrl import Atom, SwrlRule
 from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT
@@ -166,17 +167,22 @@ class RuleMatching:
             if one != other and self._abox.is_same(one, other):
                 yield {}, (Same(one, other),)
             return
-        members = [self._abox.members(node) for node in (one, other)]
-        terms = [[self._store.terms[member] for member in nodes] for nodes in members]
-        if axiom := swrl.find_all_different(self._abox.schema.closure, *terms):
-            apart = Applied(SwrlRule(axiom[0][0], (), None, axiom))
-            ends = zip((one, other), members, strict=True)
-            yield {}, (apart, *(Same(end, node) for end, nodes in ends for node in nodes if node != end))
-            return
         for x, y in ((one, other), (other, one)):
             if (edge := self._abox.find(x, (DIFFERENT, False), y)) != NONE:
                 yield {}, (Edge(edge), *self._abox.equality_claims((edge,), x, y))
                 return
+        members = [self._abox.members(node) for node in (one, other)]
+        terms = [[self._store.terms[member] for member in nodes] for nodes in members]
+        for listed, axiom in self._all_different:
+            if not any(map(listed.isdisjoint, terms)) and not self._abox.is_same(one, other):
+                apart = Applied(SwrlRule(axiom[0][0], (), None, axiom))
+                ends = zip((one, other), members, strict=True)
+                yield {}, (apart, *(Same(end, node) for end, nodes in ends for node in nodes if node != end))
+                return
+
+    @cached_property
+    def _all_different(self) -> list[tuple[frozenset[Term], tuple[Triple, ...]]]:
+        return swrl.read_all_different(self._abox.schema.closure)
 
     def _match_built_in(self, atom: Atom, bound: Bound) -> Iterator[Match]:
         values: list[Term | None] = []

@@ -202,10 +202,11 @@ class Closure(Facts):
             return
         if atom.kind == swrl.DIFFERENT:
             same = [[end, *(fact[2] for fact in self.match(end, SAME_AS))] for end in ends]
-            if axiom := swrl.find_all_different(self, *same):
-                equal = {(end, SAME_AS, member) for end, *members in same for member in members}
-                yield {}, (*equal, *axiom)
-                return
+            for listed, axiom in swrl.read_all_different(self):
+                if not any(map(listed.isdisjoint, same)) and set(same[0]).isdisjoint(same[1]):
+                    equal = {(end, SAME_AS, member) for end, *members in same for member in members}
+                    yield {}, (*equal, *axiom)
+                    return
         for s, p, o in {_triple(atom, ends), _triple(atom, ends[::-1] if _is_symmetric(atom) else ends)}:
             wanted = (None if swrl.is_variable(s) else s, p, None if swrl.is_variable(o) else o)
             for fact in self.match(*wanted):

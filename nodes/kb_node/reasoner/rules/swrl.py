@@ -133,16 +133,15 @@ def _rank(atom: Atom, bound: Set[Term], matched: Set[Term]) -> int:
     return 3 if atom.kind == CLASS else _NEVER
 
 
-def find_all_different(facts: Facts, ones: Iterable[Term], others: Iterable[Term]) -> tuple[Triple, ...]:
-    """Return the triples of an AllDifferent axiom that lists two different individuals, or ()."""
-    ones, others = set(ones), set(others)
+def read_all_different(facts: Facts) -> list[tuple[frozenset[Term], tuple[Triple, ...]]]:
+    """Return the members of each AllDifferent axiom, with its triples."""
+    found: list[tuple[frozenset[Term], tuple[Triple, ...]]] = []
     for kind in facts.match(None, TYPE, _ALL_DIFFERENT):
         for predicate in _LISTS:
             for head in facts.match(kind[0], predicate):
                 members, cells = facts.members(head[2]) or ([], ())
-                if not (ones.isdisjoint(members) or others.isdisjoint(members) or ones & others):
-                    return (kind, head, *cells)
-    return ()
+                found.append((frozenset(members), (kind, head, *cells)))
+    return found
 
 
 class _Reader:

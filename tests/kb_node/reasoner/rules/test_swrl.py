@@ -54,7 +54,7 @@ _FACTS = st.one_of(
     st.builds("{} {} {}".format, _NODES, st.sampled_from(("owl:sameAs", "owl:differentFrom")), _NODES),
 ).map(triple)
 _CHANGES = st.lists(
-    st.tuples(st.lists(st.integers(0, 40), max_size=3), st.lists(_FACTS, max_size=4)), min_size=3, max_size=12
+    st.tuples(st.lists(st.integers(0, 40), max_size=3), st.lists(_FACTS, max_size=4)), min_size=3, max_size=8
 )
 
 
@@ -64,7 +64,7 @@ def random_(count):
     return settings(max_examples=count, deadline=None, suppress_health_check=checks, phases=[Phase.generate])
 
 
-@random_(tries(100))
+@random_(tries(45))
 @given(_CHANGES)
 def test_after_each_change_the_rules_hold_as_in_a_closure_from_scratch(changes):
     reasoner, facts = Reasoner(TBOX), list[tuple[str, str, str]]()
@@ -85,7 +85,7 @@ def test_after_each_change_the_rules_hold_as_in_a_closure_from_scratch(changes):
         assert set(found) == promised(closure, [*TBOX, *facts])
 
 
-@random_(tries(20))
+@random_(tries(9))
 @given(st.lists(_FACTS, max_size=12))
 def test_what_a_rule_implies_is_explained_by_facts_that_entail_it(facts):
     try:
@@ -184,7 +184,7 @@ def test_rules_of_functional_syntax_and_owl_xml_are_applied():
         assert reasoner.holds(triple(":i a :B")), name
 
 
-@random_(tries(60))
+@random_(tries(15))
 @given(_CHANGES)
 def test_the_rules_use_computed_facts_and_release_them(changes):
     reasoner, computed = Reasoner(TBOX), list[tuple[str, str, str]]()
