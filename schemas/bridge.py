@@ -24,6 +24,7 @@ from semmap.schemas.commands import (
     Properties,
     Relations,
     Renew,
+    Rules,
     Sparql,
     Tell,
     Understand,
@@ -334,6 +335,7 @@ BRIDGE: dict[str, type[Call]] = {
         *(
             Classes,
             Properties,
+            Rules,
             Get,
             Check,
             Infer,

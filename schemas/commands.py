@@ -24,6 +24,7 @@ from semmap.schemas.entities import (
     PropertyInfo,
     Quaternion,
     Remark,
+    RuleInfo,
     Size,
     Source,
     Text,
@@ -99,6 +100,7 @@ __all__ = [
     "Rename",
     "Renew",
     "Reset",
+    "Rules",
     "Set",
     "Sparql",
     "Status",
@@ -672,6 +674,12 @@ class Classes(Command[tuple[ClassInfo, ...]], frozen=True, tag="classes"):
 
 class Properties(Command[tuple[PropertyInfo, ...]], frozen=True, tag="properties"):
     """List the data and object properties of the TBox that `set` accepts, with their ranges and labels."""
+
+    ROLES: ClassVar[Roles] = ANYBODY
+
+
+class Rules(Command[tuple[RuleInfo, ...]], frozen=True, tag="rules"):
+    """List the SWRL rules of the TBox as sentences, with how often each holds now."""
 
     ROLES: ClassVar[Roles] = ANYBODY
 

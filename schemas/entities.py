@@ -436,6 +436,19 @@ class ClassInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The number of entities of this class, including inferred ones."""
 
 
+class RuleInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A SWRL rule of the TBox."""
+
+    name: str
+    """Its label or the name in its IRI, or ""."""
+    text: str
+    """The rule as a sentence; empty if it is not supported."""
+    holds: int
+    """The number of combinations of individuals and values for which its conditions hold now."""
+    unsupported: str = ""
+    """The reason why the rule has no effect, or ""."""
+
+
 class PropertyInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A data or object property of the TBox that can be set for an entity."""
 

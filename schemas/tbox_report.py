@@ -47,7 +47,7 @@ class TBoxReport(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     outside_rl: dict[str, int]
     """Kind of axiom outside OWL 2 RL to its count; such axioms have no effect beyond OWL 2 RL."""
     inert: dict[str, int] = {}
-    """Kind of statement that is stored but not evaluated to its count: `SWRL rule`, `SHACL shape`."""
+    """Kind of statement that is stored but not evaluated, such as `SWRL rule (disabled)`, to its count."""
     inconsistent: str = ""
     """The reason why the ontology is inconsistent; empty if it is consistent."""
     unsatisfiable: tuple[Unsatisfiable, ...] = ()

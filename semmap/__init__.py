@@ -36,7 +36,16 @@ if TYPE_CHECKING:
     from semmap.schemas.backups import BackupPart, Opening, Restored
     from semmap.schemas.changes import Change
     from semmap.schemas.commits import Commit, Departed, Extent, PlaceChanges
-    from semmap.schemas.entities import BodyState, ClassInfo, Entity, Live, Pose, PropertyInfo, Provenance
+    from semmap.schemas.entities import (
+        BodyState,
+        ClassInfo,
+        Entity,
+        Live,
+        Pose,
+        PropertyInfo,
+        Provenance,
+        RuleInfo,
+    )
     from semmap.schemas.errors import (
         BadFile,
         BadRequest,
@@ -150,6 +159,7 @@ __all__ = [
     "Request",
     "Restored",
     "RowsChanged",
+    "RuleInfo",
     "SemanticFrame",
     "SemmapError",
     "ShownView",
@@ -209,6 +219,7 @@ _NAMES_OF: Final = {
         "Pose",
         "PropertyInfo",
         "Provenance",
+        "RuleInfo",
     ),
     "schemas.errors": (
         "BadFile",

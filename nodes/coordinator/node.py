@@ -140,6 +140,7 @@ class Coordinator:
             c.FindWay.answered_by(wall_queries.route),
             c.Classes.answered_by(relay),
             c.Properties.answered_by(relay),
+            c.Rules.answered_by(relay),
             c.Sparql.answered_by(relay),
             c.Watch.answered_by(relay),
             c.Renew.answered_by(relay),

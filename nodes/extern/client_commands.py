@@ -465,6 +465,7 @@ class CommandMethods:
     route = CommandMethod(_route)
     classes = CommandMethod(commands.Classes)
     properties = CommandMethod(commands.Properties)
+    rules = CommandMethod(commands.Rules)
     status = CommandMethod(commands.Status)
     history = CommandMethod(commands.History)
     last_seen = CommandMethod(commands.LastSeen)

@@ -29,7 +29,7 @@ PUBLIC = {
         InternalError Joint LessonTold Live LoggedCommit Moved NameTaken NoAnswer NodeStatus Opening
         Outline Picture PlaceChanges PlaceRelation Plan PlannedPlace PlannedThing Pose Possible
         PreconditionFailed PropertyInfo Provenance Refused Related Relation Request Restored
-        RowsChanged SemanticFrame SemmapError ShownView Sighting SparqlResult Spell Spells
+        RowsChanged RuleInfo SemanticFrame SemmapError ShownView Sighting SparqlResult Spell Spells
         StandingQuery Step SystemStatus ThingDescription Understood UnknownClass UnknownName
         UnknownVerb Watching Way aio commands connect fleet local_name reasoner recordings restore
         testing wire
@@ -38,8 +38,8 @@ PUBLIC = {
     "semmap.commands": """
         Add Approve Attach Backup Batch Check Classes Clear Close Command Compact Could Detach Diff
         Drive Explain Export Find FindWay Forget Get History Infer LastSeen Learn Learned List
-        ListFrames Load Move Open Pause PlanFloor Properties Relations Remove Rename Renew Reset Set
-        Sparql
+        ListFrames Load Move Open Pause PlanFloor Properties Relations Remove Rename Renew Reset Rules
+        Set Sparql
         Status StepOnce Submit TakePicture Tell Track Understand Undo Unset Update WasWhen Watch
     """,
     "semmap.fleet": "Answer CopiedRobot FleetAnswer Frame Mirror Robots mirror robots sparql",

@@ -25,7 +25,7 @@ _GROUPS: Final = {
     "Query": {
         "query": (
             *("list", "get", "check", "infer", "explain", "could", "relations", "export"),
-            *("classes", "properties", "sparql", "watch"),
+            *("classes", "properties", "rules", "sparql", "watch"),
         ),
         "language": ("find", "tell", "understand"),
         "history": ("history", "diff", "when", "last-seen"),

@@ -26,7 +26,7 @@ from semmap.ontology import vocabulary as v
 from semmap.ontology.prefixes import Prefixes
 from semmap.schemas import errors
 from semmap.schemas.commands import RdfFormat
-from semmap.schemas.entities import Entity
+from semmap.schemas.entities import Entity, RuleInfo
 from semmap.schemas.explanations import Term, Triple
 from semmap.schemas.replies import Checked, Document, Inferred
 
@@ -51,6 +51,14 @@ def infer(semantic_map: SemanticMap, name: str) -> Inferred:
     subject = v.iri(entity.iri)
     further = sorted(t for t in measured if t[0] == subject and not semantic_map.reasoner.holds(t))
     return _to_reply(chain(semantic_map.inferred(name), further), semantic_map.classes.qualified_names)
+
+
+def list_rules(reasoner: Reasoner) -> Iterator[RuleInfo]:
+    """Yield the SWRL rules of the TBox, those without effect last."""
+    for rule in reasoner.rules():
+        label = next((v.lexical(o) for _, _, o in reasoner.asserted(rule.node, v.RDFS_LABEL, None)), "")
+        name = label or ("" if rule.node.startswith("_:") else v.local_name(rule.node))
+        yield RuleInfo(name=name, text=rule.text, holds=rule.holds or 0, unsupported=rule.unsupported)
 
 
 class InferenceInput(NamedTuple):

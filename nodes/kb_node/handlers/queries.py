@@ -59,6 +59,7 @@ from semmap.schemas.commands import (
     Properties,
     Relations,
     Renew,
+    Rules,
     Sparql,
     Tell,
     Understand,
@@ -66,7 +67,7 @@ from semmap.schemas.commands import (
     Watch,
 )
 from semmap.schemas.commits import Commit, Snapshot, Star
-from semmap.schemas.entities import ClassInfo, Entity, PropertyInfo
+from semmap.schemas.entities import ClassInfo, Entity, PropertyInfo, RuleInfo
 from semmap.schemas.explanations import Explanation
 from semmap.schemas.language import Found
 from semmap.schemas.map_history import Difference, Spells
@@ -125,6 +126,7 @@ class QueryHandlers:
             FindRoom.answered_by(self.on_find_room),
             Classes.answered_by(self.on_classes),
             Properties.answered_by(self.on_properties),
+            Rules.answered_by(self.on_rules),
             Entities.answered_by(self.on_list),
             Get.answered_by(self.on_get),
             Infer.answered_by(self.on_infer),
@@ -199,6 +201,10 @@ class QueryHandlers:
     def on_properties(self, _: Properties) -> tuple[PropertyInfo, ...]:
         """Return the property table."""
         return tuple(self._map.classes.property_table.rows())
+
+    def on_rules(self, _: Rules) -> tuple[RuleInfo, ...]:
+        """Return the SWRL rules of the TBox."""
+        return tuple(answers.list_rules(self._map.reasoner))
 
     def on_list(self, query: Entities) -> tuple[Entity, ...] | Future[tuple[Entity, ...]]:
         """Return the entities of a class, or those that match `where`, now or in the past."""

@@ -23,6 +23,7 @@ from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from semmap.nodes.kb_node.reasoner.fastpaths.entity_order import order_by_entity
 from semmap.nodes.kb_node.reasoner.fastpaths.paths import FastPaths, KnownContradiction, NoFastPaths
 from semmap.nodes.kb_node.reasoner.fastpaths.shapes import UniformRuns
+from semmap.nodes.kb_node.reasoner.rules import swrl
 from semmap.nodes.kb_node.reasoner.rules.closure import Closure
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, NotCompilable
@@ -74,17 +75,24 @@ class CompiledEngine:
         closure = closed or Closure(active)
         if closure.clash is not None:
             raise Refused(self._prover.prove(closure.leaves(None), None))
-        self._schema = Schema(closure)
+        self.rules = swrl.read_triples(self._schema_triples)
+        """The SWRL rules of the schema."""
+        self._schema = Schema(closure, self.rules.supported)
         schema_facts = (*closure.facts, *self._inert.facts)
         self._schema_subjects = frozenset(s for s, _, _ in schema_facts)
         self._schema_objects = frozenset(o for _, _, o in schema_facts)
         self._abox = ABox(self._schema)
         self._saturation = Saturation(self._abox)
-        self._paths = FastPaths(self._abox) if fast else NoFastPaths()
+        self._paths = FastPaths(self._abox) if fast and not self._schema.rules else NoFastPaths()
         self._view = View(self._abox)
         self._schema_support = SchemaSupport(self._schema)
         self._size = len(self._schema_triples)
-        self._saturation.run()
+        try:
+            self._saturation.apply_rules()
+            self._saturation.run()
+        except Clash as clash:
+            found = Support(self._abox, self._schema_support).of_clash(clash.claims)
+            raise Refused(self._prover.prove(found, None)) from None
         self._abox.settle()
         data = [triple for triple in triples if triple not in self._schema_triples]
         self.apply((), order_by_entity(data) if scattered else data)
@@ -209,7 +217,7 @@ class CompiledEngine:
     def _implied(self, edges: Iterable[tuple[int, int, int]]) -> frozenset[Triple] | None:
         """Return what each edge implies alone; None if edges may imply more in combination with others."""
         abox, schema, terms = self._abox, self._schema, self._abox.store.terms
-        if abox.equals:
+        if abox.equals or schema.rules:
             return None
         found: set[Triple] = set()
         for s, p, o in set(edges):
@@ -272,6 +280,10 @@ class CompiledEngine:
         for node, before in self._abox.changed_kinds.items():
             if before.excluded is None and store.kind[node].names != before.names:
                 yield store.terms[node]
+
+    def count_matches(self, rule: swrl.SwrlRule) -> int:
+        """Return how often a SWRL rule holds. Equal individuals are counted once."""
+        return self._saturation.count_matches(rule)
 
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """Return the asserted triples that match a pattern."""

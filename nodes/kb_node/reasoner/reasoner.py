@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Container, Iterable, Iterator, Sequence, Set
 from contextlib import contextmanager
-from itertools import chain
+from itertools import chain, groupby
 from typing import NamedTuple
 
 from semmap.nodes.kb_node.reasoner.abox.columns import Columns
 from semmap.nodes.kb_node.reasoner.change import Change
 from semmap.nodes.kb_node.reasoner.compiled import CompiledEngine, Refused
+from semmap.nodes.kb_node.reasoner.explain.axiom_sentences import AxiomVerbalizer
 from semmap.nodes.kb_node.reasoner.explain.words import Words
 from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
@@ -30,6 +31,18 @@ class Inconsistent(Exception):
     def __init__(self, explanation: Explanation) -> None:
         super().__init__(explanation.text)
         self.explanation = explanation
+
+
+class RuleUse(NamedTuple):
+    """A SWRL rule of the schema."""
+
+    node: Term
+    text: str
+    """The rule as a sentence; empty if it is not supported."""
+    holds: int | None
+    """How often the rule holds now; None if it is not supported."""
+    unsupported: str
+    """The reason why the rule has no effect, or ""."""
 
 
 class GivenFacts(NamedTuple):
@@ -376,6 +389,16 @@ class Reasoner:
             s for source in (self.asserted, self.inferred) for s, _, _ in source(None, _SUB_CLASS_OF, cls)
         }
         return frozenset(filter(is_named, narrower)) | {cls}
+
+    def rules(self) -> list[RuleUse]:
+        """Return the SWRL rules of the schema, and how often each holds now."""
+        found, axioms = self._engine.rules, None
+        uses: list[RuleUse] = []
+        for node, rules in groupby(found.supported, key=lambda rule: rule.node):
+            same = list(rules)
+            axioms = axioms or AxiomVerbalizer([*filter(is_schema, self.asserted())], self.words)
+            uses.append(RuleUse(node, axioms.rule_sentence(same), self._engine.count_matches(same[0]), ""))
+        return uses + [RuleUse(node, "", None, reason) for node, reason in found.unsupported.items()]
 
     def explain(self, triple: Triple) -> Explanation | None:
         """Return the proof of a triple; None if it does not hold."""

@@ -3,12 +3,17 @@ import pytest
 from semmap.nodes.kb_node.answers import answers, dry_runs
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.documents.abox_document import filter_document
+from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.reasoner.rules.general import GeneralEngine
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
+from semmap.schemas.entities import RuleInfo
 from tests.kb_node import home
 from tests.kb_node.graphs import canonical
 from tests.kb_node.home import chair, transaction, turtle
+from tests.kb_node.reasoner.graphs import triple, triples
+from tests.kb_node.reasoner.swrl import PREFIXES
+from tests.kb_node.reasoner.swrl import rule as swrl_rule
 
 SYNTAXES = ["rdfxml", "turtle", "ntriples", "jsonld"]
 
@@ -164,3 +169,15 @@ def test_an_export_declares_the_classes_that_only_its_map_has(semantic_map, synt
     assert canonical(again) == canonical(kept)
     assert skipped == []
     assert notes[-1] == MAPS_OWN.format("swivel")
+
+
+def test_rules_are_listed_with_their_labels_and_those_without_effect_last():
+    labelled = triple(':r rdfs:label "unused"@en')
+    off, on = (swrl_rule(text) for text in ("Mug(x), b.stringConcat(y, x, x) -> Cup(y)", "Mug(x) -> Cup(x)"))
+    rules = triples(PREFIXES + off.replace("[]", ":r", 1) + on)
+    reasoner = Reasoner([*rules, labelled])
+    reasoner.apply(insert=[triple(":mug1 a :Mug"), triple(":mug2 a :Mug")])
+    assert list(answers.list_rules(reasoner)) == [
+        RuleInfo(name="", text="if x is a Mug, then x is a Cup", holds=2),
+        RuleInfo(name="unused", text="", holds=0, unsupported="unsupported built-in stringConcat"),
+    ]

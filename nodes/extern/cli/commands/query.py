@@ -277,6 +277,20 @@ def properties(client: Client, format: str) -> None:
         output.show.console().print(output.show.property_table(found))
 
 
+@command(example="semmap rules --format json")
+@_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
+@with_client
+def rules(client: Client, format: str) -> None:
+    """List the SWRL rules of the TBox, with how often each holds."""
+    found = client.rules()
+    if format == "json":
+        print_json(found)
+    elif not found:
+        print("the TBox has no SWRL rules")
+    else:
+        output.show.console().print(output.show.rule_table(found))
+
+
 @command(example="semmap status")
 @_format(type=click.Choice(["table", "json"]), default="table", show_default=True)
 @supports_robots(of_robots.status)

@@ -29,7 +29,7 @@ from semmap.schemas import wording
 from semmap.schemas.attachments import holder_of
 from semmap.schemas.changes import value_in_words
 from semmap.schemas.commits import Commit
-from semmap.schemas.entities import ClassInfo, Entity, Pose, PropertyInfo, Value
+from semmap.schemas.entities import ClassInfo, Entity, Pose, PropertyInfo, RuleInfo, Value
 from semmap.schemas.frames import Frame
 from semmap.schemas.joints import in_words
 from semmap.schemas.relations import Described, Relation
@@ -177,6 +177,15 @@ def property_table(properties: Iterable[PropertyInfo]) -> Table:
         range_ = ", ".join(p.range) or ("a value" if p.kind == "data" else "an individual")
         count = "one" if p.functional else "any number"
         rows.add(p.name, english(p.labels), ", ".join(p.domain), range_, count)
+    return rows
+
+
+def rule_table(rules: Iterable[RuleInfo]) -> Table:
+    """Return a table with one row per SWRL rule."""
+    rows = table("holds", "name", "rule", fold=("name", "rule"))
+    for rule in rules:
+        no_effect = f"no effect: {rule.unsupported}" if rule.unsupported else ""
+        rows.add("-" if no_effect else str(rule.holds), rule.name, rule.text or no_effect)
     return rows
 
 

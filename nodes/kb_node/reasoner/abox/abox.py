@@ -17,7 +17,7 @@ from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
 from semmap.nodes.kb_node.reasoner.abox.kinds import Kind, Kinds
 from semmap.nodes.kb_node.reasoner.abox.steps import Steps
 from semmap.nodes.kb_node.reasoner.abox.store import DERIVED, Store
-from semmap.nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member, Reason, Same
+from semmap.nodes.kb_node.reasoner.explain.reasons import Applied, Claim, Edge, Member, Reason, Same
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, Group, Role
 from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
@@ -209,6 +209,8 @@ class ABox:
         """Create a reason for an edge or link, indexed by the facts that it depends on."""
         reason = Reason(next(self._order), claims, edge=edge, link=link)
         for claim in reason.claims:
+            if isinstance(claim, Applied):
+                continue
             if isinstance(claim, Edge):
                 rest = self.reasons_by_edge.setdefault(claim.edge, [])
             else:

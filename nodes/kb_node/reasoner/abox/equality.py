@@ -47,7 +47,9 @@ class Equality:
         if self._abox.is_literal(one) and None in (self._abox.value(one), self._abox.value(other)):
             self._merge_spellings_of(one, other)
         self._abox.widen(one, self._store.kind[one].mask | self._store.kind[other].mask)
-        for node in added:
+        for node in first.members if self._abox.schema.rules else added:  # a rule may name the added nodes
+            if self._store.kind[node].mask & self._abox.schema.rule_classes:
+                self._abox.dirty[node] = None
             self._abox.fresh += self._store.out.all(node)
             self._abox.fresh += self._store.into.all(node)
 

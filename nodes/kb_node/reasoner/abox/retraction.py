@@ -53,12 +53,15 @@ class Retraction:
             self._abox.fresh += self._store.into.all(node)
         for edge in self._dropped:
             self._rederive(*edge)
+        if self._separated and self._abox.schema.rules:
+            self._saturation.apply_rules()
         return types + edges, others
 
     def release(self) -> None:
         """Remove the nodes without facts."""
         for node in self.touched:
-            self._store.release(node)
+            if node not in self._abox.equals:
+                self._store.release(node)
 
     def _forget_spellings(self) -> None:
         for node in list(self.touched):
@@ -152,6 +155,7 @@ class Retraction:
             link.alive = False
         for member in equals.members:
             del self._abox.equals[member]
+            self.touched.add(member)
         for member in equals.members:
             self._separated.add(member)
             self._reset_one(member)
@@ -224,6 +228,10 @@ class Retraction:
         for node, other in ((subject, object_), (object_, subject)):
             if self._may_have_been_a_value(node, other):
                 self._saturation.add_values(node)
+        if abox.schema.rules:
+            for q, backwards in abox.schema.roles(predicate):
+                ends = (object_, subject) if backwards else (subject, object_)
+                self._saturation.apply_rules_for(ends[0], q, ends[1])
         steps = abox.steps
         if not (producing_chains := steps.producing_chains(predicate)):
             return

@@ -7,10 +7,14 @@ from collections.abc import Callable
 from semmap.nodes.kb_node.reasoner.abox.abox import ABox
 from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
 from semmap.nodes.kb_node.reasoner.abox.equality import Equality
+from semmap.nodes.kb_node.reasoner.abox.kinds import bits
+from semmap.nodes.kb_node.reasoner.abox.rule_matching import Match, RuleMatching
 from semmap.nodes.kb_node.reasoner.abox.steps import EdgeRules, Step
 from semmap.nodes.kb_node.reasoner.abox.store import ASSERTED, COMPUTED, DERIVED, VALUE
 from semmap.nodes.kb_node.reasoner.explain.reasons import Claim, Clash, Edge, Member, Same, member
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.rules import swrl
+from semmap.nodes.kb_node.reasoner.rules.swrl import SwrlRule
 from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME, Chain, NotCompilable
 from semmap.nodes.kb_node.reasoner.terms import TYPE
 
@@ -24,6 +28,7 @@ class Saturation:
     def __init__(self, abox: ABox) -> None:
         self._abox = abox
         self._equality = Equality(abox)
+        self._matching = RuleMatching(abox)
         self._store = abox.store
         self._steps = abox.steps
 
@@ -95,7 +100,12 @@ class Saturation:
         self._abox.set_kind(node, wider)
         if wider.mask != kind.mask:
             self._abox.widen(node, wider.mask)
-            if wider.clash or wider.values or not self._store.is_bare(node):
+            if (
+                wider.clash
+                or wider.values
+                or wider.mask & self._abox.schema.rule_classes
+                or not self._store.is_bare(node)
+            ):
                 self._abox.dirty[node] = None
         return True
 
@@ -106,6 +116,9 @@ class Saturation:
             one, other = kind.clash
             raise Clash(Member(node, one), Member(node, other))
         self.add_values(node)
+        for cls in bits(kind.mask & self._abox.schema.rule_classes):
+            for rule, at in self._abox.schema.rules_by_class[cls]:
+                self._conclude(rule, self._matching.of_atom(rule, at, (node,), Member(node, cls)))
         for side in (self._store.out, self._store.into):
             for edge in side.all(node):
                 if self._store.predicate[edge] > DIFFERENT:
@@ -131,6 +144,9 @@ class Saturation:
         if p == DIFFERENT:
             if self._abox.is_same(s, o):
                 raise Clash(Edge(edge), Same(s, o))
+            for rule, at in self._abox.schema.rules_by_property.get(DIFFERENT, ()):
+                for nodes in ((s, o), (o, s)):
+                    self._conclude(rule, self._matching.of_atom(rule, at, nodes, Edge(edge)))
             return
         if self._abox.has_unknown_equals and self._abox.is_literal(o):
             self._equality.merge_spellings(o)
@@ -198,6 +214,42 @@ class Saturation:
             for forwards, chain in rules.tails:
                 if continues[not forwards]:
                     self._chain_backwards(edge, *((s, o) if forwards else (o, s)), chain)
+        for forwards, rule, at in rules.triggers:
+            role = (self._abox.schema.property(rule.body[at].predicate), False)
+            ends = (s, o) if forwards else (o, s)
+            self._conclude(rule, self._matching.of_atom(rule, at, ends, Edge(edge, role)))
+
+    def apply_rules(self) -> None:
+        """Apply the SWRL rules to all facts."""
+        for rule in self._abox.schema.rules:
+            self._conclude(rule, list(self._matching.matches(rule)))
+
+    def apply_rules_for(self, subject: int, predicate: int, object_: int) -> None:
+        """Apply the SWRL rules that may imply an edge of a property."""
+        for rule in self._abox.schema.rules_by_head.get(predicate, ()):
+            self._conclude(rule, self._matching.of_head(rule, (subject, object_)))
+
+    def count_matches(self, rule: SwrlRule) -> int:
+        """Return how often a SWRL rule holds: the number of matches, in which equal individuals are one."""
+        members = self._abox.members
+        found = (bound for bound, _ in self._matching.matches(rule))
+        return len({tuple(members(v)[0] if isinstance(v, int) else v for v in b.values()) for b in found})
+
+    def _conclude(self, rule: SwrlRule, matches: list[Match]) -> None:
+        """Add the conclusions of a SWRL rule."""
+        for bound, claims in matches:
+            if rule.head is None:
+                raise Clash(*claims)
+            nodes = [self._matching.node(argument, bound) for argument in rule.head.arguments]
+            one, other = nodes[0], nodes[-1]
+            conclusion = self._abox.schema.conclusion(rule.head)
+            if rule.head.kind == swrl.SAME:
+                self._equality.merge(one, other, *claims)
+            elif conclusion is not None:
+                self._derive(one, conclusion, other, *claims)
+            for node in nodes:
+                if node not in self._abox.equals:
+                    self._store.release(node)
 
     def _chain_forwards(self, edge: int, x: int, y: int, chain: Chain) -> None:
         for other, end, z in list(self._abox.related(y, self._steps.group((chain.second, False)))):

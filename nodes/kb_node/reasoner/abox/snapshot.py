@@ -14,7 +14,7 @@ from semmap.nodes.kb_node.reasoner.terms import is_named
 
 
 def columns_of(abox: ABox, *, schema: bytes, size: int) -> Columns | None:
-    """Return the columns of an ABox, which may change afterwards; None if it has equal nodes.
+    """Return the columns of an ABox, which may change afterwards; None if it has equal nodes or SWRL rules.
 
     `schema` is the digest of the schema, `size` the number of asserted triples.
     """
@@ -70,6 +70,8 @@ def fill(abox: ABox, columns: Columns) -> bool:
 
 
 def _is_plain(abox: ABox) -> bool:
+    if abox.schema.rules:
+        return False  # their reasons are not encoded
     is_pending = abox.changed_kinds or abox.fresh or abox.dirty
     return not (abox.equals or abox.spellings or abox.has_unknown_equals or is_pending)
 

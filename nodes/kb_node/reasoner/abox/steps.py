@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from semmap.nodes.kb_node.reasoner.abox.kinds import Kind, Kinds, mask_of
+from semmap.nodes.kb_node.reasoner.rules.swrl import SwrlRule
 from semmap.nodes.kb_node.reasoner.tbox.axioms import ANY, SAME, Chain, Group, Key, Limit, Role
 from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
 
@@ -31,6 +32,8 @@ class EdgeRules:
     """Whether literals must be compared by value."""
     only_uniqueness: bool
     """Whether the only check is that the subject has no other edge with the predicate."""
+    triggers: tuple[tuple[bool, SwrlRule, int], ...] = ()
+    """The SWRL rules and their atoms that the edge may match, and whether it is read forwards."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,7 +208,12 @@ class Steps:
             heads += [(not backwards, chain) for chain in schema.chains if chain.first == q]
             tails += [(not backwards, chain) for chain in schema.chains if chain.second == q]
             by_value |= bool(axioms.keys or axioms.exclusive)
-        by_value |= bool(heads or tails)
+        triggers = tuple(
+            (not backwards, rule, at)
+            for q, backwards in roles
+            for rule, at in schema.rules_by_property.get(q, ())
+        )
+        by_value |= bool(heads or tails or triggers)
         others = by_value or irreflexive or exclusive or heads or tails
         if not (limits or others):
             return None
@@ -224,6 +232,7 @@ class Steps:
             beyond=(_union(beyond[False]), _union(beyond[True])),
             by_value=by_value,
             only_uniqueness=not others and self._only_check_uniqueness(prop, limits),
+            triggers=triggers,
         )
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from semmap.nodes.kb_node.reasoner.data_ranges import read_range
 from semmap.nodes.kb_node.reasoner.explain.words import VerbPhrase, Words, article, is_uncountable
@@ -21,6 +22,9 @@ from semmap.nodes.kb_node.reasoner.terms import (
     literal,
 )
 
+if TYPE_CHECKING:
+    from semmap.nodes.kb_node.reasoner.rules.swrl import Atom, SwrlRule
+
 _BOUNDS: Final = (
     "owl:maxCardinality", "owl:maxQualifiedCardinality", "owl:cardinality", "owl:qualifiedCardinality",
     "owl:minCardinality", "owl:minQualifiedCardinality",
@@ -35,6 +39,7 @@ class AxiomVerbalizer:
         self._values: dict[tuple[Term, Term], Term] = {}
         for s, p, o in triples:
             self._values.setdefault((s, p), o)
+        from semmap.nodes.kb_node.reasoner.rules import swrl
         from semmap.nodes.kb_node.reasoner.rules.facts import Facts  # importing words does not load the rules
 
         self._facts = Facts(dict.fromkeys(triples))
@@ -71,6 +76,7 @@ class AxiomVerbalizer:
             iri("owl:AllDifferent"): self._all_different,
             iri("owl:AllDisjointClasses"): self._disjoint_classes,
             iri("owl:AllDisjointProperties"): lambda x: self._never_both(self.members(self._list(x))),
+            swrl.RULE: self._rule,
             iri("owl:Class"): lambda c: f"{self.member_phrase(c)} is a class",
         }
 
@@ -281,6 +287,57 @@ class AxiomVerbalizer:
             subject = f"everything that something has as {verb.rest}" if same else f"every {verb.rest}"
             return f"{subject} {self.membership(cls)}"
         return f"everything that something {verb.with_object('').strip()} {self.membership(cls)}"
+
+    # Rules
+
+    def _rule(self, node: Term) -> str:
+        from semmap.nodes.kb_node.reasoner.rules import swrl
+
+        rules = [rule for rule in swrl.read(self._facts).supported if rule.node == node]
+        return f"because of the rule “{self.rule_sentence(rules)}”" if rules else self._words.name(node)
+
+    def is_part_of_rule(self, triple: Triple) -> bool:
+        """Return whether a triple is included in the clause of a SWRL rule."""
+        from semmap.nodes.kb_node.reasoner.rules import swrl
+
+        return triple[2] != swrl.RULE and swrl.is_of_rule(triple)
+
+    def rule_sentence(self, rules: Sequence[SwrlRule]) -> str:
+        """Return a SWRL rule as a sentence: "if x is a cup and x is on y, then y is a table".
+
+        `rules` has the rule once for each atom of its head.
+        """
+        body = [self._atom(atom) for atom in rules[0].body]
+        head = [self._atom(rule.head) for rule in rules if rule.head is not None]
+        if not head:
+            return f"it is never true that {_listed(body, 'and')}"
+        return f"if {_listed(body, 'and')}, then {_listed(head, 'and')}" if body else _listed(head, "and")
+
+    def _atom(self, atom: Atom) -> str:
+        from semmap.nodes.kb_node.reasoner.rules import builtins, swrl
+
+        names = [self._argument(argument) for argument in atom.arguments]
+        if atom.kind == swrl.CLASS:
+            return f"{names[0]} {self.membership(atom.predicate)}"
+        if atom.kind == swrl.SAME:
+            return f"{names[0]} is the same as {names[1]}"
+        if atom.kind == swrl.DIFFERENT:
+            return f"{names[0]} is different from {names[1]}"
+        if atom.kind == swrl.PROPERTY:
+            if not swrl.is_variable(atom.arguments[1]):
+                return f"{names[0]} {self._words.predicate_phrase(atom.predicate, atom.arguments[1])}"
+            verb = self.verb_phrase(atom.predicate)
+            if verb.kind == "is" and self._words.is_data(atom.predicate):
+                return f"{names[0]} has {names[1]} as value of “is {verb.rest}”"
+            return f"{names[0]} {verb.with_object(names[1])}"
+        sign = builtins.SIGNS.get(atom.predicate)
+        if builtins.is_comparison(atom.predicate):
+            return f"{names[0]} {sign} {names[1]}"
+        operands = f" {sign} ".join(names[1:]) if sign else f"{atom.predicate}({', '.join(names[1:])})"
+        return f"{names[0]} = {operands}"
+
+    def _argument(self, term: Term) -> str:
+        return re.split(r"[#/:]", term.rstrip(">"))[-1] if term[0] == "?" else self._words.name(term)
 
     # Lists
 

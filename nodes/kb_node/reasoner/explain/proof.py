@@ -13,6 +13,7 @@ from semmap.nodes.kb_node.reasoner import datatypes
 from semmap.nodes.kb_node.reasoner.explain.sentences import proof_sentence
 from semmap.nodes.kb_node.reasoner.explain.words import Words
 from semmap.nodes.kb_node.reasoner.explanations import Explanation, Step, Term, Triple
+from semmap.nodes.kb_node.reasoner.rules import swrl
 from semmap.nodes.kb_node.reasoner.rules.closure import Closure
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.reasoner.terms import TYPE, iri, is_literal, is_named, literal
@@ -84,6 +85,8 @@ def _shape(triples: Sequence[Triple], goal: Triple | None) -> tuple[tuple[object
     """Return triples and goal with numbers for individuals, and the numbered terms."""
     fixed = {triple[1] for triple in triples} | {o for _, p, o in triples if p == TYPE}
     fixed.update(term for triple in triples if is_schema(triple) for term in triple)
+    if any(triple[2] == swrl.RULE for triple in triples):  # its built-ins distinguish values
+        fixed.update(o for _, _, o in (*triples, *([goal] if goal else ())) if is_literal(o))
     fixed_values = {datatypes.value(term) for term in fixed if is_literal(term)}
     numbers: dict[Term, object] = {}
 

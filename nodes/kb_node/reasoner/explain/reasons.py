@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from semmap.nodes.kb_node.reasoner.rules.swrl import SwrlRule
 from semmap.nodes.kb_node.reasoner.tbox.axioms import ANY, Role
 
 
@@ -28,7 +29,13 @@ class Same(NamedTuple):
     other: int
 
 
-Claim = Edge | Member | Same
+class Applied(NamedTuple):
+    """A SWRL rule of the schema was applied."""
+
+    rule: SwrlRule
+
+
+Claim = Edge | Member | Same | Applied
 
 
 def member(node: int, cls: int) -> tuple[Claim, ...]:

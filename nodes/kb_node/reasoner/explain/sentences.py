@@ -113,7 +113,8 @@ def negated_triple_clause(triple: Triple, words: Words) -> str:
 
 
 def _because(claim: str, reasons: Sequence[str]) -> str:
-    return f"{claim}, because {_joined(reasons)}." if reasons else f"{claim}."
+    reasons = sorted(reasons, key=lambda reason: reason.startswith("because "))  # rules are last
+    return f"{claim}, because {_joined(reasons).removeprefix('because ')}." if reasons else f"{claim}."
 
 
 def _joined(clauses: Sequence[str]) -> str:
@@ -194,7 +195,7 @@ class _Verbalizer:
 
     def is_part_of_axiom(self, triple: Triple) -> bool:
         """Return whether a triple is part of an axiom and therefore has no clause of its own."""
-        return triple[1] in _STRUCTURE or self._is_part(triple)
+        return triple[1] in _STRUCTURE or self._is_part(triple) or self.axioms.is_part_of_rule(triple)
 
     def _is_part(self, triple: Triple) -> bool:
         s, p, o = triple

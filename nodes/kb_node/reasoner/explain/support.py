@@ -12,7 +12,7 @@ from typing import TypeVar
 from semmap.nodes.kb_node.reasoner.abox.abox import ABox
 from semmap.nodes.kb_node.reasoner.abox.kinds import bits
 from semmap.nodes.kb_node.reasoner.abox.store import DERIVED, GIVEN
-from semmap.nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member, Reason, Same
+from semmap.nodes.kb_node.reasoner.explain.reasons import Applied, Claim, Edge, Member, Reason, Same
 from semmap.nodes.kb_node.reasoner.explain.schema_support import Found, SchemaSupport, union
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.tbox.axioms import ANY, Role
@@ -90,6 +90,8 @@ class Support:
     def _claim(self, claim: Claim) -> Found:
         if isinstance(claim, Edge):
             return self._edge(claim.edge, claim.role)
+        if isinstance(claim, Applied):
+            return dict.fromkeys(claim.rule.triples)
         if isinstance(claim, Same):
             return self._same(claim.one, claim.other) or {}
         for depth in range(_DEEPEST):

@@ -15,6 +15,7 @@ from itertools import combinations
 from semmap.nodes.kb_node.reasoner import datatypes
 from semmap.nodes.kb_node.reasoner.data_ranges import Definition, read_all
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.rules import builtins, swrl
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts, Reason
 from semmap.nodes.kb_node.reasoner.rules.matching import Pattern, Plan, bind, pattern, patterns, plan, unify
 from semmap.nodes.kb_node.reasoner.rules.rule_table import AXIOMS, NUMBERS, RULES, Atom, Rule
@@ -62,6 +63,7 @@ class Closure(Facts):
             self._fire(self._agenda.popleft())
             if not self._agenda:
                 self._read_ranges()
+                self._apply_swrl()
 
     # Facts
 
@@ -150,6 +152,66 @@ class Closure(Facts):
         self._compared.append(literal)
 
     # Rules
+
+    def _apply_swrl(self) -> None:
+        """Apply the SWRL rules of the graph to all facts."""
+        if (None, TYPE, swrl.RULE) not in self._index:
+            return
+        for rule in swrl.read(self).supported:
+            for bound, premises in list(self._match_swrl(rule.body, {})):
+                head: Triple | None = None
+                if rule.head is not None:
+                    ends = [bound.get(argument, argument) for argument in rule.head.arguments]
+                    head = _triple(rule.head, ends)
+                    if head in self.facts or (rule.head.kind == swrl.SAME and ends[0] == ends[1]):
+                        continue
+                if head is None or not is_literal(head[0]):
+                    self._conclude("swrl", (*premises, *rule.triples), head)
+
+    def count_matches(self, rule: swrl.SwrlRule) -> int:
+        """Return the number of matches of a SWRL rule."""
+        return len({tuple(bound.values()) for bound, _ in self._match_swrl(rule.body, {})})
+
+    def _match_swrl(
+        self, atoms: Sequence[swrl.Atom], bound: dict[Term, Term]
+    ) -> Iterator[tuple[dict[Term, Term], tuple[Triple, ...]]]:
+        """Yield the matches of the atoms of a SWRL rule, with the facts that they need."""
+        if not atoms:
+            yield bound, ()
+            return
+        for more, facts in self._match_swrl_atom(atoms[0], bound):
+            for found, others in self._match_swrl(atoms[1:], {**bound, **more}):
+                yield found, (*facts, *others)
+
+    def _match_swrl_atom(
+        self, atom: swrl.Atom, bound: dict[Term, Term]
+    ) -> Iterator[tuple[dict[Term, Term], tuple[Triple, ...]]]:
+        ends = [bound.get(argument, argument) for argument in atom.arguments]
+        if atom.kind == swrl.BUILT_IN:
+            if builtins.is_comparison(atom.predicate):
+                if builtins.compare(atom.predicate, *ends):
+                    yield {}, ()
+            elif (found := builtins.calculate(atom.predicate, ends[1:])) is not None:
+                if swrl.is_variable(ends[0]):
+                    yield {ends[0]: found}, ()
+                elif builtins.is_equal(ends[0], found):
+                    yield {}, ()
+            return
+        if atom.kind == swrl.SAME and ends[0] == ends[1]:
+            yield {}, ()
+            return
+        if atom.kind == swrl.DIFFERENT:
+            same = [[end, *(fact[2] for fact in self.match(end, SAME_AS))] for end in ends]
+            for listed, axiom in swrl.read_all_different(self):
+                if not any(map(listed.isdisjoint, same)) and set(same[0]).isdisjoint(same[1]):
+                    equal = {(end, SAME_AS, member) for end, *members in same for member in members}
+                    yield {}, (*equal, *axiom)
+                    return
+        for s, p, o in {_triple(atom, ends), _triple(atom, ends[::-1] if _is_symmetric(atom) else ends)}:
+            wanted = (None if swrl.is_variable(s) else s, p, None if swrl.is_variable(o) else o)
+            for fact in self.match(*wanted):
+                if s != o or fact[0] == fact[2]:
+                    yield {term: fact[i] for i, term in ((0, s), (2, o)) if swrl.is_variable(term)}, (fact,)
 
     def _watch(self, rule: Rule) -> None:
         """Activate a rule for present and future facts."""
@@ -282,6 +344,17 @@ class _Empty(Closure):
         for axiom, name in AXIOMS.items():
             self._add(axiom, Reason(name, ()))
         self.insert(())
+
+
+def _triple(atom: swrl.Atom, ends: Sequence[Term]) -> Triple:
+    if atom.kind == swrl.CLASS:
+        return (ends[0], TYPE, atom.predicate)
+    predicate = {swrl.SAME: SAME_AS, swrl.DIFFERENT: DIFFERENT_FROM}.get(atom.kind, atom.predicate)
+    return (ends[0], predicate, ends[-1])
+
+
+def _is_symmetric(atom: swrl.Atom) -> bool:
+    return atom.kind == swrl.DIFFERENT
 
 
 @cache

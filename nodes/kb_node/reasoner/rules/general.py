@@ -12,6 +12,7 @@ from semmap.nodes.kb_node.reasoner import datatypes
 from semmap.nodes.kb_node.reasoner.explain.proof import Prover
 from semmap.nodes.kb_node.reasoner.explain.words import Words
 from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
+from semmap.nodes.kb_node.reasoner.rules import swrl
 from semmap.nodes.kb_node.reasoner.rules.closure import Closure
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.reasoner.terms import TYPE, is_literal, is_named
@@ -42,6 +43,15 @@ class GeneralEngine:
             if self._closure.clash is None
             else Prover(self.words).prove((*self._asserted, *self._computed), None)
         )
+
+    @cached_property
+    def rules(self) -> swrl.Rules:
+        """The SWRL rules of the graph."""
+        return swrl.read_triples(self._asserted)
+
+    def count_matches(self, rule: swrl.SwrlRule) -> int:
+        """Return how often a SWRL rule holds. Equal individuals are counted separately."""
+        return self._closure.count_matches(rule)
 
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """Return the asserted triples that match a pattern."""

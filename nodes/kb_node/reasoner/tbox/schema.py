@@ -9,16 +9,18 @@ It is compiled from the schema's closure, which contains all conclusions of the 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 from itertools import combinations
 
 from semmap.nodes.kb_node.reasoner import data_ranges, datatypes
 from semmap.nodes.kb_node.reasoner.data_ranges import Definition
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.rules import swrl
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.reasoner.rules.rule_table import NUMBERS
-from semmap.nodes.kb_node.reasoner.tbox.axioms import ANY, Axioms, Chain, Group, Key, Limit, Role
+from semmap.nodes.kb_node.reasoner.rules.swrl import Atom, SwrlRule
+from semmap.nodes.kb_node.reasoner.tbox.axioms import ANY, DIFFERENT, Axioms, Chain, Group, Key, Limit, Role
 from semmap.nodes.kb_node.reasoner.tbox.transitive import compile_transitive
 from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, NOTHING, SAME_AS, THING, TYPE, iri, is_literal
 
@@ -26,7 +28,8 @@ from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, NOTHING, SAME_AS
 class Schema:
     """A compiled TBox. Classes and properties without axioms may be added later."""
 
-    def __init__(self, closure: Facts) -> None:
+    def __init__(self, closure: Facts, rules: Sequence[SwrlRule] = ()) -> None:
+        """Compile a closure, and the SWRL rules of its graph."""
         self.closure = closure
         self.classes: list[Term] = []
         self.supers: list[int] = []
@@ -45,6 +48,14 @@ class Schema:
         """The transitive properties whose chains are followed by queries instead of being stored."""
         self.passed_on: dict[int, tuple[int, int]] = {}
         """Auxiliary classes along a transitive property: the restriction, and the class of their members."""
+        self.rules = rules
+        self.rules_by_class: dict[int, list[tuple[SwrlRule, int]]] = {}
+        """The rules with a class in their body, and the position of the atom."""
+        self.rules_by_property: dict[int, list[tuple[SwrlRule, int]]] = {}
+        self.rule_classes = 0
+        """The classes in the bodies of rules, as a mask."""
+        self.rules_by_head: dict[int, list[SwrlRule]] = {}
+        """The rules whose conclusion is an edge of a property."""
         self._class_numbers: dict[Term, int] = {}
         self._property_numbers: dict[Term, int] = {}
         self._roles: dict[int, dict[Role, tuple[Triple, ...]]] = {}
@@ -55,6 +66,7 @@ class Schema:
         self._compile_properties()
         self._compile_restrictions()
         self._compile_individuals()
+        self._compile_rules()
         self.virtual = tuple(compile_transitive(self))
 
     # Numbers
@@ -249,6 +261,33 @@ class Schema:
                     self.negatives[forbidden] = n
                     self._axioms(p).some.append((forbidden, self.nominal(o)))
                     self._add_disjoint(forbidden, self.nominal(s))
+
+    def _compile_rules(self) -> None:
+        for rule in self.rules:
+            for i, atom in enumerate(rule.body):
+                if atom.kind == swrl.CLASS:
+                    cls = self.cls(atom.predicate)
+                    self.rules_by_class.setdefault(cls, []).append((rule, i))
+                    self.rule_classes |= 1 << cls
+                elif atom.kind in (swrl.PROPERTY, swrl.DIFFERENT):
+                    number = self.property(atom.predicate) if atom.kind == swrl.PROPERTY else DIFFERENT
+                    self.rules_by_property.setdefault(number, []).append((rule, i))
+            if rule.head is not None and (conclusion := self.conclusion(rule.head)) is not None:
+                self.rules_by_head.setdefault(conclusion, []).append(rule)
+
+    def conclusion(self, head: Atom) -> int | None:
+        """Return the property of the edge that a rule adds; None for an equality.
+
+        Membership in a class is an edge of an auxiliary property from the individual to itself. The class is
+        the domain of the property.
+        """
+        if head.kind == swrl.CLASS:
+            number = self.property(f"{head.predicate} by rule")
+            self.axioms[number].domain |= 1 << self.cls(head.predicate)
+            return number
+        if head.kind == swrl.PROPERTY:
+            return self.property(head.predicate)
+        return DIFFERENT if head.kind == swrl.DIFFERENT else None
 
     def nominal(self, term: Term) -> int:
         """Return the class that has one individual or value as its only member."""

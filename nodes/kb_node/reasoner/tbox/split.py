@@ -13,6 +13,7 @@ from typing import Final
 from semmap.nodes.kb_node.reasoner import datatypes
 from semmap.nodes.kb_node.reasoner.data_ranges import FACETS
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.rules import swrl
 from semmap.nodes.kb_node.reasoner.rules.rule_table import ANNOTATIONS
 from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from semmap.nodes.kb_node.reasoner.terms import (
@@ -72,12 +73,16 @@ def is_schema(triple: Triple) -> bool:
 
 @lru_cache(maxsize=4096)
 def _is_schema_class(term: Term) -> bool:
+    if term.startswith(swrl.NAMESPACE):
+        return True
     return is_reserved(term) and term not in _PLAIN_CLASSES and not is_datatype(term)
 
 
 @lru_cache(maxsize=4096)
 def _is_schema_predicate(term: Term) -> bool:
-    return term in _SCHEMA_PREDICATES or (term.startswith(_OWL) and term not in _PLAIN_PREDICATES)
+    if term in _SCHEMA_PREDICATES or term.startswith(swrl.NAMESPACE):
+        return True
+    return term.startswith(_OWL) and term not in _PLAIN_PREDICATES
 
 
 def is_datatype(term: Term) -> bool:
@@ -89,9 +94,11 @@ def is_inert(triple: Triple) -> bool:
     """Return whether an axiom is outside OWL 2 RL and has no consequences.
 
     It declares a subproperty of a universal property, or uses classes of the vocabulary as classes of
-    individuals (`:Concept rdfs:subClassOf rdfs:Class`).
+    individuals (`:Concept rdfs:subClassOf rdfs:Class`), or it is a part of a SWRL rule, which `swrl` reads.
     """
     s, p, o = triple
+    if swrl.is_of_rule(triple):
+        return True
     if p == TYPE:
         return False
     return o in UNIVERSAL or s in METACLASSES or o in METACLASSES

@@ -3,7 +3,7 @@
 The number of pairs `x p z` implied by `x p y p z` grows quadratically, and most rules do not need them.
 Domain and range follow from the single steps, and membership in a restriction can be passed on along the
 steps. The pairs are stored only if a rule needs them (functional, disjoint, irreflexive, chains with others,
-keys).
+keys, SWRL rules).
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ def compile_transitive(schema: Schema) -> Iterator[int]:
     """Remove the chains that need not be stored from a schema, and pass restrictions on instead."""
     own = {chain.first: chain for chain in schema.chains if chain.first == chain.second == chain.result}
     paired = {q for chain in schema.chains if chain not in own.values() for q in (chain.first, chain.second)}
+    paired |= schema.rules_by_property.keys()
     found = [
         p
         for p in own

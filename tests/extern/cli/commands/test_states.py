@@ -33,6 +33,7 @@ def test_a_state_is_set_read_conditioned_and_taken_back(system):
     assert "no individual is named 'table99'" in system.cli("set", "door1", "isOn", "table99", status=1)
     assert "isOpen: false → true" in system.cli("history", "door1")
     assert "isSwitchedOn" in system.cli("properties")
+    assert "no SWRL rules" in system.cli("rules")
 
 
 def test_a_client_sets_states(system):

@@ -9,7 +9,7 @@ from msgspec import structs
 from rich.console import Console
 
 from semmap.nodes.extern.cli.output import show, tables
-from semmap.schemas.entities import BodyState, Entity, Pose, Provenance
+from semmap.schemas.entities import BodyState, Entity, Pose, Provenance, RuleInfo
 from semmap.schemas.relations import Described
 from semmap.schemas.replies import LoggedCommit, NodeStatus, SystemStatus
 
@@ -150,4 +150,18 @@ def test_each_note_on_a_commit_has_a_row_of_its_own():
     assert [line.strip() for line in lines if "note: " in line] == [
         "note: retracted: one",
         "note: on table1 was cup1",
+    ]
+
+
+def test_the_table_of_rules_has_the_reason_of_a_rule_without_effect():
+    rules = [
+        RuleInfo(name="", text="if x is a mug, then x is a cup", holds=2),
+        RuleInfo(name="unused", text="", holds=0, unsupported="disabled"),
+    ]
+    console = Console(file=io.StringIO(), width=100)
+    console.print(show.rule_table(rules))
+    lines = console.file.getvalue().splitlines()
+    assert [line.split() for line in lines[1:]] == [
+        ["2", "if", "x", "is", "a", "mug,", "then", "x", "is", "a", "cup"],
+        ["-", "unused", "no", "effect:", "disabled"],
     ]

@@ -1,0 +1,205 @@
+"""SWRL rules: the incremental engine is compared with a closure from scratch."""
+
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.reasoner.rules.closure import Closure
+from semmap.nodes.kb_node.reasoner.terms import SAME_AS
+from tests.depth import tries
+from tests.kb_node.reasoner.graphs import triple
+from tests.kb_node.reasoner.swrl import graph
+from tests.kb_node.reasoner.test_worlds import promised, refused
+from tests.kb_node.reasoner.worlds import Change
+
+AXIOMS = """
+:B rdfs:subClassOf :A . :q rdfs:subPropertyOf :p . :inv owl:inverseOf :p . :p rdfs:domain :D .
+:tra a owl:TransitiveProperty . :fun a owl:FunctionalProperty . :dfun a owl:FunctionalProperty .
+:Some owl:onProperty :tra ; owl:someValuesFrom :C .
+:Has owl:onProperty :p ; owl:hasValue :i1 . :H rdfs:subClassOf :Has .
+:p a owl:ObjectProperty . :q a owl:ObjectProperty . :d a owl:DatatypeProperty . :dd a owl:DatatypeProperty .
+:i0 a :Z . [] a owl:AllDifferent ; owl:members ( :i2 :i3 ) .
+"""
+RULES = (
+    "A(x), p(x, y) -> C(y)",
+    "C(x), C(y), tra(x, y) -> q(y, x)",
+    "p(x, y), p(y, z), differentFrom(x, z) -> r(x, z)",
+    "r(x, y), inv(x, y) -> sameAs(x, y)",
+    "d(x, v), d(y, v), E(x) -> s(x, y)",
+    "d(x, v), b.greaterThan(v, 2) -> E(x)",
+    "d(x, v), b.multiply(w, v, 2) -> dd(x, w)",
+    "dd(x, v), d(y, w), b.equal(v, w) -> s(y, x)",
+    "F(x) -> sameAs(x, i1)",
+    "H(x), Some(x) -> differentFrom(x, i2)",
+    "s(x, x), A(x) -> F(x), q(i2, x)",
+    "G(x), s(x, i3) -> ",
+    "-> G(i3)",
+    "sameAs(x, y), G(x), D(y) -> fun(x, i0)",
+    "fun(x, y), d(x, 3) -> p(x, y)",
+    "q(x, y), sameAs(x, i2) -> tra(y, y)",
+    "d(x, v), dd(x, w), b.multiply(w, v, 1) -> H(x)",
+    "tra(x, y), differentFrom(x, i3) -> H(y)",
+)
+TBOX = graph(*RULES, axioms=AXIOMS)
+_NODES = st.sampled_from([f":i{n}" for n in range(4)])
+_VALUES = st.sampled_from(("1", "2", "3", "3.0", '"2"^^xsd:float', "4"))
+_FACTS = st.one_of(
+    st.builds("{} a {}".format, _NODES, st.sampled_from([f":{name}" for name in "ABCDEFGH"])),
+    st.builds(
+        "{} {} {}".format, _NODES, st.sampled_from([":p", ":q", ":inv", ":tra", ":fun", ":r", ":s"]), _NODES
+    ),
+    st.builds("{} {} {}".format, _NODES, st.sampled_from((":d", ":d", ":dd")), _VALUES),
+    st.builds("{} {} {}".format, _NODES, st.sampled_from(("owl:sameAs", "owl:differentFrom")), _NODES),
+).map(triple)
+_CHANGES = st.lists(
+    st.tuples(st.lists(st.integers(0, 40), max_size=3), st.lists(_FACTS, max_size=4)), min_size=3, max_size=8
+)
+
+
+def random_(count):
+    """Return settings without shrinking, which takes minutes."""
+    checks = list(HealthCheck)
+    return settings(max_examples=count, deadline=None, suppress_health_check=checks, phases=[Phase.generate])
+
+
+@random_(tries(45))
+@given(_CHANGES)
+def test_after_each_change_the_rules_hold_as_in_a_closure_from_scratch(changes):
+    reasoner, facts = Reasoner(TBOX), list[tuple[str, str, str]]()
+    for removed, added in changes:
+        delete = list(dict.fromkeys(facts[i % len(facts)] for i in removed if facts))
+        after = list(dict.fromkeys([*(fact for fact in facts if fact not in delete), *added]))
+        closure = Closure([*TBOX, *after])
+        refusal = refused(reasoner, Change(delete, added))
+        assert (refusal is None) == (closure.clash is None)
+        if refusal is None:
+            facts = after
+        else:
+            assert Closure(refusal.support).clash is not None
+            closure = Closure([*TBOX, *facts])
+        assert reasoner.is_compiled
+        found = list(reasoner.inferred())
+        assert len(found) == len(set(found))
+        assert set(found) == promised(closure, [*TBOX, *facts])
+
+
+@random_(tries(9))
+@given(st.lists(_FACTS, max_size=12))
+def test_what_a_rule_implies_is_explained_by_facts_that_entail_it(facts):
+    try:
+        reasoner = Reasoner([*TBOX, *facts])
+    except Inconsistent:
+        return
+    for conclusion in list(reasoner.inferred()):
+        support = reasoner.explain(conclusion).support
+        assert set(support) <= {*TBOX, *facts}
+        assert conclusion[1] == SAME_AS or Reasoner(support).holds(conclusion)
+
+
+def inferred(reasoner):
+    return {fact for fact in reasoner.inferred() if "Thing" not in fact[2]}
+
+
+def test_a_rule_is_explained_as_a_sentence_and_its_conclusion_goes_with_a_premise():
+    reasoner = Reasoner(graph("Cup(x), on(x, y) -> Cluttered(y)"))
+    reasoner.apply(insert=[triple(":cup1 a :Cup"), triple(":cup1 :on :table1")])
+    conclusion = triple(":table1 a :Cluttered")
+    assert reasoner.explain(conclusion).text == (
+        "table1 is a Cluttered, because cup1 is a Cup (asserted), it is on table1 (asserted), "
+        "and because of the rule “if x is a Cup and x is on y, then y is a Cluttered”."
+    )
+    assert reasoner.rules()[0].holds == 1
+    reasoner.apply(delete=[triple(":cup1 :on :table1")])
+    assert not reasoner.holds(conclusion)
+    assert reasoner.rules()[0].holds == 0
+
+
+def test_a_rule_without_a_head_rejects_a_change_with_the_rule_as_a_reason():
+    reasoner = Reasoner(graph("Knife(x), on(x, y), Floor(y) -> "))
+    reasoner.apply(insert=[triple(":k a :Knife"), triple(":f a :Floor")])
+    with pytest.raises(Inconsistent, match="because of the rule “it is never true that x is a Knife"):
+        reasoner.apply(insert=[triple(":k :on :f")])
+    assert list(reasoner.asserted(None, triple(":k :on :f")[1])) == []
+
+
+def test_equality_as_a_conclusion_of_a_rule_goes_with_its_premise():
+    reasoner = Reasoner(graph("dcode(x, v), dcode(y, v) -> sameAs(x, y)"))
+    codes = [triple(":a :dcode 7"), triple(":b :dcode 7"), triple(":a a :A")]
+    reasoner.apply(insert=codes)
+    assert reasoner.holds(triple(":b a :A"))
+    assert "because of the rule" in reasoner.explain(triple(":b a :A")).text
+    reasoner.apply(delete=codes[:1])
+    assert not inferred(reasoner)
+
+
+@pytest.mark.parametrize(
+    ("rule", "reason"),
+    [
+        ("A(x), b.stringConcat(y, x, x) -> B(x)", "unsupported built-in stringConcat"),
+        ("A(x), b.add(y, z, 1) -> d(x, y)", "unbound variable"),
+        ("A(x) -> p(x, y)", "unbound variable"),
+        ("A(x) -> b.equal(x, 1)", "built-in in the head"),
+        ("d(x, v), b.add(w, v, 1) -> d(x, w)", "recursion through arithmetic"),
+        (" -> ", "empty"),
+    ],
+)
+def test_a_rule_that_is_not_supported_has_no_effect_and_a_reason(rule, reason):
+    reasoner = Reasoner(graph(rule))
+    reasoner.apply(insert=[triple(":i a :A"), triple(":i :d 1")])
+    assert not inferred(reasoner)
+    assert [use.unsupported for use in reasoner.rules()] == [reason]
+    assert reasoner.is_compiled
+
+
+def test_recursion_through_arithmetic_is_found_over_other_rules_and_properties():
+    rules = ("d(x, v), b.add(w, v, 1) -> dd(x, w)", "de(x, v) -> d(x, v)")
+    assert not any(use.unsupported for use in Reasoner(graph(*rules)).rules())
+    looped = Reasoner(graph(*rules, axioms=":dd rdfs:subPropertyOf :de ."))
+    assert [use.unsupported for use in looped.rules()] == ["", "recursion through arithmetic"]
+
+
+def test_rules_of_the_general_engine_are_applied_too():
+    reasoner = Reasoner(graph("A(x) -> B(x)", axioms="owl:sameAs rdfs:subPropertyOf :same ."))
+    assert not reasoner.is_compiled
+    reasoner.apply(insert=[triple(":i a :A")])
+    assert reasoner.holds(triple(":i a :B"))
+    assert reasoner.rules()[0].holds == 1
+
+
+def test_rules_of_functional_syntax_and_owl_xml_are_applied():
+    functional = (
+        "Prefix(:=<http://example.org/>) Ontology(Declaration(Class(:A)) "
+        "DLSafeRule(Body(ClassAtom(:A Variable(<urn:x>))) Head(ClassAtom(:B Variable(<urn:x>)))))"
+    )
+    atom = '<ClassAtom><Class IRI="http://example.org/{}"/><Variable IRI="urn:x"/></ClassAtom>'
+    xml = (
+        '<Ontology xmlns="http://www.w3.org/2002/07/owl#" ontologyIRI="http://example.org/o">'
+        f"<DLSafeRule><Body>{atom.format('A')}</Body><Head>{atom.format('B')}</Head></DLSafeRule></Ontology>"
+    )
+    for text, name in ((functional, "a.ofn"), (xml, "a.owx")):
+        reasoner = Reasoner(rdf.parse(text.encode(), name))
+        reasoner.apply(insert=[triple(":i a :A")])
+        assert reasoner.holds(triple(":i a :B")), name
+
+
+@random_(tries(15))
+@given(_CHANGES)
+def test_the_rules_use_computed_facts_and_release_them(changes):
+    reasoner, computed = Reasoner(TBOX), list[tuple[str, str, str]]()
+    for removed, added in changes:
+        remove = list(dict.fromkeys(computed[i % len(computed)] for i in removed if computed))
+        add = [fact for fact in added if fact[1].startswith("<http://example.org/")]
+        after = list(dict.fromkeys([*(fact for fact in computed if fact not in remove), *add]))
+        clash = Closure([*TBOX, *after]).clash
+        try:
+            reasoner.update_computed(remove=remove, add=add)
+        except Inconsistent:
+            rejected = True
+        else:
+            rejected, computed = False, after
+        assert rejected == (clash is not None)
+        closure = Closure([*TBOX, *computed])
+        assert set(reasoner.inferred()) == promised(closure, TBOX)
+        assert reasoner.is_compiled
