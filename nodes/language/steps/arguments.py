@@ -72,6 +72,8 @@ class ArgumentReader(FrameCompletion):
                 and not self._t.is_mark(i + 1)
             ):
                 i = self._coordinate(clause, i, phrase)
+            elif (phrase := self._other_place(clause, i)) is not None:
+                i = phrase.end
             elif (length := g.match("here", words, i)) and (phrase := self._np.read(i)) is not None:
                 if "to" in roles or "place" in roles:
                     role = roles.get("to") or roles["place"]
@@ -149,18 +151,9 @@ class ArgumentReader(FrameCompletion):
         """Add an object: of two, the first is the receiver (bring me the cup)."""
         roles = self._g.frames[clause.frame].roles
         role = roles.get("object") or roles.get("place") or "Theme"
-        if (phrase.kind == "here" and "object" in roles and clause.role(role) is not None) or (
-            phrase.kind == "here" and "object" not in roles
-        ):
-            clause.roles.append(
-                Role(
-                    roles.get("to") or roles.get("place") or "Goal",
-                    phrase.first,
-                    phrase.end,
-                    phrase.head,
-                    [phrase],
-                )
-            )
+        if phrase.kind == "here" and ("object" not in roles or clause.role(role) is not None):
+            to = roles.get("to") or roles.get("place") or "Goal"
+            clause.roles.append(Role(to, phrase.first, phrase.end, phrase.head, [phrase]))
             return
         if clause.verb.lower() == "show" and phrase.noun == "way":
             return  # show Anna the way to the kitchen
@@ -220,6 +213,8 @@ class ArgumentReader(FrameCompletion):
         opens = last is None or (bool(last.phrases) and last.phrases[-1].kind in ("speaker", "pronoun"))
         if opens and self._words[i] == "or" and self._words[phrase.end : phrase.end + 1] == ("or",):
             return i + 1  # Italian "o il latte o l'acqua"
+        if self._words[i] == "or" and self.starts_clause(i + 1):
+            return self._unread(i + 1)  # or go to the kitchen
         self._finish(clause)
         if self._has_place(clause) and self._is_gap(clause, phrase):
             return self._gapped(clause, i + 1)
@@ -229,12 +224,27 @@ class ArgumentReader(FrameCompletion):
             self.found.unused.append(self._t.between(i + 1, phrase.end))
             return phrase.end
         if self._words[i] == "or":
+            last = clause.roles[-1] if self._has_place(clause) else last  # on the table or the desk
             last.phrases[-1].alternatives.append(phrase)
         else:
             last.phrases[-1].amount.total = None  # both cups and plates
             last.phrases.append(phrase)
         last.end = phrase.end
         return phrase.end
+
+    def _other_place(self, clause: Clause, i: int) -> NounPhrase | None:
+        """Read *or* with a preposition as a choice of places: (on the table) OR ON THE DESK."""
+        length = max(self._g.match(kind, self._words, i + 1) for kind in ("to", "from", "place"))
+        phrase = self._np.read(i + 1 + length) if self._words[i] == "or" and length else None
+        if phrase is None:
+            return None
+        self._finish(clause)
+        last = clause.roles[-1] if clause.roles else None
+        if last is None or not last.phrases or last.role == self._g.frames[clause.frame].roles.get("object"):
+            return None
+        last.phrases[-1].alternatives.append(phrase)
+        last.end = phrase.end
+        return phrase
 
     def _gapped(self, clause: Clause, i: int) -> int:
         """Read a clause without its verb, which is that of the clause before."""

@@ -242,3 +242,27 @@ def test_everyday_expressions_leave_no_doubt(read, text, step):
     understood = read(text)
     assert texts(understood) == [step]
     assert (understood.mood, understood.doubts, understood.unknown) == ("command", (), ())
+
+
+@pytest.mark.parametrize(
+    ("text", "step"),
+    [
+        ("put the apple on the table or the desk", "Placing(Theme=apple1, Goal=table1|desk1)"),
+        ("put the apple on the table or on the desk", "Placing(Theme=apple1, Goal=table1|desk1)"),
+        ("metti la mela sul tavolo o sulla scrivania", "Placing(Theme=apple1, Goal=table1|desk1)"),
+        ("take the cup from the table or from the desk", "Taking(Theme=cup1, Source=table1|desk1)"),
+        ("go to the kitchen or to the bedroom", "Motion(Goal=kitchen1|bedroom1)"),
+        ("bring me the milk or water", 'Bringing(Beneficiary="me", Theme=milk1|water1)'),
+    ],
+)
+def test_another_place_after_or_is_a_choice_of_places(read, text, step):
+    understood = read(text)
+    assert texts(understood) == [step]
+    assert not understood.doubts
+
+
+@pytest.mark.parametrize("other", ["go to the kitchen", "put it on the desk", "bring me the water"])
+def test_a_choice_between_commands_is_not_understood(read, other):
+    understood = read(f"put the apple on the table or {other}")
+    assert texts(understood) == ["Placing(Theme=apple1, Goal=table1)"]
+    assert understood.doubts == (f"'{other}' is not understood",)
