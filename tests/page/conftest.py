@@ -198,6 +198,7 @@ def open_tab(tabs, request):
 
     def open_(web: Web, *, width: int = 1280, height: int = 800, dark: bool = False, scene: bool = False):
         tab = tabs(scene).take()
+        tab.bring_to_front()  # the browser draws another tab once a second only
         used.append(tab)
         taken.callback(tabs(scene).give_back, tab)
         for event, listener in listeners.items():
