@@ -208,17 +208,34 @@ class Node:
 
         bus.follow(self.session, topic, keep, self._heartbeat.ignore)
 
-    def every(self, period_s: float, handle: Callable[[], None]) -> None:
-        """Call `handle()` every `period_s`, as far as the load allows."""
-        due_s = time.monotonic()
+    def every(self, period_s: float, handle: Callable[[], None]) -> Callable[[float], None]:
+        """Call `handle()` every `period_s`, as far as the load allows.
 
-        def repeat() -> None:
+        The returned function changes the period from now on.
+        """
+        due_s, number = time.monotonic(), 0
+
+        def plan() -> None:
+            nonlocal number
+            number += 1
+            self._at(due_s, partial(repeat, number))
+
+        def repeat(planned: int) -> None:
             nonlocal due_s
+            if planned != number:  # the period has been changed since
+                return
             due_s = max(due_s + period_s, time.monotonic())
-            self._at(due_s, repeat)
+            plan()
             handle()
 
-        self._at(due_s, repeat)
+        def change(other_s: float) -> None:
+            nonlocal due_s, period_s
+            if other_s != period_s:
+                due_s, period_s = time.monotonic() + other_s, other_s
+                plan()
+
+        plan()
+        return change
 
     def later(self, delay_s: float, handle: Callable[[], None]) -> None:
         """Call `handle()` once after a delay, as far as the load allows."""

@@ -61,6 +61,8 @@ Timed = TypeVar("Timed", BodiesMoved, JointsMoving, Driven)
 
 _ADVANCE_S = 0.01
 _PUBLISH_S = 0.05
+"""Periods of physics and of poses; while everything sleeps, that of poses holds for both."""
+
 _REFRESH_S = 1.0 / 30.0
 _PLANES: dict[str, Literal["rgb", "depth", "segments"]] = {
     "rgb8": "rgb",
@@ -71,7 +73,7 @@ _BODY_STEPS = 5_000
 """This many steps of single bodies take 0.1 to 0.2 s; then other work is done."""
 
 _SHOWN = 6
-_LAG_S = 0.05
+_LAG_S = 0.1
 """Lag of the simulated time beyond which time is dropped."""
 
 
@@ -92,7 +94,8 @@ class Simulator:
             self._store = SceneStore(config.data / FILENAME, self._world, config.world)
             node.note((*self._world.notes, *self._store.restore()))
         self._paused = config.still
-        self._clock_s = time.monotonic()
+        self._clock_s = self._published_s = time.monotonic()
+        self._is_idle = False
         self._poses = bus.publisher(node.session, keys.POSES)
         self._renderer = VideoRenderer(config.cameras, bus.subscriber_check(node.session, keys.SEGMENTS))
         self._planes: dict[str, Any] = {}
@@ -121,8 +124,7 @@ class Simulator:
         self._window = Window(self._world) if config.window else None
         if self._window is not None:
             node.every(_REFRESH_S, self._window.refresh)
-        node.every(_ADVANCE_S, self._advance)
-        node.every(_PUBLISH_S, self._publish)
+        self._set_period = node.every(_ADVANCE_S, self._advance)
         if config.cameras.rate_hz > 0.0:
             node.every(1.0 / config.cameras.rate_hz, self._render_cameras)
         node.ready(self._summary())
@@ -215,6 +217,7 @@ class Simulator:
         self._clock_s = time.monotonic()
         if self._paused:
             self._release_waiting()
+        self._set_pace()
         self._node.describe(self._summary())
         return Done(text=f"time is {state}")
 
@@ -284,6 +287,7 @@ class Simulator:
     def _published(self, reply: Reply) -> Reply:
         """Publish the poses immediately, so that subscribers do not wait for the next period."""
         self._publish()
+        self._set_pace()
         self._node.describe(self._summary())
         return reply
 
@@ -294,8 +298,18 @@ class Simulator:
             self._world.step(min(now - self._clock_s, _LAG_S, self._slice_s()))
             if self._world.joints_at_rest > before:
                 self._publish()  # the end of a motion is published immediately
+        if now - self._published_s > _PUBLISH_S - _ADVANCE_S / 2:
+            self._publish()
         self._clock_s = now
+        self._set_pace()
         self._report_ended()
+
+    def _set_pace(self) -> None:
+        """Advance seldom while nothing can move: a wake-up costs more than the physics of sleeping bodies."""
+        was_idle, self._is_idle = self._is_idle, self._paused or self._world.asleep
+        if was_idle and not self._is_idle:
+            self._clock_s = time.monotonic()
+        self._set_period(_PUBLISH_S if self._is_idle else _ADVANCE_S)
 
     def _slice_s(self) -> float:
         """Return the simulated time that can be computed without delaying other work."""
@@ -306,6 +320,7 @@ class Simulator:
         poses = self._world.poses()
         if self._store is not None:
             self._store.update(poses)
+        self._published_s = time.monotonic()
         self._poses.put(codec.encode(poses), encoding=codec.encoding_of(poses))
 
     def _summary(self) -> str:

@@ -26,6 +26,11 @@ def system(tmp_path_factory):
         yield system
 
 
+def newest(recording):
+    """Return the number of the newest commit in a recording, which may still be empty: then 0."""
+    return max((commit.seq for commit in read_commits(recording)), default=0)
+
+
 def test_map_and_scene_are_run_again_beside_the_running_system(system):
     with system.client() as client:
         last = client.status().commit
@@ -68,7 +73,7 @@ def test_a_recording_is_compared_with_the_map_that_it_is_of(system, flat_map):
         last = client.status().commit
     (recording,) = (system.data / "recordings").glob("*.rrd")
     check = ("replay", recording, "--check")
-    until(lambda: read_commits(recording)[-1].seq == last, "the recorder has written all")
+    until(lambda: newest(recording) == last, "the recorder has written all")
     assert f"commits are as in the journal: 1 to {last}" in system.cli(*check)
     # The map of the other system began as this one did.
     said = flat_map.cli(*check, status=1)
@@ -82,17 +87,14 @@ def test_a_recording_is_compared_with_the_map_that_it_is_of(system, flat_map):
 def test_of_a_recording_that_is_cut_off_the_missing_commits_are_named(system, tmp_path):
     (recording,) = (system.data / "recordings").glob("*.rrd")
 
-    def newest():
-        return read_commits(recording)[-1].seq
-
     with system.client() as client:
-        until(lambda: newest() == client.status().commit, "the recorder has written all so far")
-        left, whole, cut = newest(), recording.read_bytes(), tmp_path / "cut.rrd"
+        until(lambda: newest(recording) == client.status().commit, "the recorder has written all so far")
+        left, whole, cut = newest(recording), recording.read_bytes(), tmp_path / "cut.rrd"
         client.add("Room", "late_room", at=(20.0, 20.0, 0.0), size=(3.0, 3.0, 2.5))
-        until(lambda: newest() == client.status().commit > left, "and what came after it")
-        last = newest()
+        until(lambda: newest(recording) == client.status().commit > left, "and what came after it")
+        last = newest(recording)
     cut.write_bytes(whole + recording.read_bytes()[len(whole) : len(whole) + 40])
-    assert read_commits(cut)[-1].seq == left
+    assert newest(cut) == left
     command = [_BIN / "semmap", "replay", cut, "--check", "--data", system.data]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 1

@@ -218,6 +218,25 @@ def test_deferred_work_is_done_when_no_event_waits(network):
     assert 1 in done
 
 
+def test_the_period_of_repeated_work_can_be_changed_at_any_time(network):
+    node, _ = network
+    done: list[int] = []
+
+    def begin():
+        change = node.every(3600.0, lambda: work(change))  # due now, and then after an hour
+        node.later(0.0, lambda: change(0.001))
+
+    def work(change):
+        done.append(len(done))
+        if len(done) == 5:
+            change(3600.0)
+            node.later(0.02, lambda: done.append(-1))
+
+    node.soon(begin)
+    until(lambda: done[-1:] == [-1], "a period of an hour holds no longer, and then again")
+    assert done == [0, 1, 2, 3, 4, -1]
+
+
 def test_work_after_a_reply_does_not_delay_it_and_precedes_the_next_event(network):
     node, client = network
     order: list[str] = []
