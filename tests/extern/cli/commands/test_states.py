@@ -53,6 +53,7 @@ def test_a_client_sets_states(system):
 
 def test_a_selector_and_a_json_message_set_states(system):
     with system.client() as client:
+        client.set("door1", "isOpen", False)
         parameters = "name=door1;property=isOpen;values=true"
         (reply,) = client.session.get(f"semmap/cmd/set?{parameters}")
         assert codec.decode(reply.ok.payload.to_bytes(), replies.Changed).commit is not None
