@@ -49,6 +49,13 @@ def pose_of_text(text: str) -> Pose | None:
         return None
 
 
+def wholes_of(entity: Entity | None) -> tuple[str, ...]:
+    """Return the names of the entities that this one is asserted to be a direct part of."""
+    whole = () if entity is None else entity.properties.get(_PART_OF, ())
+    wholes = (whole,) if isinstance(whole, str) else whole if isinstance(whole, tuple) else ()
+    return tuple(name for name in wholes if isinstance(name, str))
+
+
 def carriers(name: str, entities: Mapping[str, Entity]) -> list[str]:
     """Return all entities that a thing is attached to or part of, directly or indirectly, nearest first."""
     found: list[str] = []
@@ -57,9 +64,7 @@ def carriers(name: str, entities: Mapping[str, Entity]) -> list[str]:
         entity = entities.get(waiting.pop())
         if entity is None:
             continue
-        whole = entity.properties.get(_PART_OF, ())
-        wholes = (whole,) if isinstance(whole, str) else whole if isinstance(whole, tuple) else ()
-        for above in (holder_of(entity), *(w for w in wholes if isinstance(w, str))):
+        for above in (holder_of(entity), *wholes_of(entity)):
             if above and above not in found:
                 found.append(above)
                 waiting.append(above)

@@ -23,7 +23,8 @@ from semmap.schemas.errors import BadFile
 MAGIC: Final = b"semmap backup 1\n"
 _LENGTH: Final = 4
 
-Kind = Literal["tbox", "beginning", "snapshot", "commit", "checkpoint"]
+Kind = Literal["tbox", "beginning", "snapshot", "commit", "checkpoint", "shapes"]
+"""`shapes` is the file with the shapes of the bodies of world files, and its `seq` the time of that file."""
 
 
 class Opening(Struct, frozen=True, kw_only=True, tag="opening"):
@@ -138,7 +139,7 @@ def _rows(file: Path, opened: BinaryIO) -> Iterator[Opening | Piece]:
     parts: list[bytes] = []
     begun: tuple[str, int] | None = None
     while isinstance(frame := _frame(file, opened), Piece):
-        if begun != (frame.kind, frame.seq):  # a newer checkpoint replaced an incomplete one
+        if begun != (frame.kind, frame.seq):  # a newer checkpoint or shapes replaced incomplete ones
             parts, begun = [], (frame.kind, frame.seq)
         parts.append(frame.content)
         if frame.more:

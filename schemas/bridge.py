@@ -35,6 +35,7 @@ from semmap.schemas.commits import Commit, Effects, Snapshot, Star, Transaction
 from semmap.schemas.entities import CommandId, Entity, Pose, Quaternion, Size, Source, Word
 from semmap.schemas.errors import ErrorMessage
 from semmap.schemas.explanations import Triple
+from semmap.schemas.joints import select_joint_properties
 from semmap.schemas.moments import When
 from semmap.schemas.plans import Clearance, HeightRange, Outline, Plan, Way
 from semmap.schemas.relations import Placing, Where
@@ -327,6 +328,45 @@ class ShapeBodies(Call[Done], frozen=True, kw_only=True, forbid_unknown_fields=T
         return True
 
 
+class ShapeKey(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+    """The part of an entity, as of any commit, that its shape depends on."""
+
+    name: str
+    model: str = ""
+    size_m: Size | None = None
+    joints: tuple[tuple[str, bool | float | str], ...] = ()
+    """The properties for the positions of its joints, with their values."""
+
+    @classmethod
+    def of(cls, entity: Entity) -> ShapeKey:
+        """Return the key of an entity's shape."""
+        joints = () if not entity.properties else tuple(select_joint_properties(entity.properties).items())
+        return cls(name=entity.name, model=entity.model, size_m=entity.size_m, joints=joints)
+
+
+class FoundShapes(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The shapes of entities: `content` is JSON as in `ShapeBodies`, with any keys instead of digests."""
+
+    content: bytes
+
+
+class ShapesOf(Call[FoundShapes], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Request the shapes of entities at their sizes, with their joints at the asserted positions.
+
+    An entity without a size and without a model is left out.
+    """
+
+    LARGEST: ClassVar[int] = MANY
+
+    VERB: ClassVar[str] = "shapes-of"
+    keys: Annotated[tuple[ShapeKey, ...], Meta(max_length=1000)]
+
+    @property
+    def is_quick(self) -> bool:
+        """Always true."""
+        return True
+
+
 BRIDGE: dict[str, type[Call]] = {
     call.VERB: call
     for call in (
@@ -348,7 +388,7 @@ BRIDGE: dict[str, type[Call]] = {
             *(Understand, Find, Tell, Diff, WasWhen),
         ),
         *(Sparql, Watch, Renew),
-        *(Backup, Compact, ShapeBodies),
+        *(Backup, Compact, ShapeBodies, ShapesOf),
     )
 }
 """The request types of `semmap/bridge/<verb>`."""

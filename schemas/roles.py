@@ -60,6 +60,7 @@ GRANTS: Final[tuple[Grant, ...]] = (
     Grant("ask", f"{keys.BRIDGE}/snapshot", ANYBODY),
     Grant("ask", f"{keys.BRIDGE}/recall", ANYBODY),
     Grant("ask", f"{keys.BRIDGE}/copy", ANYBODY),
+    Grant("ask", f"{keys.BRIDGE}/shapes-of", ANYBODY),
     Grant("ask", f"{keys.BRIDGE}/*", NODES),
     Grant("ask", f"{keys.SIM}/snapshot", ANYBODY),
     Grant("ask", f"{keys.SIM}/surfaces", ANYBODY),

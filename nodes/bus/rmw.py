@@ -45,7 +45,12 @@ class RosTopic(NamedTuple):
     def qos(self) -> str:
         """Its quality of service as written in a token; an empty field is the default."""
         reliability = "" if self.reliable else "2"
-        return f"{reliability}:{'1' if self.latched else ''}:,{1 if self.latched else _DEPTH}:,:,:,,"
+        return f"{reliability}:{'1' if self.latched else ''}:,{self.depth}:,:,:,,"
+
+    @property
+    def depth(self) -> int:
+        """The number of messages that are kept for a subscriber."""
+        return 1 if self.latched else _DEPTH
 
     @property
     def token(self) -> str:

@@ -12,7 +12,9 @@ from semmap.nodes.drawing.scene_state import SceneState
 from semmap.nodes.drawing.surfaces import Kind, SurfaceCache
 from semmap.nodes.extern.ros import messages
 from semmap.nodes.extern.ros.messages import Moment
+from semmap.nodes.extern.ros.planning_scene import planning_scene
 from semmap.nodes.extern.ros.published_frames import Placed, PublishedFrames
+from semmap.nodes.extern.ros.shapes import ShapeFeed
 from semmap.nodes.extern.ros.things import Thing, located_things
 from semmap.nodes.extern.ros.types import encode, topic
 from semmap.nodes.navigation.grid import occupancy
@@ -83,6 +85,7 @@ class Bridge:
         self._floor_differs, self._asking_floor = True, False
         self._live: dict[str, Pose] = {}
         self._surfaces: SurfaceCache | None = SurfaceCache() if meshes else None
+        self._shapes = ShapeFeed(node, self._mark_changed)
         self._things: dict[str, Thing] = {}
         self._is_stale = True
         self._published: dict[str, Thing] | None = None
@@ -172,7 +175,9 @@ class Bridge:
             return
         if self._is_stale:
             self._is_stale = False
-            self._things = located_things(self._map.entities.values(), self._scene.bodies, self._live)
+            self._shapes.fetch(self._map.entities.values())
+            bodies = self._scene.bodies
+            self._things = located_things(self._map.entities, bodies, self._live, self._shapes.of)
         at = Moment(self._frame, time.time_ns())
         if self._is_due("transforms", self._period_s):
             self._transform(at)
@@ -214,7 +219,7 @@ class Bridge:
 
     def _plan(self, at: Moment) -> None:
         before, self._planned = self._planned, self._things
-        scene = messages.planning_scene(self._things, before, self._known_surfaces(), at)
+        scene = planning_scene(self._things, before, self._known_surfaces(), at)
         if scene is not None:
             self._put(self._topics.planning_scene, scene)
 

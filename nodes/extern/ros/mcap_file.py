@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import os
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import IO, Any, Final, NamedTuple
 
@@ -14,18 +15,30 @@ from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.ros import messages
 from semmap.nodes.extern.ros.bridge import Topics
 from semmap.nodes.extern.ros.messages import Moment
+from semmap.nodes.extern.ros.planning_scene import planning_scene
+from semmap.nodes.extern.ros.shapes import ShapeTable
 from semmap.nodes.extern.ros.things import Thing, located_things
 from semmap.nodes.extern.ros.types import encode, store
 from semmap.nodes.runtime.version import version
 from semmap.schemas import errors, keys
 from semmap.schemas.bridge import Recall
-from semmap.schemas.calls import reply_type
+from semmap.schemas.calls import Call, reply_type
 from semmap.schemas.commits import Commit
 from semmap.schemas.entities import Entity
 
 _AT_ONCE: Final = 100
 _MOST: Final = 10_000
-_RECALL_S: Final = 30.0
+_REPLY_S: Final = 30.0
+
+
+_QOS: Final = (
+    "- history: keep_last\n  depth: {depth}\n  reliability: reliable\n  durability: {durability}\n"
+    "  deadline: {forever}\n  lifespan: {forever}\n"
+    "  liveliness: automatic\n  liveliness_lease_duration: {forever}\n"
+    "  avoid_ros_namespace_conventions: false"
+)
+"""The quality of service of a topic as `ros2 bag record` writes it, from which `ros2 bag play` publishes."""
+_FOREVER: Final = "{sec: 9223372036, nsec: 854775807}"
 
 
 class State(NamedTuple):
@@ -53,13 +66,20 @@ def _states(client: Client, seqs: list[int], began_ns: int) -> Iterator[State]:
     first = seqs[0]
     before = client.list(as_of=str(first - 1)) if first > 1 else ()
     entities = {entity.name: entity for entity in before}
-    yield State(first - 1, began_ns, located_things(entities.values(), {}, {}))
+    shapes = ShapeTable()
+    yield State(first - 1, began_ns, _locate(client, entities, shapes))
     for commit in _fetch_commits(client, seqs):
         if commit.abridged is not None or commit.tbox:
             entities = {entity.name: entity for entity in client.list(as_of=str(commit.seq))}
         else:
             _follow(entities, commit)
-        yield State(commit.seq, commit.stamp_ns, located_things(entities.values(), {}, {}))
+        yield State(commit.seq, commit.stamp_ns, _locate(client, entities, shapes))
+
+
+def _locate(client: Client, entities: Mapping[str, Entity], shapes: ShapeTable) -> dict[str, Thing]:
+    for query in shapes.queries(entities.values()):
+        shapes.take(query, _ask(client, query))
+    return located_things(entities, {}, {}, shapes.of)
 
 
 def _follow(entities: dict[str, Entity], commit: Commit) -> None:
@@ -72,26 +92,34 @@ def _follow(entities: dict[str, Entity], commit: Commit) -> None:
 def _fetch_commits(client: Client, seqs: list[int]) -> Iterator[Commit]:
     for start in range(0, len(seqs), _AT_ONCE):
         some = tuple(seqs[start : start + _AT_ONCE])
-        commits: tuple[Commit, ...] = bus.ask(
-            client.session,
-            keys.BRIDGE,
-            Recall.VERB,
-            Recall(seqs=some),
-            reply_type(Recall),
-            timeout_s=_RECALL_S,
-        )
+        commits: tuple[Commit, ...] = _ask(client, Recall(seqs=some))
         yield from commits
 
 
+def _ask(client: Client, call: Call[Any]) -> Any:
+    kind = type(call)
+    return bus.ask(client.session, keys.BRIDGE, kind.VERB, call, reply_type(kind), timeout_s=_REPLY_S)
+
+
 def write(path: Path, found: Iterable[State], of: Topics, *, frame: str = "map") -> int:
-    """Write states to a new file, and return the number of messages. Raises BadFile."""
+    """Write states to a new file, and return the number of messages. Raises BadFile.
+
+    The file is created after it is complete, so an interruption leaves none.
+    """
+    unfinished = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
-        with path.open("xb") as file:
-            return _Recording(file, of, frame).fill(found)
-    except FileExistsError:
-        raise errors.BadFile(f"{path} already exists; choose another name") from None
+        if path.exists():
+            raise errors.BadFile(f"{path} already exists; choose another name")
+        with unfinished.open("xb") as file:
+            count = _Recording(file, of, frame).fill(found)
+            file.flush()
+            os.fsync(file.fileno())
+        unfinished.replace(path)
+        return count
     except OSError as error:
         raise errors.BadFile(f"{path} cannot be written: {error.strerror}") from None
+    finally:
+        unfinished.unlink(missing_ok=True)
 
 
 class _Recording:
@@ -104,7 +132,9 @@ class _Recording:
     def _channel(self, made: RosTopic) -> int:
         text, _ = store().generate_msgdef(made.type, ros_version=2)
         schema = self._writer.register_schema(made.type, "ros2msg", text.encode())
-        return self._writer.register_channel(made.name, "cdr", schema)
+        return self._writer.register_channel(
+            made.name, "cdr", schema, {"offered_qos_profiles": _offered_qos(made)}
+        )
 
     def fill(self, found: Iterable[State]) -> int:
         before: dict[str, Thing] = {}
@@ -114,7 +144,7 @@ class _Recording:
             self._add(self._of.detections, messages.detections(things, at), state)
             self._add(self._of.markers, messages.markers(things, at), state)
             self._add(self._of.transforms, messages.transforms(things, at), state)
-            if (scene := messages.planning_scene(state.things, before, {}, at)) is not None:
+            if (scene := planning_scene(state.things, before, {}, at)) is not None:
                 self._add(self._of.planning_scene, scene, state)
             before = state.things
         self._writer.finish()  # type: ignore[no-untyped-call]
@@ -125,3 +155,8 @@ class _Recording:
         self._writer.add_message(
             self._channels[made], state.stamp_ns, encode(message), state.stamp_ns, state.commit
         )
+
+
+def _offered_qos(made: RosTopic) -> str:
+    durability = "transient_local" if made.latched else "volatile"
+    return _QOS.format(depth=made.depth, durability=durability, forever=_FOREVER)

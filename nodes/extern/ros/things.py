@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Final, NamedTuple
 
 from semmap.nodes.drawing.articulation import JointPositions, joint_positions_of
+from semmap.nodes.extern.ros.robots import Grasp, Robots
 from semmap.nodes.extern.ros.types import new
-from semmap.schemas.entities import IDENTITY, Entity, Pose, Size, carried
+from semmap.ontology.model_shapes import ConvexPart, ModelShape
+from semmap.schemas.attachments import grip_of, holder_of
+from semmap.schemas.entities import IDENTITY, Entity, Pose, Size, carried, compose
 from semmap.schemas.scenes import Body
 
 _ORIGIN: Final = Pose(position_m=(0.0, 0.0, 0.0))
@@ -17,7 +20,10 @@ _STILL: Final = 1e-3
 
 
 class Thing(NamedTuple):
-    """An entity with a pose: the live pose, else that of its body, else that in the map."""
+    """An entity with a pose: the live pose, else that of its body, of its holder, or in the map.
+
+    `parts` are the convex parts of its shape in its own frame, with the asserted joint positions.
+    """
 
     name: str
     class_: str
@@ -28,9 +34,14 @@ class Thing(NamedTuple):
     place: bool
     resting: bool
     joint_positions: JointPositions = ()
+    parts: tuple[ConvexPart, ...] = ()
+    robot: bool = False
+    """Whether it is a robot or a part of one."""
+    grasp: Grasp | None = None
+    """The part of a robot that holds it."""
 
     def has_same_shape(self, other: Thing) -> bool:
-        """Return whether it differs only in its pose."""
+        """Return whether it differs at most in its pose."""
         return self._replace(pose=_ORIGIN, resting=True) == other._replace(pose=_ORIGIN, resting=True)
 
     def has_same_pose(self, other: Thing) -> bool:
@@ -41,28 +52,58 @@ class Thing(NamedTuple):
 
 
 def located_things(
-    entities: Iterable[Entity], bodies: Mapping[str, Body], live: Mapping[str, Pose]
+    entities: Mapping[str, Entity],
+    bodies: Mapping[str, Body],
+    live: Mapping[str, Pose],
+    shape_of: Callable[[Entity], ModelShape | None] = lambda _: None,
 ) -> dict[str, Thing]:
-    """Return the entities with a pose, by name; tracked ones have their `live` pose."""
+    """Return the entities with a pose, by name; tracked ones have their `live` pose.
+
+    A size that the map does not state is that of the body, or of the shape.
+    """
     found = {}
-    for entity in entities:
+    robots = Robots(entities, bodies)
+    for entity in entities.values():
         body = bodies.get(entity.name)
-        pose = live.get(entity.name) or (body.pose if body is not None else entity.pose)
+        pose = _find_pose(entity, entities, bodies, live, ())
         if pose is None:
             continue
         confidence = entity.pose_provenance.confidence
+        shape = shape_of(entity)
         found[entity.name] = Thing(
             name=entity.name,
             class_=entity.class_,
             pose=pose,
-            size_m=entity.size_m or (None if body is None else body.size_m),
+            size_m=entity.size_m or (body.size_m if body else shape.size_m if shape else None),
             probability=1.0 if confidence is None else confidence,
             model="" if body is None else body.model,
             place=entity.place,
             resting=body is None or body.resting,
             joint_positions=() if body is None else joint_positions_of(body.joints),
+            parts=() if shape is None else shape.parts,
+            robot=entity.name in robots.names,
+            grasp=robots.grasp_of(entity),
         )
     return found
+
+
+def _find_pose(
+    entity: Entity,
+    entities: Mapping[str, Entity],
+    bodies: Mapping[str, Body],
+    live: Mapping[str, Pose],
+    above: tuple[str, ...],
+) -> Pose | None:
+    """Return the best known pose: live, of the body, from the holder, or committed."""
+    if (pose := live.get(entity.name)) is not None:
+        return pose
+    if (body := bodies.get(entity.name)) is not None:
+        return body.pose
+    holder, grip = entities.get(holder_of(entity)), grip_of(entity)
+    if holder is None or grip is None or holder.name in above:
+        return entity.pose
+    held_at = _find_pose(holder, entities, bodies, live, (*above, entity.name))
+    return entity.pose if held_at is None else compose(held_at, grip)
 
 
 def middle(pose: Pose, size_m: Size) -> Pose:

@@ -1,4 +1,4 @@
-"""Handler for the shapes of the bodies of a world, which the simulator sends when it has opened the world."""
+"""Handlers for shapes: those of a world's bodies, which the simulator sends, and queries for shapes."""
 
 from __future__ import annotations
 
@@ -7,12 +7,15 @@ from pathlib import Path
 
 import msgspec
 
+from semmap.nodes.kb_node.relations.geometry.fitting import fit_model
+from semmap.nodes.kb_node.relations.geometry.opening import Positions, open_shape, positions_of
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage import body_shapes
-from semmap.ontology.model_shapes import WorldShapes, world
+from semmap.ontology.model_shapes import WorldShapes, model_in_world, own_size_m, world
 from semmap.schemas import errors, wording
-from semmap.schemas.bridge import ShapeBodies
+from semmap.schemas.bridge import FoundShapes, ShapeBodies, ShapesOf
 from semmap.schemas.calls import Handler, by_verb
+from semmap.schemas.entities import Size
 from semmap.schemas.replies import Done
 
 
@@ -27,7 +30,7 @@ class ShapeHandlers:
 
     def handlers(self) -> dict[str, Handler]:
         """Return the handlers by command."""
-        return by_verb(ShapeBodies.answered_by(self.on_shapes))
+        return by_verb(ShapeBodies.answered_by(self.on_shapes), ShapesOf.answered_by(self.on_shapes_of))
 
     def on_shapes(self, message: ShapeBodies) -> Done:
         """Store the shapes, and compute the relations of entities again whose shapes have changed.
@@ -43,3 +46,18 @@ class ShapeHandlers:
             body_shapes.write(self._file, now)
             self._on_changed(self._map.exchange_shapes(now))
         return Done(text=f"shapes of {wording.bodies(len(sent.bodies))}")
+
+    def on_shapes_of(self, query: ShapesOf) -> FoundShapes:
+        """Return the shapes of entities. Equal entities share one."""
+        found: dict[tuple[str, Size, Positions], str] = {}
+        of: dict[str, tuple[str, ...]] = {}
+        for key in query.keys:
+            model = model_in_world(key.name, key.model, key.size_m)
+            if size_m := key.size_m or (own_size_m(model) if model else None):
+                joints = positions_of(model, size_m, dict(key.joints))
+                of[key.name] = (found.setdefault((model, size_m, joints), str(len(found))),)
+        shapes = {
+            number: open_shape(fit_model(model, size_m), joints)
+            for (model, size_m, joints), number in found.items()
+        }
+        return FoundShapes(content=msgspec.json.encode(WorldShapes(shapes, of)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 import shutil
 from contextlib import suppress
 from pathlib import Path
@@ -16,8 +17,14 @@ from semmap.schemas import errors
 
 log = logging.getLogger(__name__)
 
-FILENAME: Final = f"{JOURNAL}.shapes"
+_SUFFIX: Final = ".shapes"
+FILENAME: Final = f"{JOURNAL}{_SUFFIX}"
 """Beside the journal, with which it is archived if a new map is started."""
+
+
+def beside(journal: Path) -> Path:
+    """Return the file with the shapes that belong to a journal."""
+    return journal.with_name(f"{journal.name}{_SUFFIX}")
 
 
 def load(file: Path) -> str:
@@ -34,6 +41,15 @@ def load(file: Path) -> str:
         )
     exchange_world(found)
     return problem
+
+
+def read(file: Path) -> tuple[int, bytes]:
+    """Return the time of the file [ns] and its content; 0 and nothing without a file."""
+    try:
+        with file.open("rb") as opened:  # which stays the same one if another replaces it
+            return os.fstat(opened.fileno()).st_mtime_ns, opened.read()
+    except FileNotFoundError:
+        return 0, b""
 
 
 def copy(source: Path, target: Path) -> None:

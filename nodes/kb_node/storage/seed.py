@@ -15,7 +15,7 @@ from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.sparql.triples.disk_stores import forget
-from semmap.nodes.kb_node.storage import closure_cache
+from semmap.nodes.kb_node.storage import body_shapes, closure_cache
 from semmap.nodes.kb_node.storage.existing_map import describe_existing_map
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 from semmap.nodes.kb_node.storage.journal.sqlite_file import InUse
@@ -136,8 +136,13 @@ def require_unused(path: Path) -> None:
 
 
 def install_journal(new: Path, path: Path) -> Path | None:
-    """Replace the journal at `path` by `new`, and return where the old one is kept, if there was one."""
+    """Replace the journal at `path` by `new`, and return where the old one is kept, if there was one.
+
+    Shapes beside the new journal go with it.
+    """
     kept = archive_journal(path.parent)
+    if (shapes := body_shapes.beside(new)).exists():
+        shapes.rename(body_shapes.beside(path))
     new.rename(path)
     _sync(path.parent)
     return kept

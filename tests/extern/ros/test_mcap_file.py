@@ -1,6 +1,73 @@
+import itertools
+import math
+
 import pytest
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
+from rosbags.interfaces import QosDurability
+from rosbags.rosbag2 import Reader
+
+from semmap.nodes.extern.ros import mcap_file
+from semmap.nodes.extern.ros.bridge import topics
+from semmap.schemas import errors
+
+ADD, REMOVE, MOVE = 0, 1, 3
+NUMBERS = {1: 3, 2: 1, 3: 2}
+"""Dimensions of a box, a sphere and a cylinder."""
+
+
+def read(file):
+    """Return the messages by topic, as the public decoder reads them."""
+    heard = {}
+    with file.open("rb") as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
+        for _, channel, _, message in reader.iter_decoded_messages():
+            heard.setdefault(channel.topic, []).append(message)
+    return heard
+
+
+class Planner:
+    """What a planning scene's monitor makes of diffs: obstacles, and the objects attached to links."""
+
+    def __init__(self):
+        self.obstacles, self.attached = {}, {}
+
+    def take(self, scene):
+        assert scene.is_diff
+        assert scene.robot_state.is_diff
+        for each in scene.robot_state.attached_collision_objects:
+            name = each.object.id
+            if each.object.operation == ADD:
+                assert each.link_name in each.touch_links
+                self._check_solid(each.object)
+                self.obstacles.pop(name, None)
+                self.attached[name] = each.link_name
+            else:
+                assert self.attached.pop(name) == each.link_name
+                self.obstacles[name] = each.object  # as MoveIt does
+        for each in scene.world.collision_objects:
+            if each.operation == ADD:
+                self._check_solid(each)
+                assert each.id not in self.attached
+                self.obstacles[each.id] = each
+            elif each.operation == MOVE:
+                assert each.id in self.obstacles
+            else:
+                self.obstacles.pop(each.id, None)
+        return self
+
+    @staticmethod
+    def _check_solid(found):
+        assert found.header.frame_id == "map"
+        assert found.primitives or found.meshes
+        assert len(found.primitives) == len(found.primitive_poses)
+        assert len(found.meshes) == len(found.mesh_poses)
+        for primitive in found.primitives:
+            assert len(primitive.dimensions) == NUMBERS[primitive.type]
+            assert min(primitive.dimensions) > 0.0
+        for pose in (found.pose, *found.primitive_poses, *found.mesh_poses):
+            q = pose.orientation
+            assert math.hypot(q.x, q.y, q.z, q.w) == pytest.approx(1.0)
 
 
 @pytest.fixture
@@ -17,12 +84,7 @@ def test_another_party_reads_a_span_of_the_history(changed, tmp_path):
     system, first = changed
     file = tmp_path / "span.mcap"
     said = system.cli("mcap", file, "--since", first + 1)
-    heard = {}
-    with file.open("rb") as stream:
-        for _, channel, _, message in make_reader(
-            stream, decoder_factories=[DecoderFactory()]
-        ).iter_decoded_messages():
-            heard.setdefault(channel.topic, []).append(message)
+    heard = read(file)
     assert f"{sum(map(len, heard.values()))} messages written" in said
     detected = [{d.id: d for d in m.detections} for m in heard["/semmap/detections"]]
     assert ["cup77" in each for each in detected][:4] == [False, True, True, False]
@@ -42,3 +104,65 @@ def test_a_file_is_not_written_over_and_a_span_must_have_commits(changed, tmp_pa
     assert "as in there.mcap" in system.cli("mcap", tmp_path / "there.bag", status=2)
     assert "no commit" in system.cli("mcap", tmp_path / "new.mcap", "--since", "2031-01-01", status=2)
     assert not (tmp_path / "new.mcap").exists()
+
+
+@pytest.fixture
+def grasped(flat):
+    with flat.client() as client:
+        first = client.status().commit
+        client.add("Robot", "robot9", at=(2.0, 2.0, 0.0), size=(0.5, 0.5, 1.0))
+        client.add("Device", "hand9", at=(2.5, 2.0, 0.8), size=(0.1, 0.1, 0.1))
+        client.set("hand9", "isDirectPartOf", "robot9")
+        client.add("Cup", "cup9", at=(2.6, 2.0, 0.8))
+        client.attach("cup9", to="hand9")
+        client.update("hand9", at=(2.5, 3.0, 0.8))
+        client.detach("cup9")
+    return flat, first
+
+
+def test_the_planning_scene_follows_a_grasp(grasped, tmp_path):
+    system, first = grasped
+    file = tmp_path / "grasp.mcap"
+    system.cli("mcap", file, "--since", first + 1)
+    heard = read(file)
+    planner = Planner()
+    states = [(dict(planner.take(s).obstacles), dict(planner.attached)) for s in heard["/planning_scene"]]
+    cup = [("cup9" in obstacles, attached.get("cup9")) for obstacles, attached in states]
+    assert [of for of, _ in itertools.groupby(cup)] == [
+        (False, None),
+        (True, None),
+        (False, "hand9"),
+        (True, None),
+    ]
+    assert not {"robot9", "hand9"} & states[-1][0].keys()
+    assert states[0][0]["table1"].primitives[0].dimensions[2] < 0.1  # the board, not the bounding box
+    assert all(d.bbox.size.x > 0.0 for m in heard["/semmap/detections"] for d in m.detections)
+    frames = [{t.child_frame_id: t.transform.translation for t in m.transforms} for m in heard["/tf"]]
+    assert [frame["cup9"].y for frame in frames[-2:]] == pytest.approx([3.0, 3.0])  # with the hand
+
+
+def test_players_publish_latched_topics_as_latched(changed, tmp_path):
+    system, first = changed
+    file = tmp_path / "span.mcap"
+    system.cli("mcap", file, "--since", first + 1)
+    with Reader(file) as reader:
+        durability = {c.topic: {q.durability for q in c.ext.offered_qos_profiles} for c in reader.connections}
+    assert durability == {
+        "/semmap/detections": {QosDurability.TRANSIENT_LOCAL},
+        "/semmap/markers": {QosDurability.TRANSIENT_LOCAL},
+        "/tf": {QosDurability.VOLATILE},
+        "/planning_scene": {QosDurability.VOLATILE},
+    }
+
+
+def test_an_interrupted_export_leaves_no_file(tmp_path):
+    def interrupted():
+        yield mcap_file.State(1, 1, {})
+        assert not (tmp_path / "a.mcap").exists()
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        mcap_file.write(tmp_path / "a.mcap", interrupted(), topics())
+    assert not list(tmp_path.iterdir())
+    with pytest.raises(errors.BadFile, match="cannot be written"):
+        mcap_file.write(tmp_path / "none" / "a.mcap", iter(()), topics())

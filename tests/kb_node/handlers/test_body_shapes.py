@@ -12,7 +12,7 @@ from semmap.ontology import FLAT_TTL, model_shapes
 from semmap.ontology import vocabulary as v
 from semmap.ontology.model_shapes import ConvexPart, ModelShape, Surface, WorldShapes
 from semmap.schemas import errors
-from semmap.schemas.bridge import ShapeBodies
+from semmap.schemas.bridge import ShapeBodies, ShapeKey, ShapesOf
 from semmap.schemas.commits import Edit, Transaction
 from tests.kb_node import home
 from tests.kb_node.test_places_as_facts import state
@@ -165,3 +165,36 @@ def test_an_unreadable_file_is_reported(tmp_path, monkeypatch):
     file.write_bytes(b"{")
     assert "cannot be read" in body_shapes.load(file)
     assert model_shapes.world() == WorldShapes()
+
+
+def found(handlers, *keys):
+    reply = handlers.on_shapes_of(ShapesOf(keys=keys))
+    shapes = msgspec.json.decode(reply.content, type=WorldShapes)
+    return {name: shapes.shapes[number] for name, (number,) in shapes.bodies.items()}
+
+
+def test_shapes_are_those_of_the_world_then_of_models_at_their_size(handlers):
+    handlers.on_shapes(message(block1=solid((0.4, 0.2, 0.1))))
+    shapes = found(
+        handlers,
+        ShapeKey(name="block1", model="table"),
+        ShapeKey(name="table9", model="table", size_m=(2.0, 1.0, 0.5)),
+        ShapeKey(name="thing9", size_m=(0.1, 0.1, 0.1)),
+        ShapeKey(name="unknown9"),
+    )
+    assert shapes["block1"].size_m == (0.4, 0.2, 0.1)
+    assert shapes["table9"].size_m == (2.0, 1.0, 0.5)
+    assert len(shapes["table9"].parts) > 1
+    assert len(shapes["thing9"].parts) == 1
+    assert "unknown9" not in shapes
+
+
+def test_the_shape_of_an_open_fridge_has_its_door_open(handlers):
+    shapes = found(
+        handlers,
+        ShapeKey(name="a", model="fridge"),
+        ShapeKey(name="b", model="fridge", joints=(("isOpen", True),)),
+        ShapeKey(name="c", model="fridge"),
+    )
+    assert shapes["a"].parts != shapes["b"].parts
+    assert shapes["a"].parts == shapes["c"].parts

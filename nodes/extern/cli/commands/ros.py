@@ -55,7 +55,7 @@ def _with_its_extra(function: Callable[..., None]) -> Callable[..., None]:
     type=click.FloatRange(0.1, 100.0),
     help="Rate of transforms [Hz].",
 )
-@click.option("--meshes", is_flag=True, help="Publish obstacles as meshes instead of boxes.")
+@click.option("--meshes", is_flag=True, help="Publish obstacles as meshes instead of primitives.")
 @click.option(
     "--camera",
     "cameras",

@@ -1,7 +1,8 @@
 """The content of a backup, read from a journal in parts. The client requests one part after another.
 
 Nothing is stored between two parts. Written commits never change, so all parts together are the journal at
-the time of the first request, whatever has been committed since.
+the time of the first request, whatever has been committed since. The last row is the file with the shapes of
+the bodies of world files.
 """
 
 from __future__ import annotations
@@ -9,12 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final, NamedTuple
 
+from semmap.nodes.kb_node.storage import body_shapes
 from semmap.nodes.kb_node.storage.journal import Journal, beginning
 from semmap.nodes.kb_node.storage.journal.rows import Row
 from semmap.schemas import errors
 from semmap.schemas.backups import MAGIC, BackupPart, End, Kind, Opening, Piece, framed
 
 PART_BYTES: Final = 4 << 20
+_SHAPES: Final = "shapes"
 _STORED: Final[dict[Kind, str]] = {
     "tbox": "SELECT seq, '', value, digest FROM tboxes WHERE seq > ? AND seq <= ? ORDER BY seq LIMIT 1",
     "beginning": "SELECT seq, '', head, digest FROM beginning WHERE seq > ? AND seq <= ?",
@@ -23,7 +26,7 @@ _STORED: Final[dict[Kind, str]] = {
     "checkpoint": "SELECT seq, '', body, digest FROM checkpoints WHERE seq > ? AND seq <= ?"
     " ORDER BY seq DESC LIMIT 1",
 }
-_KINDS: Final[tuple[Kind, ...]] = ("tbox", "beginning", "snapshot", "commit", "checkpoint")
+_KINDS: Final[tuple[Kind, ...]] = (*_STORED, _SHAPES)
 
 
 class Position(NamedTuple):
@@ -115,6 +118,11 @@ def _iterate_pieces(journal: Journal, position: Position, size: int) -> Iterator
 def _iterate_rows(journal: Journal, kind: Kind, *, after: int, until: int) -> Iterator[Row]:
     """Yield the rows of one kind with numbers after `after` and up to `until`, in order."""
     after = max(after, journal.beginning.seq) if kind == "commit" else after
+    if kind == _SHAPES:
+        written_ns, content = body_shapes.read(body_shapes.beside(journal.path))
+        if content and written_ns > after:
+            yield Row(written_ns, "", content, beginning.digest(content))
+        return
     while True:
         with journal.file.reading() as db:
             if kind in ("beginning", "snapshot") and not beginning.exists(db):

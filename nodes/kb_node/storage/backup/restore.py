@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Callable, Iterator
-from contextlib import closing
+from contextlib import closing, contextmanager
 from pathlib import Path
 
+import msgspec
+
 from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.nodes.kb_node.storage import seed
+from semmap.nodes.kb_node.storage import body_shapes, seed
 from semmap.nodes.kb_node.storage.encoding import body_encoding
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 from semmap.nodes.kb_node.storage.journal.beginning import TABLE
 from semmap.nodes.kb_node.storage.journal.layout import COMPACTED, FORMAT, SCHEMA
+from semmap.ontology.model_shapes import WorldShapes, exchange_world, world
 from semmap.schemas import backups, errors
 from semmap.schemas.backups import Opening, Piece, Restored
 from semmap.schemas.commits import Commit
@@ -59,10 +62,12 @@ def _write_journal(file: Path, new: Path, tell: Callable[[str], None]) -> tuple[
             form = COMPACTED if opening.first > 1 else FORMAT
             with db:
                 db.execute("INSERT INTO meta VALUES ('format', ?)", (form,))
-                _fill(db, rows, tell)
+                shapes = _fill(db, rows, tell)
     except sqlite3.Error as error:
         raise errors.Refused(f"the map could not be written to {new}: {error}") from None
-    with closing(Journal(new)) as journal:
+    if shapes:
+        body_shapes.beside(new).write_bytes(shapes)
+    with closing(Journal(new)) as journal, _using(shapes, file):
         try:
             semantic_map = SemanticMap(journal)
         except errors.Refused:
@@ -71,7 +76,23 @@ def _write_journal(file: Path, new: Path, tell: Callable[[str], None]) -> tuple[
         return opening, len(semantic_map)
 
 
-def _fill(db: sqlite3.Connection, rows: Iterator[Opening | Piece], tell: Callable[[str], None]) -> None:
+@contextmanager
+def _using(shapes: bytes, file: Path) -> Iterator[None]:
+    """Use the shapes of a backup in the block, because the checkpoint has the relations that follow."""
+    before = world()
+    try:
+        exchange_world(msgspec.json.decode(shapes, type=WorldShapes) if shapes else WorldShapes())
+    except msgspec.DecodeError:
+        raise backups.damaged(file) from None
+    try:
+        yield
+    finally:
+        exchange_world(before)
+
+
+def _fill(db: sqlite3.Connection, rows: Iterator[Opening | Piece], tell: Callable[[str], None]) -> bytes:
+    """Insert the rows, and return the content of the file with shapes."""
+    shapes = b""
     head: Piece | None = None
     for row in rows:
         if not isinstance(row, Piece):
@@ -88,6 +109,9 @@ def _fill(db: sqlite3.Connection, rows: Iterator[Opening | Piece], tell: Callabl
             db.execute(TABLE)
             value = (row.seq, head.content, row.content, head.digest)
             db.execute("INSERT INTO beginning VALUES (?, ?, ?, ?)", value)
+        elif row.kind == "shapes":
+            shapes = row.content
         else:
             table = "tboxes" if row.kind == "tbox" else "checkpoints"
             db.execute(f"INSERT INTO {table} VALUES (?, ?, ?)", (row.seq, row.content, row.digest))
+    return shapes

@@ -7,12 +7,14 @@ import pytest
 
 from semmap.nodes.extern import backup as client_backup
 from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage import body_shapes
 from semmap.nodes.kb_node.storage.backup import backup_parts
 from semmap.nodes.kb_node.storage.backup.restore import restore
 from semmap.nodes.kb_node.storage.compaction import compaction
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 from semmap.nodes.kb_node.storage.repair.repair import repair
+from semmap.ontology.model_shapes import ModelShape, WorldShapes, world
 from semmap.schemas import backups, errors
 from tests.kb_node import home
 from tests.kb_node.documents.tbox.test_tbox_validation import NEW_CLASSES, replace
@@ -77,6 +79,45 @@ def test_a_restored_map_equals_the_backup(tmp_path, semantic_map, size):
     assert {e.name for e in after[2].entities} == {e.name for e in there[2].entities}
     other = tmp_path / "other"
     assert repair(other) == f"nothing is damaged in {other}: the map continues from commit 8"
+
+
+def with_shapes(semantic_map, *sizes):
+    """Store a world whose bodies are cubes, and return the content of the file."""
+    file = body_shapes.beside(semantic_map._journal.path)
+    cubes = {f"box{number}": ModelShape(size_m=(size,) * 3) for number, size in enumerate(sizes)}
+    body_shapes.write(file, WorldShapes.of(cubes))
+    return file.read_bytes()
+
+
+@pytest.mark.parametrize("size", [100, backup_parts.PART_BYTES])
+def test_the_shapes_of_a_worlds_bodies_are_restored(tmp_path, semantic_map, size):
+    shapes = with_shapes(semantic_map, 0.1, 0.2, 0.3)
+    backed_up(semantic_map, tmp_path / "b", size)
+    before = world()
+    restore(tmp_path / "b", tmp_path / "other")
+    assert body_shapes.beside(tmp_path / "other" / FILENAME).read_bytes() == shapes
+    assert world() is before
+    backed_up(semantic_map, tmp_path / "b", size, overwrite=True)
+    restore(tmp_path / "b", tmp_path / "other", replace=True)
+    (kept,) = (tmp_path / "other" / "kept").iterdir()
+    assert (kept / body_shapes.FILENAME).read_bytes() == shapes
+    assert not list((tmp_path / "other").glob("new-*"))
+
+
+@pytest.mark.parametrize("semantic_map", ["fresh"], indirect=True)
+def test_shapes_that_change_during_a_backup_are_restored_whole(tmp_path, semantic_map):
+    first = with_shapes(semantic_map, 0.1, 0.2, 0.3)
+    later = []
+
+    def ask(query):
+        part = backup_parts.read_part(semantic_map._journal, query.at, size=300)
+        if first[:100] in part.content and not later:  # the first of several parts
+            later.append(with_shapes(semantic_map, 0.4, 0.5, 0.6, 0.7))
+        return part
+
+    client_backup.write(ask, tmp_path / "b")
+    restore(tmp_path / "b", tmp_path / "other")
+    assert [body_shapes.beside(tmp_path / "other" / FILENAME).read_bytes()] == later
 
 
 @pytest.mark.parametrize("semantic_map", ["fresh"], indirect=True)

@@ -1,0 +1,120 @@
+"""Diffs of a planning scene: obstacles, and the objects that a robot holds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from semmap.nodes.drawing.articulation import articulated
+from semmap.nodes.extern.ros import solids
+from semmap.nodes.extern.ros.messages import Moment, class_colour
+from semmap.nodes.extern.ros.things import Thing, pose_of
+from semmap.nodes.extern.ros.types import new
+from semmap.schemas import errors
+from semmap.schemas.scenes import Surface
+
+_ADD, _REMOVE, _MOVE = 0, 1, 3
+
+Surfaces = Mapping[str, Surface]
+"""The known meshes of objects, by name."""
+Things = Mapping[str, Thing]
+
+
+def planning_scene(now: Things, before: Things, surfaces: Surfaces, at: Moment) -> Any | None:
+    """Return a `moveit_msgs/PlanningScene` with the differences of two states; None without any.
+
+    The id of an object is its name, and the `type` its class. Its shape is the mesh in `surfaces` with its
+    joints moved, its parts, or its bounding box. Places, objects without a size, and robots with their parts
+    are not obstacles. An object that a part of a robot holds is attached to the link with that part's name.
+    """
+    free, was_free = _obstacles(now), _obstacles(before)
+    held, was_held = _held(now), _held(before)
+    objects = [_object(name, at, _REMOVE) for name in was_free if name not in free]
+    colours, attached = [], []
+    for name, thing in was_held.items():
+        if name not in held:
+            attached.append(_detached(thing, at))
+            if name not in free:  # a detached object returns to the world
+                objects.append(_object(name, at, _REMOVE))
+    for name, thing in held.items():
+        if name not in was_held or not thing.has_same_shape(was_held[name]):
+            attached.append(_attached(thing, surfaces.get(name), at))
+            colours.append(_colour(thing))
+    for name, thing in free.items():
+        if name not in was_free or not thing.has_same_shape(was_free[name]):
+            objects.append(_obstacle(thing, surfaces.get(name), at))
+            colours.append(_colour(thing))
+        elif not thing.has_same_pose(was_free[name]):
+            objects.append(_object(name, at, _MOVE, pose=pose_of(thing.pose)))
+    if not objects and not attached:
+        return None
+    return new(
+        "moveit_msgs/msg/PlanningScene",
+        robot_state=new("moveit_msgs/msg/RobotState", attached_collision_objects=attached, is_diff=True),
+        object_colors=colours,
+        world=new("moveit_msgs/msg/PlanningSceneWorld", collision_objects=objects),
+        is_diff=True,
+    )
+
+
+def _obstacles(things: Things) -> dict[str, Thing]:
+    return {name: thing for name, thing in things.items() if _is_solid(thing) and thing.grasp is None}
+
+
+def _held(things: Things) -> dict[str, Thing]:
+    return {name: thing for name, thing in things.items() if _is_solid(thing) and thing.grasp is not None}
+
+
+def _is_solid(thing: Thing) -> bool:
+    return thing.size_m is not None and not thing.place and not thing.robot
+
+
+def _obstacle(thing: Thing, surface: Surface | None, at: Moment) -> Any:
+    if thing.size_m is None:
+        raise errors.InternalError(f"{thing.name} has no size")
+    shape: dict[str, Any]
+    if surface is not None:
+        mesh, origin = _mesh(articulated(surface, thing.joint_positions)), new("geometry_msgs/msg/Pose")
+        shape = {"meshes": [mesh], "mesh_poses": [origin]}
+    else:
+        made = solids.solids_of(thing.parts) if thing.parts else solids.box_of(thing.size_m)
+        shape = made._asdict()
+    kind = new("object_recognition_msgs/msg/ObjectType", key=thing.class_)
+    return _object(thing.name, at, _ADD, pose=pose_of(thing.pose), type=kind, **shape)
+
+
+def _attached(thing: Thing, surface: Surface | None, at: Moment) -> Any:
+    """Return an object that is attached to a link. Its pose is that in the map."""
+    if thing.grasp is None:
+        raise errors.InternalError(f"{thing.name} is not held")
+    return new(
+        "moveit_msgs/msg/AttachedCollisionObject",
+        link_name=thing.grasp.link,
+        object=_obstacle(thing, surface, at),
+        touch_links=list(thing.grasp.touch_links),
+    )
+
+
+def _detached(thing: Thing, at: Moment) -> Any:
+    link = "" if thing.grasp is None else thing.grasp.link
+    return new(
+        "moveit_msgs/msg/AttachedCollisionObject", link_name=link, object=_object(thing.name, at, _REMOVE)
+    )
+
+
+def _object(name: str, at: Moment, operation: int, **fields: Any) -> Any:
+    return new("moveit_msgs/msg/CollisionObject", header=at.header, id=name, operation=operation, **fields)
+
+
+def _colour(thing: Thing) -> Any:
+    return new("moveit_msgs/msg/ObjectColor", id=thing.name, color=class_colour(thing.class_))
+
+
+def _mesh(surface: Surface) -> Any:
+    """Return a `shape_msgs/Mesh` in the frame of the object; corners that triangles share are one."""
+    points = np.frombuffer(surface.points, "<f4").reshape(-1, 3).astype(float)
+    triangles = np.frombuffer(surface.triangles, "<u4").reshape(-1, 3)
+    corners, rows = np.unique(points.round(6), axis=0, return_inverse=True)
+    return solids.mesh_message(corners, rows.reshape(-1)[triangles])
