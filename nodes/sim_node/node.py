@@ -128,6 +128,7 @@ class Simulator:
         if config.cameras.rate_hz > 0.0:
             node.every(1.0 / config.cameras.rate_hz, self._render_cameras)
         node.ready(self._summary())
+        node.describe(self._summary)
 
     def _classes(self, config: SimConfig) -> ClassNames:
         """Return the TBox's classes, if the world file needs them."""
@@ -218,7 +219,6 @@ class Simulator:
         if self._paused:
             self._release_waiting()
         self._set_pace()
-        self._node.describe(self._summary())
         return Done(text=f"time is {state}")
 
     def _release_waiting(self) -> None:
@@ -288,7 +288,6 @@ class Simulator:
         """Publish the poses immediately, so that subscribers do not wait for the next period."""
         self._publish()
         self._set_pace()
-        self._node.describe(self._summary())
         return reply
 
     def _advance(self) -> None:
@@ -329,8 +328,9 @@ class Simulator:
         bodies = (
             f"{wording.bodies(len(world))} in " if len(world) else ""
         )  # the map's bodies are not spawned yet
+        compiling = ", compiling" if world.compiling else ""
         ignored = f"; declared but ignored: {_few(world.ignored)}" if world.ignored else ""
-        return f"{bodies}{world.name}{state}{ignored}"
+        return f"{bodies}{world.name}{state}{compiling}{ignored}"
 
 
 def _few(words: Sequence[str]) -> str:

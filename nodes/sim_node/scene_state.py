@@ -75,7 +75,8 @@ class SceneStore:
         if stored.digest == self._digest:
             return ()
         changed = sorted(self._begins.keys() - kept)
-        begin = f"{few(changed, 5)} begin as in the file; the others" if changed else "all bodies"
+        begins = "begins" if len(changed) == 1 else "begin"
+        begin = f"{few(changed, 5)} {begins} as in the file; the others" if changed else "all bodies"
         return (f"{name} has changed: {begin} stand where they last stood; to reset all: --reset-world",)
 
     def update(self, poses: Poses) -> None:

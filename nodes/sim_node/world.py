@@ -99,6 +99,11 @@ class World:
         return self._engine.data
 
     @property
+    def compiling(self) -> bool:
+        """Return whether bodies are being added or changed, which takes long in a large world."""
+        return self._engine.compiling
+
+    @property
     def asleep(self) -> bool:
         """Return whether every body sleeps and none is about to wake."""
         return self._engine.asleep

@@ -1,8 +1,8 @@
 """Finds a valid place for a body: overlap, lifting onto a support, non-colliding bodies.
 
 Maps may contain impossible poses: a cup and a table at one spot, two cupboards in one place. Bodies are never
-shifted sideways. A body is lifted if a support can carry it. Any other body that would start inside another
-stays at its pose as a *ghost*: visible, but not colliding.
+shifted sideways. A body is lifted if a support can carry it, but not onto a tower of bodies. Any other body
+that would start inside another stays at its pose as a *ghost*: visible, but not colliding.
 """
 
 from __future__ import annotations
@@ -12,6 +12,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from semmap.nodes.sim_node.placement.obstacles import CLEARANCE_M, GROUND, Obstacles
+
+_MOST_STACKED = 10
+"""On more bodies at one spot, a body is not stacked: a tower of hundreds would fall on everything around."""
 
 _MOST_TRIED = 12
 """Of more surfaces, the highest is tried next; otherwise hundreds of bodies at one spot take minutes."""
@@ -79,6 +82,8 @@ def _lift(obstacles: Obstacles, row: int, onto: list[int]) -> float | None:
     surfaces = obstacles.surfaces(row)
     first = next((at for at, (_, owner) in enumerate(surfaces) if not onto or owner in onto), len(surfaces))
     above = surfaces[first:]
+    if len({owner for _, owner in above}) > _MOST_STACKED:
+        return None
     for top, _ in above if len(above) <= _MOST_TRIED else (*above[:_MOST_TRIED], above[-1]):
         obstacles.raise_(row, top + CLEARANCE_M - float(obstacles.body_low[row, 2]))
         if not obstacles.hits(row, CLEARANCE_M / 2):

@@ -303,7 +303,8 @@ def status(client: Client, format: str) -> None:
         return
     output.show.console().print(output.show.status_table(status))
     print(output.show.status_line(status))
-    print_lines(f"  {line}" for line in (*status.displaced, *status.pending, *status.problems))
+    print_lines(f"  {line}" for line in (*status.displaced, *status.pending))
+    print_lines(f"  {line}" for line in output.show.problem_lines(status))
     print_lines(output.show.status_notes(status))
 
 

@@ -76,7 +76,7 @@ def status(robots: Robots, format: str) -> None:
     def show(status: SystemStatus) -> None:
         output.show.console().print(output.show.status_table(status))
         print(output.show.status_line(status))
-        print_lines(f"  {problem}" for problem in status.problems)
+        print_lines(f"  {problem}" for problem in output.show.problem_lines(status))
 
     _print(robots.status(), show, format)
 

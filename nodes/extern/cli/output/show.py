@@ -37,6 +37,7 @@ from semmap.schemas.replies import LoggedCommit, Sighting, SystemStatus
 
 _WIDE = 100_000
 _LEVEL = 1e-3
+_MOST_PROBLEMS: Final = 20
 """A quaternion with smaller x and y is a rotation about the z axis."""
 ENTITY_COLUMNS: Final = ("name", "class", "x", "y", "z", "yaw", "size", "label", "body")
 _NUMBERS: Final = ("x", "y", "z", "yaw")
@@ -275,6 +276,13 @@ def status_line(status: SystemStatus) -> str:
     counts = f"{wording.entities(status.entities)}, {wording.bodies(status.bodies)}, commit {status.commit}"
     of = f"; semmap {status.version}" if status.version else ""
     return f"{counts}; truth: {status.truth}; {agree}{of}"
+
+
+def problem_lines(status: SystemStatus) -> Iterable[str]:
+    """Yield the first problems of a status, and how many more there are."""
+    yield from status.problems[:_MOST_PROBLEMS]
+    if (more := len(status.problems) - _MOST_PROBLEMS) > 0:
+        yield f"… and {wording.counted(more, 'more problem')}; to list all: semmap status --format json"
 
 
 def status_notes(status: SystemStatus) -> Iterable[str]:

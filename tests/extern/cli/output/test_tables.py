@@ -14,6 +14,22 @@ from semmap.schemas.relations import Described
 from semmap.schemas.replies import LoggedCommit, NodeStatus, SystemStatus
 
 
+@pytest.mark.parametrize(("count", "last"), [(0, []), (20, ["p19"]), (21, ["… and 1 more problem"])])
+def test_of_many_problems_a_few_are_shown_and_the_rest_counted(count, last):
+    status = SystemStatus(
+        truth="map",
+        commit=1,
+        entities=0,
+        bodies=0,
+        in_agreement=True,
+        nodes=(),
+        problems=tuple(f"p{i}" for i in range(count)),
+    )
+    lines = [line.partition(";")[0] for line in show.problem_lines(status)]
+    assert lines[:20] == [f"p{i}" for i in range(min(count, 20))]
+    assert lines[-1:] == last
+
+
 def entity(name, size_m=(0.0802, 0.125, 0.095)):
     provenance = Provenance(source="operator", agent="cli/ann", commit=7, stamp_ns=1, reason="add it")
     return Entity(
