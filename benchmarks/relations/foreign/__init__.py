@@ -1,0 +1,1 @@
+"""Relations in MJCF worlds that were not made for semmap, compared with physics."""
