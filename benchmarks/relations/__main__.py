@@ -1,4 +1,4 @@
-"""`python -m benchmarks.relations [--scenes N] [--pairs N] [--sizes N ...] [--watched S] [--json FILE]`."""
+"""`python -m benchmarks.relations [--parts main|foreign ...] [--errors] [--scenes N] [--json FILE] ...`."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ import json
 from pathlib import Path
 
 from benchmarks.relations import accuracy, fact_costs, speed, stability
+from benchmarks.relations.foreign import FIRST, LATER
+from benchmarks.relations.foreign.comparison import RELATIONS, Compared, compare
 from benchmarks.table import Row, as_json, lines
 
 
 def rows(scenes: int, pairs: int, sizes: list[int], watched_s: float) -> list[Row]:
-    """Return all figures."""
+    """Return the figures of the library's models."""
     on, touches, steep = accuracy.against_contacts(scenes)
     inside = accuracy.inside_against_samples(pairs)
     flat = accuracy.flat()
@@ -66,6 +68,19 @@ def rows(scenes: int, pairs: int, sizes: list[int], watched_s: float) -> list[Ro
     ]
 
 
+def foreign_rows(first: Compared, later: Compared) -> list[Row]:
+    """Return the figures of foreign worlds: all of them, and those drawn before the code was read."""
+    whole = Compared.together((first, later))
+    worlds = f"{len(FIRST) + len(LATER)} foreign worlds"
+    return [
+        *(Row(f"{name}, {worlds}: F1", whole.f1(name), "", 0.97, 0.99, more=True) for name in RELATIONS),
+        *(
+            Row(f"{name}, the {len(FIRST)} drawn first: F1", first.f1(name), "", more=True)
+            for name in RELATIONS
+        ),
+    ]
+
+
 def main() -> None:
     """Measure, print a table, write JSON."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.relations", description="Spatial relations.")
@@ -75,9 +90,20 @@ def main() -> None:
     parser.add_argument(
         "--watched", type=float, default=120.0, metavar="S", help="duration of observing things at rest [s]"
     )
+    parser.add_argument("--parts", choices=("main", "foreign"), nargs="+", default=["main", "foreign"])
+    parser.add_argument("--errors", action="store_true", help="list the wrong relations of foreign worlds")
     parser.add_argument("--json", type=Path, metavar="FILE", dest="json_file")
     words = parser.parse_args()
-    found = rows(words.scenes, words.pairs, words.sizes, words.watched)
+    found: list[Row] = []
+    if "main" in words.parts:
+        found += rows(words.scenes, words.pairs, words.sizes, words.watched)
+    if "foreign" in words.parts:
+        first, later = (compare(draw() for draw in worlds) for worlds in (FIRST, LATER))
+        found += foreign_rows(first, later)
+        for name in (*first.restless, *later.restless):
+            print(f"{name}: not at rest, its truth may be wrong")
+        if words.errors:
+            print(*first.errors, *later.errors, sep="\n")
     print(lines(found))
     if words.json_file is not None:
         words.json_file.write_text(json.dumps([as_json(row) for row in found], indent=1) + "\n")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import cache
-from itertools import permutations
+from itertools import chain, permutations
 from typing import NamedTuple
 
 import mujoco
@@ -23,7 +23,15 @@ from semmap.nodes.sim_node.body_classes import BodyClasses
 from semmap.nodes.sim_node.world import World
 from semmap.nodes.sim_node.world_shapes import world_shapes
 from semmap.ontology import HOUSEHOLD_TTL
-from semmap.ontology.model_shapes import WorldShapes, exchange_world, model_in_world, own_size_m, shape_named, world
+from semmap.ontology.model_shapes import (
+    WorldShapes,
+    exchange_world,
+    model_in_world,
+    own_size_m,
+    shape_named,
+    world,
+)
+from semmap.schemas.entities import ClassInfo
 from semmap.schemas.scenes import Body
 
 RELATIONS = ("isOn", "isInside", "isUnder")
@@ -55,6 +63,13 @@ class Compared(NamedTuple):
         right, wrong = self.right[relation], sum(error.relation == relation for error in self.errors)
         return 2 * right / max(1, 2 * right + wrong)
 
+    @classmethod
+    def together(cls, some: Iterable[Compared]) -> Compared:
+        """Return the sums."""
+        right, errors, restless = zip(*some, strict=True)
+        sums = {relation: sum(counts[relation] for counts in right) for relation in RELATIONS}
+        return cls(sums, list(chain(*errors)), list(chain(*restless)))
+
 
 def compare(worlds: Iterable[ForeignWorld]) -> Compared:
     """Compare worlds."""
@@ -80,7 +95,7 @@ def _list_errors(name: str, relation: str, verdicts: Verdicts, found: set[Pair])
 
 def find_relations(rest: AtRest) -> tuple[set[Pair], ...]:
     """Return the pairs of bodies with each of `RELATIONS`, with names of bodies as in the world's file."""
-    there = World(mujoco.MjSpec.from_string(rest.world.text()), classes=BodyClasses(_household()))
+    there = World(mujoco.MjSpec.from_string(rest.world.text()), classes=BodyClasses(household_classes()))
     _take_state(there, rest)
     shapes, before = world_shapes(there), world()
     exchange_world(WorldShapes.of(shapes))
@@ -109,7 +124,9 @@ def _take_state(there: World, rest: AtRest) -> None:
     for joint in range(rest.model.njnt):
         body = int(rest.model.jnt_bodyid[joint])
         name = rest.model.joint(joint).name
-        number = model.joint(name).id if name else model.body_jntadr[model.body(rest.model.body(body).name).id]
+        number = (
+            model.joint(name).id if name else model.body_jntadr[model.body(rest.model.body(body).name).id]
+        )
         count = 7 if rest.model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_FREE else 1
         at, its = int(model.jnt_qposadr[number]), int(rest.model.jnt_qposadr[joint])
         data.qpos[at : at + count] = rest.data.qpos[its : its + count]
@@ -133,5 +150,6 @@ def _entity(body: Body) -> PlacedEntity:
 
 
 @cache
-def _household() -> tuple[object, ...]:
+def household_classes() -> tuple[ClassInfo, ...]:
+    """Return the classes of the household TBox."""
     return tuple(ClassTable(compile_tbox(gather([HOUSEHOLD_TTL], {}).triples)).rows)

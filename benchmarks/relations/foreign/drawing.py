@@ -209,27 +209,31 @@ def case(size: Vec3, at: Vec3 = (0.0, 0.0, 0.0), wall: float = 0.02, closed: boo
     return sum_of(walls) + Part("", (room,) if closed else ())
 
 
+def ring(radius: float, height: float, wall: float, foot: float | None = None, staves: int = 12) -> Part:
+    """Return a round wall of staves, narrower at its foot."""
+    foot = radius if foot is None else foot
+    lean = math.atan2(radius - foot, height)
+    middle, length = (radius + foot) / 2 - wall / 2, math.hypot(height, radius - foot)
+    wide = 2 * math.pi * radius / staves * 1.1
+    found = Part("")
+    for number in range(staves):
+        c, s = math.cos(2 * math.pi * number / staves), math.sin(2 * math.pi * number / staves)
+        out = f"{math.cos(lean) * c:.5g} {math.cos(lean) * s:.5g} {-math.sin(lean):.5g}"
+        at = (middle * c, middle * s, height / 2)
+        found += _geom("box", [wall / 2, wide / 2, length / 2], at, f'xyaxes="{out} {-s:.5g} {c:.5g} 0"')
+    return found
+
+
 def vessel(
     radius: float, height: float, wall: float = 0.006, foot: float | None = None, staves: int = 14
 ) -> Part:
-    """Return a round vessel of staves, narrower at its foot, with its hollow."""
-    foot = radius if foot is None else foot
-    lean = math.degrees(math.atan2(radius - foot, height))
-    middle, length = (radius + foot) / 2 - wall / 2, math.hypot(height, radius - foot)
-    wide = 2 * math.pi * radius / staves * 1.1
-    found = tube(foot, wall)
-    for number in range(staves):
-        turn = 2 * math.pi * number / staves
-        at = (middle * math.cos(turn), middle * math.sin(turn), height / 2)
-        turned = f'euler="0 0 {math.degrees(turn):.4g}"'
-        if lean:
-            c, s = math.cos(math.radians(lean)), math.sin(math.radians(lean))
-            across = f"{-math.sin(turn):.5g} {math.cos(turn):.5g} 0"
-            out = f"{c * math.cos(turn):.5g} {c * math.sin(turn):.5g} {-s:.5g}"
-            turned = f'xyaxes="{out} {across}"'
-        found += _geom("box", [wall / 2, wide / 2, length / 2], at, turned)
-    return found + Part(
-        "", (((2 * (radius - wall), 2 * (radius - wall), height - wall), (0.0, 0.0, wall), True),)
+    """Return a round vessel of staves, with its hollow."""
+    wide = 2 * (radius - wall)
+    hollow = ((wide, wide, height - wall), (0.0, 0.0, wall), True)
+    return (
+        tube(radius if foot is None else foot, wall)
+        + ring(radius, height, wall, foot, staves)
+        + Part("", (hollow,))
     )
 
 

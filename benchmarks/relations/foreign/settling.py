@@ -13,7 +13,7 @@ from scipy.spatial import ConvexHull
 from benchmarks.relations.foreign.drawing import ForeignWorld
 
 Floats = NDArray[np.float64]
-_SETTLE_S, _WATCH_S = 3.0, 0.1
+_LEAST_S, _MOST_S, _WATCH_S = 3.0, 12.0, 0.1
 _CIRCLE = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
 _FLAT = 1e-9
 _SLOW = 0.02
@@ -48,7 +48,7 @@ class AtRest:
     @property
     def is_calm(self) -> bool:
         """Return whether nothing moves."""
-        return bool(np.abs(self.data.qvel).max(initial=0.0) < _SLOW)
+        return _is_calm(self.data)
 
 
 def settle(world: ForeignWorld) -> AtRest:
@@ -57,7 +57,7 @@ def settle(world: ForeignWorld) -> AtRest:
     data = mujoco.MjData(model)
     for joint, position in world.open.items():
         data.qpos[model.joint(joint).qposadr[0]] = position
-    for _ in range(round(_SETTLE_S / model.opt.timestep)):
+    while data.time < _LEAST_S or (data.time < _MOST_S and not _is_calm(data)):
         mujoco.mj_step(model, data)
     owners = world.owners()
     whose = [owners.get(model.body(model.geom_bodyid[geom]).name, "") for geom in range(model.ngeom)]
@@ -69,6 +69,10 @@ def settle(world: ForeignWorld) -> AtRest:
         found.hulls[thing] = [Hull(_faces(p), p.min(axis=0), p.max(axis=0)) for p in points]
         found.bounds[thing] = (np.vstack(points).min(axis=0), np.vstack(points).max(axis=0))
     return found
+
+
+def _is_calm(data: mujoco.MjData) -> bool:
+    return bool(np.abs(data.qvel).max(initial=0.0) < _SLOW)
 
 
 def _watch_forces(rest: AtRest, whose: list[str]) -> None:
@@ -116,7 +120,8 @@ def _vertices(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> Floats:
         angles = np.linspace(0.0, np.pi / 2, 7)
         rings = [np.c_[size[0] * np.cos(a) * circle, np.full(24, size[0] * np.sin(a) + half)] for a in angles]
         points = np.vstack([*rings, *(ring * (1.0, 1.0, -1.0) for ring in rings)])
-    return points @ data.geom_xmat[geom].reshape(3, 3).T + data.geom_xpos[geom]
+    found: Floats = points @ data.geom_xmat[geom].reshape(3, 3).T + data.geom_xpos[geom]
+    return found
 
 
 def extents_at(hulls: list[Hull], points: Floats) -> tuple[Floats, Floats]:

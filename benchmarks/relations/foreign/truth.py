@@ -1,4 +1,4 @@
-"""Relations as they are in a world at rest, from forces and samples. What is between yes and no is left open."""
+"""Relations as they are in a world at rest, from forces and samples. Borderline cases are left open."""
 
 from __future__ import annotations
 
@@ -109,7 +109,9 @@ def _sample(rest: AtRest, thing: str) -> Floats:
         there = np.isfinite(low)
         if not there.any():
             continue
-        count = np.ceil((high[there] - low[there]) / max(np.ptp(np.r_[low[there], high[there]]), 1e-9) * _ALONG)
+        count = np.ceil(
+            (high[there] - low[there]) / max(np.ptp(np.r_[low[there], high[there]]), 1e-9) * _ALONG
+        )
         for (x, y), z0, z1, n in zip(grid[there], low[there], high[there], count.astype(int), strict=True):
             steps = z0 + (np.arange(n) + 0.5) / n * (z1 - z0)
             found.append(np.c_[np.full(n, x), np.full(n, y), steps])
@@ -124,7 +126,7 @@ def _find_under(rest: AtRest, lower: str, upper: str, carried: set[Pair]) -> boo
     """
     low, high = rest.bounds[lower]
     (its_low, its_high), areas = rest.bounds[upper], [_area(rest, lower), _area(rest, upper)]
-    if (high < its_low).any() and (high < its_low)[:2].any() or (its_high < low)[:2].any():
+    if ((high < its_low).any() and (high < its_low)[:2].any()) or (its_high < low)[:2].any():
         return False
     smaller = lower if areas[0] < areas[1] else upper
     grid = _grid(rest, smaller)
