@@ -6,14 +6,14 @@ from collections.abc import Mapping
 from typing import Final
 
 from semmap.nodes.language.steps.clause import Clause, Role
-from semmap.nodes.language.steps.frame_completion import FrameCompletion
+from semmap.nodes.language.steps.corrections import CorrectionReader
 from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.times import starts_time
 
 _MOVING: Final = ("Motion", "Arriving", "Guiding", "Bringing")
 
 
-class ArgumentReader(FrameCompletion):
+class ArgumentReader(CorrectionReader):
     """Reads the arguments of a clause."""
 
     def _arguments(self, clause: Clause, i: int) -> int:
@@ -21,7 +21,9 @@ class ArgumentReader(FrameCompletion):
         g, words = self._g, self._words
         roles = g.frames[clause.frame].roles
         objects: list[NounPhrase] = []
-        while i < len(words) and not self._ends_clause(i):
+        while i < len(words) and (self._corrects(i) > i or not self._ends_clause(i)):
+            if (repair := self._corrects(i)) > i:
+                return self._correct(clause, i, repair)
             if (end := self._condition(i)) > i:
                 self._add_condition(clause, i, end)
                 i = end
@@ -156,6 +158,7 @@ class ArgumentReader(FrameCompletion):
             clause.roles.append(Role(to, phrase.first, phrase.end, phrase.head, [phrase]))
             return
         if clause.verb.lower() == "show" and phrase.noun == "way":
+            self.found.structural.append(phrase.head)
             return  # show Anna the way to the kitchen
         first = clause.role(role)
         if (

@@ -47,3 +47,7 @@ class Parsed:
     unused: list[str] = field(default_factory=list)
     context: list[tuple[int, NounPhrase]] = field(default_factory=list)
     """Persons that a part which is not understood mentions, each with the number of clauses before it."""
+    structural: list[int] = field(default_factory=list)
+    """Indices of words that only belong to a construction: show Anna THE WAY to the kitchen."""
+    corrected: list[tuple[str, str]] = field(default_factory=list)
+    """Words that the speaker took back, each with what is said instead."""

@@ -93,7 +93,7 @@ class ClauseBoundaries(ClauseStarts):
         if self._subordinates(j) or self._wish(j):
             return True
         j += g.match("negation", words, j)
-        return j < len(words) and (self._orders(j) or self._lets_know(j))
+        return j < len(words) and (self._orders(j) or self._lets_know(j) > 0)
 
     def _orders(self, i: int) -> bool:
         """Return whether a verb is at `i` that begins a command: TAKE it, GO; but not (it is) open."""

@@ -51,7 +51,7 @@ class ClauseStarts:
         self._t, self._g, self._words = text, grammar, text.words
         self._is_person = is_person
         self._np = NounPhraseReader(text, grammar, nouns, self.starts_clause, above)
-        self._nouns = nouns
+        self._nouns, self._above = nouns, above
         self.found = Parsed()
         self._is_negated = False
         """Whether the clause that is read is negated."""
@@ -90,7 +90,7 @@ class ClauseStarts:
         ):
             return True
         length, _ = g.verb(words, j)
-        if self._lets_know(j) or (g.is_a(words[j], "untaught") and not self._np.is_known(j, j + 1)):
+        if self._lets_know(j) > 0 or (g.is_a(words[j], "untaught") and not self._np.is_known(j, j + 1)):
             return True
         if not length or self._is_gerund(j):
             return False
@@ -141,12 +141,11 @@ class ClauseStarts:
         length = self._g.match("wish", self._words, i)
         return 0 if self._words[i + length : i + length + 1] in (("to",), ("you",)) else length
 
-    def _lets_know(self, i: int) -> bool:
-        """Return whether *let me know* begins at `i`."""
-        if self._words[i] != "let":
-            return False
-        phrase = self._np.read(i + 1)
-        return phrase is not None and self._words[phrase.end : phrase.end + 1] in (("know",), ("hear",))
+    def _lets_know(self, i: int) -> int:
+        """Return the index of the second verb of *let me know* at `i`, or 0."""
+        phrase = self._np.read(i + 1) if self._words[i] == "let" else None
+        knows = phrase is not None and self._words[phrase.end : phrase.end + 1] in (("know",), ("hear",))
+        return phrase.end if phrase is not None and knows else 0
 
     def _asks(self, i: int) -> bool:
         """Return whether a question begins at `i`: how many cups are there, where is Anna."""

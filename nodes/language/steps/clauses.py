@@ -30,6 +30,8 @@ class ClauseReader(MessageReader):
                 self._unused = len(self.found.unused)
                 first_of_sentence, conditions, times, negated = len(self.found.clauses), [], [], False
                 i += 1
+            elif self.found.clauses and (repair := self._corrects(i)) > i:
+                i = self._correct(self.found.clauses[-1], i, repair)
             elif self._t.is_mark(i):
                 i += 1
             elif (end := self._condition(i, is_fronted=self._is_fronted(i, first_of_sentence))) > i:
@@ -80,12 +82,13 @@ class ClauseReader(MessageReader):
                 and self._g.verb(self._words, i)[0] == 1
                 and self._g.verb(self._words, i + 1)[0]
             ):
+                self.found.structural.append(i)
                 i += 1  # go get the milk
             elif (fronted := self._fronted(i)) is not None:
                 front, i = fronted, fronted[1].end
             elif phase := self._phase(i):
                 i += phase
-            elif self._g.verb(self._words, i)[0] or self._lets_know(i):
+            elif self._g.verb(self._words, i)[0] or self._lets_know(i) > 0:
                 before = len(self.found.clauses)
                 self._is_negated = negated
                 i = self._clause(i)
@@ -229,7 +232,10 @@ class ClauseReader(MessageReader):
                 self.found.unused += conditions
 
     def _clause(self, i: int) -> int:
-        length, frame = self._g.verb(self._words, i) if not self._lets_know(i) else (1, "Telling")
+        length, frame = self._g.verb(self._words, i)
+        if knows := self._lets_know(i):
+            length, frame = 1, "Telling"
+            self.found.structural.append(knows)
         if activity := self._ended(i):
             return self._end_activity(i, activity)
         clause = Clause(frame, " ".join(self._words[i : i + length]), i)

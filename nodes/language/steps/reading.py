@@ -13,6 +13,7 @@ from semmap.nodes.language.steps import quantities, tokens
 from semmap.nodes.language.steps.answers import answer
 from semmap.nodes.language.steps.clause import Clause, Role
 from semmap.nodes.language.steps.clauses import ClauseReader
+from semmap.nodes.language.steps.coverage import find_unused
 from semmap.nodes.language.steps.entity_tests import Meaning, Names, World
 from semmap.nodes.language.steps.exclusions import (
     PLACES,
@@ -89,8 +90,10 @@ class _StepReader:
             found.steps.append(self._step(clause, len(found.steps) + 1))
         is_condition = bool(self._g.match("condition", self._t.words, 0))
         first = self._g.match("polite", self._t.words, 0)
+        negation = self._g.match("negation", self._t.words, 0)
+        first = max(first, negation)
         is_wish = any(self._g.match("wish", self._t.words, i) for i in (0, first))
-        found.commands = is_condition or is_wish or self._g.verb(self._t.words, 0)[0] > 0
+        found.commands = is_condition or is_wish or negation > 1 or self._g.verb(self._t.words, 0)[0] > 0
         found.asks = bool(parsed.clauses) and all(clause.asks for clause in parsed.clauses)
         found.unknown = list(dict.fromkeys(parsed.unknown))
         conditions = dict.fromkeys(text for clause in parsed.clauses for text in clause.conditions)
@@ -101,6 +104,9 @@ class _StepReader:
         for time in dict.fromkeys(text for clause in parsed.clauses for text in clause.times):
             found.doubts.append(f"'{time}' is a time; nothing is done then by itself")
         found.doubts += [f"'{text}' is not understood" for text in parsed.unused]
+        found.doubts += [f"'{old}' is corrected to '{new}'" for old, new in parsed.corrected]
+        unused = find_unused(self._t, self._g, parsed, (*found.doubts, *found.unknown))
+        found.doubts += [f"'{text}' is not understood" for text in unused]
         found.doubts = list(dict.fromkeys(found.doubts))
         return found
 

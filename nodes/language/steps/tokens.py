@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -13,6 +13,7 @@ _TOKEN: Final = re.compile(
     r"(?:mr|mrs|ms|dr)\.|\d{1,2}[:.]\d{2}|o'clock|[ap]\.m\.?|n't\b|'\w+|\d+(?:[.,]\d+)?"
     r"|[^\W\d_]+(?:-[^\W_]+)*(?=n't\b)|[^\W_]+(?:[-][^\W_]+)*|[,.;:!?]"
 )
+_HESITATION: Final = frozenset(("um", "uh", "uhm", "er", "erm", "hm", "hmm", "ehm", "oh", "ah", "eh"))
 _PUNCTUATION: Final = frozenset(",.;:!?")
 
 
@@ -54,6 +55,15 @@ class Text:
         return i >= len(self.words) or self.words[i] in ".;!?"
 
 
+def _without_hesitation(tokens: list[Token]) -> Iterator[Token]:
+    """Yield tokens without sounds such as *uh*, and without the commas around one."""
+    sounds = [token.word in _HESITATION for token in tokens]
+    for i, token in enumerate(tokens):
+        is_beside = (i > 0 and sounds[i - 1]) or (i + 1 < len(tokens) and sounds[i + 1])
+        if not sounds[i] and not (token.word == "," and is_beside):
+            yield token
+
+
 def read(text: str) -> Text:
     """Return a text with its tokens."""
     plain = without_markup(text).replace("’", "'").replace("`", "'")
@@ -64,4 +74,5 @@ def read(text: str) -> Text:
         Token(found[0], found.start(), found.end(), plain[found.start()].isupper())
         for found in _TOKEN.finditer(lower)
     ]
+    tokens = list(_without_hesitation(tokens))
     return Text(plain, tokens, tuple(token.word for token in tokens))
