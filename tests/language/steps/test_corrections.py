@@ -11,11 +11,6 @@ def texts(understood):
     ("text", "step", "doubt"),
     [
         (
-            "text",
-            "step",
-            "doubt",
-        ),
-        (
             "take the red cup, no, the blue one",
             "Taking(Theme=bluecup)",
             "'the red cup' is corrected to 'the blue one'",
