@@ -40,6 +40,10 @@ class ArgumentReader(CorrectionReader):
                 return self._gapped(clause, j)
             elif (phrase := self._next_place(clause, j)) is not None:
                 i = self._coordinate(clause, j - 1, phrase)
+            elif words[i] == "using":
+                end = self._clause_end(i)
+                self.found.unused.append(self._t.between(i, end))
+                i = end
             elif words[i] == ",":
                 i += 1
             elif (
@@ -218,7 +222,13 @@ class ArgumentReader(CorrectionReader):
             return i + 1  # Italian "o il latte o l'acqua"
         if self._words[i] == "or" and self.starts_clause(i + 1):
             return self._unread(i + 1)  # or go to the kitchen
+        if (before := self._coordinate_place(clause, phrase)) is not None:
+            before.alternatives.append(phrase)
+            if last is not None:
+                last.end = last.phrases[-1].end = phrase.end
+            return phrase.end
         self._finish(clause)
+        last = clause.roles[-1] if clause.roles else None
         if self._has_place(clause) and self._is_gap(clause, phrase):
             return self._gapped(clause, i + 1)
         if phrase.kind == "name" and not self._t.tokens[phrase.head].is_capital:
@@ -234,6 +244,22 @@ class ArgumentReader(CorrectionReader):
             last.phrases.append(phrase)
         last.end = phrase.end
         return phrase.end
+
+    def _coordinate_place(self, clause: Clause, phrase: NounPhrase) -> NounPhrase | None:
+        """Return the place of an object to which *and* adds another: (the cup) in the kitchen AND THE HALL.
+
+        None if the place will be a role of its own, or if a further object is added.
+        """
+        last = clause.roles[-1] if clause.roles else None
+        if last is None or not last.phrases or not last.phrases[-1].places or phrase.places:
+            return None
+        other = last.phrases[-1].places[-1].other
+        kinds = [self._kind_of(one) for one in (last.phrases[-1], other, phrase)]
+        if kinds != ["thing", "place", "place"] or last.phrases[-1].places[-1].end != last.phrases[-1].end:
+            return None
+        if "place" in self._g.frames[clause.frame].roles:
+            return None
+        return other
 
     def _other_place(self, clause: Clause, i: int) -> NounPhrase | None:
         """Read *or* with a preposition as a choice of places: (on the table) OR ON THE DESK."""
@@ -322,7 +348,11 @@ class ArgumentReader(CorrectionReader):
                 other.role = "Ground" if other.role in ("Location", "Phenomenon") else other.role
             clause.roles.append(Role("Sought_entity", i, phrase.end, phrase.head, [phrase]))
             return phrase.end
-        if kind == "for" and phrase.kind == "speaker" and "for" not in roles:
+        if (
+            kind == "for"
+            and phrase.kind == "speaker"
+            and ("for" not in roles or roles["for"] == roles.get("object"))
+        ):
             return phrase.end
         role = self._role(clause, kind, roles, phrase)
         if kind == "with" and role is not None:

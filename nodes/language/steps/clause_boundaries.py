@@ -133,6 +133,8 @@ class ClauseBoundaries(ClauseStarts):
         if self._t.ends_sentence(i):
             return True
         word = self._words[i]
+        if word == ":":
+            return True
         if self._excludes(i) or (word in ("but", "not") and self._subordinates(i)):
             return False
         if self._anaphoric(i):

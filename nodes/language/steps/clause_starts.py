@@ -36,7 +36,7 @@ _BEFORE_OTHERWISE: Final = frozenset(("told", "say", "says", "said", "instructed
 _BEFORE_QUESTION: Final = frozenset(
     (
         *(",", ".", "?", "!", ";", "and", "then", "also", "so", "but"),
-        *("robot", "please", "hey", "hello", "hi", "okay", "ok"),
+        *("robot", "please", "hey", "hello", "hi", "okay", "ok", "know", "idea"),
     )
 )
 """Words and marks after which a question may begin."""
@@ -89,6 +89,9 @@ class ClauseStarts:
             or self._asks(j)
         ):
             return True
+        manner = g.match("manner", words, j) or int(j < len(words) and words[j].endswith("ly"))
+        if manner and j > i and g.verb(words, j + manner)[0]:
+            return True  # and carefully take it
         length, _ = g.verb(words, j)
         if self._lets_know(j) > 0 or (g.is_a(words[j], "untaught") and not self._np.is_known(j, j + 1)):
             return True
@@ -156,8 +159,8 @@ class ClauseStarts:
             return False
         if i and self._words[i - 1] not in _BEFORE_QUESTION:
             return False
-        if self._wish(i):
-            return False
+        if self._wish(i) or self._g.match("polite", self._words, i) > 1:
+            return False  # how about you take it
         return self._words[i] not in ("when", "whether") or (
             i + 1 < len(self._words) and self._words[i + 1] in ("is", "was", "did")
         )

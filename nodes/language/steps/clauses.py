@@ -23,6 +23,7 @@ class ClauseReader(MessageReader):
         times: list[str] = []  # of the clauses after it, up to the next time
         has_time = False
         front: tuple[str, PlacePhrase] | None = None
+        manner: Role | None = None
         while i < len(self._words):
             if self._t.ends_sentence(i):
                 self._close(first_of_sentence, conditions)
@@ -84,6 +85,11 @@ class ClauseReader(MessageReader):
             ):
                 self.found.structural.append(i)
                 i += 1  # go get the milk
+            elif self._words[i] == "only" and self._g.verb(self._words, i + 1)[0]:
+                self.found.structural.append(i)
+                i += 1  # only go there if it is open
+            elif length := self._fronted_manner(i):
+                manner, i = Role("Manner", i, i + length, i), i + length
             elif (fronted := self._fronted(i)) is not None:
                 front, i = fronted, fronted[1].end
             elif phase := self._phase(i):
@@ -95,6 +101,9 @@ class ClauseReader(MessageReader):
                 for clause in self.found.clauses[before:]:
                     clause.negated = negated and not clause.contrasts
                     clause.times += times
+                if manner is not None:
+                    self.found.clauses[before].roles.append(manner)
+                    manner = None
                 if front is not None:
                     self._add_front(self.found.clauses[before], *front)
                 has_time, negated, front = True, False, None
@@ -178,6 +187,12 @@ class ClauseReader(MessageReader):
             for j in range(phrase.end + 1, end)
         )
         return phrase if has_pronoun and self._g.verb(self._words, phrase.end + 1)[0] else None
+
+    def _fronted_manner(self, i: int) -> int:
+        """Return the number of words of an expression of manner before a verb at `i`: CAREFULLY take it."""
+        is_adverb = self._words[i].endswith("ly") and not self._np.is_known(i, i + 1)
+        length = self._g.match("manner", self._words, i) or int(is_adverb)
+        return length if length and self._g.verb(self._words, i + length)[0] else 0
 
     def _fronted(self, i: int) -> tuple[str, PlacePhrase] | None:
         """Return the kind and the phrase of a place before the verb: in the kitchen, find Anna."""

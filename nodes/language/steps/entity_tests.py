@@ -94,6 +94,10 @@ class EntityTests:
         """Return whether a place is the floor, which no map has as an entity."""
         return self._g.is_a(place.other.noun, "floor") and not self._nouns.is_noun(place.other.key)
 
+    def _is_home(self, phrase: NounPhrase) -> bool:
+        """Return whether a phrase denotes all that the map has: (everywhere in) the house."""
+        return self._g.is_a(phrase.noun, "home") and not self._nouns.is_noun(phrase.key)
+
     def _relation(self, place: PlacePhrase, names: Names) -> PlaceRelation:
         other = place.other
         return PlaceRelation(place.preposition, self._t.between(other.first, other.end), names, place.negated)
@@ -111,7 +115,8 @@ class EntityTests:
             between = self._world.geometry.between(others[0], others[1])
             return [name for name in names if (name in between) != place.negated]
         relations: tuple[RelationName, ...] = ("isOn", "isInside")
-        if not self._g.contains("contained", place.preposition):
+        is_source = self._g.contains("from", place.preposition)
+        if not (is_source or self._g.contains("contained", place.preposition)):
             sense = self._nouns.describing.sense(tuple(place.preposition.split())).get("relations")
             if sense is None or sense in _FROM_VIEWER or sense == "outside":
                 return None

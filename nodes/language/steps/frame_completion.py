@@ -57,6 +57,14 @@ class FrameCompletion(ClauseBoundaries):
             and self._g.is_a(self._words[given.head], "property")
         ):
             self._tells(clause, given)
+        led = clause.role("Cotheme") if clause.verb.lower() in ("take along", "bring along") else None
+        if (
+            led is not None
+            and led.phrases
+            and led.phrases[0].kind == "thing"
+            and not self._is_person(led.phrases[0])
+        ):
+            clause.frame, led.role = "Bringing", "Theme"
         if clause.frame == "Taking" and clause.role("Goal") is not None:
             clause.frame = "Bringing"
         if clause.frame == "Taking" and clause.role("Beneficiary") is not None:

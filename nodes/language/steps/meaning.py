@@ -6,6 +6,8 @@ from collections.abc import Iterable, Sequence
 
 from msgspec import structs
 
+from semmap.nodes.language.reference_resolution.description import Description, Quality
+from semmap.nodes.language.reference_resolution.resolver import Scope
 from semmap.nodes.language.steps import quantities
 from semmap.nodes.language.steps.entity_tests import EntityTests, Meaning, Names
 from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
@@ -50,6 +52,9 @@ class Meanings(EntityTests):
     def _relations(self, places: Iterable[PlacePhrase], meaning: Meaning) -> list[tuple[PlacePhrase, Names]]:
         found: list[tuple[PlacePhrase, Names]] = []
         for place in places:
+            if place.other.kind == "thing" and self._is_home(place.other):
+                found.append((place, ()))
+                continue
             if place.other.kind in ("pronoun", "speaker", "here", "robot") or self._is_floor(place):
                 found.append((place, place.names))
                 continue
@@ -126,7 +131,7 @@ class Meanings(EntityTests):
             and self._nouns.describing.base(phrase.noun) in self._nouns.describing.content
         ):
             names = list(self.of(phrase.of).names)
-        if not names and not is_any and phrase.kind != "here":
+        if not names and not is_any and phrase.kind != "here" and not self._is_home(phrase):
             known = list(self._nouns.classes.get(phrase.key, ()))
             meaning.doubts += (
                 []
@@ -140,8 +145,11 @@ class Meanings(EntityTests):
         meaning.alike = tuple(names)
         attributes = list(phrase.attributes)
         for attribute in attributes:
-            restriction = self._restriction(attribute)
-            if restriction is None:
+            is_negated = attribute.startswith("not ")
+            restriction = self._restriction(attribute.removeprefix("not "))
+            if is_negated and names and isinstance(restriction, Quality):
+                names = self._without(names, restriction, phrase, meaning)
+            elif restriction is None or is_negated:
                 is_open = True
             elif names:
                 names = self._fitting(names, restriction, attribute, phrase, meaning)
@@ -235,6 +243,14 @@ class Meanings(EntityTests):
             return []
         return fitting or list(other.names)
 
+    def _without(self, names: list[str], quality: Quality, phrase: NounPhrase, meaning: Meaning) -> list[str]:
+        """Return the things that do not have a quality: the apple that is not red."""
+        described = Description(phrase.noun, "noun", phrase.key, phrase.noun)
+        left = [n for n in names if not self._resolver.fits(n, quality, described, tuple(names), Scope())]
+        if not left:
+            meaning.doubts.append(f"no {self._noun(phrase)} is known that is not {quality.text}")
+        return left
+
     def _owned(self, names: list[str], phrase: NounPhrase, owner: Names, meaning: Meaning) -> list[str]:
         by = phrase.owner
         if by is None or by.noun in ("your", "its"):
@@ -266,7 +282,7 @@ class Meanings(EntityTests):
     def _placed(
         self, names: list[str], place: PlacePhrase, others: Names, is_open: bool
     ) -> tuple[list[str], bool]:
-        if not names:
+        if not names or self._is_home(place.other):
             return names, is_open
         there = self._at(names, place, others)
         return (names, True) if there is None else (there, is_open)

@@ -176,7 +176,9 @@ class NounGroupReader:
                 return i + 1
             if any(g.is_a(word, kind) for kind in _ONLY_FIRST) and not self.is_known(i, i + 1):
                 break
-            if seen and (g.is_a(word, "posture") or g.is_a(word, "particle") or word in ALWAYS_VERBS):
+            if seen and (
+                self.is_participle(i) or word == "using" or g.is_a(word, "particle") or word in ALWAYS_VERBS
+            ):
                 break
             if seen and g.is_a(word, "stative"):
                 break
@@ -192,6 +194,18 @@ class NounGroupReader:
             seen = seen or g.is_a(self._bases[i], "anything") or self._t.tokens[i].is_capital
             i += 1
         return i
+
+    def is_participle(self, i: int) -> bool:
+        """Return whether the word at `i` may begin what a person or thing does: waving, playing, stacked."""
+        word = self._words[i]
+        if self._g.is_a(word, "posture"):
+            return True
+        is_form = len(word) > 4 and word.endswith(("ing", "ed")) and not self._g.is_a(word, "no_participle")
+        return (
+            is_form
+            and not self._g.match("condition", self._words, i)
+            and not (self.is_known(i, i + 1) or self._is_modifier(i) or self._t.tokens[i].is_capital)
+        )
 
     def duration(self, i: int) -> int:
         """Return the number of words of a number with a unit of time at `i` (five minutes), or 0."""

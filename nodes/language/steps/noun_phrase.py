@@ -41,6 +41,10 @@ class NounPhraseReader(PronounReader):
             if self._words[i] in ("this", "that", "these", "those", "all", "both", "another"):
                 phrase.kind, phrase.head, phrase.end, phrase.noun = "pronoun", i, start, self._words[i]
                 return phrase
+            if phrase.determiner in ("whatever", "whichever"):
+                phrase.noun, phrase.head, phrase.end, phrase.is_plural = "anything", start - 1, start, True
+                self._after_the_noun(phrase, with_places)
+                return phrase
             if phrase.quantity is None:
                 return None
             phrase.noun, phrase.head, phrase.end = (
@@ -188,8 +192,13 @@ class NounPhraseReader(PronounReader):
             elif phrase.superlative and words[i] == "from" and (length := self._counted_from(i)):
                 phrase.superlative = f"{phrase.superlative} {' '.join(words[i : i + length])}"
                 phrase.end = i + length
+            elif words[i] == "whose" and phrase.kind == "person" and (end := self._whose(i)) > i:
+                phrase.attributes.append(self._t.between(i, end))
+                phrase.end = end
+            elif with_places and (length := g.match("contact", words, i)) and self._place(i + length):
+                phrase.end = i + length  # the books WE HAVE on the shelf
             elif (
-                g.is_a(words[i], "posture")
+                self.is_participle(i)
                 or (words[i] == "with" and (phrase.kind == "person" or self._is_with(i)))
                 or (words[i] in ("in", "dressed") and phrase.kind == "person" and self._is_clothing(i + 1))
             ):
@@ -207,6 +216,12 @@ class NounPhraseReader(PronounReader):
                     place.other.excluded = []
             else:
                 return
+
+    def _whose(self, i: int) -> int:
+        """Return the end of a relative clause with *whose* at `i`: whose arm is raised; or `i`."""
+        be = self._group_end(i + 1)
+        is_clause = be > i + 1 and be + 1 < len(self._words) and self._g.is_a(self._words[be], "be")
+        return max(self._group_end(be + 1), be + 2) if is_clause else i
 
     def _add_whole(self, phrase: NounPhrase, other: NounPhrase) -> None:
         """Add the thing after *of*: that of which one is a part, or those of which it is one."""
@@ -269,7 +284,8 @@ class NounPhraseReader(PronounReader):
             g.is_a(words[j], "be")
             or g.is_a(words[j], "have")
             or g.is_a(words[j], "modal")
-            or words[j] in ("not", "n't", "never", "currently")
+            or words[j] in ("not", "n't", "never")
+            or g.is_a(words[j], "relative_adverb")
         ):
             has_be = has_be or g.is_a(words[j], "be")
             has_have = has_have or g.is_a(words[j], "have")
@@ -306,7 +322,8 @@ class NounPhraseReader(PronounReader):
 
     def _is_with(self, i: int) -> bool:
         """Return whether *with* at `i` describes a thing, and is not of the verb or of the robot's hand."""
-        return not (self.takes_with or self._t.is_mark(i + 1) or self._words[i + 1] == "your")
+        is_manner = self._g.match("manner", self._words, i) > 0
+        return not (self.takes_with or is_manner or self._t.is_mark(i + 1) or self._words[i + 1] == "your")
 
     def _is_clothing(self, i: int) -> bool:
         """Return whether the words at `i` are clothes or a colour, and not a place of the map."""
@@ -366,7 +383,7 @@ class NounPhraseReader(PronounReader):
                 and g.is_a(words[j + 1], "possessive")
             ):
                 j += 1  # with his hands on his head
-            elif words[j] == "with" or words[j] == "of":
+            elif words[j] in ("with", "of") or self._is_last_particle(j):
                 pass
             elif (
                 any(

@@ -325,6 +325,8 @@ class QuestionReader(ArgumentReader):
         """Read a property of a thing, a thing, or a message in words."""
         g, words = self._g, self._words
         prop = i + g.match("determiner", words, i)
+        if words[prop + 1 : prop + 2] != ("of",) and words[prop + 2 : prop + 3] == ("of",):
+            prop += 1  # the shirt colour of the person
         if (
             prop < len(words)
             and g.is_a(words[prop], "property")

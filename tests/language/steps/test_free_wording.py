@@ -1,0 +1,68 @@
+"""Commands as people say them: politeness, relative clauses without a pronoun, manner, lists of places."""
+
+import pytest
+
+
+def texts(understood):
+    return [step.text for step in understood.steps]
+
+
+@pytest.mark.parametrize(
+    ("text", "step"),
+    [
+        ("how about you take the milk", "Taking(Theme=milk1)"),
+        ("what I want you to do is take the milk", "Taking(Theme=milk1)"),
+        ("could somebody take the milk", "Taking(Theme=milk1)"),
+        ("hey buddy, take the milk, will you?", "Taking(Theme=milk1)"),
+        ("carefully take the milk", 'Taking(Theme=milk1, Manner="carefully")'),
+        ("slowly go to the kitchen", 'Motion(Goal=kitchen1, Manner="slowly")'),
+        ("take the milk with both hands", 'Taking(Theme=milk1, Manner="with both hands")'),
+        ("take the kettle along to the studio", "Bringing(Theme=kettle1, Goal=studio1)"),
+        ("find the kettle for me", "Locating(Sought_entity=kettle1)"),
+        ("find the biggest cup in the house", 'Locating(Sought_entity=cup1, Ground="in the house")'),
+        ("take a cup that is not red", "Taking(Theme=bluecup|cup1)"),
+        ("take the cup down from the desk", "Taking(Theme=cup1, Source=desk1)"),
+        ("take the plates stacked on the table", "Taking(Theme=plate1|plate2)"),
+        ("take the plates we have on the table", "Taking(Theme=plate1|plate2)"),
+        ("greet the lady waiting at the table", 'Greeting(Addressee="the lady waiting at the table")'),
+        ("greet the boy whose arm is raised", 'Greeting(Addressee="the boy whose arm is raised")'),
+        ("follow the person that just came in", 'Cotheme(Cotheme="the person that just came in")'),
+        ("look for the kettle in the kitchen and the studio",
+         "Locating(Sought_entity=kettle1, Ground=kitchen1, Ground=studio1)"),
+        ("tell me the shirt colour of the person in the kitchen",
+         'Telling(Addressee="me", Message="the shirt colour", Topic=nora1)'),
+    ],
+)  # fmt: skip
+def test_what_people_say_is_read_without_doubts(read, text, step):
+    understood = read(text)
+    assert texts(understood) == [step]
+    assert (understood.doubts, understood.unknown, understood.question) == ((), (), "")
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        ("do you know where the kettle is? bring it here",
+         ['Telling(Message="where", Topic=kettle1)', 'Bringing(Theme=kettle1, Goal="here")']),
+        ("take the milk and carefully put it on the table",
+         ["Taking(Theme=milk1)", 'Placing(Theme=milk1, Goal=table1, Manner="carefully")']),
+        ("only go to the kitchen if it is dark", ["Motion(Goal=kitchen1) [if it is dark]"]),
+        ("I think Nora is in the kitchen, follow her",
+         ["Being_located(Theme=nora1, Location=kitchen1)", "Cotheme(Cotheme=nora1)"]),
+        ("give me whatever is on the desk", ['Giving(Recipient="me", Theme=book1|cup1|lamp1|laptop1)']),
+    ],
+)  # fmt: skip
+def test_several_clauses_keep_their_words(read, text, steps):
+    assert texts(read(text)) == steps
+
+
+def test_a_way_that_is_not_understood_is_named(read):
+    understood = read("go to the kitchen using the back door")
+    assert texts(understood) == ["Motion(Goal=kitchen1)"]
+    assert understood.doubts == ("'using the back door' is not understood",)
+
+
+def test_no_thing_without_a_colour_is_a_doubt(read):
+    assert read("take the milk that is not white").doubts == ()
+    understood = read("take the red cup that is not red")
+    assert understood.doubts
