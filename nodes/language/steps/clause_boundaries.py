@@ -10,7 +10,31 @@ from semmap.nodes.language.steps.noun_group import ALWAYS_VERBS
 from semmap.nodes.language.steps.times import starts_time
 
 _BEFORE_VERB: Final = frozenset(
-    ("to", "not", "n't", "and", "or", "'s", "the", "a", "i", "you", "we", "they", "my", "your", "cannot")
+    (
+        "to",
+        "not",
+        "n't",
+        "and",
+        "or",
+        "'s",
+        "the",
+        "a",
+        "i",
+        "you",
+        "we",
+        "they",
+        "my",
+        "your",
+        "cannot",
+        "'ve",
+        "'d",
+        "'ll",
+        "have",
+        "has",
+        "had",
+        "already",
+        "just",
+    )
 )
 """Words after which a verb begins no clause."""
 _AFTER_VERB: Final = ("to", "from", "place", "about", "here", "question", "direction")
@@ -133,7 +157,7 @@ class ClauseBoundaries(ClauseStarts):
         if self._t.ends_sentence(i):
             return True
         word = self._words[i]
-        if word == ":":
+        if word == ":" or (word == "," and self._states_pronoun(i + 1)):
             return True
         if self._excludes(i) or (word in ("but", "not") and self._subordinates(i)):
             return False
@@ -147,6 +171,11 @@ class ClauseBoundaries(ClauseStarts):
         if word == "," or self._g.is_a(word, "and") or self._g.match("then", self._words, i):
             return self.starts_clause(i)
         return self._found_at(i) and word not in ("there", "it") and not self._t.tokens[i].is_capital
+
+    def _states_pronoun(self, i: int) -> bool:
+        """Return whether a statement with a pronoun as its subject is at `i`: he is called Ben."""
+        subjects = (("he",), ("she",), ("they",), ("it",))
+        return self._words[i : i + 1] in subjects and self._g.match("be", self._words, i + 1) > 0
 
     def _subordinate(self, i: int, end: int) -> str:
         """Return the text of a condition; note whether it no longer holds for what follows it."""

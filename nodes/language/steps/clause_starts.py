@@ -159,6 +159,12 @@ class ClauseStarts:
             return False
         if i and self._words[i - 1] not in _BEFORE_QUESTION:
             return False
+        if (
+            self._words[i] in ("who", "which")
+            and self._words[i - 1] == ","
+            and self._t.tokens[i - 2].is_capital
+        ):
+            return i == 2 and self._words[0] in _BEFORE_QUESTION  # Anna, who is in the kitchen
         if self._wish(i) or self._g.match("polite", self._words, i) > 1:
             return False  # how about you take it
         return self._words[i] not in ("when", "whether") or (

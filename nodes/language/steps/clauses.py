@@ -73,6 +73,9 @@ class ClauseReader(MessageReader):
             elif self._asks(i) or self._found_at(i) or self._declares(i):
                 before = len(self.found.clauses)
                 i = self._special(i, conditions, times)
+                if front is not None and self.found.clauses[before:]:
+                    self._add_front(self.found.clauses[before], *front)  # on the desk there is a cup
+                    front = None
                 has_time = has_time or len(self.found.clauses) > before
             elif (
                 length := max(self._g.match(kind, self._words, i) for kind in _SKIPPED)
@@ -210,7 +213,7 @@ class ClauseReader(MessageReader):
     def _add_front(self, clause: Clause, kind: str, place: PlacePhrase) -> None:
         """Add a place that stands before the verb to a clause: as a role, or to its object."""
         roles = self._g.frames[clause.frame].roles
-        role = roles.get(kind) if kind == "from" or clause.frame == "Locating" else None
+        role = roles.get(kind) if kind == "from" or clause.frame in ("Locating", "Being_located") else None
         main = clause.role(roles.get("object", "")) or clause.role("Topic")
         if role is not None and clause.role(role) is None:
             clause.roles.append(Role(role, place.first, place.end, place.other.head, [place.other]))
@@ -281,6 +284,9 @@ class ClauseReader(MessageReader):
                 return self._told(clause, j)
             case "Inspecting" if (state := self._stated(j)) is not None:  # make sure the fridge is closed
                 end = self._clause_end(state.end)
+                if state.amount.is_none:  # make sure nobody is there
+                    clause.roles.append(Role("Desired_state", j, end, j))
+                    return end
                 clause.roles.append(Role("Ground", j, state.end, state.head, [state]))
                 clause.roles.append(Role("Desired_state", state.end, end, state.end))
                 return end

@@ -135,6 +135,10 @@ class MessageReader(QuestionReader):
         words = self._words
         if words[i : i + 1] == ("to",):  # answer to the question
             i += 1
+        if words[i : i + 1] in (("whatever",), ("what",), ("everything",)):  # answer whatever she asks
+            end = self._message_end(i)
+            clause.roles.append(Role("Trigger", i, end, i))
+            return self._addressed(clause, end)
         phrase = self._np.read(i, with_places=False)
         if phrase is None:
             return self._arguments(clause, i)

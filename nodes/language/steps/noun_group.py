@@ -18,6 +18,7 @@ _NEVER_INSIDE: Final = (
     "have",
     "modal",
     "speaker",
+    "robot",
     "condition",
     "question",
     "negation",

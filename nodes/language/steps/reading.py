@@ -27,13 +27,14 @@ from semmap.nodes.language.steps.phrase import Amount, NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.translation import translate
 from semmap.nodes.language.understanding.grounding import Scene
 from semmap.nodes.language.understanding.pronouns import AFFORDANCES
-from semmap.schemas.language import Antecedent, CommandStep, Filler
+from semmap.schemas.language import Antecedent, CommandStep, Filler, PlaceRelation
 
 _LOCATED_BY: Final = {
     **dict.fromkeys(("Taking", "Bringing", "Giving", "Removing", "Placing", "Pouring"), "Source"),
     "Locating": "Ground",
 }
 """Frames with the role that states where their object is."""
+_CARRYING: Final = frozenset(("Taking", "Bringing", "Giving", "Placing", "Removing", "Releasing"))
 _WORDS_ONLY: Final = frozenset(("Message", "Trigger", "Desired_state", "Manner", "Direction", "Activity"))
 _PEOPLE: Final = frozenset(
     ("Cotheme", "Guiding", "Make_acquaintance", "Greeting", "Introducing", "Being_located", "Locating")
@@ -272,13 +273,24 @@ class _StepReader:
 
     def _there(self, text: str, head: str, number: int) -> Filler:
         """Return the filler for *there*: the last place that was mentioned."""
-        before = (m for m in reversed(self._mentions) if m.is_place and m.step != number)
-        place = next(before, None)
+        before = (m for m in reversed(self._mentions) if m.step != number)
+        place = next((m for m in before if m.is_place or self._is_somewhere(m)), None)
+        if place is not None and not place.is_place:  # someone in the hall is waving, go THERE
+            names = next(r.entities for r in self._places_of(place) if r.entities)
+            return Filler(text, head, names)
         if place is None:
             self._found.doubts.append("'there' refers to no place that was mentioned")
             return Filler(text, head)
         refers = Antecedent(place.step, place.role) if place.step else None
         return Filler(text, head, place.filler.entities, place.filler.description, refers)
+
+    def _places_of(self, mention: Mention) -> tuple[PlaceRelation, ...]:
+        description = mention.filler.description
+        return () if description is None else description.relation
+
+    def _is_somewhere(self, mention: Mention) -> bool:
+        """Return whether the description of what is mentioned states a known place of it."""
+        return any(relation.entities and not relation.negated for relation in self._places_of(mention))
 
     def _note(self, meaning: Meaning) -> None:
         self._found.doubts += meaning.doubts
@@ -307,6 +319,11 @@ class _StepReader:
             bool(names) and all(wanted in index.items[name].types for name in names)
         )
 
+    def _is_location(self, mention: Mention) -> bool:
+        """Return whether a mention denotes a room or another place that cannot be carried."""
+        names = mention.filler.entities
+        return bool(names) and all(self._world.index.items[name].is_place for name in names)
+
     def _pronoun(
         self,
         phrase: NounPhrase,
@@ -319,6 +336,17 @@ class _StepReader:
     ) -> Filler:
         antecedent = self._antecedent(phrase, clause, role, mentions)
         if antecedent is None:
+            told = (
+                k
+                for k in range(len(self._found.steps), 0, -1)
+                if self._found.steps[k - 1].roles.get("Message")
+            )
+            if (
+                clause.frame == "Telling"
+                and phrase.noun in ("it", "that", "this")
+                and (step := next(told, 0))
+            ):
+                return Filler(text, head, refers=Antecedent(step, "Message"))  # and report IT to me
             if self._g.is_a(phrase.noun, "possessive") and phrase.noun not in ("her",):
                 return Filler(text, head)
             self._found.doubts.append(f"'{phrase.noun}' refers to nothing that was mentioned")
@@ -384,6 +412,8 @@ class _StepReader:
         if self._t.is_translated and clause.frame in _PEOPLE and word == "it":  # seguila
             return next((m for m in reversed(mentions) if not m.is_place), None)
         things = [m for m in mentions if not m.is_person]
+        if role.role == "Theme" and clause.frame in _CARRYING:
+            things = [m for m in things if not (m.is_place and self._is_location(m))]
         if (
             role.role in PLACES
             and (theme := next((m for m in now if not m.is_place and not m.is_person), None)) is not None

@@ -49,6 +49,19 @@ def test_what_people_say_is_read_without_doubts(read, text, step):
         ("only go to the kitchen if it is dark", ["Motion(Goal=kitchen1) [if it is dark]"]),
         ("I think Nora is in the kitchen, follow her",
          ["Being_located(Theme=nora1, Location=kitchen1)", "Cotheme(Cotheme=nora1)"]),
+        ("someone in the kitchen is waving, go there",
+         ['Being_located(Theme="someone in the kitchen is waving")', "Motion(Goal=kitchen1)"]),
+        ("on the desk there is a laptop: take it",
+         ["Being_located(Theme=laptop1, Location=desk1)", "Taking(Theme=laptop1)"]),
+        ("find out the name of the person in the kitchen and report it to me",
+         ['Telling(Message="the name", Topic=nora1)', 'Telling(Topic="it", Addressee="to me")']),
+        ("after you've put the milk on the table, come back",
+         ["Motion() [after you've put the milk on the table]"]),
+        ("make sure nobody is in the kitchen", ['Inspecting(Desired_state="nobody is in the kitchen")']),
+        ("answer whatever Nora asks", ['Communication_response(Trigger="whatever Nora asks")']),
+        ("take the red or the blue cup", ["Taking(Theme=redcup|bluecup)"]),
+        ("take the person standing next to the stove to the sofa, he is called Ben",
+         ['Guiding(Cotheme="the person standing next to the stove", Goal=couch1)']),
         ("give me whatever is on the desk", ['Giving(Recipient="me", Theme=book1|cup1|lamp1|laptop1)']),
     ],
 )  # fmt: skip
@@ -66,3 +79,9 @@ def test_no_thing_without_a_colour_is_a_doubt(read):
     assert read("take the milk that is not white").doubts == ()
     understood = read("take the red cup that is not red")
     assert understood.doubts
+
+
+def test_a_room_is_not_carried(read):
+    understood = read("Nora, who is in the kitchen, needs a plate. Take it to her.")
+    assert "kitchen1" not in understood.steps[-1].text
+    assert any("who is in the kitchen" in doubt for doubt in understood.doubts)
