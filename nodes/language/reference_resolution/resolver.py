@@ -40,6 +40,8 @@ _IN_VIEW_RAD: Final = math.radians(60.0)
 _NEAR_M: Final = 2.0
 """Objects up to this distance from the viewer are near; people call within reach *next to me*."""
 _BESIDE_M: Final = 1.0
+_SELF_M: Final = 0.01
+"""An object at this distance from the viewer is the viewer."""
 _TIE_M: Final = 0.015
 """Distances and heights that differ by less count as equal."""
 _INTO: Final = ("connects", "separates")
@@ -242,7 +244,7 @@ class Resolver:
         """Return whether an entity is beside, before or behind the viewer. Raises BadRequest without one."""
         bearing = self.geometry.bearing(name)
         away = self.geometry.distance_from_viewer(name)
-        if not math.isfinite(away):
+        if not math.isfinite(away) or away < _SELF_M:  # the viewer is not near itself
             return False
         match relation:
             case "isBehind":
@@ -299,7 +301,7 @@ class Resolver:
         for name in others.names:
             other = self.index.items[name]
             if name == item.name:
-                return True
+                return "Person" not in other.types  # Anna is not one of the things that belong to Anna
             if name in item.all_values or item.name in other.all_values:
                 return True
             if other.is_place:
