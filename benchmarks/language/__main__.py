@@ -1,4 +1,4 @@
-"""`python -m benchmarks.language [--ablations | --errors | --find]`.
+"""`python -m benchmarks.language [--ablations | --errors | --find | --free]`.
 
 With `--predictions FILE`: `--evaluate DIR`, or `--gpsr SET --map MAP`.
 """
@@ -11,7 +11,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from benchmarks.language import ablations, baseline, errors, finding, steps, trials
+from benchmarks.language import ablations, baseline, errors, finding, free, steps, trials
 from benchmarks.language.scoring import Scores, scores
 from benchmarks.table import Row, as_json, lines
 from semmap.nodes.language.understanding.interpretation import shipped
@@ -103,6 +103,7 @@ def main() -> None:
     parser.add_argument("--map", type=Path, help="with --gpsr: the JSON scene of the map")
     parser.add_argument("--predictions", type=Path, metavar="FILE", help="file for the predictions")
     parser.add_argument("--find", action="store_true", help="only evaluate find")
+    parser.add_argument("--free", action="store_true", help="only evaluate commands in free wording")
     parser.add_argument("--json", type=Path, metavar="FILE")
     given: Any = parser.parse_args()
     if (given.evaluate is None and given.gpsr is None) != (given.predictions is None):
@@ -120,6 +121,8 @@ def main() -> None:
         return
     if given.evaluate is not None:
         found = _rows(str(given.evaluate), _evaluate(given.evaluate, given.predictions))
+    elif given.free:
+        found = free.measure()
     elif given.find:
         found = finding.rows()
     else:

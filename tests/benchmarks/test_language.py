@@ -6,7 +6,7 @@ import re
 import pytest
 
 from benchmarks.language import __main__ as language
-from benchmarks.language import ablations, errors, trials
+from benchmarks.language import ablations, errors, free, trials
 from benchmarks.language.scoring import scores
 from semmap.nodes.language import lexicon
 from semmap.nodes.language.understanding import predicates, roles
@@ -14,7 +14,7 @@ from semmap.nodes.language.understanding.grounding import Thing
 from semmap.nodes.language.understanding.sentence import sentence
 from semmap.nodes.training.language import corpus
 from semmap.nodes.training.language.corpus import Example, Filled, Role
-from semmap.schemas.language import Argument, Grounded, SemanticFrame, Understood
+from semmap.schemas.language import Argument, CommandStep, Filler, Grounded, SemanticFrame, Understood
 from tests.data import data_folder
 
 WORDS = ("take", "the", "book", "to", "me")
@@ -125,3 +125,20 @@ def test_every_group_of_features_is_of_some():
             seen.update(word)
     for title, pattern in ablations.GROUPS.items():
         assert any(re.search(pattern, name) for name in seen), title
+
+
+@pytest.mark.parametrize(
+    ("text", "doubts", "judged"),
+    [
+        ("take the cup", (), free.Judged(True, ())),
+        ("take the cup", ("'zorp' is not understood",), free.Judged(False, ())),
+        ("take the cup", ("'if so' is a condition; it is not checked",), free.Judged(True, ())),
+        ("take the green cup", (), free.Judged(True, ("green",))),
+    ],
+)
+def test_free_wording_is_right_with_its_steps_and_signs_and_without_lost_words(text, doubts, judged):
+    step = CommandStep("Taking", "take", {"Theme": (Filler("the cup", "cup", ("cup1",)),)})
+    understood = Understood(WORDS, (), (), steps=(step,), doubts=doubts)
+    command = {"text": text, "steps": ["Taking(Theme=cup1)"], "signal": False}
+    assert free.judge(command, understood) == judged
+    assert [row.value for row in free.rows([judged])] == [float(judged.is_right), float(bool(judged.lost))]
