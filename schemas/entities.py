@@ -305,6 +305,9 @@ class Provenance(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fie
     confidence: Probability | None = None
 
 
+SAME_AS: Final = "sameAs"
+"""The property that has the other names of an entity."""
+
 Value = bool | int | float | str
 """A property's value: a boolean, a number, a text (with @ and its language), or an individual's name."""
 Stated = Value | tuple[Value, ...]
@@ -386,7 +389,10 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
     conflict: str = ""
     """An observation that contradicts an operator's assertion, which is kept; empty if there is none."""
     properties: dict[str, Stated] = {}
-    """Other asserted properties, by name: `{"isOpen": true, "hasColor": ["color_red"]}`."""
+    """Other asserted properties, by name: `{"isOpen": true, "hasColor": ["color_red"]}`.
+
+    `sameAs` has the names of the individuals that are the same, by assertion or inference.
+    """
     place: bool = False
     fixed: bool = False
     model: str = ""
@@ -400,6 +406,12 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
     joint_provenance: Provenance | None = None
     switch_provenance: Provenance | None = None
     grip_provenance: Provenance | None = None
+
+    @property
+    def other_names(self) -> tuple[str, ...]:
+        """The names of equal individuals, which also refer to this entity."""
+        names = self.properties.get(SAME_AS, ()) if self.properties else ()
+        return tuple(map(str, names)) if isinstance(names, tuple) else (str(names),)
 
     @property
     def joints_said(self) -> Provenance | None:

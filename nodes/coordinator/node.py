@@ -302,6 +302,7 @@ class Coordinator:
         def guarded(command: Any) -> Any:
             if not self._has_map:
                 return self._early.wait(lambda: guarded(command))
+            command = self._dispatcher.map.with_primary_names(command)
             if type(command) in HANDLERS:
                 return handle(command)
             return self._scheduler.run_after(lambda: handle(command))

@@ -44,13 +44,15 @@ class Applier:
         noted: Callable[[Commit], Commit] = lambda commit: commit,
         *,
         strict: bool = False,
+        is_new: bool = False,
     ) -> Commit:
         """Return the commit, durable and with its effects.
 
         Raises Inconsistent, and what `make_durable` raises.
 
         On any error everything is as before. `noted` adds notes when the reasoner has the change already. If
-        `strict`, entities with several poses or sizes are rejected.
+        `strict`, entities with several poses or sizes are rejected. If the commit `is_new`, so are equal
+        individuals with different ones.
         """
         state = self._state
         subjects = preconditions.subjects(commit.retracted, commit.inserted)
@@ -68,7 +70,7 @@ class Applier:
         try:
             if not lenient:
                 self._require_agreement(commit)
-            commit = noted(self._with_effects(commit, owners, change, new, strict=strict))
+            commit = noted(self._with_effects(commit, owners, change, new, strict=strict, is_new=is_new))
             del owners, subjects, known, new, change  # for a large commit these take a third of the memory
             if state.derives_at_commits:
                 commit = self._with_places(commit)
@@ -162,11 +164,18 @@ class Applier:
         return Change.together(changes)
 
     def _with_effects(
-        self, commit: Commit, owners: Set[Term], change: Change, new: Set[Term], *, strict: bool = False
+        self,
+        commit: Commit,
+        owners: Set[Term],
+        change: Change,
+        new: Set[Term],
+        *,
+        strict: bool = False,
+        is_new: bool = False,
     ) -> Commit:
         state = self._state
         reading = entity_changes.Reading(
-            state.reasoner, state.classes, self._patterns, state.progress, strict=strict
+            state.reasoner, state.classes, self._patterns, state.progress, strict, is_new
         )
         return entity_changes.add_effects(commit, change, state.by_name, reading, owners=owners, new=new)
 

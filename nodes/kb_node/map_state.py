@@ -10,7 +10,7 @@ from typing import TypeVar
 from msgspec import structs
 
 from semmap.nodes.kb_node.derived_facts import DerivedChanges, DerivedFacts
-from semmap.nodes.kb_node.entities import entity_changes, entity_reading, new_entities
+from semmap.nodes.kb_node.entities import entity_changes, entity_reading, equal_individuals, new_entities
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.places import Places
 from semmap.nodes.kb_node.progress import split_batches, with_progress
@@ -115,7 +115,7 @@ class MapState:
         """
         self.ensure_derived()
         iris = [v.iri(self.entity(name).iri) for name in names]
-        leaving = frozenset(iris)
+        leaving = frozenset(equal_individuals.with_equals(self.reasoner, iris))
         return tuple(
             entity_reading.read_entity_triples(self.reasoner, self.classes, iri, self.seq, leaving, self.tbox)
             for iri in iris
@@ -160,6 +160,11 @@ class MapState:
     def find_by_iri(self, iri: Term) -> Entity | None:
         """Return the entity with this IRI as of the last commit."""
         return entity_changes.known(self.by_name, iri)
+
+    def find_by_individual(self, iri: Term) -> Entity | None:
+        """Return the entity that an individual is, also by an IRI that is not that of the entity."""
+        found = (self.find_by_iri(one) for one in self.reasoner.equals(iri) or (iri,))
+        return next(filter(None, found), None)
 
     # Facts that are computed from poses
 

@@ -153,7 +153,7 @@ class SemanticMap(MapState):
     def _make_commit(self, transaction: Transaction) -> Commit | None:
         plan = planning.make_plan(self, transaction)
         # edits keep one pose for each entity, but triples from outside may state several
-        apply = partial(self._applier.apply, strict=bool(transaction.insert))
+        apply = partial(self._applier.apply, strict=bool(transaction.insert), is_new=True)
         if plan is None:
             return None
         commit = planning.make_commit(transaction, plan, self.seq + 1)

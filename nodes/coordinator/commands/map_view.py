@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from operator import attrgetter
+from typing import Final, TypeVar
+
+from msgspec import Struct, structs
 
 from semmap.nodes.coordinator.commands.attachment_rules import PoseLookup
 from semmap.nodes.coordinator.free_names import FreeNames
@@ -12,9 +15,14 @@ from semmap.nodes.runtime import map_replica
 from semmap.nodes.runtime.class_names import ClassNames
 from semmap.schemas import errors
 from semmap.schemas.attachments import holder_of
+from semmap.schemas.commands import Add, Batch
 from semmap.schemas.commits import Effects, Snapshot
-from semmap.schemas.entities import Entity, Pose, Size, Vector
+from semmap.schemas.entities import SAME_AS, Entity, Pose, Size, Vector
 from semmap.schemas.scenes import Body
+
+_NAMED: Final = frozenset(("name", "names", "to", "on", "in_", "next_to", "near", "leave", "frame"))
+"""The fields of commands that name entities."""
+C = TypeVar("C", bound=Struct)
 
 
 class MapView(map_replica.MapReplica[Effects]):
@@ -30,6 +38,8 @@ class MapView(map_replica.MapReplica[Effects]):
         """The tracked entities, by name."""
         self.held: dict[str, Entity] = {}
         """The attached entities, by name."""
+        self.primary_names: dict[str, str] = {}
+        """The names of entities by their other names, for entities that have several."""
         self.pose_of: PoseLookup = self._committed_pose
         """Returns the current pose of an entity; set to a function that also uses bodies and live poses."""
         self.bodies: Callable[[], Mapping[str, Body]] = dict
@@ -79,18 +89,49 @@ class MapView(map_replica.MapReplica[Effects]):
         begun = super().begin(snapshot)
         self.tracked = {name: entity for name, entity in self.entities.items() if entity.tracked}
         self.held = {name: entity for name, entity in self.entities.items() if holder_of(entity)}
+        self.primary_names = {}
+        for entity in self.entities.values():
+            self._note_names(entity)
         return begun
+
+    def _note_names(self, entity: Entity) -> None:
+        if SAME_AS in entity.properties:
+            self.primary_names.update(dict.fromkeys(entity.other_names, entity.name))
+
+    def with_primary_names(self, command: C) -> C:
+        """Return a command in which other names of entities are replaced by the names of the map."""
+        if not self.primary_names:
+            return command
+        changed: dict[str, object] = {}
+        for field in _NAMED.intersection(command.__struct_fields__):
+            value = getattr(command, field)
+            now: object = value
+            if isinstance(value, str):
+                now = self._primary_name(value)
+            elif isinstance(value, tuple):
+                now = tuple(self._primary_name(word) if isinstance(word, str) else word for word in value)
+            if now != value:
+                changed[field] = now
+        if isinstance(command, Batch):
+            changed["changes"] = tuple(map(self.with_primary_names, command.changes))
+        return structs.replace(command, **changed) if changed and not isinstance(command, Add) else command
+
+    def _primary_name(self, word: str) -> str:
+        return word if word in self.entities else self.primary_names.get(word, word)
 
     def _apply(self, commit: Effects) -> None:
         """See `MapReplica._apply`."""
         super()._apply(commit)
         names = commit.names
         self.touched.update(names)
+        if self.primary_names:
+            self.primary_names = {n: of for n, of in self.primary_names.items() if of not in names}
         for gone in commit.removed:
             self._names.release(gone.name)
             self.tracked.pop(gone.name, None)
             self.held.pop(gone.name, None)
         for changed in commit.changed:
+            self._note_names(changed)
             if changed.tracked:
                 self.tracked[changed.name] = changed
             elif changed.name in self.tracked:

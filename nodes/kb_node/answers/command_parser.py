@@ -120,6 +120,9 @@ def _named(classes: ClassTable, known: lexicon.Lexicon) -> Vocabulary:
 
 
 def _thing(entity: Entity) -> Thing:
-    references = filter(None, (entity.preferred_reference, *entity.alternative_references, entity.name))
+    references = filter(
+        None,
+        (entity.preferred_reference, *entity.alternative_references, *entity.other_names, entity.name),
+    )
     at = None if entity.pose is None else entity.pose.position_m
     return Thing(entity.name, entity.class_, tuple(references), at, entity.types)

@@ -9,6 +9,7 @@ from msgspec import structs
 
 from semmap.nodes.kb_node.answers import answers, questions
 from semmap.nodes.kb_node.answers.past.fact_intervals import FactStarts
+from semmap.nodes.kb_node.entities.equal_individuals import about_entity
 from semmap.nodes.kb_node.relations.facts.contradictions import (
     PROPERTIES,
     fact_of,
@@ -28,7 +29,7 @@ from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.bridge import Entities
 from semmap.schemas.commands import Explain, Get, Relations
-from semmap.schemas.entities import Entity
+from semmap.schemas.entities import SAME_AS, Entity
 from semmap.schemas.explanations import Explanation, Term, Triple
 from semmap.schemas.moments import When
 from semmap.schemas.relations import PHRASES, Described, Relation, RelationName
@@ -95,11 +96,10 @@ class CurrentState:
         return structs.replace(found, on_nothing=_on_nothing(self._map.places.space(), entity))
 
     def _with_all_properties(self, found: Described) -> Described:
-        reasoner, iri = self._map.reasoner, v.iri(found.iri)
-        others = self._map.classes.property_table.read_others(reasoner.about, iri)
-        equal = (*reasoner.asserted(iri, v.OWL_SAME_AS, None), *reasoner.inferred(iri, v.OWL_SAME_AS, None))
-        if names := sorted({v.entity_name(o) for _, _, o in equal if o != iri}):
-            others[v.local_name(v.OWL_SAME_AS)] = tuple(names)
+        iri = v.iri(found.iri)
+        about = about_entity(self._map.reasoner, iri)
+        others = self._map.classes.property_table.read_others(about, iri)
+        others.pop(SAME_AS, None)
         return structs.replace(found, properties={**found.properties, **others}) if others else found
 
     def describe(self, name: str) -> Described | None:
@@ -210,10 +210,11 @@ class CurrentState:
         if p not in _MEASURED or o.startswith('"'):
             return None
         relation, is_inverse = _MEASURED[p]
-        ends = [v.entity_name(s), v.entity_name(o)]
-        for name, iri in zip(ends, (s, o), strict=True):
-            if (entity := self._map.find(name)) is None or v.iri(entity.iri) != iri:
+        ends: list[str] = []
+        for iri in (s, o):
+            if (entity := self._map.find_by_individual(iri)) is None:
                 return None
+            ends.append(entity.name)
         if is_inverse:
             ends.reverse()
         return explain_relation(self._map.places.space(), ends[0], relation, ends[1])

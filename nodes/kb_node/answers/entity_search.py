@@ -148,7 +148,9 @@ class EntitySearch:
 
 def item(entity: Entity) -> Item:
     """Return an entity as a search item."""
-    references = filter(None, (entity.preferred_reference, *entity.alternative_references))
+    references = filter(
+        None, (entity.preferred_reference, *entity.alternative_references, *entity.other_names)
+    )
     values: dict[str, frozenset[object]] = {
         name: frozenset(value if isinstance(value, tuple) else (value,))
         for name, value in entity.properties.items()

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from itertools import chain
 from typing import NamedTuple
 
 from msgspec import structs
 
 from semmap.nodes.kb_node import preconditions
-from semmap.nodes.kb_node.entities import entity_reading
+from semmap.nodes.kb_node.entities import entity_reading, equal_individuals
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.entities.fast_reading import Pattern, Patterns, read_regular
 from semmap.nodes.kb_node.progress import with_progress
 from semmap.nodes.kb_node.reasoner import Change, Reasoner
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
-from semmap.schemas import errors
+from semmap.schemas import errors, wording
 from semmap.schemas.commits import Commit, Departed
 from semmap.schemas.entities import Entity, Provenance
 from semmap.schemas.explanations import Term
@@ -34,6 +34,8 @@ class Reading(NamedTuple):
     """Called now and then."""
     strict: bool = False
     """Whether several poses or sizes of an entity are an error. Older maps may have such entities."""
+    is_new: bool = False
+    """Whether the commit is new. Then individuals that become equal must not have different poses."""
 
 
 def add_effects(
@@ -53,10 +55,10 @@ def add_effects(
     """
     changed: dict[str, Entity] = {}
     removed: list[Departed] = []
-    reasoner, classes, _, progress, strict = reading
+    reasoner, classes, _, progress, strict, _ = reading
     provenance = commit.provenance
     at_sight, seen, unseen = _read_regular(change, reading, provenance)
-    others = (owners - seen) | change.others | unseen
+    others = equal_individuals.with_equals(reasoner, (owners - seen) | change.others | unseen)
     about = entity_reading.about(reasoner, commit.inserted, others & new)
     concerned = (
         iri
@@ -82,13 +84,19 @@ def add_effects(
                 and not _is_asserted(reasoner, iri)
             ):
                 entity = None  # only computed facts still mention it, and they will be removed
+        if entity is not None and entity.other_names and _is_regrouped(entity, was) and reading.is_new:
+            merged = equal_individuals.about_entity(reasoner, iri, about)
+            name = f"{entity.name} (the same as {wording.few(entity.other_names)})"
+            entity_reading.require_one_place(merged, classes, iri, name)
         if entity is None:
             removed += [Departed(name=was.name, types=was.types)] if was is not None else []
             continue
         if was is not None:
-            entity = entity_reading.inherit_provenance(entity, was, concerned=iri in owners)
+            is_concerned = not owners.isdisjoint(reasoner.equals(iri) or (iri,))
+            entity = entity_reading.inherit_provenance(entity, was, concerned=is_concerned)
         if (other := changed.setdefault(entity.name, entity)) is not entity:
             raise _name_taken(other, entity)
+    notes = tuple(_equality_notes(changed.values(), before, removed))
     removed_names = {departed.name for departed in removed}
     for name, entity in changed.items():
         if name not in removed_names and (holder := before.get(name, entity)).iri != entity.iri:
@@ -97,6 +105,7 @@ def add_effects(
         commit,
         changed=tuple(e for name, e in changed.items() if e != before.get(name)),
         removed=tuple(removed),
+        notes=(*commit.notes, *(note for note in notes if note not in commit.notes)),
     )
 
 
@@ -104,6 +113,24 @@ def known(by_name: Mapping[str, Entity], iri: Term) -> Entity | None:
     """Return the entity with this IRI, or None."""
     entity = by_name.get(v.entity_name(iri))
     return entity if entity is not None and v.iri(entity.iri) == iri else None
+
+
+def _equality_notes(
+    changed: Iterable[Entity], before: Mapping[str, Entity], removed: Iterable[Departed]
+) -> Iterator[str]:
+    """Yield a note on each entity that is now another one, too."""
+    gone = {departed.name for departed in removed}
+    for entity in changed:
+        if entity.other_names and (merged := gone.intersection(entity.other_names)):
+            yield (
+                f"{entity.name} and {wording.few(sorted(merged))} are the same individual:"
+                f" one entity, {entity.name}, which all these names refer to"
+            )
+
+
+def _is_regrouped(entity: Entity, was: Entity | None) -> bool:
+    """Return whether an entity has other names than before."""
+    return was is None or was.other_names != entity.other_names
 
 
 def _is_asserted(reasoner: Reasoner, iri: Term) -> bool:

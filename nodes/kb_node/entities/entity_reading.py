@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Collection, Iterable, Iterator, Sequence, Set
 from contextlib import suppress
-from itertools import chain, islice, product
+from itertools import islice, product
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.entities import aligned_values
+from semmap.nodes.kb_node.entities import aligned_values, equal_individuals
 from semmap.nodes.kb_node.entities.class_table import ClassTable, Kind
+from semmap.nodes.kb_node.entities.equal_individuals import About, Objects
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
@@ -19,11 +20,10 @@ from semmap.ontology.model_choice import chosen
 from semmap.schemas import errors, polygons
 from semmap.schemas.attachments import GRASPING
 from semmap.schemas.commits import Star
-from semmap.schemas.entities import REACH_M, Entity, Pose, Provenance, Size, Stated, Tracked
+from semmap.schemas.entities import REACH_M, SAME_AS, Entity, Pose, Provenance, Size, Stated, Tracked
 from semmap.schemas.explanations import Term, Triple
 from semmap.schemas.joints import OPENING, SWITCHING
 
-_EQUALITY = frozenset((v.OWL_SAME_AS,))
 _FEW = 16
 _MANY_TRIPLES = 100
 """Triples per subject beyond which looking it up is faster than scanning."""
@@ -32,11 +32,6 @@ _SAME_M = 1e-6
 """Positions and sizes that differ by less are the same, in another vocabulary or spelling."""
 _IRI = re.compile("<(https?|urn|file):", re.IGNORECASE)
 _OF_THE_TBOX = Provenance(commit=0, stamp_ns=0, source="file", reason="the TBox says so")
-
-
-Objects = Mapping[Term, Sequence[Term]]
-"""The asserted objects of a subject by predicate."""
-About = Callable[[Term], Objects]
 
 
 def about(reasoner: Reasoner, triples: Collection[Triple], new: Set[Term]) -> About:
@@ -63,22 +58,28 @@ def read_entity(
 ) -> Entity | None:
     """Return the entity that the triples about `iri` describe, or None if it is not an entity.
 
-    All of it gets `provenance`. `about` is a lookup to use in place of the reasoner. Raises BadRequest for an
-    entity without an IRI that can be its name, or with an invalid number or size.
+    Equal individuals are one entity, which has the IRI of one of them; the others give None. All of it gets
+    `provenance`. `about` is a lookup to use in place of the reasoner. Raises BadRequest for an entity without
+    an IRI that can be its name, or with an invalid number or size.
     """
     types = reasoner.types(iri)
     if types.isdisjoint(classes.spatial):
         return None
     about = about or reasoner.about
+    if members := reasoner.equals(iri):
+        if iri != equal_individuals.choose_primary(members, classes, about):
+            return None
+        about = equal_individuals.merge(about, members)
     asserted = about(iri)
     if classes.alignments and iri.startswith("_:"):
         return None  # an unnamed part, which clients cannot refer to
-    if _is_only_a_name(reasoner, iri, asserted):
-        return None
     kind = classes.kind(types, frozenset(asserted.get(v.RDF_TYPE, ())))
     if kind is None:
         raise errors.InternalError(f"{iri} is a spatial individual without a class")
     pose, size_m = read_place(about, classes, iri)
+    properties = classes.property_table.read_values(asserted)
+    if others := equal_individuals.find_other_names(members, iri):
+        properties = {**properties, SAME_AS: others}
     return make_entity(
         iri,
         kind,
@@ -92,18 +93,8 @@ def read_entity(
         conflict="; ".join(sorted(map(_text, asserted.get(v.CONFLICTING_OBSERVATION, ())))),
         tracked=_tracked(iri, asserted.get(v.TRACKED_FROM, ())),
         model=stated_model(asserted),
-        properties=classes.property_table.read_values(asserted),
+        properties=properties,
     )
-
-
-def _is_only_a_name(reasoner: Reasoner, iri: Term, asserted: Objects) -> bool:
-    """Return whether all that is asserted of an individual is `owl:sameAs` another one that has a class."""
-    if not asserted.keys() <= _EQUALITY:
-        return False
-    others = chain(
-        asserted.get(v.OWL_SAME_AS, ()), (s for s, _, _ in reasoner.asserted(None, v.OWL_SAME_AS, iri))
-    )
-    return any(any(reasoner.asserted(other, v.RDF_TYPE, None)) for other in others)
 
 
 def read_place(about: About, classes: ClassTable, iri: Term) -> tuple[Pose | None, Size | None]:
@@ -122,8 +113,11 @@ def read_place(about: About, classes: ClassTable, iri: Term) -> tuple[Pose | Non
     return pose, size_m
 
 
-def require_one_place(about: About, classes: ClassTable, iri: Term) -> None:
-    """Raise BadRequest for an entity with several poses or sizes, in whatever vocabularies they are."""
+def require_one_place(about: About, classes: ClassTable, iri: Term, name: str | None = None) -> None:
+    """Raise BadRequest for an entity with several poses or sizes, in whatever vocabularies they are.
+
+    `name` is how the message calls it; the default is its name.
+    """
     asserted, known = about(iri), classes.alignments
     positions = _find_vectors(about, asserted.get(v.HAS_POSITION, ()), v.COORDINATE_XYZ)
     orientations = _find_vectors(about, asserted.get(v.HAS_POSITION, ()), v.ORIENTATION_WXYZ)
@@ -139,7 +133,7 @@ def require_one_place(about: About, classes: ClassTable, iri: Term) -> None:
             both = " and ".join(
                 "({})".format(", ".join(f"{x:g}" for x in one)) for one in (vectors[0], other)
             )
-            raise errors.BadRequest(f"{v.entity_name(iri)} has two {what}: {both}; state one")
+            raise errors.BadRequest(f"{name or v.entity_name(iri)} has two {what}: {both}; state one")
 
 
 def _find_vectors(about: About, nodes: Sequence[Term], properties: Sequence[Term]) -> list[tuple[float, ...]]:
@@ -242,8 +236,9 @@ def stated_model(asserted: Objects) -> str:
 def read_moved(reasoner: Reasoner, known: Entity, provenance: Provenance) -> Entity:
     """Return `known` at its new pose, if nothing but coordinates has changed. Raises BadRequest."""
     iri = v.iri(known.iri)
-    asserted = reasoner.about(iri)
-    pose = _pose(reasoner.about, iri, asserted.get(v.HAS_POSITION, ()))
+    about = equal_individuals.about_entity(reasoner, iri)
+    asserted = about(iri)
+    pose = _pose(about, iri, asserted.get(v.HAS_POSITION, ()))
     if known.place and v.HAS_EXTENT in asserted:
         pose, _ = _around(iri, asserted[v.HAS_EXTENT], pose, known.size_m)
     return structs.replace(known, pose=pose, provenance=provenance)
@@ -342,14 +337,19 @@ def read_entity_triples(
     tbox: frozenset[Triple],
 ) -> Star:
     """Return the triples about an entity as a message; see `find_entity_triples`. Raises Refused."""
-    own, incoming = find_entity_triples(reasoner, classes, iri, leaving, tbox)
+    members = reasoner.equals(iri) or (iri,)
+    own, incoming = list[Triple](), list[Triple]()
+    for member in sorted(members):
+        about_it, referring = find_entity_triples(reasoner, classes, member, leaving, tbox)
+        own += about_it
+        incoming += [triple for triple in referring if triple[0] not in members]
     suppressed = reasoner.suppressed_about([iri]) if reasoner.has_suppressed else ()
     return Star(
         seq=seq,
         name=v.entity_name(iri),
         iri=iri,
-        own=tuple(own),
-        incoming=tuple(incoming),
+        own=tuple(dict.fromkeys(own)),
+        incoming=tuple(dict.fromkeys(incoming)),
         computed=tuple(reasoner.computed(iri)),
         denied=tuple(sorted(triple for triple in suppressed if triple[0] == iri)),
     )

@@ -9,12 +9,19 @@ export as before. New values use semmap's own vocabulary.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
 
-from semmap.nodes.kb_node.entities import aligned_values, entity_reading, implied_values
+from msgspec import structs
+
+from semmap.nodes.kb_node.entities import (
+    aligned_values,
+    entity_reading,
+    equal_individuals,
+    implied_values,
+)
 from semmap.nodes.kb_node.entities.aligned_values import LABELS
 from semmap.nodes.kb_node.entities.class_table import ClassTable
-from semmap.nodes.kb_node.entities.entity_reading import Objects
+from semmap.nodes.kb_node.entities.equal_individuals import Objects
 from semmap.nodes.kb_node.entities.property_table import Property
 from semmap.nodes.kb_node.entities.property_values import is_same_value, to_text
 from semmap.nodes.kb_node.reasoner import Reasoner
@@ -45,13 +52,15 @@ class Draft:
         self._entities = entities
         self._new: set[Term] = set()
         self._known_classes: dict[str, Term] = {}
+        self._equals: Set[Term] = frozenset()
+        """The individuals that the entity that is being edited is, if they are several."""
 
     def remove(self, leaving: Iterable[Entity]) -> None:
         """Remove entities with all triples that describe only them or refer to them.
 
         Raises Refused for an entity of the TBox.
         """
-        iris = [v.iri(entity.iri) for entity in leaving]
+        iris = [member for entity in leaving for member in self._members(entity)]
         together = frozenset(iris)
         for iri in iris:
             own, incoming = entity_reading.find_entity_triples(
@@ -98,8 +107,9 @@ class Draft:
         Raises BadRequest for an invalid pose, property or value, UnknownClass, UnknownName for an individual
         that does not exist, PreconditionFailed, NameTaken, and Refused for an entity of the TBox.
         """
-        iri = v.iri(entity.iri)
-        asserted = self._reasoner.about(iri)
+        iri, members = v.iri(entity.iri), self._members(entity)
+        self._equals = frozenset(members if len(members) > 1 else ())
+        asserted = equal_individuals.about_entity(self._reasoner, iri)(iri)
         if not self._tbox.isdisjoint([(iri, p, o) for p, objects in asserted.items() for o in objects]):
             raise errors.Refused(f"{entity.name} is part of the TBox, which commands cannot change")
         if edit.only_if:
@@ -107,12 +117,9 @@ class Draft:
         if edit.unset or edit.set:
             self._state(entity, asserted, edit)
         if edit.places or (edit.size is not None and entity.pose is not None and self._classes.alignments):
-            self._place(
-                entity,
-                asserted.get(v.HAS_POSITION, ()),
-                edit.pose_after(entity.pose),
-                edit.size or entity.size_m,
-            )
+            pose, size_m = edit.pose_after(entity.pose), edit.size or entity.size_m
+            for one, nodes in self._holders(entity, v.HAS_POSITION, aligned_values.find_poses):
+                self._place(one, nodes, pose, size_m)
         if edit.class_iri is not None and v.iri(edit.class_iri) != self._classes.iris.get(entity.class_):
             class_iri = self._class(edit.class_iri)
             self._retract(
@@ -120,7 +127,8 @@ class Draft:
             )
             self._insert([(iri, v.RDF_TYPE, class_iri)])
         if edit.size is not None:
-            self._resize(entity, asserted.get(v.HAS_SIZE, ()), edit.size)
+            for one, nodes in self._holders(entity, v.HAS_SIZE, aligned_values.find_sizes):
+                self._resize(one, nodes, edit.size)
         if edit.ref is not None and edit.ref != entity.preferred_reference:
             nodes = asserted.get(v.HAS_PREFERRED_REFERENCE, ())
             (node,) = self._references(entity, v.HAS_PREFERRED_REFERENCE, nodes, ["preferred_reference"])
@@ -144,6 +152,30 @@ class Draft:
                 self._insert([(iri, v.TRACKED_FROM, v.literal(edit.tracked))])
         if edit.rename is not None and edit.rename != entity.name:
             self._rename(entity, edit.rename)
+
+    def _members(self, entity: Entity) -> Collection[Term]:
+        """Return the individuals that are an entity: that of its IRI, and its equals."""
+        iri = v.iri(entity.iri)
+        return self._reasoner.equals(iri) or (iri,)
+
+    def _holders(
+        self, entity: Entity, edge: Term, find: Callable[..., Iterable[object]]
+    ) -> list[tuple[Entity, Sequence[Term]]]:
+        """Return the individuals of an entity that have a pose or a size, and the nodes that hold it.
+
+        `find` finds those of alignments. Without any, it is the individual of the entity's IRI.
+        """
+        about = self._reasoner.about
+        members = self._equals or {v.iri(entity.iri)}
+        having = [
+            iri
+            for iri in sorted(members)
+            if edge in about(iri) or any(True for _ in find(self._classes.alignments, about, iri))
+        ]
+        return [
+            (structs.replace(entity, iri=v.bare(iri)), about(iri).get(edge, ()))
+            for iri in having or [v.iri(entity.iri)]
+        ]
 
     def _keep_labels(self, entity: Entity, asserted: Objects, edit: Edit) -> set[str]:
         """Remove labels (`rdfs:label` and the like) that are not among new aliases, and return the others.
@@ -174,7 +206,7 @@ class Draft:
         triples = sorted(
             t for t in (*asserted, *self.insert) if iri in (t[0], t[2]) and t not in self.retract
         )
-        self._retract(asserted)
+        self.retract.update(dict.fromkeys(asserted))
         self.insert = [t for t in self.insert if iri not in (t[0], t[2])]
         self._insert((new if s == iri else s, p, new if o == iri else o) for s, p, o in triples)
         self._new.add(new)
@@ -234,7 +266,9 @@ class Draft:
 
     def _individual(self, name: str) -> Term | None:
         """Return the individual of the map with this name, or None."""
-        entity = self._entities.get(name)
+        entity = self._entities.get(name) or next(
+            (e for e in self._entities.values() if e.properties and name in e.other_names), None
+        )
         iri = v.iri(entity.iri) if entity is not None else v.entity_iri(name)
         return iri if iri in self._new or self._is_described(iri) else None
 
@@ -315,7 +349,8 @@ class Draft:
 
     def _is_own(self, node: Term) -> bool:
         """Return whether an individual describes exactly one entity, once."""
-        return len(list(entity_reading.find_users(self._reasoner, node))) == 1
+        users = list(entity_reading.find_users(self._reasoner, node))
+        return len(users) == 1 or (len(users) > 1 and self._equals >= set(users))
 
     def _free(self, name: str, word: str) -> Term:
         """Return the default name for an individual that describes an entity, or the next free one."""
@@ -351,7 +386,13 @@ class Draft:
         return term
 
     def _retract(self, triples: Iterable[Triple]) -> None:
+        """Remove triples. What is removed of an individual is removed of those that are the same, too."""
+        triples = list(triples)
         self.retract.update(dict.fromkeys(triples))
+        for s, p, o in triples if self._equals else ():
+            if s in self._equals:
+                same = ((member, p, o) for member in self._equals)
+                self.retract.update(dict.fromkeys(t for t in same if any(self._reasoner.asserted(*t))))
 
     def _change(self, changes: tuple[list[Triple], list[Triple]]) -> None:
         self._retract(changes[0])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import uuid
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import nullcontext
 from functools import partial
@@ -178,8 +178,10 @@ class LoadHandlers:
             del document
             if not document_change.is_exact_copy(triples, transaction):
                 self._sparql.discard_prepared()
+            same = {o for _, p, o in filtered.triples if p == v.OWL_SAME_AS}
             known = {
-                entity.name: entity for entity in filter(None, map(self._map.find_by_iri, replaced.known))
+                entity.name: entity
+                for entity in filter(None, map(self._map.find_by_individual, same.union(replaced.known)))
             }
             retract = replaced.retract
             if load.dry_run:
@@ -188,7 +190,7 @@ class LoadHandlers:
                 return Loaded(
                     commit=tried,
                     names=names,
-                    counts=_count(known, _described(tried) if tried is not None else (), after),
+                    counts=_count(known, [tried] if tried is not None else [], after),
                     skipped=tuple(filtered.skipped),
                     notes=(*filtered.notes, *abox_document.name_notes(after.values())),
                 )
@@ -203,7 +205,7 @@ class LoadHandlers:
                 commit=effects(commits[-1] if commits else None),
                 parts=len(commits),
                 names=names,
-                counts=_count(known, names, self._map.by_name),
+                counts=_count(known, commits, self._map.by_name),
                 skipped=skipped,
                 notes=(*notes, *(note for earlier in commits[:-1] for note in earlier.notes)),
             )
@@ -267,11 +269,17 @@ class LoadHandlers:
         )
 
 
-def _count(known: Mapping[str, Entity], names: Iterable[str], after: Mapping[str, Entity]) -> dict[str, int]:
-    """Count the entities that a document describes: those of `names`, and the others that were known."""
-    concerned = dict.fromkeys(names)
+def _count(
+    known: Mapping[str, Entity], commits: Sequence[Commit | Effects], after: Mapping[str, Entity]
+) -> dict[str, int]:
+    """Count the entities that a document describes: those of the commits, and the others that were known.
+
+    An entity that became the same as another one is not counted.
+    """
+    concerned = dict.fromkeys(name for commit in commits for name in _described(commit))
+    gone = {departed.name for commit in commits for departed in commit.removed}
     described = ((known.get(name), after[name]) for name in concerned if name in after)
-    unchanged = ((known[name], None) for name in known.keys() - concerned.keys())
+    unchanged = ((known[name], None) for name in known.keys() - concerned.keys() - gone)
     return changes.count_kinds((*described, *unchanged))
 
 

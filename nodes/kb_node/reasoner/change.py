@@ -11,7 +11,7 @@ from semmap.nodes.kb_node.reasoner.fastpaths.shapes import UniformRuns
 
 
 class Change(NamedTuple):
-    """The individuals whose asserted triples or inferred named classes changed.
+    """The individuals whose asserted triples, inferred named classes or equal individuals changed.
 
     `alike` has the individuals that were added in runs of known shapes. They are also in `others` if triples
     outside their run changed them.

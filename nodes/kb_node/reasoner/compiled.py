@@ -157,8 +157,9 @@ class CompiledEngine:
         except NotCompilable:
             self._undo(retraction, removed, added)
             raise
-        if abox.changed_kinds or abox.overlaid:
+        if abox.changed_kinds or abox.overlaid or abox.regrouped:
             touched.update(self._reclassified())
+            touched.update(abox.store.terms[node] for node in abox.regrouped)
             abox.settle()
         if retraction is not None:
             retraction.release()
@@ -207,6 +208,8 @@ class CompiledEngine:
         finally:
             abox.store.log = None
         touched = frozenset(self._reclassified()) if abox.changed_kinds else frozenset[Term]()
+        if abox.regrouped:
+            touched |= {abox.store.terms[node] for node in abox.regrouped}
         implied = self._implied(log) if report_implied else None
         abox.settle()
         if retraction is not None:
@@ -280,6 +283,13 @@ class CompiledEngine:
         for node, before in self._abox.changed_kinds.items():
             if before.excluded is None and store.kind[node].names != before.names:
                 yield store.terms[node]
+
+    def equals(self, individual: Term) -> Collection[Term]:
+        """Return the individuals that are the same as one, itself included; none if it is only itself."""
+        abox = self._abox
+        node = abox.store.find(individual) if abox.equals else None
+        found = None if node is None else abox.equals.get(node)
+        return () if found is None else [abox.store.terms[member] for member in found.members]
 
     def count_matches(self, rule: swrl.SwrlRule) -> int:
         """Return how often a SWRL rule holds. Equal individuals are counted once."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Container, Iterable, Iterator, Sequence, Set
+from collections.abc import Collection, Container, Iterable, Iterator, Sequence, Set
 from contextlib import contextmanager
 from itertools import chain, groupby
 from typing import NamedTuple
@@ -192,7 +192,8 @@ class Reasoner:
         A computed fact holds without being asserted. A suppressed fact is asserted but does not hold.
         Removing an absent fact or adding a present one changes nothing.
 
-        Returns the individuals whose named classes changed, and with `report_implied` also `Change.implied`.
+        Returns the individuals whose named classes or equals changed, and with `report_implied` also
+        `Change.implied`.
 
         Raises:
             Inconsistent: the change contradicts the other facts; nothing was changed.
@@ -239,6 +240,7 @@ class Reasoner:
         individuals = {s for s, _, _ in (*before, *after)} | {o for _, _, o in (*before, *after)}
         touched = {s for s, _, _ in before.keys() ^ after.keys()}
         touched |= {term for term in individuals if old.types(term) != engine.types(term)}
+        touched |= {term for term in individuals if set(old.equals(term)) != set(engine.equals(term))}
         return Change(frozenset(term for term in touched if not is_literal(term)))
 
     @contextmanager
@@ -377,6 +379,10 @@ class Reasoner:
     def instances(self, cls: Term) -> Iterator[Term]:
         """Return the individuals of a class, asserted and inferred."""
         return self._engine.instances(cls)
+
+    def equals(self, individual: Term) -> Collection[Term]:
+        """Return the individuals that are the same as one, itself included; none if it is only itself."""
+        return self._engine.equals(individual)
 
     def superclasses(self, cls: Term) -> frozenset[Term]:
         """Return the named superclasses of a class, including the class itself."""

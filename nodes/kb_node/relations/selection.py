@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence, Set
 from functools import partial
+from itertools import chain
 from typing import Final, NamedTuple
 
 from semmap.nodes.kb_node.relations.facts.pair_facts import are_near
@@ -172,11 +173,13 @@ def resolve_word(candidates: Sequence[Entity], word: str) -> frozenset[str]:
     """
     if any(word == e.name for e in candidates):
         return frozenset((word,))
+    if names := [e.name for e in candidates if word in e.other_names]:
+        return frozenset(names)
     if names := [e.name for e in candidates if word in e.types]:
         return frozenset(names)
     folded = word.casefold().replace("_", " ")
     for words_of in (
-        lambda e: (e.name,),
+        lambda e: (e.name, *e.other_names),
         lambda e: tuple(filter(None, (e.preferred_reference, *e.alternative_references))),
         lambda e: e.types,
     ):
@@ -188,7 +191,8 @@ def resolve_word(candidates: Sequence[Entity], word: str) -> frozenset[str]:
     article, _, noun = folded.partition(" ")
     if article in _ARTICLES and noun:
         return resolve_word(candidates, noun)
-    all_words = sorted({word for e in candidates for word in (e.name, e.preferred_reference or "", e.class_)})
+    words = ((e.name, *e.other_names, e.preferred_reference or "", e.class_) for e in candidates)
+    all_words = sorted(set(chain.from_iterable(words)))
     known = {word.casefold(): word for word in all_words}.values()  # of Table and table, table
     raise errors.UnknownName(
         f"no entity has the name, label or class '{word}'{errors.did_you_mean(word, known)}"

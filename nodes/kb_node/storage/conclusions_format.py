@@ -7,7 +7,7 @@ test compares digests of rules, layouts and examples.
 
 from __future__ import annotations
 
-FORMAT = 8
+FORMAT = 9
 
 
 def format_mark() -> bytes:

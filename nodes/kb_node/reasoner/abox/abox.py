@@ -46,6 +46,8 @@ class ABox:
         self.steps = Steps(schema, self.kinds)
         self.store = Store(self.kinds)
         self.equals: dict[int, Equals] = {}
+        self.regrouped: set[int] = set()
+        """The individuals whose equals changed since `settle`."""
         self.reasons: dict[int, Reason] = {}
         self.changed_kinds: dict[int, Kind] = {}
         """The nodes whose kind changed since `settle`, with their previous kind."""
@@ -228,6 +230,7 @@ class ABox:
                 self.store.list_under_kind(node, before, self.store.kind[node])
         self.changed_kinds.clear()
         self.overlaid.clear()
+        self.regrouped.clear()
 
     def forget_spelling(self, literal: int) -> None:
         """Remove an unused literal from the spellings of its value."""

@@ -44,6 +44,8 @@ class Equality:
         first.links.append(self._abox.conclude(claims, link=(one, other)))
         for node in first.members:
             self._abox.equals[node] = first
+        if not self._abox.is_literal(one):
+            self._abox.regrouped.update(first.members)
         if self._abox.is_literal(one) and None in (self._abox.value(one), self._abox.value(other)):
             self._merge_spellings_of(one, other)
         self._abox.widen(one, self._store.kind[one].mask | self._store.kind[other].mask)

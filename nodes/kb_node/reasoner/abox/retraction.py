@@ -156,6 +156,8 @@ class Retraction:
         for member in equals.members:
             del self._abox.equals[member]
             self.touched.add(member)
+            if not self._abox.is_literal(member):
+                self._abox.regrouped.add(member)
         for member in equals.members:
             self._separated.add(member)
             self._reset_one(member)

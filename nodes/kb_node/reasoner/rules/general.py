@@ -5,7 +5,7 @@ It applies all rules exactly. The cost of a change is proportional to the size o
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Set
+from collections.abc import Collection, Iterable, Iterator, Set
 from functools import cached_property
 
 from semmap.nodes.kb_node.reasoner import datatypes
@@ -15,7 +15,7 @@ from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from semmap.nodes.kb_node.reasoner.rules import swrl
 from semmap.nodes.kb_node.reasoner.rules.closure import Closure
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
-from semmap.nodes.kb_node.reasoner.terms import TYPE, is_literal, is_named
+from semmap.nodes.kb_node.reasoner.terms import SAME_AS, TYPE, is_literal, is_named
 
 
 class GeneralEngine:
@@ -68,6 +68,11 @@ class GeneralEngine:
     def is_computed(self, triple: Triple) -> bool:
         """Return whether a triple is computed and not asserted."""
         return triple in self._computed
+
+    def equals(self, individual: Term) -> Collection[Term]:
+        """Return the individuals that are the same as one, itself included; none if it is only itself."""
+        same = {o for _, _, o in self._closure.match(individual, SAME_AS, None)}
+        return same | {individual} if same - {individual} else ()
 
     def about(self, subject: Term) -> dict[Term, list[Term]]:
         """Return the asserted triples of a subject: predicate to objects."""

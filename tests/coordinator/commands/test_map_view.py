@@ -1,0 +1,66 @@
+"""The coordinator's view of the map: other names of entities."""
+
+from __future__ import annotations
+
+import pytest
+
+from semmap.nodes.coordinator.commands.map_view import MapView
+from semmap.schemas import commands as c
+from semmap.schemas.commits import Departed, Effects, Snapshot
+from semmap.schemas.entities import SAME_AS, Entity, Provenance
+
+BY = Provenance(commit=1, stamp_ns=1, source="file")
+PARTS = ("provenance", "pose_provenance", "shape_provenance", "reference_provenance")
+
+
+def entity(name, *others):
+    properties = {SAME_AS: others} if others else {}
+    said = dict.fromkeys(PARTS, BY)
+    return Entity(name=name, class_="Cup", iri=f"urn:{name}", types=("Cup",), properties=properties, **said)
+
+
+@pytest.fixture
+def view():
+    made = MapView()
+    made.begin(Snapshot(seq=1, entities=(entity("cup1", "mug"), entity("cup2")), digest="1"))
+    return made
+
+
+@pytest.mark.parametrize(
+    ("command", "expected"),
+    [
+        (c.Set(name="mug", property="isOpen", values=(True,)), {"name": "cup1"}),
+        (c.Remove(names=("cup2", "mug")), {"names": ("cup2", "cup1")}),
+        (c.Move(name="cup2", on="mug"), {"name": "cup2", "on": "cup1"}),
+        (c.Attach(name="mug", to="cup2"), {"name": "cup1", "to": "cup2"}),
+        (c.Rename(name="mug", new="cup3"), {"name": "cup1", "new": "cup3"}),
+        (c.Add(class_="Cup", name="mug"), {"name": "mug"}),  # and so it is taken
+        (c.Get(name="other"), {"name": "other"}),
+    ],
+)
+def test_a_command_names_an_entity_by_any_of_its_names(view, command, expected):
+    found = view.with_primary_names(command)
+    assert {field: getattr(found, field) for field in expected} == expected
+
+
+def test_the_changes_of_a_batch_name_entities_by_any_name(view):
+    batch = c.Batch(changes=(c.Update(name="mug", ref="mine"), c.Update(name="cup2", ref="yours")))
+    assert [change.name for change in view.with_primary_names(batch).changes] == ["cup1", "cup2"]
+
+
+def test_the_names_follow_the_commits(view):
+    view.take(Effects(seq=2, digest="2", changed=(entity("cup2", "beaker"),), id="2"))
+    assert view.with_primary_names(c.Get(name="beaker")).name == "cup2"
+    view.take(
+        Effects(
+            seq=3, digest="3", changed=(entity("cup1"),), removed=(Departed(name="cup2", types=()),),
+            id="3",
+        )
+    )  # fmt: skip
+    assert view.primary_names == {}
+    assert view.with_primary_names(c.Get(name="mug")).name == "mug"
+
+
+def test_a_name_of_the_map_takes_precedence(view):
+    view.take(Effects(seq=2, digest="2", changed=(entity("mug"),), id="2"))
+    assert view.with_primary_names(c.Get(name="mug")).name == "mug"
