@@ -66,8 +66,35 @@ def last_part(term: Term) -> str:
     return text[len(within) - len(local_name(iri(within))) :]
 
 
+_GIVEN: Final[dict[Term, str]] = {}
+"""The names of individuals whose IRI's last part is the name of another one.
+
+They are kept for the process, because names are printed and looked up where only IRIs are at hand.
+"""
+
+
+def give_name(term: Term, name: str) -> None:
+    """Set the name of an individual of which the map states it; without a name, that of its IRI counts."""
+    if name and name != own_name(term):
+        _GIVEN[term] = name
+    else:
+        _GIVEN.pop(term, None)
+
+
+def has_given_name(term: Term) -> bool:
+    """Return whether an individual has another name than that of its IRI."""
+    return term in _GIVEN
+
+
 def entity_name(term: Term) -> str:
-    """Return the name of an individual: the last part of its IRI, without percent escapes.
+    """Return the name of an individual: the one that the map gives it, or else that of its IRI."""
+    if _GIVEN and (given := _GIVEN.get(term)) is not None:
+        return given
+    return own_name(term)
+
+
+def own_name(term: Term) -> str:
+    """Return the name that an IRI stands for: its last part, without percent escapes.
 
     If that is not a valid name, `name_of_text` makes one from it. Other terms are returned as text.
     """
@@ -243,6 +270,8 @@ SPATIAL: Final = dm("spatial")
 """Annotation of a class: true for a root of the classes of physical things."""
 SET_ASIDE: Final = dm("setAside")
 """Annotation of a term of the TBox: a statement about it that is ignored, and why."""
+ENTITY_NAME: Final = "<urn:semmap:entityName>"
+"""The name of an entity, if the last part of its IRI is the name of another one. It is not of a TBox."""
 MODEL: Final = dm("model")
 """Annotation of a class, or of an entity: the name or file of its body model."""
 FIXED: Final = dm("fixed")

@@ -287,6 +287,8 @@ class Transaction(
     since: int = 0
     retract: tuple[Triple, ...] = ()
     insert: tuple[Triple, ...] = ()
+    others: bool = False
+    """Also remove everything that is asserted about individuals that are not entities."""
     dry_run: bool = False
     """Only report the effects, without changing anything."""
     told: bool = False
@@ -295,6 +297,8 @@ class Transaction(
     @property
     def is_quick(self) -> bool:
         """Whether it changes few entities and triples."""
+        if self.others:
+            return False
         return sum(map(len, (self.add, self.remove, self.edit, self.retract, self.insert))) <= _FEW
 
 

@@ -21,6 +21,7 @@ from semmap.nodes.kb_node.relations.facts.precompute_messages import PrecomputeR
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity, model_of
 from semmap.nodes.kb_node.relations.selection import resolve_single
 from semmap.nodes.runtime import memory
+from semmap.nodes.runtime.map_replica import note_name
 from semmap.ontology import vocabulary as v
 from semmap.ontology.model_shapes import WorldShapes, added_shapes, exchange_world, world
 from semmap.schemas import errors
@@ -313,11 +314,14 @@ class MapState:
         """Replace entities by name."""
         for entity in changed:
             self.by_name[entity.name] = entity
+            note_name(entity)
 
 
 def _only_places(transaction: Transaction) -> bool:
     """Return whether a transaction only adds entities and changes poses, sizes and labels."""
     if transaction.remove or transaction.require or transaction.retract or transaction.insert:
+        return False
+    if transaction.others:
         return False
     return not (
         any(edit.carry or edit.set or edit.unset or edit.only_if for edit in transaction.edit)

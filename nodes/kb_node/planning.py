@@ -16,6 +16,11 @@ from semmap.schemas import agents, errors, wording
 from semmap.schemas.commits import Commit, Transaction
 from semmap.schemas.explanations import Triple
 
+_DESCRIBING: Final = frozenset(
+    (v.COORDINATES, v.THREE_DIM_SIZE, v.PREFERRED_REFERENCE, v.ALTERNATIVE_REFERENCE)
+)
+"""The classes of individuals that hold the pose, the size and the labels of an entity."""
+_VOCABULARY: Final = tuple(f"<{namespace}" for namespace in (v.OWL, v.RDF, v.RDFS))
 _VERY_MANY: Final = 100_000
 """Number of triples."""
 
@@ -38,6 +43,11 @@ def make_plan(state: MapState, transaction: Transaction) -> Plan | None:
     if transaction.unchanged:
         preconditions.require_unchanged(transaction, state.by_name)
     retract, insert, notes = _expand_intents(state, transaction)
+    if transaction.others:
+        others, count = _find_others(state)
+        retract = dict.fromkeys((*retract, *others))
+        if count:
+            notes = [*notes, f"also removed {wording.counted(count, 'individual')} without a place in space"]
     asserted = preconditions.find_asserted(
         state.reasoner, (transaction.require, retract, insert), state.progress
     )
@@ -94,6 +104,21 @@ def make_commit(transaction: Transaction, plan: Plan, seq: int, *, tbox: bool = 
         inserted=plan.inserted,
         notes=plan.notes,
     )
+
+
+def _find_others(state: MapState) -> tuple[list[Triple], int]:
+    """Return all asserted triples but the header of the map, and the number of individuals without a place.
+
+    Individuals that only describe an entity are not counted.
+    """
+    triples = [t for t in state.abox() if t[0] != v.ABOX_ONTOLOGY]
+    individuals = {
+        s
+        for s, p, o in triples
+        if p == v.RDF_TYPE and s.startswith("<") and o not in _DESCRIBING and not o.startswith(_VOCABULARY)
+    }
+    spatial = state.classes.spatial
+    return triples, sum(state.reasoner.types(individual).isdisjoint(spatial) for individual in individuals)
 
 
 def _expand_intents(

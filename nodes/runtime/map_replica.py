@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final, Generic, TypeVar
 
 from semmap.nodes.runtime.interning import EntityInterner
+from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.bridge import SnapshotQuery
 from semmap.schemas.commits import Commit, Effects, Snapshot
@@ -18,6 +19,12 @@ _DIGESTS: Final = 1000
 
 _MOST_AHEAD: Final = 100
 """Largest number of commits that wait for earlier ones."""
+
+
+def note_name(entity: Entity) -> None:
+    """Note the name of an entity for its IRI, for the rare case that it is not the one of the IRI."""
+    if not entity.iri.endswith(entity.name) or v.has_given_name(v.iri(entity.iri)):
+        v.give_name(v.iri(entity.iri), entity.name)
 
 
 class SnapshotPages:
@@ -118,6 +125,8 @@ class MapReplica(Generic[C]):
         self.seq = self._confirmed = snapshot.seq
         self._digests = {snapshot.seq: snapshot.digest}
         self.entities = {entity.name: entity for entity in snapshot.entities}
+        for entity in snapshot.entities:
+            note_name(entity)
         self._forget_unmade(snapshot.seq)
         since, self._during_pages = {**self._ahead, **(self._during_pages or {})}, None
         self._ahead.clear()
@@ -167,6 +176,7 @@ class MapReplica(Generic[C]):
             self.entities.pop(gone.name, None)
         for entity in commit.changed:
             self.entities[entity.name] = entity
+            note_name(entity)
 
     def confirm(self, seq: int, digest: str) -> None:
         """Note that the knowledge base has confirmed commit `seq` and all earlier ones."""

@@ -3,7 +3,9 @@ import random
 import pytest
 
 from semmap.nodes.kb_node import planning
+from semmap.ontology import vocabulary as v
 from semmap.schemas.commits import Transaction
+from tests.kb_node.home import chair, turtle
 
 
 @pytest.mark.parametrize("count", [10, planning._VERY_MANY])
@@ -21,3 +23,15 @@ def test_a_triple_that_is_retracted_and_inserted_is_kept(semantic_map):
     change = Transaction(id="2", source="file", retract=(triple,), insert=(triple, other))
     plan = planning.make_plan(semantic_map, change)
     assert (plan.retracted, plan.inserted) == ((), (other,))
+
+
+def test_clearing_the_map_removes_other_individuals_too_but_not_its_header(semantic_map):
+    header = (v.ABOX_ONTOLOGY, v.RDF_TYPE, v.iri(f"{v.OWL}Ontology"))
+    others = turtle("<urn:e> a <urn:Event> ; <urn:at> <urn:t> . [] <urn:of> <urn:e> .")
+    semantic_map.commit(Transaction(id="1", source="file", insert=(header, *others, *chair())))
+    made = semantic_map.commit(Transaction(id="2", source="operator", remove=("chair1",), others=True))
+    assert (semantic_map.abox(), len(semantic_map)) == ([header], 0)
+    assert made.notes == ("also removed 1 individual without a place in space",)
+    assert semantic_map.commit(Transaction(id="3", source="operator", others=True)) is None
+    semantic_map.commit(Transaction(id="4", source="operator", insert=made.retracted))
+    assert set(semantic_map.abox()) == {header, *others, *chair()}

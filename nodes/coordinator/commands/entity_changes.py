@@ -265,9 +265,15 @@ def require_removable(names: Iterable[str], bodies: Mapping[str, Body]) -> None:
 
 @handles(Clear)
 def clear(view: MapView, command: Clear) -> KbCoroutine[Changed]:
-    """Remove all entities."""
-    require_authority(command, view.entities.values())
-    return (yield from _remove(view, command, "clear", list(view.entities.values())))
+    """Remove all entities, and what is asserted about other individuals."""
+    leaving = tuple(view.entities.values())
+    require_authority(command, leaving)
+    names = tuple(entity.name for entity in leaving)
+    made = yield from commit(view, transactions.clear(command, names))
+    if made is None:
+        return Changed(commit=None, text="the map is already empty")
+    text = f"removed {len(names)}: {wording.few(names)}" if names else "removed all that is not in space"
+    return make_reply(made, text, names=names)
 
 
 def adopt_observed(view: MapView, observed: ObservedState, cause: Attribution) -> KbCoroutine[Changed]:
@@ -300,8 +306,6 @@ def _describe_joints(view: MapView, observed: ObservedState) -> str:
 
 def _remove(view: MapView, command: Command, reason: str, leaving: list[Entity]) -> KbCoroutine[Changed]:
     names = tuple(entity.name for entity in leaving)
-    if not names:
-        return Changed(commit=None, text="the map is already empty")
     made = yield from commit(view, transactions.remove(command, reason, names))
     return make_reply(made, f"removed {len(names)}: {wording.few(names)}", names=names)
 

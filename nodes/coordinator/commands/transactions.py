@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, NamedTuple
 
+from msgspec import structs
+
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors, polygons
 from semmap.schemas.attachments import GRASP_POSE, IS_GRASPED_BY, pose_text
@@ -193,6 +195,11 @@ def grip_statements(holder: str, grip: Pose | None) -> tuple[Statement, ...]:
 def remove(command: Command, reason: str, names: Iterable[str]) -> Transaction:
     """Build a transaction that removes entities with all facts about them."""
     return build(command, reason, remove=names)
+
+
+def clear(command: Command, names: Iterable[str]) -> Transaction:
+    """Build a transaction that empties the map."""
+    return structs.replace(build(command, "clear", remove=names), others=True)
 
 
 def new_entity(name: str, found: ClassInfo, text: Described) -> NewEntity:

@@ -6,9 +6,10 @@ import hashlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import chain, count
 from operator import itemgetter
+from types import MappingProxyType
 from typing import NamedTuple
 
-from semmap.nodes.kb_node.documents import blank_nodes
+from semmap.nodes.kb_node.documents import blank_nodes, distinct_names
 from semmap.nodes.kb_node.documents.blank_nodes import is_blank
 from semmap.nodes.kb_node.documents.inert_statements import SHACL, SWRL, count_inert, inert_note
 from semmap.nodes.kb_node.entities.class_table import ClassTable
@@ -16,6 +17,7 @@ from semmap.nodes.kb_node.entities.property_values import retype
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
+from semmap.ontology.prefixes import Prefixes
 from semmap.schemas import errors, wording
 from semmap.schemas.entities import Entity, name_stem
 from semmap.schemas.explanations import Term, Triple
@@ -37,6 +39,23 @@ _OF_INDIVIDUALS = frozenset((v.OWL_NAMED_INDIVIDUAL, v.OWL_THING))
 _NUMBERS = tuple(f"^^{v.iri(v.XSD + kind)}" for kind in ("integer", "decimal", "double", "float"))
 
 
+def find_none(_: str) -> Entity | None:
+    """Return None, as in a map without entities."""
+    return None
+
+
+class DocumentOrigin(NamedTuple):
+    """What distinguishes the names in a document: its file, its prefixes, and the names of the map."""
+
+    filename: str = ""
+    prefixes: Prefixes = MappingProxyType({})
+    find: Callable[[str], Entity | None] = find_none
+    """Returns the entity of the map with a name, or None."""
+
+
+_UNKNOWN_ORIGIN = DocumentOrigin()
+
+
 class FilteredDocument(NamedTuple):
     """The accepted triples, a note on each individual that is left out, and notes on possible mistakes."""
 
@@ -46,12 +65,17 @@ class FilteredDocument(NamedTuple):
 
 
 def filter_document(
-    triples: Iterable[Triple], classes: ClassTable, *, skip_unknown: bool
+    triples: Iterable[Triple],
+    classes: ClassTable,
+    *,
+    skip_unknown: bool,
+    of_file: DocumentOrigin = _UNKNOWN_ORIGIN,
 ) -> FilteredDocument:
     """Return the triples of a document that the map accepts. Numbers may be of any numeric datatype.
 
     A literal outside the range of its property gets a datatype of the range if its text is a value of that.
-    Blank nodes of spatial classes get IRIs, except with alignments, where they are unnamed parts.
+    Blank nodes of spatial classes get IRIs, except with alignments, where they are unnamed parts. Entities
+    that would have the name of another one get a name with a prefix.
 
     Raises UnknownClass with all individuals of unknown classes, unless `skip_unknown`. In that case
     individuals that have only unknown classes are left out, with the triples that describe only them, and the
@@ -83,7 +107,7 @@ def filter_document(
     if not classes.alignments and (
         nameless := dict(sorted((s, o) for s, _, o in types_said if is_blank(s) and o in spatial))
     ):
-        labels = _make_iris(triples, nameless)
+        labels = _make_iris(triples, nameless, of_file.filename)
         triples = list(blank_nodes.relabel(triples, labels))
         by_property = entity_triples.group_by_property(triples)
         types_said = by_property[v.RDF_TYPE]
@@ -98,6 +122,9 @@ def filter_document(
         doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
         kept = _without(removed, [t for t in triples if t not in doubtful])
         by_property = entity_triples.group_by_property(kept)
+    if names := distinct_names.make_distinct_names(kept, spatial, of_file.find, of_file.prefixes):
+        kept = [*kept, *distinct_names.name_triples(names)]
+        named.append(distinct_names.describe(names))
     inert = inert_note(count_inert(kept)) if any(c.startswith(_INERT) for c in used) else ""
     notes = (
         *retyped,
@@ -110,11 +137,11 @@ def filter_document(
     return FilteredDocument(kept, words, list(notes))
 
 
-def _make_iris(triples: Iterable[Triple], nodes: Mapping[Term, Term]) -> dict[Term, Term]:
+def _make_iris(triples: Iterable[Triple], nodes: Mapping[Term, Term], filename: str) -> dict[Term, Term]:
     """Return IRIs for blank nodes with these classes.
 
-    They depend on what the document states about the nodes, so a file that is loaded again gives the same.
-    They differ from the IRIs that the document describes.
+    They depend on what the document states about the nodes and on its file, so a file that is loaded again
+    gives the same, and another file does not. They differ from the IRIs that the document describes.
     """
     about: dict[Term, list[Triple]] = {}
     used: set[Term] = set()
@@ -131,7 +158,7 @@ def _make_iris(triples: Iterable[Triple], nodes: Mapping[Term, Term]) -> dict[Te
                 f"{p} {(digest(o, depth - 1) if depth else '') if is_blank(o) else o}"
                 for _, p, o in about.get(node, ())
             )
-            text = "\n".join(sorted(content)).encode()
+            text = "\n".join((filename, *sorted(content))).encode()
             digests[node, depth] = hashlib.blake2b(text, digest_size=4).hexdigest()
         return digests[node, depth]
 
@@ -187,7 +214,11 @@ def undescribed_note(found: Mapping[Term, Triple]) -> str:
 
 def name_notes(entities: Iterable[Entity]) -> list[str]:
     """Return a note on the entities whose names differ from the last parts of their IRIs."""
-    made = {entity.name: entity.iri for entity in entities if not entity.iri.endswith(entity.name)}
+    made = {
+        entity.name: entity.iri
+        for entity in entities
+        if not entity.iri.endswith(entity.name) and entity.name == v.own_name(v.iri(entity.iri))
+    }
     if not made:
         return []
     few = wording.few([f"{name} (<{iri}>)" for name, iri in sorted(made.items())], _FEW)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from itertools import chain
 from operator import is_
+from pathlib import Path
+from types import MappingProxyType
 
 from semmap.nodes.kb_node.documents import abox_document, rdf
 from semmap.nodes.kb_node.documents.replacement import Replacement, find_replacement
@@ -12,6 +14,7 @@ from semmap.nodes.kb_node.documents.tbox import tbox_declarations, tbox_validati
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.ontology import vocabulary as v
+from semmap.ontology.prefixes import Prefixes
 from semmap.schemas import errors, wording
 from semmap.schemas.bridge import LoadDocument, LoadTBox
 from semmap.schemas.commits import Transaction
@@ -19,14 +22,28 @@ from semmap.schemas.explanations import Triple
 
 
 def make_document_transaction(
-    semantic_map: SemanticMap, load: LoadDocument, triples: Iterable[Triple]
+    semantic_map: SemanticMap,
+    load: LoadDocument,
+    triples: Iterable[Triple],
+    prefixes: Prefixes = MappingProxyType({}),
 ) -> tuple[Transaction, abox_document.FilteredDocument, Replacement]:
     """Return the transaction of an ABox document, what was filtered from it, and what it replaces.
+
+    `prefixes` are those in the document.
 
     Raises UnknownClass, BadFile for a TBox, UnknownName for undescribed individuals if the load is strict,
     and NameTaken if it may only add and the document has other values for what is in the map.
     """
-    filtered = abox_document.filter_document(triples, semantic_map.classes, skip_unknown=load.skip_unknown)
+    filtered = abox_document.filter_document(
+        triples,
+        semantic_map.classes,
+        skip_unknown=load.skip_unknown,
+        of_file=abox_document.DocumentOrigin(
+            Path(load.filename).name,
+            prefixes,
+            abox_document.find_none if load.replace else semantic_map.find,
+        ),
+    )
     stays = semantic_map.tbox.__contains__ if load.replace else lambda _: True
     if found := abox_document.find_undescribed(filtered.triples, semantic_map.reasoner, stays):
         note = abox_document.undescribed_note(found)

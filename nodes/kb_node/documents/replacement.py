@@ -113,7 +113,7 @@ class _Draft:
         self._orientations.update((w.position, (w.orientation,)) for w in poses if w.orientation)
         numbers = [p for w in poses for p in (w.position, w.orientation or w.position)]
         numbers += [p for w in sizes for p in (w.x, w.y, w.z)]
-        self._single = dict.fromkeys((*_DESCRIPTIONS, *_NUMBERS, *numbers), True)
+        self._single = dict.fromkeys((*_DESCRIPTIONS, *_NUMBERS, *numbers, v.ENTITY_NAME), True)
         """Whether a property has one value, as far as it is known."""
 
     def replace(self, subject: Term) -> None:

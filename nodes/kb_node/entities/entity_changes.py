@@ -91,6 +91,8 @@ def add_effects(
         if entity is None:
             removed += [Departed(name=was.name, types=was.types)] if was is not None else []
             continue
+        if was is not None and was.name != entity.name:
+            removed.append(Departed(name=was.name, types=was.types))
         if was is not None:
             is_concerned = not owners.isdisjoint(reasoner.equals(iri) or (iri,))
             entity = entity_reading.inherit_provenance(entity, was, concerned=is_concerned)

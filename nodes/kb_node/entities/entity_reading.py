@@ -20,7 +20,7 @@ from semmap.ontology.model_choice import chosen
 from semmap.schemas import errors, polygons
 from semmap.schemas.attachments import GRASPING
 from semmap.schemas.commits import Star
-from semmap.schemas.entities import REACH_M, SAME_AS, Entity, Pose, Provenance, Size, Stated, Tracked
+from semmap.schemas.entities import REACH_M, SAME_AS, Entity, Pose, Provenance, Size, Stated, Tracked, is_name
 from semmap.schemas.explanations import Term, Triple
 from semmap.schemas.joints import OPENING, SWITCHING
 
@@ -66,6 +66,8 @@ def read_entity(
     if types.isdisjoint(classes.spatial):
         return None
     about = about or reasoner.about
+    if given := _given_name(about(iri)):
+        v.give_name(iri, given)
     if members := reasoner.equals(iri):
         if iri != equal_individuals.choose_primary(members, classes, about):
             return None
@@ -94,6 +96,7 @@ def read_entity(
         tracked=_tracked(iri, asserted.get(v.TRACKED_FROM, ())),
         model=stated_model(asserted),
         properties=properties,
+        given_name=given,
     )
 
 
@@ -182,13 +185,18 @@ def make_entity(
     tracked: Tracked = "",
     model: str = "",
     properties: dict[str, Stated] | None = None,
+    given_name: str = "",
 ) -> Entity:
     """Return an entity with these values, all with `provenance`.
+
+    Its name is that of its IRI, unless another is given. The prefix of a given name does not choose a model.
 
     Of several preferred references the first in the alphabet is used, and without any the first of `labels`.
     The other labels are aliases. `model` is the stated model, or "" if it follows from class, name and size.
     Raises BadRequest for an IRI that cannot be a name.
     """
+    if given_name or v.has_given_name(iri):
+        v.give_name(iri, given_name)
     name = _name(iri, kind.class_name)
     stated = properties or {}
     label = min(preferred, default=None) or next(iter(labels), None)
@@ -212,7 +220,7 @@ def make_entity(
         grip_provenance=None if stated.keys().isdisjoint(GRASPING) else provenance,
         place=kind.place,
         fixed=kind.fixed,
-        model=model or chosen(kind.model, name, size_m),
+        model=model or chosen(kind.model, v.own_name(iri) if given_name else name, size_m),
         provenance=provenance,
         pose_provenance=provenance,
         shape_provenance=provenance,
@@ -224,7 +232,7 @@ def choose_model(known: Entity, classes: ClassTable, asserted: Objects, size_m: 
     """Return the model of an entity of the same class with these assertions and this size."""
     class_ = classes.iris.get(known.class_)
     usual = known.model if class_ is None else classes.models[class_]
-    return stated_model(asserted) or chosen(usual, known.name, size_m)
+    return stated_model(asserted) or chosen(usual, v.own_name(v.iri(known.iri)), size_m)
 
 
 def stated_model(asserted: Objects) -> str:
@@ -448,6 +456,14 @@ def _numbers(iri: Term, predicates: Sequence[Term], asserted: Objects) -> tuple[
             )
         found.append(value)
     return tuple(found) if len(found) == len(predicates) else None
+
+
+def _given_name(asserted: Objects) -> str:
+    """Return the name that is stated for an individual, or "". Raises BadRequest if it is not a name."""
+    name = _text(min(terms)) if (terms := asserted.get(v.ENTITY_NAME, ())) else ""
+    if name and not is_name(name):
+        raise errors.BadRequest(f"'{name}' is not a name; use letters, digits, '_', '.' and '-'")
+    return name
 
 
 def _tracked(iri: Term, terms: Sequence[Term]) -> Tracked:

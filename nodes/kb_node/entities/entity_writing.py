@@ -208,7 +208,11 @@ class Draft:
         )
         self.retract.update(dict.fromkeys(asserted))
         self.insert = [t for t in self.insert if iri not in (t[0], t[2])]
-        self._insert((new if s == iri else s, p, new if o == iri else o) for s, p, o in triples)
+        self._insert(
+            (new if s == iri else s, p, new if o == iri else o)
+            for s, p, o in triples
+            if (s, p) != (iri, v.ENTITY_NAME)
+        )
         self._new.add(new)
 
     def _require(self, name: str, asserted: Objects, only_if: Sequence[Statement]) -> None:

@@ -26,7 +26,7 @@ Places = tuple[int, ...]
 _Star = tuple[Sequence[Term], Sequence[Term]]
 """The individuals of a run, the entity first, and its other objects."""
 
-_RARE = (v.CONFLICTING_OBSERVATION, v.TRACKED_FROM, v.MODEL, v.OWL_SAME_AS)
+_RARE = (v.CONFLICTING_OBSERVATION, v.TRACKED_FROM, v.MODEL, v.OWL_SAME_AS, v.ENTITY_NAME)
 
 
 class _Text(NamedTuple):

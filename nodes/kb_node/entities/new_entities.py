@@ -28,8 +28,9 @@ _LEAST: Final = 5
 """Least number of triples that place an entity."""
 _SHAPING: Final = (
     v.MODEL, v.HAS_EXTENT, v.IS_OPEN, v.OPENNESS, v.JOINT_POSITIONS, v.IS_GRASPED_BY,
+    v.ENTITY_NAME,
 )  # fmt: skip
-"""Properties of entities with a shape of their own, or that are attached."""
+"""Properties of entities with a shape or a name of their own, or that are attached."""
 _Said = Mapping[Term, Sequence[Triple]]
 """Triples by property."""
 

@@ -33,6 +33,7 @@ STRUCTURAL: Mapping[Term, str] = {
     v.HAS_ALTERNATIVE_REFERENCE: "update {name} --alt TEXT",
     v.CONFLICTING_OBSERVATION: "update {name} --conflict TEXT",
     v.TRACKED_FROM: "track {name}",
+    v.ENTITY_NAME: "rename {name} NEW",
     v.RDF_TYPE: "update {name} --class CLASS",
 }
 """Properties with command options of their own."""

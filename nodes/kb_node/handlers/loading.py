@@ -170,7 +170,7 @@ class LoadHandlers:
             triples = document.triples
             report(f"{len(triples):,} triples to check and write")
             transaction, filtered, replaced = document_change.make_document_transaction(
-                self._map, load, triples
+                self._map, load, triples, document.prefixes
             )
             axioms = self._axioms_after(transaction)  # of what is committed: filtering may change axioms
             if axioms is not None and axioms != closed:

@@ -67,7 +67,10 @@ def seed(
         document = ontology_files.read(abox, "a")
         try:
             filtered = abox_document.filter_document(
-                document, ClassTable(reasoner), skip_unknown=skip_unknown
+                document,
+                ClassTable(reasoner),
+                skip_unknown=skip_unknown,
+                of_file=abox_document.DocumentOrigin(abox.name),
             )
         except errors.UnknownClass as error:
             raise type(error)(

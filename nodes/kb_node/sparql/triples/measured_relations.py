@@ -93,6 +93,7 @@ class MeasuredRelations:
         for entity in placed:
             self._iris[entity.name] = v.iri(entity.iri)
             self._names[v.iri(entity.iri)] = entity.name
+            v.give_name(v.iri(entity.iri), entity.name)
 
     def _triples(self, changed: Changed, iris: dict[str, Term]) -> set[Triple]:
         facts: set[Fact] = changed.gone | changed.come
