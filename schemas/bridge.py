@@ -228,6 +228,8 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
     replace: bool
     skip_unknown: bool
     add_only: bool = False
+    graph: str = ""
+    urdf: bytes = b""
     strict: bool = False
     parts: bool = False
     dry_run: bool = False
@@ -253,6 +255,7 @@ class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=Tr
     filename: str
     spatial_root: tuple[str, ...] = ()
     extend: bool = False
+    graph: str = ""
     dry_run: bool = False
 
 

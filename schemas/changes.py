@@ -183,6 +183,8 @@ def _tracking(change: Change) -> str:
 def _property(change: Change) -> str:
     if not any(isinstance(value, tuple) for value in (change.was, change.now)):
         was, now = _shown(_values(change.was)), _shown(_values(change.now))
+        if was == now == _NAMELESS:
+            return f"{change.property_}: other content"
         return f"{change.property_}: {was or 'not set'} → {now or 'not set'}"
     came, gone = _differences(change)
     signed = [f"+ {_shown(came)}"] * bool(came) + [f"- {_shown(gone)}"] * bool(gone)
@@ -207,7 +209,11 @@ def stated_in_words(stated: Stated) -> str:
 
 
 def _shown(values: Iterable[Value]) -> str:
-    return ", ".join(map(value_in_words, values))
+    """Return values as text, without the labels of blank nodes."""
+    return ", ".join(
+        _NAMELESS if isinstance(value, str) and value.startswith("_:") else value_in_words(value)
+        for value in values
+    )
 
 
 def value_in_words(value: Value) -> str:
@@ -219,6 +225,7 @@ def _quoted(values: Iterable[Value]) -> str:
     return ", ".join(f"'{value}'" for value in values)
 
 
+_NAMELESS = "a nameless value"
 _WORDS = {
     "added": lambda c: f"added as {c.now}",
     "removed": lambda c: "removed",

@@ -118,8 +118,9 @@ __all__ = [
 ]
 """The names of `semmap.commands`: the commands that programs may send. A test names a missing one."""
 
-RDF_FORMATS = ("rdfxml", "turtle", "ntriples", "jsonld")
-RdfFormat = Literal["rdfxml", "turtle", "ntriples", "jsonld"]
+RDF_FORMATS = ("rdfxml", "turtle", "ntriples", "jsonld", "functional", "manchester")
+RdfFormat = Literal["rdfxml", "turtle", "ntriples", "jsonld", "functional", "manchester"]
+"""RDF syntaxes, and OWL's functional and Manchester syntax."""
 ListFormat = Literal["json", "lu4r", "legacy"]
 ExtentText = Annotated[str, Meta(min_length=1, max_length=50_000)]
 """The area of a place, seen from above: `POLYGON ((x y, ...))` in WKT; see `semmap.schemas.polygons`."""
@@ -415,12 +416,13 @@ class Load(Command[Changed], frozen=True, tag="load"):
 
     What the file states about an entity that is in the map replaces its pose, size, labels and values of
     functional properties; with `add_only`, such a file is rejected. `replace` removes the present entities in
-    the same commit. `skip_unknown` skips entities of classes that
-    the TBox lacks; otherwise one such entity causes the file to be rejected. `strict` rejects a file that
-    refers to undefined individuals; otherwise they are reported in a note. With `tbox`, the file is a TBox
-    that replaces the present one, unless the map is invalid under it; with `extend`, its statements are added
-    to the present TBox. `spatial_root` are the classes whose instances are physical things, if the TBox does
-    not show it.
+    the same commit. `skip_unknown` skips entities of classes that the TBox lacks; otherwise one such entity
+    causes the file to be rejected. `graph` is the named graph of a TriG, N-Quads or JSON-LD file to load in
+    place of its default graph. `urdf` is a URDF file: the individuals that are called like its links get
+    their poses and sizes, if the file does not state them. `strict` rejects a file that refers to undefined
+    individuals; otherwise they are reported in a note. With `tbox`, the file is a TBox that replaces the
+    present one, unless the map is invalid under it; with `extend`, its statements are added to the present
+    TBox. `spatial_root` are the classes whose instances are physical things, if the TBox does not show it.
 
     A file is loaded in one commit, or with `parts` in several commits, which bounds the memory. If a part is
     rejected, the earlier parts stay, and the error reports them.
@@ -440,6 +442,8 @@ class Load(Command[Changed], frozen=True, tag="load"):
     parts: bool = False
     dry_run: bool = False
     extend: bool = False
+    graph: Annotated[str, Meta(max_length=5000)] = ""
+    urdf: bytes = b""
 
 
 # Queries

@@ -97,6 +97,13 @@ class Pose(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=Tr
         return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
     @property
+    def roll_pitch_rad(self) -> tuple[float, float]:
+        """The rotations about its x axis and then about the y axis, before that by `yaw_rad`."""
+        w, x, y, z = self.orientation_wxyz
+        roll = math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
+        return roll, math.asin(max(-1.0, min(1.0, 2.0 * (w * y - x * z))))
+
+    @property
     def upright(self) -> float:
         """The cosine of the angle between its z axis and the map's: 1 is upright, 0 is on its side."""
         _, x, y, _ = self.orientation_wxyz

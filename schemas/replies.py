@@ -87,6 +87,8 @@ class Document(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     media_type: str
     triples: int
     seq: int
+    notes: tuple[str, ...] = ()
+    """Notes on triples that the format cannot express."""
 
 
 class NodeStatus(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -48,6 +48,8 @@ class TBoxReport(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Kind of axiom outside OWL 2 RL to its count; such axioms have no effect beyond OWL 2 RL."""
     inert: dict[str, int] = {}
     """Kind of statement that is stored but not evaluated, such as `SWRL rule (disabled)`, to its count."""
+    left_out: tuple[str, ...] = ()
+    """Notes on statements of named graphs, which are not part of the TBox, with their files."""
     inconsistent: str = ""
     """The reason why the ontology is inconsistent; empty if it is consistent."""
     unsatisfiable: tuple[Unsatisfiable, ...] = ()

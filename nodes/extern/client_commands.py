@@ -205,6 +205,8 @@ def _load(
     parts: bool = False,
     imports: Mapping[str, str | Path] = MappingProxyType({}),
     spatial_root: Sequence[str] = (),
+    graph: str = "",
+    urdf: str | Path | None = None,
     dry_run: bool = False,
     id: str = "",
     reason: str = "",
@@ -217,7 +219,9 @@ def _load(
     functional properties, in one commit; with `add_only`, such a file is rejected. `replace` removes all
     current entities in the same commit. `skip_unknown` skips entities whose class is not in the TBox.
     `strict` rejects a file that refers to undescribed entities. `parts` loads the file in several commits,
-    for files of any size.
+    for files of any size. `graph` is the named graph of a TriG, N-Quads or JSON-LD file to load in place of
+    its default graph: an IRI, or its last part. `urdf` is a URDF file whose links give poses and sizes to the
+    individuals that are called like them.
 
     With `tbox`, the file (or folder) is a TBox that replaces the current one, including its imports. These
     are found by `imports` (a file for each IRI), by a catalogue, or in the same folder. `spatial_root` are
@@ -229,7 +233,7 @@ def _load(
     if imports and not tbox:
         raise errors.BadRequest("--import applies to TBoxes only; add --tbox")
     if tbox:
-        content, filename = read_ontology(Path(path), imports)
+        content, filename, graph = read_ontology(Path(path), imports, graph)
     elif is_plan(Path(path)):
         content, filename = read_plan(Path(path)).content, Path(path).name
     else:
@@ -244,6 +248,8 @@ def _load(
         tbox=tbox,
         extend=extend,
         spatial_root=tuple(spatial_root),
+        graph=graph,
+        urdf=b"" if urdf is None else packed(read_file(Path(urdf))),
         parts=parts,
         dry_run=dry_run,
         id=id,

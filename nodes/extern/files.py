@@ -64,24 +64,27 @@ def write_atomically(file: Path, content: bytes) -> None:
         raise errors.BadFile(f"{file} cannot be written: {error.strerror}") from None
 
 
-def read_ontology(path: Path, imports: Mapping[str, str | Path]) -> tuple[bytes, str]:
-    """Return a document with an ontology and the imports that are found, and a name for it.
+def read_ontology(path: Path, imports: Mapping[str, str | Path], graph: str = "") -> tuple[bytes, str, str]:
+    """Return a document with an ontology and the imports that are found, its name, and its graph to load.
 
     `imports` has the files of imported IRIs. Without imports, the document is the file itself; otherwise it
     is in N-Triples. If only the client is installed, the file is returned without its imports, because it
-    cannot be parsed. Raises BadFile, and BadRequest for options that need the extra `kb`.
+    cannot be parsed. `graph` is the graph of the file to load. Raises BadFile, also for statements that would
+    be left out without a note, and BadRequest for options that need the extra `kb`.
     """
     if extras.missing(["kb"]) and not imports and not path.is_dir():
-        return read_file(path), path.name
+        return read_file(path), path.name, graph
     extras.require("finding imports", "kb")
     from semmap.nodes.kb_node.documents import ontology_files, rdf
     from semmap.ontology.prefixes import declarations
 
-    gathered = ontology_files.gather([path], {iri: Path(file) for iri, file in imports.items()})
+    gathered = ontology_files.gather([path], {iri: Path(file) for iri, file in imports.items()}, graph)
     further = len(gathered.files) - 1
     if not further:
-        return read_file(gathered.files[0]), path.name
+        return read_file(gathered.files[0]), path.name, graph
+    if gathered.notes:
+        raise errors.BadFile(f"{gathered.notes[0]}; save its ontology as Turtle")
     more = "1 more file" if further == 1 else f"{further} more files"
     name = path.resolve().name
     triples = [*gathered.triples, *declarations(gathered.prefixes, gathered.triples)]
-    return rdf.serialise(triples, "ntriples"), f"{name} and {more}"
+    return rdf.serialise(triples, "ntriples"), f"{name} and {more}", ""

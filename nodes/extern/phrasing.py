@@ -25,8 +25,13 @@ def pose_cells(pose: Pose | None) -> tuple[str, str, str, str]:
 
 
 def pose_text(pose: Pose | None) -> str:
-    """Return a pose as one line."""
-    return "none" if pose is None else "({}, {}, {}) m, yaw {}°".format(*pose_cells(pose))
+    """Return a pose as one line, with pitch and roll if it is tilted by at least half a degree."""
+    if pose is None:
+        return "none"
+    x, y, z, yaw = pose_cells(pose)
+    roll, pitch = (plain(math.degrees(angle), 0) for angle in pose.roll_pitch_rad)
+    tilt = "" if {roll, pitch} == {"0"} else f", pitch {pitch}°, roll {roll}°"
+    return f"({x}, {y}, {z}) m, yaw {yaw}°{tilt}"
 
 
 def provenance_text(p: Provenance) -> str:

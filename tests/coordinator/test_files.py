@@ -30,6 +30,8 @@ def as_bytes(scene: object) -> bytes:
         (b"<http://x#a> <http://x#b> <http://x#c> .", "abox"),
         (b'\xef\xbb\xbf  {"entities": []}', "scene"),
         (b'{"@context": {}, "@graph": []}', "abox"),
+        (b"{ <http://x#a> a <http://x#b> }", "abox"),
+        (b"{ :a a :b }", "abox"),
         (b'[{"@id": "http://x#a"}]', "abox"),
         (b"[] a <http://x#B> .", "abox"),
     ],
@@ -47,8 +49,9 @@ def test_unknown_content_is_rejected(content):
 
 def test_a_broken_json_file_is_reported():
     assert kind_of(b"[1, 2", "x.ttl") == "abox"
-    with pytest.raises(BadFile, match=r"x\.json is not valid JSON"):
-        kind_of(b"[1, 2", "x.json")
+    for content in (b"[1, 2", b"{a:1}"):
+        with pytest.raises(BadFile, match=r"x\.json is not valid JSON"):
+            kind_of(content, "x.json")
     with pytest.raises(BadFile, match=r"x\.json is not valid JSON"):
         kind_of(gzip.compress(b"[1, 2"), "x.json.gz")
 

@@ -16,11 +16,16 @@ import pytest
 
 from semmap.nodes.extern.cli.all_commands import app
 from semmap.nodes.extern.cli.app import execute
+from semmap.nodes.kb_node.storage.seed import seed
 from semmap.ontology import FLAT_TTL
 from tests.conftest import until
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+OTHER_MAPS = {
+    "knowrob-kitchen.md": ("demo/knowrob_tbox.ttl", "demo/knowrob_kitchen.ttl"),
+}
+"""TBox and ABox of pages that are not about the flat."""
 BLOCK = re.compile(r"^```(sh|console|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 PARSED = {
     "up",
@@ -143,8 +148,22 @@ def environment(system):
     }
 
 
+@pytest.fixture
+def system(page, flat, folder, request):
+    """A system with the map of a page; without a simulator if that is not the flat, because of the world."""
+    if page.name not in OTHER_MAPS:
+        yield flat
+        return
+    tbox, abox = OTHER_MAPS[page.name]
+    seed(folder / "seeded", folder / tbox, folder / abox)
+    other = request.getfixturevalue("flat_map")
+    other.open_map(folder / "seeded")
+    yield other
+    other.begin_anew("flat")
+
+
 @pytest.mark.parametrize("page", LINES)
-def test_commands_work_as_printed(page, flat, folder):
+def test_commands_work_as_printed(page, system, folder):
     for words in commands(page):
         line = shlex.join(words)
         if words[0] == "semmap" and (
@@ -157,11 +176,11 @@ def test_commands_work_as_printed(page, flat, folder):
             parse(words[1 : words.index("|") if "|" in words else None])
             continue
         if words[0] == "z":
-            words = ["zenoh", "--mode", "client", "--connect", flat.endpoint, *words[1:]]
+            words = ["zenoh", "--mode", "client", "--connect", system.endpoint, *words[1:]]
             if "subscribe" in words:
                 continue  # it never ends
         pipe = words.index("|") if "|" in words else len(words)
-        status, out, err = (in_process if words[0] == "semmap" else spawned)(words[:pipe], flat, folder)
+        status, out, err = (in_process if words[0] == "semmap" else spawned)(words[:pipe], system, folder)
         if status == 2 and said_of_files(words, err):
             continue
         assert status == EXPECTED.get(line, 0), f"{line}\n{out}{err}"

@@ -9,6 +9,7 @@ from semmap.nodes.extern.client_commands import CommandMethods
 from semmap.nodes.extern.files import read_ontology
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.runtime import extras
+from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 
 
@@ -58,7 +59,7 @@ def file(tmp_path):
 
 
 def test_one_file_is_sent_as_it_is(file):
-    assert read_ontology(file, {}) == (A.encode(), "a.ttl")
+    assert read_ontology(file, {}) == (A.encode(), "a.ttl", "")
 
 
 @pytest.mark.parametrize("said", [False, True])
@@ -66,22 +67,37 @@ def test_with_its_imports_it_is_one_document(file, tmp_path, said):
     other = tmp_path / ("elsewhere" if said else "") / "b.ttl"
     other.parent.mkdir(exist_ok=True)
     other.write_text(B)
-    content, name = read_ontology(file, {"http://o.org/b": str(other)} if said else {})
+    content, name, _ = read_ontology(file, {"http://o.org/b": str(other)} if said else {})
     assert name == "a.ttl and 1 more file"
     assert set(rdf.parse(content, name)) == {*rdf.parse(A.encode(), "a"), *rdf.parse(B.encode(), "b")}
 
 
 def test_a_folder_is_one_document(file, tmp_path):
     (tmp_path / "b.ttl").write_text(B)
-    content, name = read_ontology(tmp_path, {})
+    content, name, _ = read_ontology(tmp_path, {})
     assert name == f"{tmp_path.name} and 1 more file"
     assert len(rdf.parse(content, name)) == 3
+
+
+@pytest.mark.process
+def test_the_graph_of_an_ontology_with_imports_is_read_here(file, tmp_path):
+    trig = tmp_path / "c.trig"
+    named = f"GRAPH <urn:c#g> {{ <http://o.org/b> a <{v.OWL}Ontology> }}"
+    trig.write_text(named)
+    imports = {"http://o.org/b": trig}
+    with pytest.raises(errors.BadFile, match=r"c\.trig: its default graph is empty.*\(g: 1\)"):
+        read_ontology(file, imports)
+    trig.write_text(f"{B} {named}")
+    with pytest.raises(errors.BadFile, match=r"c\.trig: left out: 1 statement in other graphs"):
+        read_ontology(file, imports)
+    trig.write_text(named)
+    assert read_ontology(trig, {}, "g")[1:] == ("c.trig", "g")
 
 
 def test_a_client_alone_sends_the_file(file, tmp_path, monkeypatch):
     (tmp_path / "b.ttl").write_text(B)
     monkeypatch.setattr(extras, "find_spec", lambda _: None)
-    assert read_ontology(file, {}) == (A.encode(), "a.ttl")
+    assert read_ontology(file, {}) == (A.encode(), "a.ttl", "")
     for path, imports in ((file, {"http://o.org/b": tmp_path / "b.ttl"}), (tmp_path, {})):
         with pytest.raises(
             errors.BadRequest, match=r"finding imports: missing optional packages; install: .*kb"

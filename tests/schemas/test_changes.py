@@ -96,3 +96,16 @@ def test_an_empty_text_is_a_value():
     assert said.text == "serial: a → ''"
     (said,) = of_properties("cup1", [("serial", "", None)])
     assert said.text == "serial: '' → not set"
+
+
+def test_labels_of_blank_nodes_are_not_shown():
+    texts = [
+        said.text
+        for was, now in (("_:a", "_:b"), (None, "_:b"), (("_:a",), ("_:a", "_:b")))
+        for said in of_properties("cup1", [("hasShape", was, now)])
+    ]
+    assert texts == [
+        "hasShape: other content",
+        "hasShape: not set → a nameless value",
+        "hasShape: + a nameless value",
+    ]

@@ -11,6 +11,7 @@ from semmap.schemas.entities import (
     NAME_PATTERN,
     Pose,
     angle_rad,
+    compose,
     distance_m,
     free_name,
     is_name,
@@ -106,3 +107,19 @@ def test_other_characters_of_a_name_become_underscores(text, name):
 
 def test_a_taken_name_gets_a_number():
     assert valid_name("mug 2", {"mug_2", "mug_2_2"}) == "mug_2_3"
+
+
+@pytest.mark.parametrize(
+    ("roll", "pitch", "yaw"), [(0.0, 0.0, 1.0), (math.pi / 2, 0.0, 0.0), (0.3, -0.7, 2.0), (-3.0, 1.2, -1.0)]
+)
+def test_roll_and_pitch_precede_the_yaw(roll, pitch, yaw):
+    turns = (
+        (math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)),
+        (math.cos(pitch / 2), 0.0, math.sin(pitch / 2), 0.0),
+        (math.cos(roll / 2), math.sin(roll / 2), 0.0, 0.0),
+    )
+    found = Pose(position_m=(0.0, 0.0, 0.0))
+    for turn in turns:
+        found = compose(found, Pose(position_m=(0.0, 0.0, 0.0), orientation_wxyz=turn))
+    assert found.roll_pitch_rad == pytest.approx((roll, pitch))
+    assert found.yaw_rad == pytest.approx(yaw)

@@ -67,6 +67,10 @@ def load(view: MapView, command: Load) -> KbCoroutine[Changed]:
     kind = kind_of(command.content, command.filename)
     if kind == "abox":
         return (yield from _load_document(view, command))
+    if command.urdf:
+        raise errors.BadRequest("--urdf applies to maps in RDF or OWL only")
+    if command.graph:
+        raise errors.BadRequest("--graph applies to TriG, N-Quads and JSON-LD files only")
     content = unpacked(command.content, command.filename)
     return (yield from _load_described(view, command, READERS[kind](content, command.filename)))
 
@@ -158,6 +162,8 @@ def _load_document(view: MapView, command: Load) -> KbCoroutine[Changed]:
         filename=command.filename,
         replace=command.replace,
         add_only=command.add_only,
+        graph=command.graph,
+        urdf=command.urdf,
         skip_unknown=command.skip_unknown,
         strict=command.strict,
         parts=command.parts,
@@ -178,6 +184,8 @@ def _load_tbox(view: MapView, command: Load) -> KbCoroutine[Changed]:
             "--replace, --add-only, --skip-unknown and --strict apply to maps only: a TBox always replaces"
             " the present one (or extends it, with --extend) and leaves the map as it is"
         )
+    if command.urdf:
+        raise errors.BadRequest("--urdf applies to maps only; load the TBox without it")
     require_operator(command, "extend the TBox" if command.extend else "replace the TBox")
     file = command.filename or "the file"
     order = LoadTBox(
@@ -189,6 +197,7 @@ def _load_tbox(view: MapView, command: Load) -> KbCoroutine[Changed]:
         filename=command.filename,
         spatial_root=command.spatial_root,
         extend=command.extend,
+        graph=command.graph,
         dry_run=command.dry_run,
     )
     loaded = yield from ask(order)

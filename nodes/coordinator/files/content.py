@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from contextlib import suppress
 from typing import Literal
 
@@ -19,6 +20,7 @@ Kind = Literal["abox", "scene", "huric"]
 _HEAD = 4096
 """Number of bytes that are searched for the XML root."""
 _OF_JSON = (".json", ".jsonld")
+_TRIG = re.compile(rb"\{\s*([<#\[(]|_:|\w*:\w)")
 _BOM = b"\xef\xbb\xbf"
 _BLANK = _BOM + b" \t\r\n"
 
@@ -31,6 +33,8 @@ def kind_of(content: bytes, filename: str) -> Kind:
         raise BadFile(f"{filename or 'the file'} is empty")
     if start[:1] == b"<" and b"<huricExample" in head:
         return "huric"
+    if _TRIG.match(start) and not filename.removesuffix(".gz").lower().endswith(_OF_JSON):
+        return "abox"
     if start[:1] in (b"{", b"["):
         return _kind_of_json(unpacked(content, filename), filename.removesuffix(".gz"))
     return "abox"

@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 from semmap.nodes.kb_node import proofs
 from semmap.nodes.kb_node.answers import term_resolution
-from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.documents import language_tags, owl_export, rdf
 from semmap.nodes.kb_node.documents.abox_document import undeclared_classes
+from semmap.nodes.kb_node.documents.isolated_parser import IsolatedParser
 from semmap.nodes.kb_node.owlrl.consistency_check import find_owlrl_faults
 from semmap.nodes.kb_node.reasoner import GivenFacts, Inconsistent, Reasoner
 from semmap.nodes.kb_node.relations.facts import contradictions
@@ -221,8 +222,19 @@ def document(snapshot: ExportSnapshot, syntax: RdfFormat) -> Document:
     written = snapshot.written
     if measured := set(snapshot.measured()).difference(written):
         written = [*written, *measured]
+    if syntax == "functional" or syntax == "manchester":
+        stated = {*written, *owl_export.declarations(written, snapshot.asserted)}
+        with IsolatedParser() as writer:
+            made = writer.write_owl(stated, syntax, snapshot.prefixes)
+        return Document(
+            content=made.content,
+            media_type=rdf.MEDIA_TYPES[syntax],
+            triples=len(stated) - made.lost,
+            seq=snapshot.seq,
+            notes=made.notes,
+        )
     return Document(
-        content=rdf.serialise(written, syntax, snapshot.prefixes),
+        content=language_tags.restore_case(rdf.serialise(written, syntax, snapshot.prefixes), syntax),
         media_type=rdf.MEDIA_TYPES[syntax],
         triples=len(written),
         seq=snapshot.seq,

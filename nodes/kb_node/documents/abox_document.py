@@ -12,6 +12,7 @@ from typing import NamedTuple
 from semmap.nodes.kb_node.documents import blank_nodes, distinct_names
 from semmap.nodes.kb_node.documents.blank_nodes import is_blank
 from semmap.nodes.kb_node.documents.inert_statements import SHACL, SWRL, count_inert, inert_note
+from semmap.nodes.kb_node.documents.map_frame import FindFrame, express_in_map_frame
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.entities.property_values import retype
 from semmap.nodes.kb_node.reasoner import Reasoner
@@ -70,18 +71,20 @@ def filter_document(
     *,
     skip_unknown: bool,
     of_file: DocumentOrigin = _UNKNOWN_ORIGIN,
+    find_frame: FindFrame = lambda _: None,
 ) -> FilteredDocument:
     """Return the triples of a document that the map accepts. Numbers may be of any numeric datatype.
 
     A literal outside the range of its property gets a datatype of the range if its text is a value of that.
     Blank nodes of spatial classes get IRIs, except with alignments, where they are unnamed parts. Entities
-    that would have the name of another one get a name with a prefix.
+    that would have the name of another one get a name with a prefix. Poses of alignments are in the map
+    frame; `find_frame` returns those of the map.
 
     Raises UnknownClass with all individuals of unknown classes, unless `skip_unknown`. In that case
     individuals that have only unknown classes are left out, with the triples that describe only them, and the
-    others, such as properties, lose the unknown classes. Raises BadFile for a TBox.
+    others, such as properties, lose the unknown classes. Raises BadFile for a TBox and for poses in a cycle.
     """
-    triples = list(triples)
+    triples, of_frames = express_in_map_frame(list(triples), classes.alignments, find_frame)
     by_property = entity_triples.group_by_property(triples)
     if _has_other_numbers(by_property, classes.number_datatypes):
         triples = _with_numbers(triples, classes.number_datatypes)
@@ -90,7 +93,8 @@ def filter_document(
     types_said = by_property.get(v.RDF_TYPE, [])
     used = set(map(itemgetter(2), types_said))
     declared = {s for s, _, o in types_said if o in _CLASSES} if used & _CLASSES else set[Term]()
-    known = declared.union(classes.names, _OF_STARS)
+    helpers = (c for known in classes.alignments for c in known.helpers)
+    known = declared.union(classes.names, _OF_STARS, helpers)
     spatial = _with_subclasses(classes.spatial, by_property.get(v.RDFS_SUB_CLASS_OF, []))
     own = {o for o in used if not is_built_in(o)}
     if declared and spatial.isdisjoint(own):
@@ -127,6 +131,7 @@ def filter_document(
         named.append(distinct_names.describe(names))
     inert = inert_note(count_inert(kept)) if any(c.startswith(_INERT) for c in used) else ""
     notes = (
+        *of_frames,
         *retyped,
         *named,
         *filter(None, (inert,)),

@@ -8,9 +8,12 @@ from operator import is_
 from pathlib import Path
 from types import MappingProxyType
 
-from semmap.nodes.kb_node.documents import abox_document, rdf
+from msgspec import structs
+
+from semmap.nodes.kb_node.documents import abox_document, rdf, urdf, urdf_poses
 from semmap.nodes.kb_node.documents.replacement import Replacement, find_replacement
 from semmap.nodes.kb_node.documents.tbox import tbox_declarations, tbox_validation
+from semmap.nodes.kb_node.entities.aligned_values import shift_along_z
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.ontology import vocabulary as v
@@ -18,7 +21,9 @@ from semmap.ontology.prefixes import Prefixes
 from semmap.schemas import errors, wording
 from semmap.schemas.bridge import LoadDocument, LoadTBox
 from semmap.schemas.commits import Transaction
-from semmap.schemas.explanations import Triple
+from semmap.schemas.entities import Pose
+from semmap.schemas.explanations import Term, Triple
+from semmap.schemas.packing import unpacked
 
 
 def make_document_transaction(
@@ -34,6 +39,11 @@ def make_document_transaction(
     Raises UnknownClass, BadFile for a TBox, UnknownName for undescribed individuals if the load is strict,
     and NameTaken if it may only add and the document has other values for what is in the map.
     """
+    of_urdf: list[str] = []
+    if load.urdf:
+        links = urdf.read(unpacked(load.urdf, "the URDF file"), "the URDF file")
+        known = semantic_map.classes.alignments
+        triples, of_urdf = urdf_poses.add_poses(list(triples), links, known, "the URDF file")
     filtered = abox_document.filter_document(
         triples,
         semantic_map.classes,
@@ -43,7 +53,9 @@ def make_document_transaction(
             prefixes,
             abox_document.find_none if load.replace else semantic_map.find,
         ),
+        find_frame=lambda iri: None if load.replace else _find_frame(semantic_map, iri),
     )
+    filtered.notes[:0] = of_urdf
     stays = semantic_map.tbox.__contains__ if load.replace else lambda _: True
     if found := abox_document.find_undescribed(filtered.triples, semantic_map.reasoner, stays):
         note = abox_document.undescribed_note(found)
@@ -67,6 +79,15 @@ def make_document_transaction(
         insert=_outside(replaced.insert, semantic_map.tbox),
     )
     return transaction, filtered, replaced
+
+
+def _find_frame(semantic_map: SemanticMap, iri: Term) -> Pose | None:
+    """Return the pose of an entity of the map, with its middle as position."""
+    entity = semantic_map.find_by_iri(iri)
+    if entity is None or entity.pose is None:
+        return None
+    pose, half_m = entity.pose, entity.size_m[2] / 2.0 if entity.size_m is not None else 0.0
+    return structs.replace(pose, position_m=shift_along_z(pose.position_m, pose.orientation_wxyz, half_m))
 
 
 def is_exact_copy(triples: Sequence[Triple], transaction: Transaction) -> bool:

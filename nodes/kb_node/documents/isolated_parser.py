@@ -7,17 +7,20 @@ other syntaxes have native parsers that build the whole document in memory.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Final
 
 from msgspec import msgpack
 
 from semmap.nodes.kb_node import proofs
-from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.documents import rdf, text_encoding
 from semmap.nodes.kb_node.documents.blank_nodes import require_shallow_expressions
+from semmap.nodes.kb_node.documents.owl_export import OwlDocument, OwlFormat
 from semmap.nodes.kb_node.documents.parser_process import (
     ClosureReply,
     ClosureRequest,
+    OwlReply,
+    OwlRequest,
     Reply,
     Request,
 )
@@ -43,7 +46,7 @@ class IsolatedParser(IsolatedProcess):
     @staticmethod
     def isolates(content: bytes) -> bool:
         """Return whether a document is parsed in the process."""
-        return rdf.syntax_of(content) != "turtle"
+        return text_encoding.is_wide(content) or rdf.syntax_of(content) != "turtle"
 
     def read(
         self,
@@ -51,6 +54,8 @@ class IsolatedParser(IsolatedProcess):
         filename: str,
         label_prefix: str = "",
         progress: Callable[[int], None] = lambda _: None,
+        *,
+        graph: str = "",
     ) -> rdf.Document:
         """Read a document like `rdf.read`. Any thread may call this.
 
@@ -58,11 +63,11 @@ class IsolatedParser(IsolatedProcess):
         that are nested too deeply. `progress` is called only for documents that are not isolated.
         """
         if self.isolates(content):
-            request = msgpack.encode(Request(content, filename, label_prefix))
+            request = msgpack.encode(Request(content, filename, label_prefix, graph))
             reply = self.exchange(request, filename or "the document")
             document = msgpack.decode(reply, type=Reply).document()
         else:
-            document = rdf.read(content, filename, label_prefix=label_prefix, progress=progress)
+            document = rdf.read(content, filename, label_prefix=label_prefix, graph=graph, progress=progress)
         try:
             require_shallow_expressions(document.triples)
         except ValueError as error:
@@ -70,6 +75,19 @@ class IsolatedParser(IsolatedProcess):
                 f"{filename or 'the document'}: {error}; define a class for inner ones"
             ) from None
         return document
+
+    def write_owl(
+        self, triples: Iterable[Triple], syntax: OwlFormat, prefixes: Mapping[str, str]
+    ) -> OwlDocument:
+        """Return an ontology like `owl_export.write`. Any thread may call this.
+
+        Raises Refused for triples that cannot be written, and BadFile if that exceeds a limit.
+        """
+        request = msgpack.encode(OwlRequest(list(triples), syntax, dict(prefixes)))
+        reply = msgpack.decode(self.exchange(request, "the export"), type=OwlReply)
+        if reply.error:
+            raise errors.Refused(reply.error)
+        return reply.document
 
     def close_tbox(
         self, triples: Iterable[Triple], filename: str, *, of: str = "", wall_s: float | None = None

@@ -21,7 +21,10 @@ from semmap.schemas import errors
 from semmap.schemas.explanations import Term, Triple
 from semmap.schemas.packing import unpacked
 
-SUFFIXES = (".owl", ".rdf", ".rdfs", ".ttl", ".nt", ".n3", ".jsonld", ".ofn", ".fss", ".omn", ".owx", ".xml")
+SUFFIXES = (
+    ".owl", ".rdf", ".rdfs", ".ttl", ".trig", ".nt", ".nq", ".n3", ".jsonld", ".ofn", ".fss", ".omn", ".owx",
+    ".xml",
+)  # fmt: skip
 VERSION = v.iri(f"{v.OWL}versionIRI")
 
 
@@ -37,6 +40,8 @@ class Gathered(NamedTuple):
     """The imports without a file."""
     prefixes: Prefixes = MappingProxyType({})
     """The declared prefixes; if files differ, those of the first file."""
+    notes: tuple[str, ...] = ()
+    """Notes on statements that are left out, with their files."""
 
 
 class Header(NamedTuple):
@@ -65,25 +70,28 @@ def missing_imports(triples: Iterable[Triple]) -> tuple[str, ...]:
     return tuple(v.bare(term) for term in imports if _plain(term) not in there)
 
 
-def gather(named: Sequence[Path], given: Mapping[str, Path]) -> Gathered:
+def gather(named: Sequence[Path], given: Mapping[str, Path], graph: str = "") -> Gathered:
     """Read ontologies with all imports, in any syntax. A folder stands for the ontologies in it.
 
-    `given` maps imports to files. Raises BadFile for an unreadable file.
+    `given` maps imports to files. `graph` is the graph of the named files to read in place of the default
+    graph. Raises BadFile for an unreadable file.
     """
     with IsolatedParser() as parser:
-        gathering = _Gathering([path for one in named for path in _files_of(one)], given, parser)
+        gathering = _Gathering([path for one in named for path in _files_of(one)], given, graph, parser)
         while gathering.to_read:
             gathering.read(gathering.to_read.pop(0))
         return gathering.gathered()
 
 
 class _Gathering:
-    def __init__(self, named: Iterable[Path], given: Mapping[str, Path], parser: IsolatedParser) -> None:
+    def __init__(
+        self, named: Iterable[Path], given: Mapping[str, Path], graph: str, parser: IsolatedParser
+    ) -> None:
         self._called = {path.resolve(): path for path in named}
         self._named = tuple(self._called)
         self.to_read = list(self._named)
         self._given = {_plain(v.iri(iri)): path for iri, path in given.items()}
-        self._parser = parser
+        self._graph, self._parser = graph, parser
         self._parsed: dict[Path, Document] = {}
         self._read: dict[Path, Document] = {}
         self._stands_for: dict[Term, Path] = {}
@@ -115,6 +123,7 @@ class _Gathering:
             {v.bare(term): path for term, path in self._stands_for.items()},
             missing_imports(triples),
             self._prefixes(),
+            tuple(f"{path.name}: {note}" for path, read in self._read.items() for note in read.notes),
         )
 
     def _prefixes(self) -> dict[str, str]:
@@ -171,24 +180,25 @@ class _Gathering:
         """Return the content of a file, which is parsed once."""
         if path not in self._parsed:
             name = self._called.get(path, path)
-            self._parsed[path] = _read(name, f"t{len(self._parsed)}x", self._parser)
+            graph = self._graph if path in self._called else ""
+            self._parsed[path] = _read(name, f"t{len(self._parsed)}x", self._parser, graph)
         return self._parsed[path]
 
 
-def read(path: Path, label_prefix: str = "") -> list[Triple]:
-    """Return the triples of a file, with `label_prefix` for its blank nodes. Raises BadFile."""
+def read(path: Path, label_prefix: str = "") -> Document:
+    """Return the content of a file, with `label_prefix` for its blank nodes. Raises BadFile."""
     with IsolatedParser() as parser:
-        return _read(path, label_prefix, parser).triples
+        return _read(path, label_prefix, parser)
 
 
-def _read(path: Path, label_prefix: str, parser: IsolatedParser) -> Document:
+def _read(path: Path, label_prefix: str, parser: IsolatedParser, graph: str = "") -> Document:
     try:
         content = path.read_bytes()
     except FileNotFoundError:
         raise errors.BadFile(f"there is no file {path}") from None
     except OSError as error:
         raise errors.BadFile(f"{path} cannot be read: {error.strerror}") from None
-    return parser.read(unpacked(content, str(path)), str(path), label_prefix)
+    return parser.read(unpacked(content, str(path)), str(path), label_prefix, graph=graph)
 
 
 def _file_below(folders: Iterable[Path], iri: str) -> Path | None:

@@ -1,4 +1,4 @@
-"""The process that parses documents and closes TBoxes, within limits of memory and time.
+"""The process that parses documents, writes those of OWL and closes TBoxes, within limits of memory and time.
 
 `isolated_parser.py` starts it.
 """
@@ -9,7 +9,8 @@ from array import array
 
 from msgspec import Struct, msgpack
 
-from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.documents import owl_export, rdf
+from semmap.nodes.kb_node.documents.owl_export import OwlDocument, OwlFormat
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner.explanations import Explanation
 from semmap.nodes.kb_node.reasoner.rules.facts import pack
@@ -24,6 +25,7 @@ class Request(Struct, frozen=True, tag=True):
     content: bytes
     filename: str
     label_prefix: str
+    graph: str = ""
 
 
 class Reply(Struct, frozen=True, tag=True):
@@ -35,6 +37,7 @@ class Reply(Struct, frozen=True, tag=True):
     """The distinct terms."""
     triples: bytes = b""
     """Three indices of terms for each triple, as unsigned 32-bit integers."""
+    notes: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, document: rdf.Document) -> Reply:
@@ -42,14 +45,34 @@ class Reply(Struct, frozen=True, tag=True):
         numbers: dict[str, int] = {}
         number = numbers.setdefault
         triples = array("I", (number(term, len(numbers)) for triple in document.triples for term in triple))
-        return cls(prefixes=document.prefixes, terms=tuple(numbers), triples=triples.tobytes())
+        return cls(
+            prefixes=document.prefixes,
+            terms=tuple(numbers),
+            triples=triples.tobytes(),
+            notes=document.notes,
+        )
 
     def document(self) -> rdf.Document:
         """Return the document. Equal terms are the same object. Raises BadFile with the error text."""
         if self.error:
             raise errors.BadFile(self.error)
         terms = map(self.terms.__getitem__, memoryview(self.triples).cast("I"))
-        return rdf.Document(list(zip(terms, terms, terms, strict=True)), self.prefixes)
+        return rdf.Document(list(zip(terms, terms, terms, strict=True)), self.prefixes, self.notes)
+
+
+class OwlRequest(Struct, frozen=True, tag=True):
+    """Triples to write in a syntax of OWL; see `owl_export.write`."""
+
+    triples: list[Triple]
+    syntax: OwlFormat
+    prefixes: dict[str, str]
+
+
+class OwlReply(Struct, frozen=True, tag=True):
+    """The document and notes on it, or the error text of triples that cannot be written."""
+
+    error: str = ""
+    document: OwlDocument = OwlDocument(b"")
 
 
 class ClosureRequest(Struct, frozen=True, tag=True):
@@ -68,15 +91,28 @@ class ClosureReply(Struct, frozen=True, tag=True):
 
 def answer(content: bytes) -> bytes:
     """Return the encoded reply to an encoded request."""
-    request = msgpack.decode(content, type=Request | ClosureRequest)
-    return msgpack.encode(_parse(request) if isinstance(request, Request) else _close(request))
+    request = msgpack.decode(content, type=Request | OwlRequest | ClosureRequest)
+    if isinstance(request, Request):
+        return msgpack.encode(_parse(request))
+    return msgpack.encode(_write(request) if isinstance(request, OwlRequest) else _close(request))
 
 
 def _parse(request: Request) -> Reply:
     try:
-        return Reply.of(rdf.read(request.content, request.filename, label_prefix=request.label_prefix))
+        document = rdf.read(
+            request.content, request.filename, label_prefix=request.label_prefix, graph=request.graph
+        )
+        return Reply.of(document)
     except errors.BadFile as error:
         return Reply(error=error.text)
+
+
+def _write(request: OwlRequest) -> OwlReply:
+    try:
+        written = owl_export.write(request.triples, request.syntax, request.prefixes)
+    except errors.Refused as error:
+        return OwlReply(error=error.text)
+    return OwlReply(document=written)
 
 
 def _close(request: ClosureRequest) -> ClosureReply:

@@ -12,11 +12,11 @@ import re
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import pyoxigraph
 
-from semmap.nodes.kb_node.documents import plain_turtle
+from semmap.nodes.kb_node.documents import named_graphs, plain_turtle, text_encoding, xml_base
 from semmap.nodes.kb_node.documents.error_lines import find_error_line
 from semmap.nodes.kb_node.documents.owl import syntaxes as owl_syntaxes
 from semmap.nodes.kb_node.documents.owl.syntaxes import OwlSyntax
@@ -27,33 +27,41 @@ from semmap.schemas.commands import RdfFormat
 from semmap.schemas.explanations import Triple
 from semmap.schemas.nesting import require_shallow, require_shallow_xml
 
-_SYNTAX = {
+_Syntax = RdfFormat | OwlSyntax | Literal["trig", "nquads"]
+_SYNTAX: dict[_Syntax, pyoxigraph.RdfFormat] = {
     "rdfxml": pyoxigraph.RdfFormat.RDF_XML,
     "turtle": pyoxigraph.RdfFormat.TURTLE,
     "ntriples": pyoxigraph.RdfFormat.N_TRIPLES,
     "jsonld": pyoxigraph.RdfFormat.JSON_LD,
+    "trig": pyoxigraph.RdfFormat.TRIG,
+    "nquads": pyoxigraph.RdfFormat.N_QUADS,
 }
-_SYNTAX_NAMES: dict[RdfFormat | OwlSyntax, str] = {
+_WITH_GRAPHS = ("trig", "nquads", "jsonld")
+_SYNTAX_NAMES: dict[_Syntax, str] = {
     "rdfxml": "RDF/XML",
     "turtle": "Turtle",
     "ntriples": "N-Triples",
     "jsonld": "JSON-LD",
+    "trig": "TriG",
+    "nquads": "N-Quads",
     "functional": "OWL functional syntax",
     "manchester": "Manchester syntax",
     "owlxml": "OWL/XML",
 }
-MEDIA_TYPES: dict[str, str] = {
+MEDIA_TYPES: dict[RdfFormat, str] = {
     "rdfxml": "application/rdf+xml",
     "turtle": "text/turtle",
     "ntriples": "application/n-triples",
     "jsonld": "application/ld+json",
+    "functional": "text/owl-functional",
+    "manchester": "text/owl-manchester",
 }
 _PROGRESS_EVERY = 50_000
 _LARGE = 1 << 20
 """Bytes from which it is worth trying the fast reader."""
-_BOM = b"\xef\xbb\xbf"
 _XML = re.compile(rb"\s*<(\?xml|!DOCTYPE|!--|[\w.:-]+\s[^>]*\bxmlns)")
-_JSON = re.compile(rb"\s*(\{|\[\s*(\{|\]\s*\Z))")
+_JSON = re.compile(rb"\s*(\{(?!\s*([<#\[(]|_:|\w*:\w))|\[\s*(\{|\]\s*\Z))")
+"""A brace is also the beginning of TriG, but JSON continues with a text."""
 _LINE = re.compile(r"\bline \d")
 _NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 
@@ -68,13 +76,21 @@ class Document(NamedTuple):
     triples: list[Triple]
     prefixes: dict[str, str]
     """Those that are declared before the first triple, with their namespaces."""
+    notes: tuple[str, ...] = ()
+    """Notes on statements that are left out."""
 
 
-def syntax_of(content: bytes) -> RdfFormat | OwlSyntax:
-    """Return the syntax that `content` begins like; Turtle, which includes N-Triples, by default."""
+def syntax_of(content: bytes) -> _Syntax:
+    """Return the syntax of UTF-8 text; Turtle, which includes N-Triples, by default."""
     if _XML.match(content):
         return "owlxml" if owl_syntaxes.is_owl_xml(content) else "rdfxml"
-    return "jsonld" if _JSON.match(content) else owl_syntaxes.owl_syntax_of(content) or "turtle"
+    if _JSON.match(content):
+        return "jsonld"
+    if (syntax := owl_syntaxes.owl_syntax_of(content)) is not None:
+        return syntax
+    if named_graphs.has_braces(content):
+        return "trig"
+    return "nquads" if named_graphs.has_quads(content) else "turtle"
 
 
 def parse(content: bytes, filename: str, *, label_prefix: str = "") -> list[Triple]:
@@ -83,28 +99,40 @@ def parse(content: bytes, filename: str, *, label_prefix: str = "") -> list[Trip
 
 
 def read(
-    content: bytes, filename: str, *, label_prefix: str = "", progress: Callable[[int], None] = lambda _: None
+    content: bytes,
+    filename: str,
+    *,
+    label_prefix: str = "",
+    graph: str = "",
+    progress: Callable[[int], None] = lambda _: None,
 ) -> Document:
     """Read a document. Blank nodes get `label_prefix`, so that those of two files differ.
 
+    `graph` is the named graph to read in place of the default graph; see `named_graphs.choose_graph`.
     `progress` receives the number of triples now and then. Raises BadFile with the position of the error.
     """
     name = filename or "the document"
-    content = content.removeprefix(_BOM)
+    try:
+        content = text_encoding.to_utf8(content)
+    except ValueError as error:
+        raise errors.BadFile(f"{name}: {error}") from None
     if not content or content.isspace():
         raise errors.BadFile(f"{name} is empty")
-    try:
-        content.decode()
-    except UnicodeDecodeError as error:
-        where = content.count(b"\n", 0, error.start) + 1
-        raise errors.BadFile(f"{name} is not UTF-8 text (line {where}); save it as UTF-8") from None
     syntax = syntax_of(content)
+    if graph and syntax not in _WITH_GRAPHS:
+        raise errors.BadFile(
+            f"{name} is {_SYNTAX_NAMES[syntax]}, which has no graphs; load it without --graph"
+        )
     try:
         _require_shallow(content, syntax)
+        if syntax in ("rdfxml", "owlxml"):
+            content = xml_base.resolve_bases(content, v.ABOX)
         if syntax == "functional" or syntax == "manchester" or syntax == "owlxml":
             text = content.decode()
             triples = [_labelled(triple, label_prefix) for triple in owl_syntaxes.parse(text, syntax)]
             return Document(triples, owl_syntaxes.prefixes(text, syntax))
+        if syntax in _WITH_GRAPHS:
+            return _read_graph(content, syntax, name, graph, label_prefix, progress)
         declared = _declared_prefixes(content, syntax)
         if syntax == "turtle" and len(content) >= _LARGE:
             plain = plain_turtle.read(content, declared, label_prefix, progress)
@@ -124,6 +152,28 @@ def read(
         raise errors.BadFile(
             f"{name} is not valid {_SYNTAX_NAMES[syntax]}: it has a word or a text of more than 16 MB"
         ) from None
+
+
+def _read_graph(
+    content: bytes,
+    syntax: _Syntax,
+    name: str,
+    graph: str,
+    label_prefix: str,
+    progress: Callable[[int], None],
+) -> Document:
+    """Read one graph of a document that may have several, in two passes: the second needs the names."""
+    quads = pyoxigraph.parse(content, _SYNTAX[syntax], base_iri=v.ABOX)
+    counts = named_graphs.count_statements(quads)
+    prefixes = dict(quads.prefixes)
+    try:
+        chosen = named_graphs.choose_graph(counts, graph, prefixes)
+    except ValueError as error:
+        raise errors.BadFile(f"{name}: {error}") from None
+    again = pyoxigraph.parse(content, _SYNTAX[syntax], base_iri=v.ABOX)
+    note = named_graphs.left_out_note(counts, chosen)
+    triples = _triples(named_graphs.select(again, chosen), label_prefix, progress)
+    return Document(triples, prefixes, (note,) if note else ())
 
 
 def _triples(
@@ -173,7 +223,7 @@ def _reason(error: Exception) -> str:
     return str(error).replace("\n", " ")
 
 
-def _require_shallow(content: bytes, syntax: RdfFormat | OwlSyntax) -> None:
+def _require_shallow(content: bytes, syntax: _Syntax) -> None:
     """Raise ValueError for a document that is nested too deeply, and for XML that is not well-formed.
 
     Oxigraph accepts XML that ends within an element, and expands entities without limit.
@@ -181,10 +231,11 @@ def _require_shallow(content: bytes, syntax: RdfFormat | OwlSyntax) -> None:
     if syntax in ("rdfxml", "owlxml"):
         require_shallow_xml(content)
     else:
-        require_shallow(content, {"ntriples": "turtle", "jsonld": "json"}.get(syntax, syntax))
+        of_turtle = dict.fromkeys(("ntriples", "trig", "nquads"), "turtle")
+        require_shallow(content, {**of_turtle, "jsonld": "json"}.get(syntax, syntax))
 
 
-def _declared_prefixes(content: bytes, syntax: RdfFormat) -> dict[str, str]:
+def _declared_prefixes(content: bytes, syntax: _Syntax) -> dict[str, str]:
     quads = pyoxigraph.parse(content, _SYNTAX[syntax], base_iri=v.ABOX, without_named_graphs=True)
     with suppress(SyntaxError, ValueError):
         next(quads, None)
@@ -194,7 +245,7 @@ def _declared_prefixes(content: bytes, syntax: RdfFormat) -> dict[str, str]:
 def serialise(
     triples: Iterable[Triple], syntax: RdfFormat, prefixes: Prefixes = MappingProxyType(v.PREFIXES)
 ) -> bytes:
-    """Return a document with sorted and prefixed triples, which `parse` reads back unchanged.
+    """Return a document in an RDF syntax, sorted and with prefixes, which `parse` reads back unchanged.
 
     Raises Refused for a text that the syntax cannot express.
     """

@@ -18,6 +18,9 @@ About = Callable[[Term], Mapping[Term, Sequence[Term]]]
 _LABELS = (v.SKOS_PREF_LABEL, v.RDFS_LABEL)
 LABELS = (*_LABELS, v.SKOS_ALT_LABEL)
 """The properties by which any ontology may name individuals."""
+_PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+_ROTATION = 0.02
+"""How far the products of the columns of a rotation matrix may be from 0 and 1."""
 _BETWEEN = re.compile(r"[\s,;\[\]()]+")
 
 
@@ -30,6 +33,8 @@ class AlignedPose(NamedTuple):
     position: Vector
     """Position of the pose's origin [m]."""
     orientation: Quaternion
+    reference: Term | None = None
+    """The individual in whose frame the pose is; None for the map frame."""
 
 
 class AlignedSize(NamedTuple):
@@ -94,16 +99,67 @@ def find_pose(alignments: Iterable[Alignment], about: About, iri: Term) -> Align
 
 def find_poses(alignments: Iterable[Alignment], about: About, iri: Term) -> Iterator[AlignedPose]:
     """Yield all valid poses in the map frame."""
+    return (found for found in find_stated_poses(alignments, about, iri) if found.reference is None)
+
+
+def find_stated_poses(alignments: Iterable[Alignment], about: About, iri: Term) -> Iterator[AlignedPose]:
+    """Yield all valid poses, also those in the frames of other things."""
     for words in (words for known in alignments for words in known.pose):
         for nodes in _paths(about, iri, words.path):
             values = about(nodes[-1])
-            position = _vector(values.get(words.position, ()), 3)
-            if position is None or (words.relative is not None and values.get(words.relative)):
-                continue
-            turned = _vector(values.get(words.orientation, ()), 4) if words.orientation is not None else None
-            orientation = _quaternion(turned, words) if turned is not None else IDENTITY
-            if orientation is not None:
-                yield AlignedPose(words, nodes, position, orientation)  # type: ignore[arg-type]
+            if (pose := read_pose(values, words)) is not None:
+                reference = min(values.get(words.relative, ()), default=None) if words.relative else None
+                yield AlignedPose(words, nodes, pose.position_m, pose.orientation_wxyz, reference)
+
+
+def read_pose(values: Mapping[Term, Sequence[Term]], words: PoseMapping) -> Pose | None:
+    """Return the pose that an individual has by its properties, or None if it is incomplete or invalid."""
+    position = _vector(values.get(words.position, ()), 3)
+    if position is None:
+        return None
+    turned = _vector(values.get(words.orientation, ()), 4) if words.orientation is not None else None
+    orientation = _quaternion(turned, words) if turned is not None else IDENTITY
+    if orientation is None:
+        return None
+    x, y, z = position
+    return Pose(position_m=(x, y, z), orientation_wxyz=orientation)
+
+
+def read_matrix(values: Mapping[Term, Sequence[Term]], stem: Term) -> Pose | None:
+    """Return the pose that an individual has as a matrix of 4 x 4 numbers, or None if it is not a pose.
+
+    The properties of its numbers are called like `stem` with the row and the column: `m00` to `m23`.
+    """
+    rows: list[list[float]] = []
+    for row in range(3):
+        found = [_vector(values.get(f"{stem[:-1]}{row}{column}>", ()), 1) for column in range(4)]
+        rows.append([number[0] for number in found if number is not None])
+    if any(len(row) != 4 for row in rows):
+        return None
+    orientation = quaternion_of(rows)
+    if orientation is None:
+        return None
+    return Pose(position_m=(rows[0][3], rows[1][3], rows[2][3]), orientation_wxyz=orientation)
+
+
+def quaternion_of(rows: Sequence[Sequence[float]]) -> Quaternion | None:
+    """Return the unit quaternion `wxyz` of a rotation matrix, or None if it is not one."""
+    (a, b, c), (d, e, f), (g, h, i) = (row[:3] for row in rows)
+    determinant = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
+    columns = ((a, d, g), (b, e, h), (c, f, i))
+    products = [sum(x * y for x, y in zip(columns[j], columns[k], strict=True)) for j, k in _PAIRS]
+    wanted = [float(j == k) for j, k in _PAIRS]
+    if determinant < 0 or any(abs(p - w) > _ROTATION for p, w in zip(products, wanted, strict=True)):
+        return None
+    candidates = (  # the one with the largest divisor is the most accurate
+        (1 + a + e + i, h - f, c - g, d - b),
+        (h - f, 1 + a - e - i, b + d, c + g),
+        (c - g, b + d, 1 - a + e - i, f + h),
+        (d - b, c + g, f + h, 1 - a - e + i),
+    )
+    w, x, y, z = max(candidates, key=lambda q: math.hypot(*q))
+    norm = math.copysign(math.hypot(w, x, y, z), w or 1.0)
+    return (w / norm, x / norm, y / norm, z / norm)
 
 
 def find_size(alignments: Iterable[Alignment], about: About, iri: Term) -> AlignedSize | None:

@@ -49,6 +49,21 @@ class SizeMapping(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True)
     z: Term
 
 
+class PerceptionMapping(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """How events state where they perceived an object; the latest gives its pose when a file is loaded."""
+
+    object: Term
+    """Property of the event: the object."""
+    pose: Term
+    """Property of the event: the individual with the pose, as a matrix or as `PoseMapping` describes."""
+    matrix: Term
+    """Stem of the properties of the matrix: with row and column, such as `00`, that of a number."""
+    relative: Term
+    """Property of that individual: something in whose frame the pose is."""
+    time: Term
+    """Property of the event: a point in time, whose name or value ends with seconds."""
+
+
 class IgnoredStatement(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A statement of the ontology that is ignored, because it would make every map inconsistent."""
 
@@ -77,6 +92,9 @@ class Alignment(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Properties with the name of an entity, best first."""
     pose: tuple[PoseMapping, ...] = ()
     size: tuple[SizeMapping, ...] = ()
+    perceived: tuple[PerceptionMapping, ...] = ()
+    helpers: tuple[Term, ...] = ()
+    """Classes of the individuals that state poses. A map may use them although the TBox lacks them."""
     set_aside: tuple[IgnoredStatement, ...] = ()
     relations: dict[Literal["isOn", "isInside", "isLocatedIn"], Term] = {}
     """By measurable relation: the property for it in the vocabulary."""

@@ -85,12 +85,12 @@ class LoadHandlers:
         label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # stable across retries
         if self._parser.isolates(content):
             return self._run_aside(
-                partial(self._parser.read, content, load.filename, label),
+                partial(self._parser.read, content, load.filename, label, graph=load.graph),
                 lambda document: self._load(load, lambda _: document),
             )
         if not (load.replace or load.parts or load.dry_run):
             self._sparql.prefetch(load.id, content, v.ABOX, packed=load.content)
-        return self._load(load, partial(self._parser.read, content, load.filename, label))
+        return self._load(load, partial(self._parser.read, content, load.filename, label, graph=load.graph))
 
     def _run_aside(
         self, work: Callable[[], T], use: Callable[[T], Loaded | Future[Loaded]]
@@ -175,6 +175,7 @@ class LoadHandlers:
             axioms = self._axioms_after(transaction)  # of what is committed: filtering may change axioms
             if axioms is not None and axioms != closed:
                 return self._load_with_axioms(load, document, axioms)
+            filtered.notes[:0] = document.notes
             del document
             if not document_change.is_exact_copy(triples, transaction):
                 self._sparql.discard_prepared()
@@ -223,9 +224,10 @@ class LoadHandlers:
         content, label = unpacked(load.content, load.filename), f"t{uuid.uuid4().hex[:8]}"
         if self._parser.isolates(content):
             return self._run_aside(
-                partial(self._parser.read, content, load.filename, label), partial(self._load_tbox, load)
+                partial(self._parser.read, content, load.filename, label, graph=load.graph),
+                partial(self._load_tbox, load),
             )
-        return self._load_tbox(load, self._parser.read(content, load.filename, label))
+        return self._load_tbox(load, self._parser.read(content, load.filename, label, graph=load.graph))
 
     def _load_tbox(self, load: LoadTBox, document: rdf.Document) -> Loaded | Future[Loaded]:
         before = self._map.tbox
@@ -237,24 +239,28 @@ class LoadHandlers:
         transaction = document_change.make_tbox_transaction(self._map, load, tbox)
         if transaction is None:
             commit = self._journal.commit_of(load.id)
-            return Loaded(commit=effects(commit), skipped=(), notes=self._notes())
+            return Loaded(commit=effects(commit), skipped=(), notes=(*document.notes, *self._notes()))
 
         def replace(closed: Facts | None) -> Loaded | Future[Loaded]:
             if self._map.tbox is not before:  # replaced meanwhile
                 return self._load_tbox(load, document)
-            return self._replace_tbox(load, lambda: self._map.replace_tbox(transaction, tbox, closed=closed))
+            return self._replace_tbox(
+                load, document.notes, lambda: self._map.replace_tbox(transaction, tbox, closed=closed)
+            )
 
         return self._run_aside(partial(self._parser.close_tbox, tbox, load.filename, of="the TBox"), replace)
 
-    def _replace_tbox(self, load: LoadTBox, replace: Callable[[], Commit]) -> Loaded:
-        noted: list[str] = []
+    def _replace_tbox(
+        self, load: LoadTBox, of_document: tuple[str, ...], replace: Callable[[], Commit]
+    ) -> Loaded:
+        noted = [*of_document]
 
         try:
             if load.dry_run:
                 tried = dry_runs.dry_run(self._map, replace, lambda: noted.extend(self._notes()))
                 return Loaded(commit=tried, skipped=(), notes=tuple(noted))
             made = self._changing.run_change(replace, dry_run=False)
-            return Loaded(commit=made, skipped=(), notes=self._notes())
+            return Loaded(commit=made, skipped=(), notes=(*of_document, *self._notes()))
         except tbox_validation.DoesNotFit as error:
             if load.extend:
                 raise

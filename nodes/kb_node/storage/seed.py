@@ -62,12 +62,12 @@ def seed(
         (v.ABOX_ONTOLOGY, v.RDF_TYPE, v.OWL_ONTOLOGY),
         *tbox_validation.import_triples(tbox_triples),
     ]
-    notes: list[str] = []
+    notes = [*gathered.notes]
     if abox is not None:
         document = ontology_files.read(abox, "a")
         try:
             filtered = abox_document.filter_document(
-                document,
+                document.triples,
                 ClassTable(reasoner),
                 skip_unknown=skip_unknown,
                 of_file=abox_document.DocumentOrigin(abox.name),
@@ -80,7 +80,7 @@ def seed(
         except errors.BadRequest as error:
             raise type(error)(f"{abox}: {error.text}") from None
         abox_triples += filtered.triples
-        notes = filtered.notes
+        notes += [*document.notes, *filtered.notes]
         if filtered.skipped:
             notes.append(f"left out {len(filtered.skipped)}: {wording.few(filtered.skipped, 5)}")
         if found := abox_document.find_undescribed(filtered.triples, reasoner):

@@ -10,6 +10,7 @@ from typing import Final
 
 from semmap.nodes.language.lexicon import describing
 from semmap.nodes.language.lexicon.describing import LANGUAGES, TAGS, Describing, Language
+from semmap.nodes.language.reference_resolution.part_index import PartIndex
 from semmap.nodes.language.vocabulary import to_words
 
 _PURPOSE: Final = ("da", "of", "di")
@@ -168,6 +169,7 @@ class MapIndex:
         self.items: Final[dict[str, Item]] = {}
         self.members: Final[dict[str, dict[str, None]]] = {}
         self.nouns: Final[dict[Language, Nouns]] = {name: Nouns(name, terms) for name in LANGUAGES}
+        self.parts: Final = PartIndex()
 
     def update(self, changed: Iterable[Item], removed: Iterable[str] = ()) -> None:
         """Add or replace the `changed` entities and remove those named in `removed`."""
@@ -178,6 +180,7 @@ class MapIndex:
             self.items[item.name] = item
             for name in item.types:
                 self.members.setdefault(name, {})[item.name] = None
+            self.parts.add(item.name, item.values)
             for nouns in self.nouns.values():
                 nouns.add(item)
 
@@ -186,6 +189,7 @@ class MapIndex:
             return
         for class_name in item.types:
             self.members[class_name].pop(name, None)
+        self.parts.remove(name)
         for nouns in self.nouns.values():
             nouns.remove(item)
 

@@ -304,6 +304,8 @@ class Resolver:
                 return "Person" not in other.types  # Anna is not one of the things that belong to Anna
             if name in item.all_values or item.name in other.all_values:
                 return True
+            if self.index.parts.is_part(item.name, name):
+                return True
             if other.is_place:
                 if related("isInside", item.name, name):
                     return True

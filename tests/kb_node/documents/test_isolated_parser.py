@@ -9,6 +9,7 @@ from semmap.nodes.kb_node.documents import parser_process, rdf
 from semmap.nodes.kb_node.documents.isolated_parser import IsolatedParser
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import HOUSEHOLD_TTL
+from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.nesting import LIMIT
 
@@ -76,3 +77,12 @@ def test_the_closure_of_a_tbox_is_that_of_a_reasoner(parser):
     with pytest.raises(errors.Inconsistent, match="the TBox is inconsistent: ") as found:
         parser.close_tbox([*tbox, *nothing], "x", of="the TBox")
     assert found.value.explanation.support == tuple(nothing)
+
+
+@pytest.mark.process
+def test_owl_is_written_in_the_process(parser):
+    triples = [("<urn:a>", v.RDF_TYPE, "<urn:C>"), ("<urn:C>", v.RDF_TYPE, v.OWL_CLASS)]
+    document = parser.write_owl(triples, "functional", {})
+    assert set(parser.read(document.content, "f").triples) >= set(triples)
+    with pytest.raises(errors.Refused, match="RDF/XML cannot hold the character"):
+        parser.write_owl([("<urn:a>", "<urn:p:>", '"\x07"')], "manchester", {})

@@ -4,9 +4,12 @@ import pytest
 
 from semmap.nodes.kb_node.entities import alignments
 from semmap.nodes.kb_node.entities.alignments import PoseMapping, SizeMapping
+from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 
+IFC = "http://standards.buildingsmart.org/IFC/DEV/"
 FILE = """
 title = "a:title stays as written"
 namespaces = ["a"]
@@ -119,3 +122,24 @@ def test_the_shipped_alignments_are_found_by_their_namespaces():
     assert alignments.find_for_namespaces(["http://else.org/"]) == ()
     every = [namespace for known in shipped for namespace in known.namespaces]
     assert alignments.find_for_namespaces(every) == shipped
+
+
+@pytest.mark.parametrize(
+    ("namespace", "element", "zone"),
+    [
+        ("https://w3id.org/bot#", "Element", "Zone"),
+        (f"{IFC}IFC4/ADD2/OWL#", "IfcElement", "IfcSpatialElement"),
+        (f"{IFC}IFC2x3/TC1/OWL#", "IfcElement", "IfcSpatialStructureElement"),
+        ("https://brickschema.org/schema/Brick#", "Equipment", "Location"),
+    ],
+)
+def test_the_elements_of_buildings_are_things_and_their_spaces_are_places(namespace, element, zone):
+    below = {"Chair": element, "Office": zone}
+    names = (element, zone, *below)
+    triples = [(v.iri(namespace + name), v.RDF_TYPE, v.OWL_CLASS) for name in names]
+    triples += [
+        (v.iri(namespace + c), v.RDFS_SUB_CLASS_OF, v.iri(namespace + root)) for c, root in below.items()
+    ]
+    rows = {row.name: row for row in ClassTable(Reasoner(triples)).rows}
+    assert all(rows[name].spatial for name in names)
+    assert [rows[name].place for name in ("Chair", "Office")] == [False, True]

@@ -111,6 +111,7 @@ def _each_by_itself(semantic_map):
     reasoner, classes = semantic_map.reasoner, semantic_map.classes
     for iri in sorted(reasoner.instances(v.dm("Chair"))):
         known = semantic_map.find_by_iri(iri)
+        entity_reading.require_one_place(reasoner.about, classes, iri)  # as a commit does
         yield entity_reading.read_entity(
             reasoner, classes, iri, known.provenance if known else entity_reading._OF_THE_TBOX
         )

@@ -150,3 +150,19 @@ def test_axioms_that_take_long_are_rejected_with_a_map(flat, monkeypatch):
         loads.on_load(restrictions(2000)).result(60)
     loads.close()
     assert flat.seq == 1
+
+
+def test_notes_on_other_graphs_are_part_of_the_reply(flat):
+    load = LoadDocument(
+        id="1",
+        source="file",
+        content=f"@prefix dm: <{v.TBOX}> . <urn:m#a> a dm:Cup . <urn:m#g> {{ <urn:m#b> a dm:Cup }}".encode(),
+        filename="f.trig",
+        replace=False,
+        skip_unknown=False,
+    )
+    handlers = loading(flat, [])
+    document = rdf.read(load.content, load.filename)
+    loaded = handlers._load(load, lambda _: document)
+    assert loaded.names == ("a",)
+    assert loaded.notes[0].startswith("left out: 1 statement in other graphs (g: 1)")

@@ -252,6 +252,8 @@ def export(client: Client, file: Path, format: Any, inferred: bool, as_of: str |
     document = client.export(format or _format_of(file), inferred=inferred, as_of=as_of)
     write_atomically(file, document.content)
     print(f"wrote {document.triples} triples to {file} (commit {document.seq})")
+    for note in document.notes:
+        print_escaped(f"note: {note}", file=sys.stderr)
 
 
 @command(example="semmap classes")
@@ -416,6 +418,9 @@ def _format_of(file: Path) -> commands.RdfFormat:
         ".owl": "rdfxml",
         ".rdf": "rdfxml",
         ".xml": "rdfxml",
+        ".ofn": "functional",
+        ".fss": "functional",
+        ".omn": "manchester",
     }
     if (known := endings.get(file.suffix.lower())) is None:
         raise errors.BadRequest(f"{file.name}: unknown suffix (known: {', '.join(endings)}); add --format")

@@ -29,6 +29,8 @@ def report(found: TBoxReport) -> Iterator[str]:
         yield _line("ignored", f"{count} x {kind} (outside OWL 2 RL)")
     for kind, count in found.inert.items():
         yield _line("ignored", f"{count} x {kind} (stored, but not evaluated)")
+    for note in found.left_out:
+        yield _line("graphs", note)
     yield from _names(found)
     yield from _verdict(found)
     if (quick := found.quickness) is not None:

@@ -28,9 +28,11 @@ _TIMEOUT_S: Final = 1800.0
 _BROWSER_S: Final = 10.0
 _FORMATS: Final[dict[RdfFormat, str]] = {
     "turtle": "Turtle", "rdfxml": "RDF/XML", "ntriples": "N-Triples", "jsonld": "JSON-LD",
+    "functional": "OWL functional syntax", "manchester": "OWL Manchester syntax",
 }  # fmt: skip
 _ENDINGS: Final[dict[RdfFormat, str]] = {
-    "turtle": "ttl", "rdfxml": "rdf", "ntriples": "nt", "jsonld": "jsonld"
+    "turtle": "ttl", "rdfxml": "rdf", "ntriples": "nt", "jsonld": "jsonld",
+    "functional": "ofn", "manchester": "omn",
 }  # fmt: skip
 
 

@@ -86,7 +86,7 @@ def export_past(journal: Journal, past: HistoryReader, query: Export) -> Documen
     tbox = frozenset(rdf.parse(journal.tbox(seq), f"the TBox in {journal.path}"))
     abox = sorted(collect_asserted(journal, seq) - tbox)
     used = prefixes.used_by(abox, prefixes.WELL_KNOWN)
-    return answers.document(answers.ExportSnapshot([], abox, seq, used), query.format)
+    return answers.document(answers.ExportSnapshot([*tbox], abox, seq, used), query.format)
 
 
 def _export_snapshot(then: _RebuiltMap, seq: int) -> answers.ExportSnapshot:
@@ -98,7 +98,7 @@ def _export_snapshot(then: _RebuiltMap, seq: int) -> answers.ExportSnapshot:
     measures = answers.pair_measurer(then.tbox, then.there.values())
     space = Space(tuple(map(PlacedEntity.of, then.there.values())), then.classes.limits)
     used = prefixes.used_by(written, prefixes.WELL_KNOWN)
-    return answers.ExportSnapshot([], written, seq, used, lambda: measures(space, None))
+    return answers.ExportSnapshot([*then.tbox], written, seq, used, lambda: measures(space, None))
 
 
 def query_past(journal: Journal, past: HistoryReader, query: Sparql) -> SparqlResult:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from typing import Any
 
@@ -11,6 +12,7 @@ from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Term, Triple
 
 _SWRL = "http://www.w3.org/2003/11/swrl#"
+_FLOAT = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?[fF]")
 _PLAIN_LITERAL = f"{v.RDF}PlainLiteral"
 
 
@@ -159,6 +161,6 @@ def _typed(text: str, datatype: str) -> Term:
     if datatype == _PLAIN_LITERAL:
         text, _, language = text.rpartition("@")
         return v.literal(text, lang=language or None)
-    if datatype == f"{v.XSD}float" and text[-1:] in "fF":
+    if datatype == f"{v.XSD}float" and _FLOAT.fullmatch(text):
         text = text[:-1]  # in the Manchester syntax floats end so, but not in RDF
     return v.literal(text, v.iri(datatype))

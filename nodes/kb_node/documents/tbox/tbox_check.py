@@ -104,6 +104,7 @@ def _report(
         individuals=len(_individuals(triples)),
         outside_rl=dict(sorted(kinds.items(), key=lambda kind: (-kind[1], kind[0]))),
         inert=dict(sorted(count_inert(triples).items())),
+        left_out=gathered.notes,
         inconsistent=inconsistent,
         unsatisfiable=unsatisfiable,
         untried=untried,
