@@ -34,6 +34,7 @@ from semmap.nodes.extern.testing import free_endpoint
 from semmap.nodes.kb_node.storage.journal import FILENAME
 from semmap.nodes.kb_node.storage.seed import seed
 from semmap.nodes.runtime.loop import Node
+from semmap.nodes.runtime.memory import uncollected
 from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
 from semmap.schemas import errors
 from semmap.schemas.replies import SystemStatus
@@ -339,6 +340,13 @@ def _await_end(process: subprocess.Popen[str]) -> None:
         process.kill()
         process.wait()
         pytest.fail(f"{process.args} did not end within {_END_S:g} s of Ctrl-C")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Iterator[None]:
+    """Collect the tests without garbage collections, also later: the tests and their modules stay."""
+    with uncollected(freeze=True):
+        return (yield)
 
 
 @pytest.hookimpl(tryfirst=True)
