@@ -2,6 +2,7 @@
 
 A start takes seconds, so tests share two systems per worker, one without a simulator and one with it:
 `flat_map` and `empty_map`, `flat_scene` and `empty_scene` give each module one of them with a clean map.
+`shared_systems.py` starts them when they are needed and stops them when the next tests do not use them.
 Restarts, faults, security and fleets start their own by `running`.
 """
 
@@ -33,10 +34,12 @@ from semmap.nodes.extern.testing import free_endpoint
 from semmap.nodes.kb_node.storage.journal import FILENAME
 from semmap.nodes.kb_node.storage.seed import seed
 from semmap.nodes.runtime.loop import Node
+from semmap.nodes.runtime.memory import uncollected
 from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
 from semmap.schemas import errors
 from semmap.schemas.replies import SystemStatus
 from tests import tiers
+from tests.shared_systems import SharedSystem, is_one_running, stop_unused
 
 # A shell that starts pytest in the background has it ignore Ctrl-C, and so would what it spawns.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -218,48 +221,55 @@ def running(data: Path, *words: str | Path, endpoint: str | None = None) -> Iter
 
 
 @pytest.fixture(scope="session")
-def _shared_map(tmp_path_factory: pytest.TempPathFactory) -> Iterator[System]:
+def _shared_map(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SharedSystem]:
     """One system per worker without a simulator; a busy machine publishes frames less than 3 s apart."""
     words = ("--no-sim", "--no-record", "--stale", "3")
-    with running(tmp_path_factory.mktemp("shared-map"), *words) as system:
-        system.begun = "flat"
-        yield system
+    shared = SharedSystem("_shared_map", lambda abox: _begin(tmp_path_factory.mktemp("map"), abox, *words))
+    yield shared
+    shared.stop()
 
 
 @pytest.fixture(scope="session")
-def _shared_scene(tmp_path_factory: pytest.TempPathFactory) -> Iterator[System]:
+def _shared_scene(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SharedSystem]:
     """One system per worker with a simulator; a busy machine publishes live poses less than 3 s apart."""
-    with running(tmp_path_factory.mktemp("shared-scene"), "--no-record", "--stale", "3") as system:
-        system.begun = "flat"
+    words = ("--no-record", "--stale", "3")
+    shared = SharedSystem(
+        "_shared_scene", lambda abox: _begin(tmp_path_factory.mktemp("scene"), abox, *words)
+    )
+    yield shared
+    shared.stop()
+
+
+@contextlib.contextmanager
+def _begin(data: Path, abox: str, *words: str) -> Iterator[System]:
+    """A system with the shipped flat, or with an empty map."""
+    with running(data, *words, *(("--abox", "none") if abox == "none" else ())) as system:
+        system.begun = abox
         yield system
 
 
 @pytest.fixture(scope="module")
-def flat_map(_shared_map: System) -> System:
+def flat_map(_shared_map: SharedSystem) -> System:
     """A system without a simulator whose map is the shipped flat, at commit 1."""
-    _shared_map.begin_anew("flat")
-    return _shared_map
+    return _shared_map.begin_anew("flat")
 
 
 @pytest.fixture(scope="module")
-def empty_map(_shared_map: System) -> System:
+def empty_map(_shared_map: SharedSystem) -> System:
     """A system without a simulator whose map is empty, at commit 1."""
-    _shared_map.begin_anew("none")
-    return _shared_map
+    return _shared_map.begin_anew("none")
 
 
 @pytest.fixture(scope="module")
-def flat_scene(_shared_scene: System) -> System:
+def flat_scene(_shared_scene: SharedSystem) -> System:
     """A system with a simulator whose map is the shipped flat, at commit 1."""
-    _shared_scene.begin_anew("flat")
-    return _shared_scene
+    return _shared_scene.begin_anew("flat")
 
 
 @pytest.fixture(scope="module")
-def empty_scene(_shared_scene: System) -> System:
+def empty_scene(_shared_scene: SharedSystem) -> System:
     """A system with a simulator whose map is empty, at commit 1."""
-    _shared_scene.begin_anew("none")
-    return _shared_scene
+    return _shared_scene.begin_anew("none")
 
 
 def _ask_status(client: Client) -> SystemStatus | None:
@@ -332,6 +342,13 @@ def _await_end(process: subprocess.Popen[str]) -> None:
         pytest.fail(f"{process.args} did not end within {_END_S:g} s of Ctrl-C")
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Iterator[None]:
+    """Collect the tests without garbage collections, also later: the tests and their modules stay."""
+    with uncollected(freeze=True):
+        return (yield)
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark the tests that need real processes."""
@@ -348,3 +365,12 @@ def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
         return (yield)
     finally:
         tiers.watch(None)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> Iterator[None]:
+    """After a file, stop the shared systems that the next tests do not use."""
+    yield
+    if nextitem is not None and nextitem.path != item.path and is_one_running():
+        items = item.session.items
+        stop_unused(items[items.index(nextitem) :])

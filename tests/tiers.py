@@ -46,8 +46,14 @@ def needs_process(item: pytest.Item) -> bool:
     """Return whether a test, or a fixture that it uses, starts a process or opens a session."""
     if not isinstance(item, pytest.Function):
         return False
-    fixtures = (found.func for several in item._fixtureinfo.name2fixturedefs.values() for found in several)
-    return uses_any([item.function, *fixtures], STARTERS)
+    fixtures = {found.func for several in item._fixtureinfo.name2fixturedefs.values() for found in several}
+    return _is_starter(item.function, frozenset(fixtures))
+
+
+@functools.cache
+def _is_starter(test: Callable[..., Any], fixtures: frozenset[Callable[..., Any]]) -> bool:
+    """Return whether a test or one of its fixtures starts a process; kept for its other parameters."""
+    return uses_any([test, *fixtures], STARTERS)
 
 
 def uses_any(functions: Iterable[Callable[..., Any]], names: frozenset[str]) -> bool:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
+import threading
 import time
 import uuid
 import xml.etree.ElementTree as ET
+from collections.abc import Iterator
 
 from semmap.commands import Add, Remove
 from semmap.nodes import bus
@@ -82,6 +85,26 @@ def test_files_have_a_dry_run_and_are_loaded_or_rejected(tab, system, tmp_path):
     assert name in download.value.path().read_text()
 
 
+@contextlib.contextmanager
+def _slowed(pid: int) -> Iterator[None]:
+    """Let a process run a twentieth of the time. One that is suspended is restarted after a few seconds."""
+    is_over = threading.Event()
+
+    def slow() -> None:
+        while not is_over.wait(0.01):
+            os.kill(pid, signal.SIGSTOP)
+            is_over.wait(0.19)
+            os.kill(pid, signal.SIGCONT)
+
+    thread = threading.Thread(target=slow)
+    thread.start()
+    try:
+        yield
+    finally:
+        is_over.set()
+        thread.join()
+
+
 def test_uploads_and_dry_runs_can_be_stopped(tab, system, tmp_path):
     name, many = fresh("cup"), tmp_path / "many.ttl"
     many.write_text("".join(f"<{ABOX}{name}_{n}> a <{DM}Cup> .\n" for n in range(30_000)))
@@ -97,16 +120,12 @@ def test_uploads_and_dry_runs_can_be_stopped(tab, system, tmp_path):
     tab.get_by_text("Stopped; no changes.").wait_for()
     network.send("Network.emulateNetworkConditions", slow | {"uploadThroughput": -1})
 
-    knowledge_base = system.pid("kb_node")
-    os.kill(knowledge_base, signal.SIGSTOP)  # or the check, which takes less than a second, would be done
-    try:
+    with _slowed(system.pid("kb_node")):  # otherwise the check takes less than a second
         chooser.set_input_files(many)
         tab.get_by_text("Checking many.ttl").wait_for()
         stop.click()
         tab.get_by_text("Stopped; no changes.").wait_for()
         assert not stop.is_visible()
-    finally:
-        os.kill(knowledge_base, signal.SIGCONT)
     with system.client() as client:  # whose answer comes after that to what was tried
         assert not {entity.name for entity in client.list("Cup") if entity.name.startswith(name)}
     assert tab.get_by_text("Changes by").count() == 0

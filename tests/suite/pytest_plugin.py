@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Callable, Iterable
 from itertools import groupby
 from pathlib import Path
 from typing import TypeVar
 
 import pytest
 
+from tests.shared_systems import FIXTURES, fixtures_of
 from tests.suite.failures import Failure, write_failures
 
 _Any = TypeVar("_Any")
@@ -49,7 +51,10 @@ class _Shuffler:
 
 
 class _Dealer:
-    """Gives each worker of pytest-xdist as many of the slow tests, before all others."""
+    """Gives each worker of pytest-xdist as many of the slow files, before all others.
+
+    Files that use the same shared system are given to the same worker, so that only that one starts it.
+    """
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -57,7 +62,7 @@ class _Dealer:
         files = [[*several] for _, several in groupby(items, lambda item: item.path)]
         slow = [several for several in files if any(item.get_closest_marker("process") for item in several)]
         fast = [several for several in files if several not in slow]
-        items[:] = deal(slow, fast, workers)
+        items[:] = deal(share_out(slow, workers, _shared_by), fast)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -85,23 +90,47 @@ def shuffle(items: list[pytest.Item], seed: int) -> list[pytest.Item]:
     return [item for several in files for item in several]
 
 
-def deal(slow: list[list[_Any]], fast: list[list[_Any]], workers: int) -> list[_Any]:
-    """Return the tests of these files in an order that keeps all workers busy to the end.
+def share_out(
+    files: list[list[_Any]], workers: int, shared_by: Callable[[list[_Any]], Iterable[str]]
+) -> list[list[_Any]]:
+    """Return the tests of each worker: equally many files, those that use the same shared system together.
+
+    `shared_by(tests)` returns the names of the shared systems that the tests of a file use.
+    """
+    used = [tuple(sorted(shared_by(tests))) for tests in files]
+    systems = sorted({system for several in used for system in several})
+    shares: list[list[list[_Any]]] = [[] for _ in range(workers)]
+    for several in sorted({*used} - {()}):
+        share = shares[systems.index(several[-1]) % workers]
+        share += [tests for tests, needed in zip(files, used, strict=True) if needed == several]
+    for tests, needed in zip(files, used, strict=True):
+        if not needed:
+            min(shares, key=len).append(tests)
+    return [[test for tests in share for test in tests] for share in shares]
+
+
+def deal(shares: list[list[_Any]], fast: list[list[_Any]]) -> list[_Any]:
+    """Return these shares of slow tests, and fast files, in an order that keeps all workers busy to the end.
 
     pytest-xdist gives each worker one stretch of the order, all of the same length, and those who have
-    finished take from the end of another's. So each stretch begins with its share of the slow files, and
-    the tests that are moved between workers are fast ones.
+    finished take from the end of another's. So each stretch begins with the worker's share of the slow tests,
+    and the tests that are moved between workers are fast ones.
     """
-    shares = [[test for file in slow[number::workers] for test in file] for number in range(workers)]
     rest = [test for file in fast for test in file]
     left = len(rest) + sum(map(len, shares))
+    order: list[_Any] = []
     for number, share in enumerate(shares):
-        length = left // (workers - number)  # as pytest-xdist divides them
+        length = left // (len(shares) - number)  # as pytest-xdist divides them
         left -= length
         missing = max(0, length - len(share))
-        share += rest[:missing]
+        order += share + rest[:missing]
         del rest[:missing]
-    return [test for share in shares for test in share] + rest
+    return order + rest
+
+
+def _shared_by(tests: list[pytest.Item]) -> set[str]:
+    """Return the names of the shared systems that the tests of a file use."""
+    return {name for test in tests for name in fixtures_of(test) if name in FIXTURES}
 
 
 def _message(report: pytest.TestReport | pytest.CollectReport) -> str:

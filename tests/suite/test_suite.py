@@ -4,7 +4,7 @@ import pytest
 
 from tests.suite import __main__ as suite
 from tests.suite import parts, repeats
-from tests.suite.pytest_plugin import deal
+from tests.suite.pytest_plugin import deal, share_out
 
 CONFTEST = """
 import pytest
@@ -97,20 +97,38 @@ def test_repeats_print_nothing_when_all_passed(tests, capfd):
 
 
 def test_each_worker_begins_with_its_share_of_the_slow_files():
-    slow = [["a1", "a2"], ["b1"], ["c1"]]
+    shares = [["a1", "a2", "c1"], ["b1"]]
     fast = [["d1", "d2", "d3"], ["e1"], ["f1"]]
-    assert deal(slow, fast, 2) == ["a1", "a2", "c1", "d1", "b1", "d2", "d3", "e1", "f1"]
+    assert deal(shares, fast) == ["a1", "a2", "c1", "d1", "b1", "d2", "d3", "e1", "f1"]
 
 
 def test_a_share_of_slow_tests_may_be_longer_than_the_others():
-    assert deal([["a1", "a2", "a3"]], [["b1"]], 2) == ["a1", "a2", "a3", "b1"]
+    assert deal([["a1", "a2", "a3"], []], [["b1"]]) == ["a1", "a2", "a3", "b1"]
+
+
+def test_files_that_use_the_same_shared_system_are_given_to_one_worker():
+    files = [["a1", "a2"], ["map1"], ["b1"], ["both1"], ["scene1"], ["c1"], ["map2"], ["d1"]]
+    shares = share_out(files, 3, _systems_by_name)
+    assert shares == [["map1", "map2", "c1"], ["both1", "scene1", "d1"], ["a1", "a2", "b1"]]
+
+
+def test_files_without_shared_systems_are_divided_equally():
+    files = [["a1", "a2"], ["b1"], ["c1"], ["d1"], ["e1"]]
+    assert share_out(files, 2, _systems_by_name) == [["a1", "a2", "c1", "e1"], ["b1", "d1"]]
+
+
+def _systems_by_name(tests):
+    first = tests[0].rstrip("0123456789")
+    return {"both": ("scene", "map")}.get(first, (first,) if first in ("map", "scene") else ())
 
 
 @pytest.mark.parametrize("workers", [1, 2, 3, 7])
 def test_no_test_is_lost_by_the_dealing(workers):
-    slow = [[f"s{file}{test}" for test in range(file)] for file in range(5)]
+    slow = [[f"{kind}{file}{test}" for test in range(file)] for file in range(5) for kind in ("s", "map")]
+    slow = [file for file in slow if file]
     fast = [[f"f{file}{test}" for test in range(file)] for file in range(8)]
-    assert sorted(deal(slow, fast, workers)) == sorted(test for file in slow + fast for test in file)
+    dealt = deal(share_out(slow, workers, _systems_by_name), fast)
+    assert sorted(dealt) == sorted(test for file in slow + fast for test in file)
 
 
 def test_all_parts_are_run_and_shown_one_after_the_other(tests, monkeypatch, capfd):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import resource
 import socket
 import subprocess
@@ -10,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from semmap.nodes.extern.cli.app import execute
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.kb_node.storage.seed import seed
@@ -24,19 +27,13 @@ BASE = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping"
 
 
 def up(data: Path, *words: str | Path) -> tuple[int, str]:
-    """Return the exit status and the last stderr line of a failing `semmap up`."""
-    command: list[str | Path] = [
-        Path(sys.executable).parent / "semmap",
-        "up",
-        "--data",
-        data,
-        "--listen",
-        free_endpoint(),
-    ]
-    run = subprocess.run([*command, *words], capture_output=True, text=True, timeout=2 * PATIENCE_S)
-    lines = run.stderr.strip().splitlines()
-    assert len(lines) == 1, run.stderr
-    return run.returncode, lines[0]
+    """Run a failing `semmap up` in this process; return its exit status and the last line of stderr."""
+    printed = io.StringIO()
+    with contextlib.redirect_stderr(printed):
+        status = execute(["up", "--data", str(data), "--listen", free_endpoint(), *map(str, words)])
+    lines = printed.getvalue().strip().splitlines()
+    assert len(lines) == 1, printed.getvalue()
+    return status, lines[0]
 
 
 def down(*words: str | Path) -> tuple[int, str]:
@@ -46,6 +43,7 @@ def down(*words: str | Path) -> tuple[int, str]:
     return run.returncode, (run.stdout + run.stderr).strip()
 
 
+@pytest.mark.process
 @pytest.mark.parametrize(
     ("abox", "status", "said"),
     [
@@ -64,6 +62,7 @@ def test_a_bad_abox_stops_the_start_and_leaves_existing_data_alone(tmp_path, abo
     assert not (data / JOURNAL).exists()
 
 
+@pytest.mark.process
 def test_a_fresh_start_that_fails_keeps_the_old_map(tmp_path):
     data, file = tmp_path / "data", tmp_path / "bad.ttl"
     file.write_text("hello")
@@ -78,6 +77,7 @@ def test_a_fresh_start_that_fails_keeps_the_old_map(tmp_path):
     journal.close()
 
 
+@pytest.mark.process
 def test_an_unreadable_map_is_reported_before_the_start(tmp_path):
     (tmp_path / JOURNAL).write_bytes(b"")
     status, line = up(tmp_path)
@@ -85,6 +85,7 @@ def test_an_unreadable_map_is_reported_before_the_start(tmp_path):
     assert "cannot be read" in line
 
 
+@pytest.mark.process
 def test_a_bad_world_is_reported_before_a_map_is_created(tmp_path):
     world = tmp_path / "world.xml"
     world.write_text("<mujoco")
@@ -109,6 +110,7 @@ def test_the_working_directory_does_not_matter_and_another_version_can_stop_it(t
         assert down("--connect", system.endpoint) == (0, "stopped")
 
 
+@pytest.mark.process
 def test_a_port_in_use_is_reported(tmp_path):
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
@@ -130,6 +132,7 @@ def test_too_few_open_files_are_reported(monkeypatch):
     require_files()
 
 
+@pytest.mark.process
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -174,6 +177,7 @@ def test_ontologies_start_with_their_imports_and_notes(tmp_path):
             assert len(client.list("Chair")) == (1 if also is words else 2)
 
 
+@pytest.mark.process
 @pytest.mark.parametrize(
     ("text", "said"),
     [

@@ -24,16 +24,37 @@ def news():
     return queue.SimpleQueue()
 
 
-@pytest.fixture
-def service(flat, news):
-    made = SparqlService(
+def started(flat, news):
+    return SparqlService(
         lambda: flat.reasoner.asserted(),
         news.put,
         derived_changes=flat.all_derived,
         placements=lambda: Placements(placed=flat.placed(), limits=flat.classes.limits),
     )
+
+
+@pytest.fixture
+def service(flat, news):
+    made = started(flat, news)
     yield made
     made.close()
+
+
+@pytest.fixture(scope="module")
+def services():
+    """The service that the tests share that only read, and its map."""
+    kept = []
+    yield kept
+    for _, made in kept:
+        made.close()
+
+
+@pytest.fixture
+def reading(flat, services):
+    """A service for tests that only read. A start takes a second of processor time."""
+    if not services or services[-1][0] is not flat:
+        services.append((flat, started(flat, queue.SimpleQueue())))
+    return services[-1][1]
 
 
 def told(flat, wanted):
@@ -80,8 +101,8 @@ def movable(flat):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_query_has_the_rows_of_relations(flat, service, name):
-    rows = ask(service, flat, ALL.format(name))
+def test_a_query_has_the_rows_of_relations(flat, reading, name):
+    rows = ask(reading, flat, ALL.format(name))
     assert rows == mirrored(flat, name) != set()
     space, by_iri = flat.places.space(), {v.iri(entity.iri): entity.name for entity in flat.entities()}
     for s, o in list(rows)[:20]:
@@ -124,8 +145,8 @@ def test_for_one_object_no_others_are_measured(flat, service, name):
         stir(flat, service, random.Random(number), number, *movable(flat))
 
 
-def test_a_variable_predicate_includes_measured_relations(flat, service):
-    rows = ask(service, flat, "SELECT DISTINCT ?p ?o { :milk1 ?p ?o }")
+def test_a_variable_predicate_includes_measured_relations(flat, reading):
+    rows = ask(reading, flat, "SELECT DISTINCT ?p ?o { :milk1 ?p ?o }")
     assert (
         {o for p, o in rows if p == v.dm("isNear")}
         == {o for s, o in told(flat, "isNear") if s == v.entity_iri("milk1")}
@@ -133,9 +154,9 @@ def test_a_variable_predicate_includes_measured_relations(flat, service):
     )
 
 
-def test_without_inferred_there_are_no_measured_relations(flat, service):
-    assert ask(service, flat, ALL.format("isNear"))
-    asserted = service.ask(Sparql(query=ALL.format("isNear")), flat.seq).result(WAIT_S)
+def test_without_inferred_there_are_no_measured_relations(flat, reading):
+    assert ask(reading, flat, ALL.format("isNear"))
+    asserted = reading.ask(Sparql(query=ALL.format("isNear")), flat.seq).result(WAIT_S)
     assert asserted.rows == ()
 
 
