@@ -59,6 +59,30 @@
     requestAnimationFrame(() => requestAnimationFrame(() => window.dispatchEvent(new Event("scroll"))));
   }
 
+  // Labels for what the libraries draw without one: the attribute, the selector, the text.
+  const LABELS = [
+    ["aria-label", ".q-drawer--left", "Lists"],
+    ["aria-label", ".q-drawer--right", "Details"],
+    ["aria-label", ".sparql-editor .cm-content", "SPARQL query"],
+    ["aria-label", ".q-loading-bar", "Loading"],
+    ["aria-label", ".q-uploader a.q-btn", "Choose a file"],
+    ["aria-label", ".q-uploader__input", "Choose a file"],
+    ["aria-label", ".q-table thead .q-checkbox", "Select all rows"],
+    ["aria-label", ".q-table tbody .q-checkbox", "Select the row"],
+    ["alt", ".semmap-plan img", ""],
+  ];
+
+  function addLabels() {
+    for (const [attribute, selector, text] of LABELS)
+      for (const element of document.querySelectorAll(`${selector}:not([${attribute}])`))
+        element.setAttribute(attribute, text);
+  }
+
+  let labelling = 0;
+  function addLabelsSoon() {
+    if (!labelling) labelling = setTimeout(() => { labelling = 0; addLabels(); }, 100);
+  }
+
   function reportAppearance() {
     emitEvent("semmap_appearance", {
       dark: document.body.classList.contains("body--dark"),
@@ -150,7 +174,9 @@
     new MutationObserver(reportAppearance).observe(document.body, { attributeFilter: ["class"] });
     new MutationObserver(placeLists) // NiceGUI sets a class while a list is open
       .observe(document.documentElement, { attributeFilter: ["class"] });
+    new MutationObserver(addLabelsSoon).observe(document.body, { childList: true, subtree: true });
     window.addEventListener("resize", onResize);
+    addLabels();
     reportAppearance();
     setTimeout(semmapBeginScene, 5000);
   };

@@ -109,7 +109,7 @@ class _Plan:
                 ).tooltip("Save the plan as a file").mark("plan-download")
                 ui.button("Print", icon="print", on_click=self._print).props("dense no-caps flat")
             self._image = ui.interactive_image(on_mouse=self._click, events=["click"], sanitize=False)
-            self._image.classes("w-full semmap-framed").style("background: #fff")
+            self._image.classes("w-full semmap-framed semmap-plan").style("background: #fff")
             self._image.props('role="img" aria-label="Plan of the rooms and the furniture"').mark("plan")
         self._redraw = LazyRedraw(page, self._draw, pause_s=_PAUSE_S)
         page.on_change(self._again)

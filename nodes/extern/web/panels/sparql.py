@@ -62,6 +62,11 @@ class _Sparql:
         self._save.set_enabled(False)
         self._update_examples()
         page.on_change(self._update_examples)
+        page.on_appearance_change(self._update_theme)
+        self._update_theme()
+
+    def _update_theme(self) -> None:
+        self._editor.theme = "vscodeDark" if self._page.dark else "vscodeLight"
 
     def _update_examples(self) -> None:
         """Offer the examples for the map at the moment shown."""
