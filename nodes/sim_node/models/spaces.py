@@ -40,6 +40,14 @@ LEAST_VOLUME = 0.03
 """Share of the bounding box."""
 LEAST_TRAY = 0.004
 """The same, for a drawer."""
+_UPRIGHT = 0.9
+"""The least cosine of the angle to the vertical of an axis that counts as vertical."""
+GAP_M, GAP = 0.1, 0.2
+"""The widest gap between the bars of a wall, such as of a cot, also as a share of the longer side."""
+SHALLOW = 0.15
+"""The least depth of a container as a share of its width; what is in a shallower tray is on it."""
+LEAST_RIM_M = 0.012
+"""The least depth of a tray."""
 VESSEL_WALL_M, VESSEL_WALL = 0.006, 0.1
 """Maximum thickness of the walls around a cavity, also as a share of the least half extent of its part."""
 
@@ -135,10 +143,16 @@ def _is_round(cells: NDArray[np.int64]) -> bool:
 
 
 def _as_thick_as(step: float, part: Part) -> Part:
-    """Return a thin wall made so thick that a line of the grid intersects it."""
-    if part.shape is not Shape.BOX or min(part.half) > step / 2.0:
+    """Return a thin wall or bar made so thick that a line of the grid intersects it.
+
+    Boards and floors keep their heights: only what is thin across the lines is made thicker.
+    """
+    rises = np.abs(rotation_matrix(part.turn)[2]) > _UPRIGHT
+    is_bar = part.shape in (Shape.CYLINDER, Shape.CAPSULE) and rises[2]
+    least = step * (0.71 if is_bar else 0.51)  # a disc meets a point of the grid only if it is this large
+    if min(part.half) > least or not (is_bar or part.shape is Shape.BOX):
         return part
-    x, y, z = (max(extent, 0.51 * step) for extent in part.half)
+    x, y, z = np.where(rises, part.half, np.maximum(part.half, least)).tolist()
     return replace(part, half=(x, y, z))
 
 
@@ -180,7 +194,7 @@ def _up_to_the_lid(tray: Interior, rooms: Iterable[Interior]) -> Interior:
     """Extend a drawer's interior above its sides, up to the part above it when it is closed."""
     x, y, z = tray.high
     lid = max([z, *(room.high[2] for room in rooms if _shared(tray, room) > 0.5 * _volume(tray))])
-    return structs.replace(tray, high=(x, y, lid))
+    return structs.replace(tray, high=(x, y, lid), shallow=False)
 
 
 class _Top(NamedTuple):
@@ -271,9 +285,10 @@ def _interiors(
         with np.errstate(invalid="ignore"):
             solid |= (low[..., None] - rise / 2 <= levels) & (levels <= high[..., None] + rise / 2)
     walled = ~solid
+    bars = 1 + int(min(GAP_M, GAP * step * max(len(xs), len(ys))) / step)
     for axis in (0, 1):
-        walled &= np.logical_or.accumulate(solid, axis=axis)
-        walled &= np.flip(np.logical_or.accumulate(np.flip(solid, axis), axis=axis), axis)
+        wall = _close_gaps(solid, 1 - axis, bars)
+        walled &= _have_before(wall, axis) & np.flip(_have_before(np.flip(wall, axis), axis), axis)
     walled &= np.logical_or.accumulate(solid, axis=2)
     labels, count = ndimage.label(walled)
     found: list[Interior] = []
@@ -286,6 +301,12 @@ def _interiors(
         top = cells[cells[:, 2] == cells[:, 2].max()]
         covered = [solid[i, j, k + 1 :].any() for i, j, k in top] if high[2] < lid else [False]
         floor, lid_m = _floor_and_lid(cuts, cells, float(low[2] * rise), float(high[2] * rise), rise)
+        has_lid = all(covered) and lid_m is not None
+        top_m = float(high[2] * rise) if lid_m is None or not has_lid else lid_m
+        width = float((high - low)[:2].min() * step)
+        shallow = top_m - floor < SHALLOW * width and not has_lid
+        if shallow and top_m - floor < LEAST_RIM_M:
+            continue
         found.append(
             Interior(
                 low=(
@@ -293,23 +314,40 @@ def _interiors(
                     float(ys[0] + (low[1] - 0.5) * step),
                     floor,
                 ),
-                high=(
-                    float(xs[0] + (high[0] - 0.5) * step),
-                    float(ys[0] + (high[1] - 0.5) * step),
-                    lid_m if all(covered) else float(high[2] * rise),
-                ),
+                high=(float(xs[0] + (high[0] - 0.5) * step), float(ys[0] + (high[1] - 0.5) * step), top_m),
                 fill=len(cells) / float(np.prod(high - low)),
                 round=_is_round(cells[:, :2]),
                 open=not all(covered),
+                shallow=shallow,
             )
         )
     return found
 
 
+def _have_before(wall: NDArray[np.bool_], axis: int) -> NDArray[np.bool_]:
+    """Return the cells with a wall before them along an axis; a gap between bars is not before itself."""
+    found = np.roll(np.logical_or.accumulate(wall, axis=axis), 1, axis=axis)
+    np.moveaxis(found, axis, 0)[0] = False
+    return found
+
+
+def _close_gaps(solid: NDArray[np.bool_], axis: int, cells: int) -> NDArray[np.bool_]:
+    """Return solid cells, and those between two of them along an axis that are fewer than `cells`."""
+    from scipy import ndimage  # slow to import
+
+    spare, size = [(0, 0)] * 3, [1] * 3
+    spare[axis], size[axis] = (cells, cells), cells
+    closed = ndimage.binary_closing(np.pad(solid, spare), np.ones(size))  # which needs room at the ends
+    found: NDArray[np.bool_] = closed[
+        tuple(slice(a, n - b) for n, (a, b) in zip(closed.shape, spare, strict=True))
+    ]
+    return found
+
+
 def _floor_and_lid(
     cuts: Intervals, cells: NDArray[np.int64], low_m: float, high_m: float, rise: float
-) -> tuple[float, float]:
-    """Return the exact heights of the solids below and above some free cells."""
+) -> tuple[float, float | None]:
+    """Return the exact heights of the solids below and above some free cells, None without one above."""
     columns = np.unique(cells[:, :2], axis=0)
     ends = np.concatenate([high[columns[:, 0], columns[:, 1]] for _, high in cuts])
     starts = np.concatenate([low[columns[:, 0], columns[:, 1]] for low, _ in cuts])
@@ -317,7 +355,7 @@ def _floor_and_lid(
     above = starts[(starts >= high_m - rise) & (starts <= high_m + 2 * rise)]
     return (
         float(np.median(below)) if below.size else low_m,
-        float(np.median(above)) if above.size else high_m,
+        float(np.median(above)) if above.size else None,
     )
 
 

@@ -112,3 +112,21 @@ def test_the_face_in_a_direction(model, size, turn_deg, corners):
     assert len(found) == corners
     assert min(z for _, _, z in found) == pytest.approx(part.low[2], abs=1e-6)
     assert max(z for _, _, z in found) <= part.low[2] + 0.4 * math.sin(math.radians(5.0))
+
+
+def test_the_outline_of_a_mesh_has_all_its_corners():
+    """An octagon that is not regular, with two corners that are furthest in the same direction."""
+    corners = [
+        (-0.9, -0.3),
+        (-0.5, -0.5),
+        (0.5, -0.5),
+        (0.9, -0.3),
+        (0.9, 0.3),
+        (0.5, 0.5),
+        (-0.5, 0.5),
+        (-0.9, 0.3),
+    ]
+    points = tuple((x, y, z) for x, y in corners for z in (-0.02, 0.02))
+    assert set(make_convex((0.0, 0.0, 0.7), (), (), points).projection) == set(corners)
+    many = [(math.cos(k / 8), math.sin(k / 8), z) for k in range(50) for z in (-0.1, 0.1)]
+    assert len(make_convex((0.0, 0.0, 0.0), (), (), tuple(many)).projection) <= 16
