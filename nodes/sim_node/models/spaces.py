@@ -46,6 +46,8 @@ GAP_M, GAP = 0.1, 0.2
 """The widest gap between the bars of a wall, such as of a cot, also as a share of the longer side."""
 SHALLOW = 0.15
 """The least depth of a container as a share of its width; what is in a shallower tray is on it."""
+RING = 1.5
+"""The least height of a holder as a share of its width: a narrow ring holds what stands below it."""
 LEAST_RIM_M = 0.012
 """The least depth of a tray."""
 VESSEL_WALL_M, VESSEL_WALL = 0.006, 0.1
@@ -294,9 +296,13 @@ def _interiors(
     found: list[Interior] = []
     for label in range(1, count + 1):
         cells = np.argwhere(labels == label)
-        if len(cells) < least * walled.size:
-            continue
         low, high = cells.min(axis=0), cells.max(axis=0) + 1
+        low[2] -= (reach := _reach_below(solid, cells))
+        if (high - low)[2] * rise < RING * (high - low)[:2].max() * step:
+            low[2] += reach  # not a holder
+        filled = len(cells) * (high - low)[2] / (high[2] - cells[:, 2].min())
+        if filled < least * walled.size:
+            continue
         lid = solid[cells[:, 0], cells[:, 1]].shape[1]
         top = cells[cells[:, 2] == cells[:, 2].max()]
         covered = [solid[i, j, k + 1 :].any() for i, j, k in top] if high[2] < lid else [False]
@@ -315,13 +321,23 @@ def _interiors(
                     floor,
                 ),
                 high=(float(xs[0] + (high[0] - 0.5) * step), float(ys[0] + (high[1] - 0.5) * step), top_m),
-                fill=len(cells) / float(np.prod(high - low)),
+                fill=float(filled / np.prod(high - low)),
                 round=_is_round(cells[:, :2]),
                 open=not all(covered),
                 shallow=shallow,
             )
         )
     return found
+
+
+def _reach_below(solid: NDArray[np.bool_], cells: NDArray[np.int64]) -> int:
+    """Return the number of free levels between most of some free cells and the solids below them."""
+    lowest = np.full(solid.shape[:2], LEVELS)
+    np.minimum.at(lowest, tuple(cells[:, :2].T), cells[:, 2])
+    columns = tuple(np.unique(cells[:, :2], axis=0).T)
+    below = solid[columns] & (np.arange(LEVELS) < lowest[columns][:, None])
+    floor = LEVELS - 1 - np.argmax(below[:, ::-1], axis=1)
+    return int(np.median(lowest[columns] - 1 - floor))
 
 
 def _have_before(wall: NDArray[np.bool_], axis: int) -> NDArray[np.bool_]:

@@ -343,3 +343,21 @@ def test_a_shallow_room_with_a_lid_is_not_a_tray():
     closed = shape_of(assemble("box", [*parts, slab(0.4, 0.3, 0.03, 0.035, GREY)], 1.0))
     cart = shape_of(assemble("cart", [*parts, slab(0.4, 0.3, 0.3, 0.32, GREY)], 1.0))
     assert [room.shallow for shape in (closed, cart) for room in shape.interiors] == [False, True]
+
+
+def ring(wide, height, rail):
+    """Return a floor with four posts and a ring at their tops."""
+    half, level = wide / 2, height - rail / 2
+    posts = [rod(0.01, height, (x, y, height / 2), GREY) for x in (-half, half) for y in (-half, half)]
+    rails = [box((wide, 0.02, rail), (0.0, y, level), GREY) for y in (-half, half)]
+    rails += [box((0.02, wide, rail), (x, 0.0, level), GREY) for x in (-half, half)]
+    return assemble("ring", [slab(wide + 0.02, wide + 0.02, 0.0, 0.02, GREY), *posts, *rails], 5.0)
+
+
+def test_a_narrow_ring_holds_what_stands_in_it_down_to_the_floor():
+    (room,) = shape_of(ring(0.24, 0.5, 0.03)).interiors
+    assert (room.low[2], room.high[2]) == pytest.approx((0.02, 0.5), abs=0.01)
+
+
+def test_the_canopy_of_a_bed_holds_nothing():
+    assert all(room.low[2] > 1.8 for room in shape_of(ring(1.6, 2.0, 0.1)).interiors)
