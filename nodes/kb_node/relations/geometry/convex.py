@@ -116,6 +116,23 @@ class Convex:
                 return tuple(corners)
         return tuple(hull([self._find_furthest(x, y) for x, y in _COMPASS]))
 
+    def find_heights(self, point: Point) -> tuple[float, float]:
+        """Return the heights at which a vertical line enters and leaves the part [m].
+
+        They are exact for boxes, such as a slope of a roof, else those of the whole part.
+        """
+        low, high = self.low[2], self.high[2]
+        if len(self.straight) != 3 or self.round or self.points:
+            return low, high
+        cx, cy, cz = self.centre
+        x, y = point[0] - cx, point[1] - cy
+        for vx, vy, vz in self.straight:
+            if abs(vz) > _LEVEL:
+                square = vx * vx + vy * vy + vz * vz
+                ends = [cz + (side * square - x * vx - y * vy) / vz for side in (-1.0, 1.0)]
+                low, high = max(low, min(ends)), min(high, max(ends))
+        return low, high
+
     def _find_furthest(self, nx: float, ny: float) -> Point:
         """Return the point on the floor plan that is furthest in a direction."""
         x, y, _ = self.centre

@@ -503,9 +503,9 @@ def beneath(lower: Solid, upper: Solid, limits: Thresholds) -> Measure | None:
         return None
     if not overlap(lower.bounds, upper.bounds):
         return None
-    if upper.highest_bottom < lower.lowest_top - limits.touch_m:
+    if upper.top < lower.lowest_top - limits.touch_m:
         return None
-    if len(lower.parts) == len(upper.parts) == 1:
+    if len(lower.parts) == len(upper.parts) == 1 and lower.is_level and upper.is_level:
         if upper.bottom < lower.top - limits.touch_m:
             return None
         (one,), (other,) = lower.parts, upper.parts
@@ -529,14 +529,14 @@ def _compute_covered_footprint(lower: Solid, upper: Solid, limits: Thresholds) -
     points = _sample_footprint(smaller)
     tops, bottoms = _list_parts_over(lower, smaller.bounds), _list_parts_over(upper, smaller.bounds)
     lowest = min([part.high[2] for part in tops], default=math.inf) - limits.touch_m
-    bottoms = [part for part in bottoms if part.low[2] >= lowest]
+    bottoms = [part for part in bottoms if part.high[2] >= lowest]
     gaps = list[tuple[float, float]]()
     for point in points:
         below, above = _list_parts_at(tops, point), _list_parts_at(bottoms, point)
         if not (below and above):
             continue
-        top = max([part.high[2] for part in below])
-        over = [part.low[2] for part in above if part.low[2] >= top - limits.touch_m]
+        top = max([part.find_heights(point)[1] for part in below])
+        over = [low for part in above if (low := part.find_heights(point)[0]) >= top - limits.touch_m]
         if over:
             gaps.append((min(over) - top, min(over)))
     if not gaps:
