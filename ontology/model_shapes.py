@@ -40,7 +40,8 @@ class Interior(Struct, frozen=True, kw_only=True, omit_defaults=True):
     Seen from above, a `round` one is the ellipse in the rectangle of its box, such as that of a bowl.
     `behind` are the joints whose leaves close it: it is closed while all of them are closed. `carried_by` is
     the joint that it moves with, such as that of a drawer; "" for a static interior. A `filled` one is solid
-    in the simulator, such as that of a cup, so nothing can be placed in it there.
+    in the simulator, such as that of a cup, so nothing can be placed in it there. A `shallow` one, such as
+    that of a tray, contains nothing: things are on it.
     """
 
     low: Corner
@@ -51,6 +52,7 @@ class Interior(Struct, frozen=True, kw_only=True, omit_defaults=True):
     behind: tuple[str, ...] = ()
     carried_by: str = ""
     filled: bool = False
+    shallow: bool = False
 
     @property
     def is_sealed(self) -> bool:

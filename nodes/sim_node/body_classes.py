@@ -117,11 +117,13 @@ class BodyClasses:
         keys = (_without_separators(name), _without_separators(class_from_name(name) or ""))
         return next((self._map[key] for key in keys if key and key in self._map), None)
 
-    def is_separate(self, name: str, found: Found, whole: Found) -> bool:
+    def is_separate(self, name: str, found: Found, whole_name: str, whole: Found, *, moves: bool) -> bool:
         """Return whether a nested body is an entity, and not only a part of the body `whole` around it.
 
         It is one if its class is stated, or certain and not that of a part, as a door is of a cupboard but
-        not of a house. A link of a robot is a part.
+        not of a house. A link of a robot is a part. So is a body with a name that begins with that of the
+        whole, if it `moves` on its frame or has the same class. A door or drawer that moves on the frame of
+        something unknown is also a part.
         """
         if found.is_stated:
             return True
@@ -131,10 +133,21 @@ class BodyClasses:
         if not {"robot", "link"}.isdisjoint(word.lower() for word in _WORD.findall(name)):
             return False
         around = self._classes.get(whole.class_ or "") if whole.is_sure else None
-        if around is None or not _OF_BUILDINGS.isdisjoint((around.name, *around.ancestors)):
+        if around is not None and not _OF_BUILDINGS.isdisjoint((around.name, *around.ancestors)):
             return True
+        if (moves or found.class_ == whole.class_) and self._begins_with(name, whole_name):
+            return False
         is_part = not self._words["parts"].isdisjoint((class_.name, *class_.ancestors))
+        if around is None:
+            return not (moves and is_part)
         return around.name != "Robot" and not is_part
+
+    def _begins_with(self, name: str, whole: str) -> bool:
+        """Return whether a name has the words of a whole first: `cabinet_1_tray`, `cabinet_1_main`."""
+        words, its = ([word.lower() for word in _CHUNK.findall(text)] for text in (name, whole))
+        while its and its[-1] in self._words["technical"]:
+            del its[-1]
+        return bool(its) and words[: len(its)] == its
 
     def _meaning(self, text: str) -> _Item | None:
         """Return the class that an expression names, or None if it names no class."""

@@ -110,10 +110,30 @@ def test_the_class_map_overrides_a_word():
     ],
 )
 def test_a_nested_body_is_an_entity_if_its_class_is_certain_and_not_a_part(name, whole, is_entity):
-    found = household().find(name)
-    assert household().is_separate(name, found, household().find(whole)) is is_entity
+    found, around = household().find(name), household().find(whole)
+    assert household().is_separate(name, found, whole, around, moves=False) is is_entity
+
+
+@pytest.mark.parametrize(
+    ("name", "whole", "moves", "is_entity"),
+    [
+        ("dresser_drawer_1", "Dresser_HEMNES", True, False),
+        ("dresser_drawer_1", "Dresser_HEMNES", False, True),
+        ("drawer_unit_tray_0", "drawer_unit", True, False),
+        ("mug_2", "drawer_unit", True, True),
+        ("wooden_cabinet_1_cabinet_top", "wooden_cabinet_1_main", True, False),
+        ("cabinet_1_base", "cabinet_1", False, False),
+        ("cabinet_2", "cabinet_1", False, True),
+        ("cabinet_10", "cabinet_1", False, True),
+    ],
+)
+def test_a_body_named_after_its_whole_is_a_part_of_it(name, whole, moves, is_entity):
+    found, around = household().find(name), household().find(whole)
+    assert household().is_separate(name, found, whole, around, moves=moves) is is_entity
 
 
 def test_a_nested_body_of_the_class_map_is_an_entity():
     mapped = BodyClasses(household_classes(), {"door": "Door"})
-    assert mapped.is_separate("door", mapped.find("door"), mapped.find("wardrobe_1"))
+    assert mapped.is_separate(
+        "door", mapped.find("door"), "wardrobe_1", mapped.find("wardrobe_1"), moves=True
+    )

@@ -49,7 +49,10 @@ def nested_boxes() -> ForeignWorld:
 
 def laundry() -> ForeignWorld:
     """A washing machine with a round door at its front, a dryer on it, an ironing board and baskets."""
-    machine = case((0.6, 0.6, 0.85), wall=0.06)
+    front = sum_of(box((0.04, 0.02, 0.73), (x, -0.29, 0.06)) for x in (-0.22, 0.22)) + sum_of(
+        box((0.4, 0.02, height), (0, -0.29, z)) for z, height in ((0.06, 0.24), (0.7, 0.09))
+    )
+    machine = case((0.6, 0.6, 0.85), wall=0.06) + front
     door = box((0.4, 0.02, 0.4), (0, 0, 0.2)) + tube(0.1, 0.005, (0, 0, 0.0))
     board = (
         box((0.35, 1.1, 0.03), (0, 0, 0.85))

@@ -223,7 +223,7 @@ def shop_shelf() -> ForeignWorld:
             free("water_pack", (0.3, 0.05, 0.12), box((0.3, 0.2, 0.3))),
             free("bread_loaf", (0.25, 0.05, 0.52), box((0.28, 0.12, 0.1))),
             free("shopping_cart", (1.5, 0, 0), trolley),
-            free("melon", (1.45, 0, 0.31), ball(0.1)),
+            free("melon", (1.45, 0, 0.31), box((0.2, 0.2, 0.2))),
             free("magazine", (1.55, 0.15, 0.31), BOOK),
             free("price_scanner", (0.1, 0.05, 1.32), box((0.1, 0.05, 0.04))),
             free("lemon_lost", (0.2, -0.5, 0), LEMON),

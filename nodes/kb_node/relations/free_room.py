@@ -208,6 +208,8 @@ class _Search:
                 f"{name} is solid in the simulator, so nothing can be placed in it;"
                 f" state it with: semmap set {self._name} isInside {name}"
             )
+        if self._placing == "in" and self._target.form.shape.interiors:
+            return f"{name} is shallow, so things are on it; use --on {name}"
         return f"{name} has no {'interior' if self._placing == 'in' else 'level surface'}"
 
     def describe_failure(self, size: Size) -> str:

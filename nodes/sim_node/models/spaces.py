@@ -40,6 +40,16 @@ LEAST_VOLUME = 0.03
 """Share of the bounding box."""
 LEAST_TRAY = 0.004
 """The same, for a drawer."""
+_UPRIGHT = 0.9
+"""The least cosine of the angle to the vertical of an axis that counts as vertical."""
+GAP_M, GAP = 0.1, 0.2
+"""The widest gap between the bars of a wall, such as of a cot, also as a share of the longer side."""
+SHALLOW = 0.15
+"""The least depth of a container as a share of its width; what is in a shallower tray is on it."""
+RING = 1.5
+"""The least height of a holder as a share of its width: a narrow ring holds what stands below it."""
+LEAST_RIM_M = 0.012
+"""The least depth of a tray."""
 VESSEL_WALL_M, VESSEL_WALL = 0.006, 0.1
 """Maximum thickness of the walls around a cavity, also as a share of the least half extent of its part."""
 
@@ -135,10 +145,16 @@ def _is_round(cells: NDArray[np.int64]) -> bool:
 
 
 def _as_thick_as(step: float, part: Part) -> Part:
-    """Return a thin wall made so thick that a line of the grid intersects it."""
-    if part.shape is not Shape.BOX or min(part.half) > step / 2.0:
+    """Return a thin wall or bar made so thick that a line of the grid intersects it.
+
+    Boards and floors keep their heights: only what is thin across the lines is made thicker.
+    """
+    rises = np.abs(rotation_matrix(part.turn)[2]) > _UPRIGHT
+    is_bar = part.shape in (Shape.CYLINDER, Shape.CAPSULE) and rises[2]
+    least = step * (0.71 if is_bar else 0.51)  # a disc meets a point of the grid only if it is this large
+    if min(part.half) > least or not (is_bar or part.shape is Shape.BOX):
         return part
-    x, y, z = (max(extent, 0.51 * step) for extent in part.half)
+    x, y, z = np.where(rises, part.half, np.maximum(part.half, least)).tolist()
     return replace(part, half=(x, y, z))
 
 
@@ -180,7 +196,7 @@ def _up_to_the_lid(tray: Interior, rooms: Iterable[Interior]) -> Interior:
     """Extend a drawer's interior above its sides, up to the part above it when it is closed."""
     x, y, z = tray.high
     lid = max([z, *(room.high[2] for room in rooms if _shared(tray, room) > 0.5 * _volume(tray))])
-    return structs.replace(tray, high=(x, y, lid))
+    return structs.replace(tray, high=(x, y, lid), shallow=False)
 
 
 class _Top(NamedTuple):
@@ -271,21 +287,32 @@ def _interiors(
         with np.errstate(invalid="ignore"):
             solid |= (low[..., None] - rise / 2 <= levels) & (levels <= high[..., None] + rise / 2)
     walled = ~solid
+    bars = 1 + int(min(GAP_M, GAP * step * max(len(xs), len(ys))) / step)
     for axis in (0, 1):
-        walled &= np.logical_or.accumulate(solid, axis=axis)
-        walled &= np.flip(np.logical_or.accumulate(np.flip(solid, axis), axis=axis), axis)
+        wall = _close_gaps(solid, 1 - axis, bars)
+        walled &= _have_before(wall, axis) & np.flip(_have_before(np.flip(wall, axis), axis), axis)
     walled &= np.logical_or.accumulate(solid, axis=2)
     labels, count = ndimage.label(walled)
     found: list[Interior] = []
     for label in range(1, count + 1):
         cells = np.argwhere(labels == label)
-        if len(cells) < least * walled.size:
-            continue
         low, high = cells.min(axis=0), cells.max(axis=0) + 1
+        low[2] -= (reach := _reach_below(solid, cells))
+        if (high - low)[2] * rise < RING * (high - low)[:2].max() * step:
+            low[2] += reach  # not a holder
+        filled = len(cells) * (high - low)[2] / (high[2] - cells[:, 2].min())
+        if filled < least * walled.size:
+            continue
         lid = solid[cells[:, 0], cells[:, 1]].shape[1]
         top = cells[cells[:, 2] == cells[:, 2].max()]
         covered = [solid[i, j, k + 1 :].any() for i, j, k in top] if high[2] < lid else [False]
         floor, lid_m = _floor_and_lid(cuts, cells, float(low[2] * rise), float(high[2] * rise), rise)
+        has_lid = all(covered) and lid_m is not None
+        top_m = float(high[2] * rise) if lid_m is None or not has_lid else lid_m
+        width = float((high - low)[:2].min() * step)
+        shallow = top_m - floor < SHALLOW * width and not has_lid
+        if shallow and top_m - floor < LEAST_RIM_M:
+            continue
         found.append(
             Interior(
                 low=(
@@ -293,23 +320,50 @@ def _interiors(
                     float(ys[0] + (low[1] - 0.5) * step),
                     floor,
                 ),
-                high=(
-                    float(xs[0] + (high[0] - 0.5) * step),
-                    float(ys[0] + (high[1] - 0.5) * step),
-                    lid_m if all(covered) else float(high[2] * rise),
-                ),
-                fill=len(cells) / float(np.prod(high - low)),
+                high=(float(xs[0] + (high[0] - 0.5) * step), float(ys[0] + (high[1] - 0.5) * step), top_m),
+                fill=float(filled / np.prod(high - low)),
                 round=_is_round(cells[:, :2]),
                 open=not all(covered),
+                shallow=shallow,
             )
         )
     return found
 
 
+def _reach_below(solid: NDArray[np.bool_], cells: NDArray[np.int64]) -> int:
+    """Return the number of free levels between most of some free cells and the solids below them."""
+    lowest = np.full(solid.shape[:2], LEVELS)
+    np.minimum.at(lowest, tuple(cells[:, :2].T), cells[:, 2])
+    columns = tuple(np.unique(cells[:, :2], axis=0).T)
+    below = solid[columns] & (np.arange(LEVELS) < lowest[columns][:, None])
+    floor = LEVELS - 1 - np.argmax(below[:, ::-1], axis=1)
+    return int(np.median(lowest[columns] - 1 - floor))
+
+
+def _have_before(wall: NDArray[np.bool_], axis: int) -> NDArray[np.bool_]:
+    """Return the cells with a wall before them along an axis; a gap between bars is not before itself."""
+    found = np.roll(np.logical_or.accumulate(wall, axis=axis), 1, axis=axis)
+    np.moveaxis(found, axis, 0)[0] = False
+    return found
+
+
+def _close_gaps(solid: NDArray[np.bool_], axis: int, cells: int) -> NDArray[np.bool_]:
+    """Return solid cells, and those between two of them along an axis that are fewer than `cells`."""
+    from scipy import ndimage  # slow to import
+
+    spare, size = [(0, 0)] * 3, [1] * 3
+    spare[axis], size[axis] = (cells, cells), cells
+    closed = ndimage.binary_closing(np.pad(solid, spare), np.ones(size))  # which needs room at the ends
+    found: NDArray[np.bool_] = closed[
+        tuple(slice(a, n - b) for n, (a, b) in zip(closed.shape, spare, strict=True))
+    ]
+    return found
+
+
 def _floor_and_lid(
     cuts: Intervals, cells: NDArray[np.int64], low_m: float, high_m: float, rise: float
-) -> tuple[float, float]:
-    """Return the exact heights of the solids below and above some free cells."""
+) -> tuple[float, float | None]:
+    """Return the exact heights of the solids below and above some free cells, None without one above."""
     columns = np.unique(cells[:, :2], axis=0)
     ends = np.concatenate([high[columns[:, 0], columns[:, 1]] for _, high in cuts])
     starts = np.concatenate([low[columns[:, 0], columns[:, 1]] for low, _ in cuts])
@@ -317,7 +371,7 @@ def _floor_and_lid(
     above = starts[(starts >= high_m - rise) & (starts <= high_m + 2 * rise)]
     return (
         float(np.median(below)) if below.size else low_m,
-        float(np.median(above)) if above.size else high_m,
+        float(np.median(above)) if above.size else None,
     )
 
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from semmap.nodes.sim_node.bodies import BodyRecord, Floats, pose_of
 from semmap.nodes.sim_node.body_classes import BodyClasses, Found
 from semmap.nodes.sim_node.physics.build import COLLISION_GROUP, IMPEDANCE
+from semmap.nodes.sim_node.physics.entity_bodies import find_entities
 from semmap.nodes.sim_node.physics.joint_texts import (
     CLOSED_TEXT,
     ENDS,
@@ -187,31 +188,28 @@ def bodies_of(
 ) -> dict[str, BodyRecord]:
     """Return the world's own bodies by the names of their entities, with the classes that `classes` finds.
 
-    These are all named bodies on the top level, and nested ones whose class is declared or certain. A joint
-    belongs to the body that it moves, or else to its nearest parent body.
+    `find_entities` tells them from their parts. A joint belongs to the body that it moves, or else to its
+    nearest parent body.
     """
     model, data = compiled
-    classes, declared = classes or BodyClasses(), _declared(spec)
     ends = JointTexts.of(spec)
     switches = {joint for joint in range(model.njnt) if ends.is_switch(model, joint)}
     follow = coupled_joints(model, switches)  # a burner coupled to a knob opens nothing
-    records: dict[str, BodyRecord] = {}
+    records: dict[int, BodyRecord] = {}
     taken = {body.name for body in spec.bodies if is_name(body.name)}
-    found: dict[str, Found] = {"": Found(None, is_sure=False)}
-    owner = [""] * model.nbody
-    for number in range(1, model.nbody):  # parents have lower numbers than their parts
-        body, whole = model.body(number).name, int(model.body_parentid[number])
-        owner[number] = owner[whole]
-        stated = declared.get(body)
-        is_of = Found(stated, is_sure=True, is_stated=True) if stated else classes.find(body)
-        if body and (whole == 0 or classes.is_separate(body, is_of, found[owner[whole]])):
+    owner, found = find_entities(model, classes or BodyClasses(), _declared(spec))
+    for number, whose in enumerate(owner):
+        if number in found:
+            body = model.body(number).name
             name = body if is_name(body) else valid_name(body, taken)
             taken.add(name)
-            records[name] = _record(model, data, spec.body(body), name, is_of, owner[whole])
-            owner[number], found[name] = name, is_of
-        if owner[number] and model.body_jntnum[number]:
-            _give_joints(records[owner[number]], model, number, ends, switches, follow)
-    return records
+            whole = records.get(owner[model.body_parentid[number]])
+            records[number] = _record(
+                model, data, spec.body(body), name, found[number], whole.name if whole else ""
+            )
+        if whose and model.body_jntnum[number]:
+            _give_joints(records[whose], model, number, ends, switches, follow)
+    return {record.name: record for record in records.values()}
 
 
 def ignored(spec: mujoco.MjSpec) -> list[str]:

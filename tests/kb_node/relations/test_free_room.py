@@ -129,6 +129,7 @@ def test_what_moves_with_it_takes_up_no_room():
     [
         ("on", "kitchen1", "kitchen1 is a place; for its floor use --in kitchen1"),
         ("in", "table1", "table1 has no interior"),
+        ("in", "tray1", "tray1 is shallow, so things are on it; use --on tray1"),
         ("on", "lost1", "lost1 has no position, so nothing can be placed on it; first: semmap update lost1"),
         ("in", "ghost1", "the size of ghost1 is unknown; set it with: semmap update ghost1 --size X Y Z"),
         ("on", "fallen1", "fallen1 is tilted, so nothing can be placed on it"),
@@ -136,7 +137,8 @@ def test_what_moves_with_it_takes_up_no_room():
 )
 def test_where_nothing_can_be_placed_the_reason_is_given(placing, target, reason):
     fallen = thing("fallen1", (3.0, 3.0, 0.0), "table", turn=(math.cos(0.7), math.sin(0.7), 0.0, 0.0))
-    space = Space([ROOM, TABLE, fallen, thing("ghost1", (1.0, 1.0, 0.0), "unheard of")])
+    tray, ghost = thing("tray1", (2.0, 0.0, 0.0)), thing("ghost1", (1.0, 1.0, 0.0), "unheard of")
+    space = Space([ROOM, TABLE, fallen, tray, ghost])
     with pytest.raises(Refused) as error:
         put(space, placing, target)
     assert error.value.text.startswith(reason)
@@ -154,7 +156,11 @@ SOLID = {"cup", "espresso_cup", "glass", "small_glass", "tall_glass", "tumbler"}
     name for name in KINDS if any(part.cavity for part in build(name, None).parts)
 }
 """Models whose colliding parts fill their interior: drinking vessels, and those with a cavity."""
-HOLLOW = [name for name, shape in SHAPES.items() if shape.get("interiors")]
+HOLLOW = [
+    name
+    for name, shape in SHAPES.items()
+    if not all(interior.get("shallow") for interior in shape.get("interiors", ()))
+]
 
 
 @pytest.mark.parametrize("model", [name for name in HOLLOW if name not in SOLID])

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from semmap.nodes.sim_node.models.forms import hollow_box, slab
+from semmap.nodes.sim_node.models.forms import GREY, hollow_box, slab
 from semmap.nodes.sim_node.models.library import assemble, build
 from semmap.nodes.sim_node.models.parts import (
     UPRIGHT,
@@ -309,3 +309,55 @@ def test_an_edge_is_too_small_to_carry():
     assert [round(top.height, 3) for top in shape(base, knob).surfaces] == [0.1]
     larger = box((0.2, 0.2, 0.1), (0.3, 0.3, 0.15), RED)
     assert [round(top.height, 3) for top in shape(base, larger).surfaces] == [0.2, 0.1]
+
+
+def cot(gap_m):
+    """Return a floor with bars on all sides, this far apart."""
+    places = [(x, y) for x in np.arange(-0.5, 0.51, gap_m) for y in (-0.3, 0.3)]
+    places += [(x, y) for x in (-0.5, 0.5) for y in np.arange(-0.3, 0.31, gap_m)]
+    bars = [rod(0.006, 0.5, (float(x), float(y), 0.27), GREY) for x, y in places]
+    return assemble("cot", [slab(1.02, 0.62, 0.0, 0.02, GREY), *bars], 5.0)
+
+
+def test_bars_close_together_are_walls():
+    (room,) = shape_of(cot(0.1)).interiors
+    assert room.low[2] == pytest.approx(0.02)
+    assert room.high == pytest.approx((0.5, 0.3, 0.52), abs=0.03)
+    assert shape_of(cot(0.2)).interiors == ()
+
+
+def test_a_thin_floor_is_where_it_is():
+    (room,) = shape_of(assemble("drawer", hollow_box(0.6, 0.4, 0.15, 0.003, GREY), 1.0)).interiors
+    assert room.low[2] == pytest.approx(0.003)
+
+
+@pytest.mark.parametrize(("height_m", "is_shallow"), [(0.03, True), (0.1, False)])
+def test_a_tray_is_shallow(height_m, is_shallow):
+    (room,) = shape_of(assemble("tray", hollow_box(0.4, 0.3, height_m, 0.005, GREY), 1.0)).interiors
+    assert room.shallow == is_shallow
+
+
+def test_a_shallow_room_with_a_lid_is_not_a_tray():
+    """A tray below another board is one, but not a flat box that the board closes."""
+    parts = hollow_box(0.4, 0.3, 0.03, 0.005, GREY)
+    closed = shape_of(assemble("box", [*parts, slab(0.4, 0.3, 0.03, 0.035, GREY)], 1.0))
+    cart = shape_of(assemble("cart", [*parts, slab(0.4, 0.3, 0.3, 0.32, GREY)], 1.0))
+    assert [room.shallow for shape in (closed, cart) for room in shape.interiors] == [False, True]
+
+
+def ring(wide, height, rail):
+    """Return a floor with four posts and a ring at their tops."""
+    half, level = wide / 2, height - rail / 2
+    posts = [rod(0.01, height, (x, y, height / 2), GREY) for x in (-half, half) for y in (-half, half)]
+    rails = [box((wide, 0.02, rail), (0.0, y, level), GREY) for y in (-half, half)]
+    rails += [box((0.02, wide, rail), (x, 0.0, level), GREY) for x in (-half, half)]
+    return assemble("ring", [slab(wide + 0.02, wide + 0.02, 0.0, 0.02, GREY), *posts, *rails], 5.0)
+
+
+def test_a_narrow_ring_holds_what_stands_in_it_down_to_the_floor():
+    (room,) = shape_of(ring(0.24, 0.5, 0.03)).interiors
+    assert (room.low[2], room.high[2]) == pytest.approx((0.02, 0.5), abs=0.01)
+
+
+def test_the_canopy_of_a_bed_holds_nothing():
+    assert all(room.low[2] > 1.8 for room in shape_of(ring(1.6, 2.0, 0.1)).interiors)

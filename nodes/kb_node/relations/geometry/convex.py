@@ -89,7 +89,10 @@ class Convex:
 
     @lazy_property
     def projection(self) -> tuple[Point, ...]:
-        """Return the outline on the floor plan, counterclockwise. Round shapes become octagons."""
+        """Return the outline on the floor plan, counterclockwise. Round shapes become octagons.
+
+        So do hulls of many corners.
+        """
         cx, cy, _ = self.centre
         flat = [v for v in self.straight if abs(v[0]) > _LEVEL or abs(v[1]) > _LEVEL]
         if len(flat) == 2 and not self.round and not self.points:
@@ -107,7 +110,28 @@ class Convex:
             if ax * by < ay * bx:
                 bx, by = -bx, -by
             return tuple((cx + c * ax + s * bx, cy + c * ay + s * by) for c, s in OCTAGON)
+        if self.points and not (self.straight or self.round):
+            corners = hull([(cx + x, cy + y) for x, y, _ in self.points])
+            if len(corners) <= _MOST_CORNERS:
+                return tuple(corners)
         return tuple(hull([self._find_furthest(x, y) for x, y in _COMPASS]))
+
+    def find_heights(self, point: Point) -> tuple[float, float]:
+        """Return the heights at which a vertical line enters and leaves the part [m].
+
+        They are exact for boxes, such as a slope of a roof, else those of the whole part.
+        """
+        low, high = self.low[2], self.high[2]
+        if len(self.straight) != 3 or self.round or self.points:
+            return low, high
+        cx, cy, cz = self.centre
+        x, y = point[0] - cx, point[1] - cy
+        for vx, vy, vz in self.straight:
+            if abs(vz) > _LEVEL:
+                square = vx * vx + vy * vy + vz * vz
+                ends = [cz + (side * square - x * vx - y * vy) / vz for side in (-1.0, 1.0)]
+                low, high = max(low, min(ends)), min(high, max(ends))
+        return low, high
 
     def _find_furthest(self, nx: float, ny: float) -> Point:
         """Return the point on the floor plan that is furthest in a direction."""
@@ -177,6 +201,7 @@ def translate(part: Convex, by: Vector) -> Convex:
 
 
 _LEVEL = 1e-6
+_MOST_CORNERS = 16
 _COMPASS = tuple((math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8))
 _EQUAL_AREA = math.sqrt(math.pi / (2.0 * math.sqrt(2.0)))
 """Scales the corners of an octagon so that it has the area of the disc."""

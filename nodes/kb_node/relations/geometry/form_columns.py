@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from semmap.nodes.kb_node.relations.geometry.fitting import box, model_shape, need_quarter_turn, turn_quarter
 from semmap.nodes.kb_node.relations.geometry.forms import LOWEST_M, Form
-from semmap.ontology.model_shapes import ConvexPart, Corner, ModelShape
+from semmap.ontology.model_shapes import ConvexPart, Corner, Interior, ModelShape
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -163,8 +163,8 @@ class FormColumns(Extents):
         """Add the rows of the forms with this shape, stretched and turned."""
         rotation = self.rotation[of]
         stretch = self.size[of] / np.array(shape.size_m)
-        if shape.interiors:
-            hollows.add(of, _hollows(shape, stretch, rotation))
+        if containers := [interior for interior in shape.interiors if not interior.shallow]:
+            hollows.add(of, _hollows(containers, stretch, rotation))
         if not shape.parts:
             return
         made = [_parts(alike, stretch, rotation) for alike in _alike(shape.parts)]
@@ -323,13 +323,13 @@ def _added(few: Floats) -> Floats:
     return sum(np.moveaxis(few, 2, 0), start=np.zeros((*few.shape[:2], *few.shape[3:])))
 
 
-def _hollows(shape: ModelShape, stretch: Floats, rotation: Floats) -> list[Floats]:
-    """Return (N, H, ...) columns of `Hollows` for (N, 3) stretches of one shape."""
-    low = stretch[:, None, :] * np.array([hollow.low for hollow in shape.interiors])
-    high = stretch[:, None, :] * np.array([hollow.high for hollow in shape.interiors])
+def _hollows(containers: Sequence[Interior], stretch: Floats, rotation: Floats) -> list[Floats]:
+    """Return (N, H, ...) columns of `Hollows` for (N, 3) stretches of the interiors of one shape."""
+    low = stretch[:, None, :] * np.array([hollow.low for hollow in containers])
+    high = stretch[:, None, :] * np.array([hollow.high for hollow in containers])
     middle, half = (low + high) / 2, (high - low) / 2
     vectors = (middle * [1.0, 1.0, 0.0], half * [1.0, 0.0, 0.0], half * [0.0, 1.0, 0.0])
     walls = [_turned(vector, rotation)[:, :, :2] for vector in vectors]
-    kinds = [(float(hollow.is_sealed), float(hollow.round)) for hollow in shape.interiors]
+    kinds = [(float(hollow.is_sealed), float(hollow.round)) for hollow in containers]
     flags = [np.broadcast_to(kind, low.shape[:2]) for kind in np.array(kinds).T]
     return [low[:, :, 2], high[:, :, 2], *walls, *flags]

@@ -14,7 +14,7 @@ from semmap.nodes.kb_node.relations.geometry.convex import Convex, make_convex
 from semmap.nodes.kb_node.relations.geometry.fitting import fit_model
 from semmap.nodes.kb_node.relations.geometry.lazy_property import lazy_property
 from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions, open_shape
-from semmap.ontology.model_shapes import ModelShape
+from semmap.ontology.model_shapes import Interior, ModelShape
 from semmap.schemas import errors
 from semmap.schemas.entities import IDENTITY, Quaternion, Size, Vector
 from semmap.schemas.polygons import Polygon, read_wkt
@@ -137,11 +137,16 @@ class Form:
         return mid_x - half_x, mid_y - half_y, mid_x + half_x, mid_y + half_y
 
     @lazy_property
+    def hollows(self) -> tuple[Interior, ...]:
+        """Return the interiors that can contain something, in its own frame."""
+        return tuple([hollow for hollow in self.shape.interiors if not hollow.shallow])
+
+    @lazy_property
     def hollow_bounds(self) -> tuple[Vector, Vector] | None:
         """Return the lowest and highest corner of the box around its hollows, or None without one."""
         corners = [
             self.turned((x, y, z))
-            for hollow in self.shape.interiors
+            for hollow in self.hollows
             for x, y, z in product(*zip(hollow.low, hollow.high, strict=True))
         ]
         if not corners:
@@ -152,7 +157,7 @@ class Form:
     @lazy_property
     def is_sealed(self) -> bool:
         """Return whether nothing can get into it from outside, although it has a hollow."""
-        return all(hollow.is_sealed for hollow in self.shape.interiors)
+        return all(hollow.is_sealed for hollow in self.hollows)
 
     @lazy_property
     def is_square(self) -> bool:

@@ -111,8 +111,8 @@ class Solid:
 
     @property
     def hollows(self) -> tuple[Interior, ...]:
-        """Return its interiors, in its own frame."""
-        return self.form.shape.interiors if self.is_measured else ()
+        """Return the interiors that can contain something, in its own frame."""
+        return self.form.hollows if self.is_measured else ()
 
     def outline_of(self, hollow: Interior) -> list[Point]:
         """Return the walls of one of its hollows on the floor plan. Those of a round one are an octagon."""

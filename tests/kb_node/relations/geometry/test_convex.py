@@ -112,3 +112,31 @@ def test_the_face_in_a_direction(model, size, turn_deg, corners):
     assert len(found) == corners
     assert min(z for _, _, z in found) == pytest.approx(part.low[2], abs=1e-6)
     assert max(z for _, _, z in found) <= part.low[2] + 0.4 * math.sin(math.radians(5.0))
+
+
+def test_the_outline_of_a_mesh_has_all_its_corners():
+    """An octagon that is not regular, with two corners that are furthest in the same direction."""
+    corners = [
+        (-0.9, -0.3),
+        (-0.5, -0.5),
+        (0.5, -0.5),
+        (0.9, -0.3),
+        (0.9, 0.3),
+        (0.5, 0.5),
+        (-0.5, 0.5),
+        (-0.9, 0.3),
+    ]
+    points = tuple((x, y, z) for x, y in corners for z in (-0.02, 0.02))
+    assert set(make_convex((0.0, 0.0, 0.7), (), (), points).projection) == set(corners)
+    many = [(math.cos(k / 8), math.sin(k / 8), z) for k in range(50) for z in (-0.1, 0.1)]
+    assert len(make_convex((0.0, 0.0, 0.0), (), (), tuple(many)).projection) <= 16
+
+
+def test_the_underside_of_a_slope_is_where_the_line_enters_it():
+    """A board of 2 m by 1 m by 4 cm that rises by 45 degrees along x."""
+    r = math.sqrt(0.5)
+    board = make_convex((0.0, 0.0, 2.0), ((r, 0.0, r), (0.0, 0.5, 0.0), (-0.02 * r, 0.0, 0.02 * r)), ())
+    half = 0.02 / r
+    assert board.find_heights((0.3, 0.1)) == pytest.approx((2.3 - half, 2.3 + half))
+    assert board.find_heights((-0.5, 0.0)) == pytest.approx((1.5 - half, 1.5 + half))
+    assert box((0.0, 0.0, 0.5), (0.2, 0.2, 0.1), 0.3).find_heights((0.0, 0.0)) == pytest.approx((0.5, 0.6))

@@ -11,6 +11,7 @@ from semmap.nodes.kb_node.relations.measuring.arrangement import (
     measure_next_to,
 )
 from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.ontology import model_shapes
 from tests.kb_node.relations.entities import ROOM, TABLE, TOP, thing
 
 WALL = thing("wall1", (0.0, 2.0, 0.0), size=(0.1, 4.0, 2.5), turn=(0.7071068, 0.0, 0.0, 0.7071068))
@@ -93,3 +94,34 @@ def test_a_chair_half_beneath_a_table_is_beneath_it_by_its_seat():
     assert 0.5 < made.share < 1.0
     assert 0.0 < made.gap_m < 0.4
     assert made.height_m < TOP
+
+
+def test_only_parts_are_above_not_the_box_around_them():
+    """A lamp on a bent arm is above what is under its shade, and not above the rest of its box."""
+
+    def shape(*boxes):
+        return model_shapes.ModelShape(
+            size_m=(1.0, 1.0, 2.0),
+            parts=tuple(
+                model_shapes.ConvexPart(centre=at, straight=((x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)))
+                for at, (x, y, z) in boxes
+            ),
+        )
+
+    pole, arm = ((-0.45, -0.45, 0.9), (0.01, 0.01, 0.9)), ((0.0, -0.45, 1.8), (0.5, 0.01, 0.01))
+    shade = ((0.4, -0.4, 1.7), (0.1, 0.1, 0.05))
+    lamp = model_shapes.WorldShapes.of({"lamp1": shape(pole, arm, shade), "rail1": shape(arm)})
+    model_shapes.exchange_world(lamp)
+    try:
+        for name, at, width, is_below in (
+            ("lamp1", (0.4, -0.4), 0.2, True),
+            ("lamp1", (0.3, 0.3), 0.2, False),
+            ("lamp1", (-0.45, -0.45), 0.2, False),
+            ("rail1", (0.0, 0.0), 1.1, True),
+        ):
+            whole = thing(name, (0.0, 0.0, 0.0), "", size=(1.0, 1.0, 2.0))
+            there = Space([whole, thing("box1", (*at, 0.0), "", size=(width, width, 0.2))])
+            made = measures.beneath(there.solids["box1"], there.solids[name], there.limits)
+            assert (made is not None and made.holds) == is_below, (name, at)
+    finally:
+        model_shapes.exchange_world(model_shapes.WorldShapes())

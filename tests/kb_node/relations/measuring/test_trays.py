@@ -101,3 +101,12 @@ def test_a_temporary_detachment_restores_the_support():
         ]
     assert space.spatial_relations(space.solids["tray1"]).supports == ()
     assert [other.name for other, _ in space.spatial_relations(space.solids["cup1"]).supports] == ["tray1"]
+
+
+@pytest.mark.parametrize(("low", "tray"), [("newspaper", "tray1"), ("phone", "tray1")])
+def test_flat_objects_in_a_tray_are_on_it(low, tray):
+    """Although most of their volume is below its rim."""
+    things = on_tray(0.0, model=low)
+    assert carriers(f"{low}1", things) == [tray]
+    assert Space(things).spatial_relations(Space(things).solids[f"{low}1"]).container is None
+    require_alike([ROOM, *things])
