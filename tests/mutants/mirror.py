@@ -33,18 +33,21 @@ def find_own_tests(root: Path, module: str) -> OwnTests:
     folders above, up to `tests/a`. If there is none either, they are the files of the nearest folder that has
     any, with the one that is named like the folder: `tests/a/b/test_*.py` and `tests/a/test_b.py`.
 
-    Wider tests are those of the folder, and those below `tests/a` that import the module.
+    Wider tests are those of the folder, those of the folders above it below `tests/a`, and all those below
+    `tests/a` that import the module.
     """
     path = PurePosixPath(module)
     folders = _folders(path)
-    nearest = _tests_of_folder(root, folders)
+    near = {folder: found for folder in folders if (found := _list_tests(root, folder))}
+    nearest, *above = (*near.values(), ()) if folders[-1] not in near else near.values()
+    above = above[:-1]  # those of the whole node take too long
     importing = tuple(file for file in _find_importers(root, folders[-1], _dotted(path)))
     name = path.parent.name if path.stem == "__init__" else path.stem
     for folder in folders:
         own = f"{folder}/test_{name}.py"
         if (root / own).is_file():
-            return OwnTests((own,), True, _without((own,), nearest, importing))
-    return OwnTests(nearest, False, _without(nearest, importing))
+            return OwnTests((own,), True, _without((own,), nearest, *above, importing))
+    return OwnTests(nearest, False, _without(nearest, *above, importing))
 
 
 def _folders(module: PurePosixPath) -> list[PurePosixPath]:
@@ -54,15 +57,11 @@ def _folders(module: PurePosixPath) -> list[PurePosixPath]:
     return [PurePosixPath("tests", *inside[:end]) for end in range(len(inside), 0, -1)]
 
 
-def _tests_of_folder(root: Path, folders: list[PurePosixPath]) -> tuple[str, ...]:
-    """The files of the first folder that has any."""
-    for folder in folders:
-        near = sorted((root / folder).glob("test_*.py")) if (root / folder).is_dir() else []
-        named = root / folder.parent / f"test_{folder.name}.py"
-        found = [*near, *([named] if named.is_file() else [])]
-        if found:
-            return tuple(p.relative_to(root).as_posix() for p in found)
-    return ()
+def _list_tests(root: Path, folder: PurePosixPath) -> tuple[str, ...]:
+    """The files of a folder, with the one above it that is named like it."""
+    named = root / folder.parent / f"test_{folder.name}.py"
+    found = [*sorted((root / folder).glob("test_*.py")), *([named] if named.is_file() else [])]
+    return tuple(path.relative_to(root).as_posix() for path in found)
 
 
 def _without(first: tuple[str, ...], *wider: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:

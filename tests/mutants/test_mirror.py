@@ -57,5 +57,12 @@ def test_a_module_of_a_similar_name_is_not_the_module(root, line):
     assert find_own_tests(root, "nodes/a/b/other.py").wider == ()
 
 
+def test_those_of_folders_above_come_next_but_not_those_of_the_whole_node(root):
+    (root / "tests" / "a" / "b" / "c").mkdir()
+    (root / "tests" / "a" / "b" / "c" / "test_e.py").touch()
+    own = OwnTests(("tests/a/b/c/test_e.py",), True, (("tests/a/b/test_d.py", "tests/a/test_b.py"),))
+    assert find_own_tests(root, "nodes/a/b/c/e.py") == own
+
+
 def test_tests_of_other_nodes_are_not_taken(root):
     assert find_own_tests(root, "nodes/e/c.py").files == ()
