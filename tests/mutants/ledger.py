@@ -35,6 +35,6 @@ class Ledger:
 
     def _key(self, mutant: Mutant, tests: OwnTests) -> str:
         digest = hashlib.sha256(f"{mutant.path}\0{mutant.code}".encode())
-        for file in tests.files:
+        for file in (file for group in tests.groups for file in group):
             digest.update((self._root / file).read_bytes())
         return digest.hexdigest()

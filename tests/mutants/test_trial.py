@@ -39,6 +39,18 @@ def test_a_change_that_a_test_notices_is_killed_and_another_survives(root, tmp_p
     assert (tmp_path / "copy" / "nodes" / "a" / "twice.py").read_text() == CODE
 
 
+def test_a_change_that_the_mirrored_tests_miss_is_tried_against_those_of_the_folder(root, tmp_path):
+    line = "from package.nodes.a.twice import twice"
+    (root / "tests" / "a" / "test_other.py").write_text(
+        f"{line}\n\ndef test_it():\n    assert twice(3) == 6\n"
+    )
+    copy = Copy(root, tmp_path / "copy")
+    tests = find_own_tests(root, "nodes/a/twice.py")
+    assert tests.groups == (("tests/a/test_twice.py",), ("tests/a/test_other.py",))
+    assert copy.try_mutant(_mutant("2 + x"), tests) == KILLED
+    assert copy.try_mutant(_mutant("x + x"), tests) == SURVIVED
+
+
 def test_tests_that_fail_without_a_change_are_reported(root, tmp_path):
     _write_test(root, "assert twice(2) == 5")
     copy = Copy(root, tmp_path / "copy")

@@ -40,6 +40,21 @@ def test_code_that_does_something_is_changed(code):
     assert not is_within(_position(code), find_untouched(code))
 
 
+@pytest.mark.parametrize(
+    ("code", "is_left"),
+    [
+        ("@dataclass(frozen=True)\nclass C: pass", True),
+        ("@dataclass(slots=True)\nclass C: pass", True),
+        ("class C(Struct, frozen=True): pass", True),
+        ("class C(Struct, kw_only=True): pass", False),
+        ("@dataclass(eq=True)\nclass C: pass", False),
+    ],
+)
+def test_whether_a_class_is_frozen_or_has_slots_is_left_to_mypy(code, is_left):
+    position = (1, code.splitlines()[0].index("True"))
+    assert is_within(position, find_untouched(code)) == is_left
+
+
 def _position(code):
     """Line and column of the `|`."""
     line = next(i for i, text in enumerate(code.splitlines(), 1) if "|" in text)

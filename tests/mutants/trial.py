@@ -42,31 +42,34 @@ class Copy:
 
     def try_mutant(self, mutant: Mutant, tests: OwnTests) -> str:
         """Return what came of a mutant: one of the outcomes."""
-        if not tests.files:
-            return NO_TEST
-        outcome, seconds, words = self._baseline(tests)
-        if outcome != SURVIVED:
-            return outcome
-        with self._changed(mutant):
-            return _OUTCOMES.get(self._run(words, max(_SHORTEST_S, _SLOWER * seconds)), KILLED)
+        come = NO_TEST
+        for files in tests.groups:
+            outcome, seconds, words = self._baseline(files, tests.is_mirrored and files == tests.files)
+            if outcome == SURVIVED:
+                with self._changed(mutant):
+                    outcome = _OUTCOMES.get(self._run(words, max(_SHORTEST_S, _SLOWER * seconds)), KILLED)
+            if outcome not in (SURVIVED, NO_TEST):
+                return outcome
+            come = SURVIVED if SURVIVED in (come, outcome) else NO_TEST
+        return come
 
-    def _baseline(self, tests: OwnTests) -> tuple[str, float, tuple[str, ...]]:
+    def _baseline(self, files: tuple[str, ...], is_mirrored: bool) -> tuple[str, float, tuple[str, ...]]:
         """What comes of the unchanged code, how long it takes, and with which words for pytest.
 
         Tests on the wire are left out, unless a module's own are nothing but that.
         """
-        if tests.files in self._baselines:
-            return self._baselines[tests.files]
-        for marks in (_PURE, "not long") if tests.is_mirrored else (_PURE,):
-            words = ("-m", marks, *tests.files)
+        if files in self._baselines:
+            return self._baselines[files]
+        for marks in (_PURE, "not long") if is_mirrored else (_PURE,):
+            words = ("-m", marks, *files)
             began_s = time.monotonic()
             status = self._run(words, _LONGEST_S)
             if status != _NONE_COLLECTED:
                 break
         outcome = {0: SURVIVED, _NONE_COLLECTED: NO_TEST}.get(status or 0, BROKEN)
         outcome = BROKEN if status is None else outcome
-        self._baselines[tests.files] = outcome, time.monotonic() - began_s, words
-        return self._baselines[tests.files]
+        self._baselines[files] = outcome, time.monotonic() - began_s, words
+        return self._baselines[files]
 
     @contextlib.contextmanager
     def _changed(self, mutant: Mutant) -> Iterator[None]:

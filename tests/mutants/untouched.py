@@ -18,8 +18,8 @@ _IDLE_DECORATORS = {"cache", "lru_cache", "override", "final", "overload", "runt
 def find_untouched(code: str) -> list[Span]:
     """Return the spans that are left as they are.
 
-    These are annotations, format strings, logging, assertions, type aliases, idle decorators, and blocks
-    for type checkers or for a module that is run as a program.
+    These are annotations, format strings, logging, assertions, type aliases, idle decorators, whether classes
+    are frozen or have slots, and blocks for type checkers or for a module that is run as a program.
     """
     lines = code.splitlines()
     module = ast.parse(code)
@@ -40,6 +40,8 @@ def _untouched(node: ast.AST) -> Iterator[ast.stmt | ast.expr]:
             yield node
         case ast.Call() if _first_name(node.func) in _LOGGERS:
             yield node
+        case ast.keyword(arg="frozen" | "slots", value=ast.Constant() as value):  # mypy checks them
+            yield value
         case ast.If() if _is_guard(node):
             yield node.test
             yield from node.body

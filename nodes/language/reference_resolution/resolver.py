@@ -46,21 +46,15 @@ _TIE_M: Final = 0.015
 """Distances and heights that differ by less count as equal."""
 _INTO: Final = ("connects", "separates")
 """An object that leads into a place also counts as in it: the kitchen door."""
-_COST: Final = {
-    Unknown: 0,
-    Quality: 1,
-    State: 1,
-    Owned: 1,
-    Called: 1,
-    OneOf: 0,
-    FromViewer: 2,
-    Affords: 1,
-    Sized: 2,
-    Of: 3,
-    Among: 4,
-    Related: 4,
-    Has: 5,
-}
+_CHEAPEST_FIRST: Final = (
+    (Unknown, OneOf),
+    (Quality, State, Owned, Called, Affords),
+    (FromViewer, Sized),
+    (Of,),
+    (Among, Related),
+    (Has,),
+)
+_COST: Final = {kind: cost for cost, kinds in enumerate(_CHEAPEST_FIRST) for kind in kinds}
 
 Names = tuple[str, ...]
 

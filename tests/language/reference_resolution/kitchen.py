@@ -72,42 +72,48 @@ SIZES = {"cup1": 0.1, "cup2": 0.1, "cup3": 0.2}
 
 
 class Written:
-    """A MapGeometry with given relations."""
+    """A MapGeometry with given positions, sizes and relations; the viewer looks along x."""
+
+    at, holds, viewer = AT, HOLDS, "anna"
+    sizes = {name: (extent,) * 3 for name, extent in SIZES.items()}  # noqa: RUF012
 
     def __init__(self, has_viewer=False):
         self.has_viewer = has_viewer
 
     def related(self, relation, name, other):
-        return (relation, name, other) in HOLDS
+        return (relation, name, other) in self.holds
 
     def between(self, one, other):
         return frozenset(("cup2",) if {one, other} == {"cup1", "glasses1"} else ())
 
     def position(self, name):
-        return AT.get(name)
+        return self.at.get(name)
 
     def size(self, name):
-        return (SIZES[name],) * 3 if name in SIZES else None
+        return self.sizes.get(name)
 
     def distance(self, name, other):
-        return math.dist(AT[name][:2], AT[other][:2])
+        return math.dist(self.at[name][:2], self.at[other][:2])
 
     def distance_from_viewer(self, name):
-        return self.distance(name, "anna")
+        return self.distance(name, self.viewer)
 
     def bearing(self, name):
         if not self.has_viewer:
             raise errors.BadRequest("there is no viewer")
-        return math.atan2(AT[name][1], AT[name][0] + 3)
+        (x, y, _), (from_x, from_y, _) = self.at[name], self.at[self.viewer]
+        return math.atan2(y - from_y, x - from_x)
 
     def holds_anything(self, name):
-        return any(other == name for _, _, other in HOLDS)
+        return any(other == name for _, _, other in self.holds)
 
     def is_on_floor(self, name):
-        return AT[name][2] == 0
+        return self.at[name][2] == 0
 
     def spatial_relations(self, name):
-        return tuple((r, other) for r, one, other in sorted(HOLDS) if one == name and other != "kitchen1")
+        places = ("kitchen1", "livingroom1", "bedroom1")
+        given = sorted(self.holds)
+        return tuple((r, other) for r, one, other in given if one == name and other not in places)
 
 
 def known():
