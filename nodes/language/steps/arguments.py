@@ -52,7 +52,7 @@ class ArgumentReader(CorrectionReader):
                 and (excluded := self._np.read_excluded(i + self._np.exclusion(i)))
             ):
                 objects[-1].exclude(excluded)
-                i = excluded[-1].end
+                i = self._excluded_end(clause, excluded)
             elif words[i] == "but" and (excluded := self._np.read_excluded(i + 1)):
                 if objects and (
                     objects[-1].all_of
@@ -121,6 +121,18 @@ class ArgumentReader(CorrectionReader):
                 i = end
         self._finish(clause)
         return i
+
+    def _excluded_end(self, clause: Clause, excluded: list[NounPhrase]) -> int:
+        """Return where an exception ends; a source after it is its own: not the one FROM THE SHELF."""
+        last = excluded[-1]
+        length = self._g.match("from", self._words, last.end)
+        other = self._np.read(last.end + length) if length and clause.role("Source") is not None else None
+        if other is None:
+            return last.end
+        preposition = " ".join(self._words[last.end : other.first])
+        last.places.append(PlacePhrase(preposition, other, last.end, other.end))
+        last.end = other.end
+        return last.end
 
     def _quantifies(self, i: int, length: int) -> bool:
         """Return whether an expression of manner at `i` is a determiner there: a little water."""
