@@ -40,6 +40,9 @@ class ArgumentReader(CorrectionReader):
                 return self._gapped(clause, j)
             elif (phrase := self._next_place(clause, j)) is not None:
                 i = self._coordinate(clause, j - 1, phrase)
+            elif words[i] in ("each", "apiece") and self._t.is_mark(i + 1):
+                clause.roles.append(Role("Manner", i, i + 1, i))
+                i += 1
             elif words[i] == "using":
                 end = self._clause_end(i)
                 self.found.unused.append(self._t.between(i, end))
@@ -167,6 +170,12 @@ class ArgumentReader(CorrectionReader):
 
     def _add_object(self, clause: Clause, objects: list[NounPhrase], phrase: NounPhrase) -> None:
         """Add an object: of two, the first is the receiver (bring me the cup)."""
+        led = clause.role("Cotheme") if clause.frame == "Guiding" and len(objects) == 2 else None
+        is_given = led is not None and phrase.kind == "thing" and not self._is_person(phrase)
+        if led is not None and is_given and self._g.verbs.get((clause.verb.lower(),)) in self._g.persons:
+            clause.frame, led.role = "Bringing", "Beneficiary"  # bring Anna and Ben a cup
+            clause.roles.append(Role("Theme", phrase.first, phrase.end, phrase.head, [phrase]))
+            return
         roles = self._g.frames[clause.frame].roles
         role = roles.get("object") or roles.get("place") or "Theme"
         if phrase.kind == "here" and ("object" not in roles or clause.role(role) is not None):
@@ -193,7 +202,8 @@ class ArgumentReader(CorrectionReader):
             and "receiver" in roles
             and (self._is_person(objects[0]) or objects[0].kind in ("pronoun", "speaker", "robot"))
             and (first := clause.role(role)) is not None
-            and first.phrases[-1] is objects[0]
+            and objects[0] in first.phrases
+            and not self._is_person(phrase)
         ):
             first.role = roles["receiver"]
             if clause.frame == "Taking":  # get me a drink
