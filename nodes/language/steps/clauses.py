@@ -285,7 +285,7 @@ class ClauseReader(MessageReader):
                 return self._told(clause, j)
             case "Inspecting" if (state := self._stated(j)) is not None:  # make sure the fridge is closed
                 end = self._clause_end(state.end)
-                if state.amount.is_none:  # make sure nobody is there
+                if state.amount.is_none:  # make sure no person is there
                     clause.roles.append(Role("Desired_state", j, end, j))
                     return end
                 clause.roles.append(Role("Ground", j, state.end, state.head, [state]))
