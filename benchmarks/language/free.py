@@ -42,7 +42,10 @@ class Judged(NamedTuple):
 
 
 def judge(command: dict[str, Any], understood: Understood) -> Judged:
-    """Compare what is understood of a command with what is expected. A condition or time alone does not count as one."""
+    """Compare what is understood of a command with what is expected.
+
+    The doubt that a step has a condition or a time does not count as a sign.
+    """
     doubts = [doubt for doubt in understood.doubts if not re.search(" is a (condition|time); ", doubt)]
     signals = bool(doubts or understood.unknown or understood.question)
     is_right = [step.text for step in understood.steps] == command["steps"] and signals == command["signal"]
