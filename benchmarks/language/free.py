@@ -26,7 +26,7 @@ _STRUCTURE_TEXT: Final = (
     "your could would please can will may might should do does did not if so just now then there "
     "here with for from by as me my i we us have has had like want need make sure go ahead mind how "
     "about great kind was wondering try first second finally after before okay hey um uh buddy let "
-    "shall well actually wait sorry no rather mean meant him forget right think know able somebody "
+    "shall well actually wait sorry no rather mean meant him forget right think know able "
     "job task thanks again only keep her them he she they one any some all"
 )
 _STRUCTURE: Final = frozenset(_STRUCTURE_TEXT.split())
@@ -42,7 +42,10 @@ class Judged(NamedTuple):
 
 
 def judge(command: dict[str, Any], understood: Understood) -> Judged:
-    """Compare what is understood of a command with what is expected. A condition or time alone is no sign."""
+    """Compare what is understood of a command with what is expected.
+
+    The doubt that a step has a condition or a time does not count as a sign.
+    """
     doubts = [doubt for doubt in understood.doubts if not re.search(" is a (condition|time); ", doubt)]
     signals = bool(doubts or understood.unknown or understood.question)
     is_right = [step.text for step in understood.steps] == command["steps"] and signals == command["signal"]

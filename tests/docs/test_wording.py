@@ -23,6 +23,7 @@ QUOTED = frozenset(
         "tests/docs/test_wording.py",
         "tests/kb_node/answers/test_entity_search.py",  # what a person may type
         "tests/language/steps/test_commands.py",
+        "tests/language/steps/test_free_wording.py",
         "nodes/language/steps/clause_starts.py",
         "nodes/language/steps/noun_phrase.py",
         "nodes/language/steps/pronoun_reader.py",

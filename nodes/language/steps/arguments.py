@@ -40,6 +40,9 @@ class ArgumentReader(CorrectionReader):
                 return self._gapped(clause, j)
             elif (phrase := self._next_place(clause, j)) is not None:
                 i = self._coordinate(clause, j - 1, phrase)
+            elif words[i] in ("each", "apiece") and self._t.is_mark(i + 1):
+                clause.roles.append(Role("Manner", i, i + 1, i))
+                i += 1
             elif words[i] == "using":
                 end = self._clause_end(i)
                 self.found.unused.append(self._t.between(i, end))
@@ -52,7 +55,7 @@ class ArgumentReader(CorrectionReader):
                 and (excluded := self._np.read_excluded(i + self._np.exclusion(i)))
             ):
                 objects[-1].exclude(excluded)
-                i = excluded[-1].end
+                i = self._excluded_end(clause, excluded)
             elif words[i] == "but" and (excluded := self._np.read_excluded(i + 1)):
                 if objects and (
                     objects[-1].all_of
@@ -122,6 +125,18 @@ class ArgumentReader(CorrectionReader):
         self._finish(clause)
         return i
 
+    def _excluded_end(self, clause: Clause, excluded: list[NounPhrase]) -> int:
+        """Return where an exception ends; a source after it is its own: not the one FROM THE SHELF."""
+        last = excluded[-1]
+        length = self._g.match("from", self._words, last.end)
+        other = self._np.read(last.end + length) if length and clause.role("Source") is not None else None
+        if other is None:
+            return last.end
+        preposition = " ".join(self._words[last.end : other.first])
+        last.places.append(PlacePhrase(preposition, other, last.end, other.end))
+        last.end = other.end
+        return last.end
+
     def _quantifies(self, i: int, length: int) -> bool:
         """Return whether an expression of manner at `i` is a determiner there: a little water."""
         phrase = self._np.read(i) if self._g.match("determiner", self._words, i) else None
@@ -155,6 +170,12 @@ class ArgumentReader(CorrectionReader):
 
     def _add_object(self, clause: Clause, objects: list[NounPhrase], phrase: NounPhrase) -> None:
         """Add an object: of two, the first is the receiver (bring me the cup)."""
+        led = clause.role("Cotheme") if clause.frame == "Guiding" and len(objects) == 2 else None
+        is_given = led is not None and phrase.kind == "thing" and not self._is_person(phrase)
+        if led is not None and is_given and self._g.verbs.get((clause.verb.lower(),)) in self._g.persons:
+            clause.frame, led.role = "Bringing", "Beneficiary"  # bring Anna and Ben a cup
+            clause.roles.append(Role("Theme", phrase.first, phrase.end, phrase.head, [phrase]))
+            return
         roles = self._g.frames[clause.frame].roles
         role = roles.get("object") or roles.get("place") or "Theme"
         if phrase.kind == "here" and ("object" not in roles or clause.role(role) is not None):
@@ -181,7 +202,8 @@ class ArgumentReader(CorrectionReader):
             and "receiver" in roles
             and (self._is_person(objects[0]) or objects[0].kind in ("pronoun", "speaker", "robot"))
             and (first := clause.role(role)) is not None
-            and first.phrases[-1] is objects[0]
+            and objects[0] in first.phrases
+            and not self._is_person(phrase)
         ):
             first.role = roles["receiver"]
             if clause.frame == "Taking":  # get me a drink

@@ -37,6 +37,7 @@ _BEFORE_VERB: Final = frozenset(
     )
 )
 """Words after which a verb begins no clause."""
+_BEFORE_PLACE: Final = ("place", "to", "from")
 _AFTER_VERB: Final = ("to", "from", "place", "about", "here", "question", "direction")
 """Classes of expressions that may follow the verb of a command."""
 
@@ -187,6 +188,7 @@ class ClauseBoundaries(ClauseStarts):
 
     def _mention_all(self, i: int, end: int, *, only_persons: bool = False) -> None:
         """Note the things and persons from `i` to before `end`, to which a later pronoun may refer."""
+        start = len(self.found.context)
         while i < end:
             is_verb = self._g.verb(self._words, i)[0] and not self._np.is_known(i, i + 1)
             phrase = None if is_verb else self._np.read(i)
@@ -197,9 +199,14 @@ class ClauseBoundaries(ClauseStarts):
             is_counted = bool(phrase.determiner or phrase.quantity is not None or phrase.is_plural)
             is_thing = bool(phrase.key and is_counted) and not only_persons
             others = [place.other for place in phrase.places if place.other.key and not only_persons]
-            if (phrase.kind == "person" or is_name or is_thing) and not phrase.amount.is_none:
+            is_meant = (phrase.kind == "person" or is_name or is_thing) and not phrase.amount.is_none
+            if is_meant:
                 others.append(phrase)  # the last one, to which a pronoun refers first
-            self.found.context += ((len(self.found.clauses), other) for other in others)
+            mentions = [(len(self.found.clauses), other) for other in others]
+            if not is_meant or any(self._g.match(kind, self._words, i - 1) for kind in _BEFORE_PLACE):
+                self.found.context[start:start] = mentions  # the cup belongs on the desk: IT is the cup
+            else:
+                self.found.context += mentions
             i = phrase.end
 
     def _add_condition(self, clause: Clause, i: int, end: int) -> None:

@@ -179,7 +179,8 @@ class ClauseReader(MessageReader):
 
     def _dislocated(self, i: int) -> NounPhrase | None:
         """Return the object before its clause, which has a pronoun for it: the towel, bring IT to Anna."""
-        if i and not self._t.is_mark(i - 1):
+        is_verb = self._g.verb(self._words, i)[0] > 0 and not self._np.is_known(i, i + 1)
+        if (i and not self._t.is_mark(i - 1)) or is_verb:  # meet Anna, ask her to leave
             return None
         phrase = self._np.read(i)
         if phrase is None or not phrase.key or self._words[phrase.end : phrase.end + 1] != (",",):
@@ -284,7 +285,7 @@ class ClauseReader(MessageReader):
                 return self._told(clause, j)
             case "Inspecting" if (state := self._stated(j)) is not None:  # make sure the fridge is closed
                 end = self._clause_end(state.end)
-                if state.amount.is_none:  # make sure nobody is there
+                if state.amount.is_none:  # make sure no person is there
                     clause.roles.append(Role("Desired_state", j, end, j))
                     return end
                 clause.roles.append(Role("Ground", j, state.end, state.head, [state]))

@@ -161,7 +161,7 @@ class Meanings(EntityTests):
             is_unknown = not (excluded.alike or other.key or excluded.is_person or other.attributes)
             if is_unknown and not other.noun.endswith(("one", "ones")):
                 meaning.doubts.append(f"'{other.noun}' is not known")
-            if not excluded.names and (excluded.alike or not other.key):
+            if not excluded.names and not other.places and (excluded.alike or not other.key):
                 is_open = True  # the map cannot tell which one is broken
             if other is not phrase.excluded[0] and set(excluded.names).isdisjoint(meaning.alike):
                 text = self._t.between(other.first, other.end)

@@ -32,6 +32,9 @@ class MessageReader(QuestionReader):
                 )
                 and (phrase.kind == "speaker" or self._is_person(phrase) or phrase.kind == "pronoun")
                 and phrase.kind != "robot"
+                and not (
+                    phrase.noun in ("it", "that", "this") and words[phrase.end : phrase.end + 1] == ("to",)
+                )
                 and self._words[i : i + 1] not in (("what",), ("which",))
             ):
                 clause.roles.append(Role("Addressee", i, phrase.end, phrase.head, [phrase]))

@@ -85,7 +85,8 @@ class NounPhraseReader(PronounReader):
         if self._words[i] not in ("'s", "'"):
             return False
         following = self._words[i + 1] if i + 1 < len(self._words) else ","
-        is_place = self._g.match("place", self._words, i + 1) or self._g.is_a(following, "posture")
+        is_place = self._g.match("place", self._words, i + 1) > 0
+        is_place = is_place or (not self._t.is_mark(i + 1) and self.is_participle(i + 1))
         return not (self._t.is_mark(i + 1) or is_place or self._g.is_a(following, "determiner"))
 
     def _owned(self, owner: NounPhrase, first: int, with_places: bool) -> NounPhrase:

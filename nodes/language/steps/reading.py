@@ -274,8 +274,8 @@ class _StepReader:
     def _there(self, text: str, head: str, number: int) -> Filler:
         """Return the filler for *there*: the last place that was mentioned."""
         before = (m for m in reversed(self._mentions) if m.step != number)
-        place = next((m for m in before if m.is_place or self._is_somewhere(m)), None)
-        if place is not None and not place.is_place:  # someone in the hall is waving, go THERE
+        place = next((m for m in before if self._is_where(m) or self._is_somewhere(m)), None)
+        if place is not None and not self._is_where(place):  # someone in the hall is waving, go THERE
             names = next(r.entities for r in self._places_of(place) if r.entities)
             return Filler(text, head, names)
         if place is None:
@@ -283,6 +283,11 @@ class _StepReader:
             return Filler(text, head)
         refers = Antecedent(place.step, place.role) if place.step else None
         return Filler(text, head, place.filler.entities, place.filler.description, refers)
+
+    def _is_where(self, mention: Mention) -> bool:
+        """Return whether a mention denotes a place, by its class, its role or the preposition before it."""
+        first = 0 if mention.phrase is None else mention.phrase.first
+        return mention.is_place or (first > 0 and self._g.match("place", self._t.words, first - 1) > 0)
 
     def _places_of(self, mention: Mention) -> tuple[PlaceRelation, ...]:
         description = mention.filler.description
