@@ -26,6 +26,8 @@ class Health(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """For the knowledge base: the number of the last commit, by which subscribers detect missed commits."""
     digest: str = ""
     """The digest of the last commit, by which subscribers detect forged commits."""
+    shapes_ns: int = 0
+    """For the knowledge base: the time at which relations last changed without a commit, by new shapes."""
     ignored: int = 0
     """The number of invalid messages since its start."""
     notes: tuple[str, ...] = ()

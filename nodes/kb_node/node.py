@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
@@ -40,6 +40,7 @@ _FETCHED_S = 0.05
 """Period of the check whether the map is still being fetched [s]."""
 _ROOM_PERIOD_S = 1.0
 """Period of the check whether a full disk has space again [s]."""
+_PUBLISHED_AT_ONCE = 100
 CHECKPOINT_DELAY_S = 3.0
 """Delay after a very large commit, which other nodes fetch first."""
 
@@ -146,10 +147,21 @@ class KnowledgeBase:
         self.map.clean_up()
 
     def _on_shapes(self, names: Collection[str]) -> None:
-        """Pass on shapes, and relations that have changed without a commit."""
+        """Pass on shapes, and relations that have changed without a commit.
+
+        Nodes with a replica of the map fetch it again, page by page.
+        """
+        self._node.note_shapes()
         self._sparql.reload()
         self._location_queries.follow(self.map.seq, names)
-        self._publisher.publish_entities(filter(None, map(self.map.find, names)))
+        self._publish_some(sorted(names))
+
+    def _publish_some(self, names: Sequence[str]) -> None:
+        """Publish entities whose relations have changed, some at a time between other work."""
+        some, rest = names[:_PUBLISHED_AT_ONCE], names[_PUBLISHED_AT_ONCE:]
+        self._publisher.publish_entities(filter(None, map(self.map.find, some)))
+        if rest:
+            self._node.soon(partial(self._publish_some, rest))
 
     def _on_write_error(self, error: NotWritten) -> None:
         self._node.report(error.text)

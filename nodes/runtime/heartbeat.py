@@ -34,6 +34,7 @@ class Heartbeat:
         self._state: Literal["starting", "ready"] = "starting"
         self._detail: Callable[[], str] = str
         self._head: Callable[[], tuple[int | None, str]] = lambda: (None, "")
+        self._shapes_ns = 0
         self._last_error = ""
         self._notes: tuple[str, ...] = ()
         self._error_shown_until_s = 0.0
@@ -60,6 +61,7 @@ class Heartbeat:
             notes=(*self._notes, *self._dropped),
             commit=commit,
             digest=digest,
+            shapes_ns=self._shapes_ns,
             ignored=self._ignored,
         )
         notify(health)
@@ -82,6 +84,10 @@ class Heartbeat:
     def head(self, head: Callable[[], tuple[int, str]]) -> None:
         """Add the number and digest of the last commit to the heartbeats."""
         self._head = head
+
+    def note_shapes(self) -> None:
+        """Note that relations have changed without a commit, and send the next heartbeat soon."""
+        self._shapes_ns, self.due_s = time.time_ns(), 0.0
 
     def ignore(self) -> None:
         """Count a malformed publication. Any thread may call this: a lost count does no harm."""

@@ -400,6 +400,10 @@ class Node:
         """Add the number and digest of the last commit to the heartbeats."""
         self._heartbeat.head(head)
 
+    def note_shapes(self) -> None:
+        """Let subscribers fetch the map again, because relations have changed without a commit."""
+        self._heartbeat.note_shapes()
+
     def note(self, notes: tuple[str, ...]) -> None:
         """Set the notes of the node in the heartbeats, from now on."""
         self._heartbeat.note(notes)

@@ -1,7 +1,8 @@
 """Keeps a node's replica of the map up to date.
 
-It subscribes first and fetches a snapshot afterwards. It fetches again after missed or abridged commits, and
-after a restart of the knowledge base that puts the replica in doubt.
+It subscribes first and fetches a snapshot afterwards. It fetches again after missed or abridged commits,
+after a restart of the knowledge base that puts the replica in doubt, and after a change of relations without
+a commit.
 """
 
 from __future__ import annotations
@@ -64,6 +65,9 @@ class Follower(Generic[C]):
         self._fetching = False
         self._begun_ns = 0
         self._kb_started_ns = 0
+        self._shapes_ns = self._requested_ns = 0
+        self._is_outdated = False
+        """Whether relations have changed while the map was fetched."""
         self._ahead: tuple[int, float] | None = None
         """A commit of the replica that the knowledge base did not have, and since when."""
         self._previous = -1
@@ -83,6 +87,7 @@ class Follower(Generic[C]):
         """Doubt the replica after a restart of the knowledge base, which may have another map."""
         if health.node != "kb_node":
             return
+        self._follow_shapes(health)
         if health.started_ns == self._kb_started_ns:
             self._fetch_if_missed(health.commit)
             self._compare(health)
@@ -92,6 +97,15 @@ class Follower(Generic[C]):
         if self._replica.seq >= 0 and is_another:
             self._replica.doubt()
             self._fetch()
+
+    def _follow_shapes(self, health: Health) -> None:
+        """Fetch the map again if relations have changed since it was fetched."""
+        before = self._shapes_ns if health.started_ns == self._kb_started_ns else self._requested_ns
+        self._shapes_ns = health.shapes_ns
+        if health.shapes_ns > before:
+            self._is_outdated = self._fetching
+            if self._replica.seq >= 0:
+                self._fetch()
 
     def _compare(self, health: Health) -> None:
         """Compare the last commit of the knowledge base with that of the replica."""
@@ -124,7 +138,7 @@ class Follower(Generic[C]):
         """Request the class table, then a snapshot page by page; it is repeated after a failure."""
         if self._fetching:
             return
-        self._fetching = True
+        self._fetching, self._requested_ns = True, time.time_ns()
         pages = self._replica.begin_pages()
         classes: list[ClassInfo] = []
 
@@ -152,6 +166,9 @@ class Follower(Generic[C]):
         if self._replica.begin(snapshot):
             self._begun_ns = time.time_ns()
             self._on_snapshot(SnapshotLoaded(before, snapshot.seq, classes))
+        if self._is_outdated:
+            self._is_outdated = False
+            self._fetch()
 
     def _ask(self, call: Call[Any], take: Callable[[Any], None], *, at: str = keys.BRIDGE) -> None:
         def on_done(done: Future[Any]) -> None:

@@ -1,5 +1,7 @@
 """A follower of a simulated knowledge base, over real Zenoh."""
 
+import time
+
 import msgspec
 import pytest
 
@@ -38,7 +40,7 @@ class KnowledgeBase:
         for made in commits:
             self._commits.put(codec.encode(made))
 
-    def beat(self, started_ns, commit=None, digest=""):
+    def beat(self, started_ns, commit=None, digest="", shapes_ns=0):
         health = Health(
             node="kb_node",
             pid=1,
@@ -47,6 +49,7 @@ class KnowledgeBase:
             state="ready",
             commit=commit,
             digest=digest,
+            shapes_ns=shapes_ns,
         )
         self._health.put(codec.encode(health))
 
@@ -184,3 +187,27 @@ def test_a_follower_does_not_fetch_pages_twice(both):
     follower.map.cancel_pages()
     until(lambda: follower.map.is_current, "a snapshot came")
     assert set(follower.map.entities) == {"sink1"}
+
+
+def test_relations_that_change_without_a_commit_are_fetched_once(both):
+    kb, follower = both
+    kb.beat(7, 1)
+    retyped = msgspec.structs.replace(entity("cup1"), types=("Chair", "Supported_Thing"))
+    kb.snapshot = Snapshot(seq=1, entities=(retyped,))
+    now = time.time_ns()
+    kb.beat(7, 1, shapes_ns=now)
+    kb.beat(7, 1, shapes_ns=now)
+    until(lambda: len(follower.begun) == 2, "the map was fetched again")
+    assert follower.snapshots == [(-1, 1), (1, 1)]
+    assert follower.map.entities["cup1"].types == retyped.types
+    kb.publish(commit(2))
+    until(lambda: follower.map.seq == 2, "later messages were taken")
+    assert kb.asked == 2
+
+
+def test_relations_that_changed_before_the_map_was_fetched_are_not_fetched_again(both):
+    kb, follower = both
+    kb.beat(7, 1, shapes_ns=1)
+    kb.publish(commit(2))
+    until(lambda: follower.map.seq == 2, "the heartbeat was taken")
+    assert kb.asked == 1

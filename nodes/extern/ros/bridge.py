@@ -112,6 +112,7 @@ class Bridge:
     # Subscriptions
 
     def _on_snapshot(self, _: Any) -> None:
+        self._shapes.reset()
         self._mark_changed()
         self._tell(f"publishing {len(self._map.entities)} entities as of commit {self._map.seq}")
         self._node.ready("publishing to ROS")

@@ -25,16 +25,19 @@ class ShapeTable:
 
     def __init__(self) -> None:
         self._known: dict[ShapeKey, ModelShape | None] = {}
+        self._requested: set[ShapeKey] = set()
+        self._keys: dict[str, tuple[Entity, ShapeKey]] = {}
+        """The keys of entities by name, which are needed again with each pose."""
 
     def of(self, entity: Entity) -> ModelShape | None:
         """Return the shape of an entity with its joints as asserted, if it is known."""
-        return None if entity.place else self._known.get(ShapeKey.of(entity))
+        return None if entity.place else self._known.get(self._key_of(entity))
 
     def queries(self, entities: Iterable[Entity]) -> Iterator[ShapesOf]:
         """Yield the queries for the shapes that were not requested yet, and mark these as requested."""
-        keys = [key for entity in entities if not entity.place for key in [ShapeKey.of(entity)]]
-        wanted = [key for key in dict.fromkeys(keys) if key not in self._known]
-        self._known.update(dict.fromkeys(wanted))
+        keys = [self._key_of(entity) for entity in entities if not entity.place]
+        wanted = [key for key in dict.fromkeys(keys) if key not in self._requested]
+        self._requested.update(wanted)
         for start in range(0, len(wanted), _AT_ONCE):
             yield ShapesOf(keys=tuple(wanted[start : start + _AT_ONCE]))
 
@@ -48,11 +51,19 @@ class ShapeTable:
         except (msgspec.DecodeError, KeyError, ValueError) as error:
             raise errors.InternalError(f"the shapes from kb_node are invalid: {error}") from None
 
+    def _key_of(self, entity: Entity) -> ShapeKey:
+        known = self._keys.get(entity.name)
+        if known is None or known[0] is not entity:
+            known = self._keys[entity.name] = (entity, ShapeKey.of(entity))
+        return known[1]
+
+    def reset(self) -> None:
+        """Mark all shapes as not requested; those that are known are used until they arrive."""
+        self._requested.clear()
+
     def forget(self, keys: Sequence[ShapeKey]) -> None:
         """Mark shapes whose request failed as not requested."""
-        for key in keys:
-            if self._known.get(key) is None:
-                self._known.pop(key, None)
+        self._requested.difference_update(keys)
 
 
 class ShapeFeed:
@@ -66,6 +77,10 @@ class ShapeFeed:
     def of(self, entity: Entity) -> ModelShape | None:
         """Return the shape of an entity, if it has arrived."""
         return self._table.of(entity)
+
+    def reset(self) -> None:
+        """Request all shapes again, because they may have changed without a commit."""
+        self._table.reset()
 
     def fetch(self, entities: Iterable[Entity]) -> None:
         """Request the shapes of entities that were not requested yet."""

@@ -81,6 +81,8 @@ class Live:
         """The last applied commit; -1 before the map is known."""
         self.map_id = ""
         """The id of the map; a new map has another one."""
+        self.loads = 0
+        """The number of times that the whole map was read."""
         self.connected = False
         self.offline_reason = "reading the map"
         """Why there is no connection; empty while there is one."""
@@ -242,6 +244,7 @@ class Live:
 
     def _reset(self, read: _Map) -> LiveEvent:
         is_another = bool(self.map_id) and read.map_id != self.map_id
+        self.loads += 1
         self._entities.clear()
         self._entities.update(read.entities)
         self.classes, self.commit, self.map_id = read.classes, read.seq, read.map_id

@@ -49,6 +49,17 @@ def test_a_failed_request_is_repeated():
     assert [*table.queries([chair])] == [query]
 
 
+def test_all_shapes_are_requested_again_after_a_reset():
+    table, chair = ShapeTable(), entity("chair1")
+    (query,) = table.queries([chair])
+    table.take(query, reply(chair1="0"))
+    table.reset()
+    assert table.of(chair) == SHAPE
+    (again,) = table.queries([chair])
+    table.take(again, reply())
+    assert table.of(chair) is None
+
+
 def test_an_invalid_reply_is_reported():
     (query,) = (table := ShapeTable()).queries([entity("chair1")])
     with pytest.raises(errors.InternalError, match="shapes from kb_node"):

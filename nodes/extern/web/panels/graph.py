@@ -44,7 +44,7 @@ class _Graph:
         self._expanded: dict[str, None] = {}
         self._at: Positions = {}
         self._graph = Neighbourhood()
-        self._related: tuple[tuple[str, int], Relations] | None = None
+        self._related: tuple[tuple[str, int, int], Relations] | None = None
         self._clicked: asyncio.Task[Any] | None = None
         with ui.column().classes("w-full gap-2"):
             with ui.row().classes("w-full items-center gap-2"):
@@ -114,7 +114,7 @@ class _Graph:
     async def _relations(self) -> Relations:
         """Return the relations at the moment shown; they are requested once per commit."""
         state, live = self._page.state, self._page.live
-        key = (live.map_id, state.commit)
+        key = (live.map_id, live.loads, state.commit)
         if self._related is not None and self._related[0] == key:
             return self._related[1]
         rows: tuple[Row, ...] = ()
