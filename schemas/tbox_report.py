@@ -48,6 +48,8 @@ class TBoxReport(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Kind of axiom outside OWL 2 RL to its count; such axioms have no effect beyond OWL 2 RL."""
     inert: dict[str, int] = {}
     """Kind of statement that is stored but not evaluated, such as `SWRL rule (disabled)`, to its count."""
+    undeclared: tuple[str, ...] = ()
+    """IRIs of classes and properties that SWRL rules use and nothing declares."""
     inconsistent: str = ""
     """The reason why the ontology is inconsistent; empty if it is consistent."""
     unsatisfiable: tuple[Unsatisfiable, ...] = ()

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from semmap.nodes.kb_node.documents import blank_nodes
 from semmap.nodes.kb_node.documents.blank_nodes import is_blank
 from semmap.nodes.kb_node.documents.inert_statements import SHACL, SWRL, count_inert, inert_note
+from semmap.nodes.kb_node.documents.rule_terms import undeclared_note, undeclared_terms
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.entities.property_values import retype
 from semmap.nodes.kb_node.reasoner import Reasoner
@@ -98,11 +99,14 @@ def filter_document(
         doubtful = {(s, v.RDF_TYPE, o) for s, o in unknown}
         kept = _without(removed, [t for t in triples if t not in doubtful])
         by_property = entity_triples.group_by_property(kept)
-    inert = inert_note(count_inert(kept)) if any(c.startswith(_INERT) for c in used) else ""
+    inert = of_rules = ""
+    if any(c.startswith(_INERT) for c in used):
+        inert = inert_note(count_inert(kept))
+        of_rules = undeclared_note(undeclared_terms(kept, known | classes.properties))
     notes = (
         *retyped,
         *named,
-        *filter(None, (inert,)),
+        *filter(None, (inert, of_rules)),
         *_unknown_properties(by_property, classes),
         *_own_classes(declared, classes),
         *_incomplete_values(by_property, kept),
