@@ -27,6 +27,7 @@ from semmap.nodes.kb_node.reasoner.fastpaths.shapes import UniformRuns
 from semmap.nodes.kb_node.reasoner.rules import swrl
 from semmap.nodes.kb_node.reasoner.rules.closure import Closure
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
+from semmap.nodes.kb_node.reasoner.rules.time_limit import TimeLimit
 from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, NotCompilable
 from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
 from semmap.nodes.kb_node.reasoner.tbox.split import (
@@ -288,9 +289,9 @@ class CompiledEngine:
             if before.excluded is None and store.kind[node].names != before.names:
                 yield store.terms[node]
 
-    def count_matches(self, rule: swrl.SwrlRule) -> int:
-        """Return how often a SWRL rule holds. Equal individuals are counted once."""
-        return self._saturation.count_matches(rule)
+    def matches(self, rule: swrl.SwrlRule, limit: TimeLimit) -> Iterator[tuple[int | Term, ...]]:
+        """Yield the matches of a SWRL rule, in which equal individuals are one. Raises OutOfTime."""
+        return self._saturation.matches(rule, limit)
 
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """Return the asserted triples that match a pattern."""
