@@ -464,6 +464,8 @@ class RuleInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The rule as a sentence; empty if it is not supported."""
     holds: int
     """The number of combinations of individuals and values for which its conditions hold now."""
+    at_least: bool = False
+    """Whether counting was stopped at the time limit, so that there may be more."""
     unsupported: str = ""
     """The reason why the rule has no effect, or ""."""
 

@@ -50,6 +50,8 @@ class TBoxReport(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Kind of statement that is stored but not evaluated, such as `SWRL rule (disabled)`, to its count."""
     left_out: tuple[str, ...] = ()
     """Notes on statements of named graphs, which are not part of the TBox, with their files."""
+    undeclared: tuple[str, ...] = ()
+    """IRIs of classes and properties that SWRL rules use and nothing declares."""
     inconsistent: str = ""
     """The reason why the ontology is inconsistent; empty if it is consistent."""
     unsatisfiable: tuple[Unsatisfiable, ...] = ()

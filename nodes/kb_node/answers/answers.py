@@ -31,6 +31,9 @@ from semmap.schemas.entities import Entity, RuleInfo
 from semmap.schemas.explanations import Term, Triple
 from semmap.schemas.replies import Checked, Document, Inferred
 
+_COUNTING_S = 1.0
+"""Time limit for counting the matches of all SWRL rules, during which the node does nothing else."""
+
 
 def find_entities(semantic_map: SemanticMap, class_name: str | None) -> tuple[Entity, ...]:
     """Return the entities of a class, given by its exact name. Raises UnknownClass."""
@@ -55,11 +58,17 @@ def infer(semantic_map: SemanticMap, name: str) -> Inferred:
 
 
 def list_rules(reasoner: Reasoner) -> Iterator[RuleInfo]:
-    """Yield the SWRL rules of the TBox, those without effect last."""
-    for rule in reasoner.rules():
+    """Yield the SWRL rules of the TBox, those without effect last. Counting them takes a limited time."""
+    for rule in reasoner.rules(_COUNTING_S):
         label = next((v.lexical(o) for _, _, o in reasoner.asserted(rule.node, v.RDFS_LABEL, None)), "")
         name = label or ("" if rule.node.startswith("_:") else v.local_name(rule.node))
-        yield RuleInfo(name=name, text=rule.text, holds=rule.holds or 0, unsupported=rule.unsupported)
+        yield RuleInfo(
+            name=name,
+            text=rule.text,
+            holds=rule.holds or 0,
+            at_least=rule.is_cut,
+            unsupported=rule.unsupported,
+        )
 
 
 class InferenceInput(NamedTuple):

@@ -13,6 +13,7 @@ from semmap.nodes.kb_node.documents import blank_nodes, distinct_names
 from semmap.nodes.kb_node.documents.blank_nodes import is_blank
 from semmap.nodes.kb_node.documents.inert_statements import SHACL, SWRL, count_inert, inert_note
 from semmap.nodes.kb_node.documents.map_frame import FindFrame, express_in_map_frame
+from semmap.nodes.kb_node.documents.rule_terms import undeclared_note, undeclared_terms
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.entities.property_values import retype
 from semmap.nodes.kb_node.reasoner import Reasoner
@@ -129,12 +130,15 @@ def filter_document(
     if names := distinct_names.make_distinct_names(kept, spatial, of_file.find, of_file.prefixes):
         kept = [*kept, *distinct_names.name_triples(names)]
         named.append(distinct_names.describe(names))
-    inert = inert_note(count_inert(kept)) if any(c.startswith(_INERT) for c in used) else ""
+    inert = of_rules = ""
+    if any(c.startswith(_INERT) for c in used):
+        inert = inert_note(count_inert(kept))
+        of_rules = undeclared_note(undeclared_terms(kept, known | classes.properties))
     notes = (
         *of_frames,
         *retyped,
         *named,
-        *filter(None, (inert,)),
+        *filter(None, (inert, of_rules)),
         *_unknown_properties(by_property, classes),
         *_own_classes(declared, classes),
         *_incomplete_values(by_property, kept),

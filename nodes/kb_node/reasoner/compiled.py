@@ -9,6 +9,7 @@ from itertools import chain
 from semmap.nodes.kb_node.reasoner.abox.abox import ABox
 from semmap.nodes.kb_node.reasoner.abox.abox_view import View
 from semmap.nodes.kb_node.reasoner.abox.columns import Columns
+from semmap.nodes.kb_node.reasoner.abox.kinds import Kind
 from semmap.nodes.kb_node.reasoner.abox.retraction import Retraction
 from semmap.nodes.kb_node.reasoner.abox.saturation import Saturation
 from semmap.nodes.kb_node.reasoner.abox.snapshot import columns_of, fill
@@ -26,6 +27,7 @@ from semmap.nodes.kb_node.reasoner.fastpaths.shapes import UniformRuns
 from semmap.nodes.kb_node.reasoner.rules import swrl
 from semmap.nodes.kb_node.reasoner.rules.closure import Closure
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
+from semmap.nodes.kb_node.reasoner.rules.time_limit import TimeLimit
 from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, NotCompilable
 from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
 from semmap.nodes.kb_node.reasoner.tbox.split import (
@@ -83,7 +85,7 @@ class CompiledEngine:
         self._schema_objects = frozenset(o for _, _, o in schema_facts)
         self._abox = ABox(self._schema)
         self._saturation = Saturation(self._abox)
-        self._paths = FastPaths(self._abox) if fast and not self._schema.rules else NoFastPaths()
+        self._paths = FastPaths(self._abox) if fast else NoFastPaths()
         self._view = View(self._abox)
         self._schema_support = SchemaSupport(self._schema)
         self._size = len(self._schema_triples)
@@ -220,11 +222,12 @@ class CompiledEngine:
     def _implied(self, edges: Iterable[tuple[int, int, int]]) -> frozenset[Triple] | None:
         """Return what each edge implies alone; None if edges may imply more in combination with others."""
         abox, schema, terms = self._abox, self._schema, self._abox.store.terms
-        if abox.equals or schema.rules:
+        if abox.equals or any(map(self._matches_rules, abox.changed_kinds.items())):
             return None
         found: set[Triple] = set()
         for s, p, o in set(edges):
-            if p <= DIFFERENT or abox.is_literal(o):
+            rules = abox.steps.rules(p)
+            if p <= DIFFERENT or abox.is_literal(o) or (rules is not None and rules.triggers):
                 return None
             for q, backwards in schema.roles(p):
                 if q in schema.virtual:
@@ -234,6 +237,11 @@ class CompiledEngine:
                 if name[0] == "<" and " " not in name:
                     found.add((terms[x], name, terms[y]))
         return frozenset(found)
+
+    def _matches_rules(self, change: tuple[int, Kind]) -> bool:
+        """Return whether a SWRL rule may match a node with its present or its previous kind only."""
+        node, before = change
+        return bool((self._abox.store.kind[node].mask ^ before.mask) & self._schema.rule_classes)
 
     def _insert(self, triples: Sequence[Triple], added: list[Triple], touched: set[Term]) -> None:
         """Insert triples and draw all conclusions. New triples are appended to `added`."""
@@ -291,9 +299,9 @@ class CompiledEngine:
         found = None if node is None else abox.equals.get(node)
         return () if found is None else [abox.store.terms[member] for member in found.members]
 
-    def count_matches(self, rule: swrl.SwrlRule) -> int:
-        """Return how often a SWRL rule holds. Equal individuals are counted once."""
-        return self._saturation.count_matches(rule)
+    def matches(self, rule: swrl.SwrlRule, limit: TimeLimit) -> Iterator[tuple[int | Term, ...]]:
+        """Yield the matches of a SWRL rule, in which equal individuals are one. Raises OutOfTime."""
+        return self._saturation.matches(rule, limit)
 
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """Return the asserted triples that match a pattern."""

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Collection, Container, Iterable, Iterator, Sequence, Set
 from contextlib import contextmanager
 from itertools import chain, groupby
+from math import inf
 from typing import NamedTuple
 
 from semmap.nodes.kb_node.reasoner.abox.columns import Columns
@@ -16,6 +17,8 @@ from semmap.nodes.kb_node.reasoner.explain.words import Words
 from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.reasoner.rules.general import GeneralEngine
+from semmap.nodes.kb_node.reasoner.rules.swrl import SwrlRule
+from semmap.nodes.kb_node.reasoner.rules.time_limit import OutOfTime, TimeLimit
 from semmap.nodes.kb_node.reasoner.suppressed import SuppressedFacts
 from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from semmap.nodes.kb_node.reasoner.tbox.profile import outside_rl
@@ -43,6 +46,8 @@ class RuleUse(NamedTuple):
     """How often the rule holds now; None if it is not supported."""
     unsupported: str
     """The reason why the rule has no effect, or ""."""
+    is_cut: bool = False
+    """Whether counting reached the time limit, so that the rule may hold more often."""
 
 
 class GivenFacts(NamedTuple):
@@ -396,15 +401,30 @@ class Reasoner:
         }
         return frozenset(filter(is_named, narrower)) | {cls}
 
-    def rules(self) -> list[RuleUse]:
-        """Return the SWRL rules of the schema, and how often each holds now."""
+    def rules(self, patience_s: float = inf) -> list[RuleUse]:
+        """Return the SWRL rules of the schema, and how often each holds now.
+
+        Counting stops when all rules together have taken `patience_s` of CPU time.
+        """
+        limit = TimeLimit(patience_s)
         found, axioms = self._engine.rules, None
         uses: list[RuleUse] = []
         for node, rules in groupby(found.supported, key=lambda rule: rule.node):
             same = list(rules)
             axioms = axioms or AxiomVerbalizer([*filter(is_schema, self.asserted())], self.words)
-            uses.append(RuleUse(node, axioms.rule_sentence(same), self._engine.count_matches(same[0]), ""))
+            count, is_cut = self._count_matches(same[0], limit)
+            uses.append(RuleUse(node, axioms.rule_sentence(same), count, "", is_cut))
         return uses + [RuleUse(node, "", None, reason) for node, reason in found.unsupported.items()]
+
+    def _count_matches(self, rule: SwrlRule, limit: TimeLimit) -> tuple[int, bool]:
+        """Return the number of matches of a rule that were found in time, and whether there may be more."""
+        found: set[tuple[int | Term, ...]] = set()
+        try:
+            for match in self._engine.matches(rule, limit):
+                found.add(match)
+        except OutOfTime:
+            return len(found), True
+        return len(found), False
 
     def explain(self, triple: Triple) -> Explanation | None:
         """Return the proof of a triple; None if it does not hold."""

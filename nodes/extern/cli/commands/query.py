@@ -291,6 +291,10 @@ def rules(client: Client, format: str) -> None:
         print("the TBox has no SWRL rules")
     else:
         output.show.console().print(output.show.rule_table(found))
+        if any(rule.at_least for rule in found):
+            print_error(
+                "note: counting stopped at the time limit, so the rules marked with ≥ may hold more often"
+            )
 
 
 @command(example="semmap status")

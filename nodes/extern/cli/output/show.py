@@ -186,7 +186,8 @@ def rule_table(rules: Iterable[RuleInfo]) -> Table:
     rows = table("holds", "name", "rule", fold=("name", "rule"))
     for rule in rules:
         no_effect = f"no effect: {rule.unsupported}" if rule.unsupported else ""
-        rows.add("-" if no_effect else str(rule.holds), rule.name, rule.text or no_effect)
+        holds = f"≥ {rule.holds}" if rule.at_least else str(rule.holds)
+        rows.add("-" if no_effect else holds, rule.name, rule.text or no_effect)
     return rows
 
 

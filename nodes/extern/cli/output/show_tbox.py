@@ -31,6 +31,10 @@ def report(found: TBoxReport) -> Iterator[str]:
         yield _line("ignored", f"{count} x {kind} (stored, but not evaluated)")
     for note in found.left_out:
         yield _line("graphs", note)
+    for iri in found.undeclared[:_FEW]:
+        yield _line("not declared", f"{iri} (used by a SWRL rule)")
+    if (more := len(found.undeclared) - _FEW) > 0:
+        yield _line("not declared", f"and {more} more terms of SWRL rules")
     yield from _names(found)
     yield from _verdict(found)
     if (quick := found.quickness) is not None:

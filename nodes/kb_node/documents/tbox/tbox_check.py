@@ -13,6 +13,7 @@ from semmap.nodes.kb_node.documents import ontology_files
 from semmap.nodes.kb_node.documents.abox_document import is_built_in
 from semmap.nodes.kb_node.documents.inert_statements import count_inert
 from semmap.nodes.kb_node.documents.ontology_files import VERSION, Gathered
+from semmap.nodes.kb_node.documents.rule_terms import undeclared_terms
 from semmap.nodes.kb_node.documents.tbox import tbox_declarations
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
@@ -105,6 +106,7 @@ def _report(
         outside_rl=dict(sorted(kinds.items(), key=lambda kind: (-kind[1], kind[0]))),
         inert=dict(sorted(count_inert(triples).items())),
         left_out=gathered.notes,
+        undeclared=tuple(map(v.bare, undeclared_terms(tbox))),
         inconsistent=inconsistent,
         unsatisfiable=unsatisfiable,
         untried=untried,

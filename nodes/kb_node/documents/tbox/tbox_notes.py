@@ -9,6 +9,7 @@ from contextlib import suppress
 
 from semmap.nodes.kb_node.documents import ontology_files, rdf
 from semmap.nodes.kb_node.documents.inert_statements import count_inert, inert_note
+from semmap.nodes.kb_node.documents.rule_terms import undeclared_note, undeclared_terms
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
@@ -36,6 +37,7 @@ def notes(tbox: Iterable[Triple], reasoner: Reasoner, classes: ClassTable) -> tu
         ignored_statements_note(tbox),
         beyond_rl_note(outside_rl(filter(is_schema, tbox)) - _known(tbox)),
         inert_note(count_inert(tbox)),
+        undeclared_note(undeclared_terms(tbox)),
         described_entities_note(tbox_validation.described_by(tbox, classes)),
         slow_changes_note(reasoner),
         no_spatial_facts_note(reasoner, classes),

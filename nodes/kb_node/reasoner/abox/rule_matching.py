@@ -16,6 +16,7 @@ from semmap.nodes.kb_node.reasoner.explain.reasons import Applied, Claim, Edge, 
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.rules import builtins, swrl
 from semmap.nodes.kb_node.reasoner.rules.swrl import Atom, SwrlRule
+from semmap.nodes.kb_node.reasoner.rules.time_limit import TimeLimit
 from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT
 
 Bound = dict[Term, int | Term]
@@ -26,8 +27,9 @@ Match = tuple[Bound, tuple[Claim, ...]]
 class RuleMatching:
     """Finds the matches of rules, with the claims that they depend on."""
 
-    def __init__(self, abox: ABox) -> None:
+    def __init__(self, abox: ABox, limit: TimeLimit | None = None) -> None:
         self._abox = abox
+        self._limit = limit
         self._store = abox.store
         self._orders: dict[tuple[tuple[Atom, ...], int, frozenset[Term]], tuple[Atom, ...]] = {}
 
@@ -100,6 +102,8 @@ class RuleMatching:
             yield from self._join(atoms, at + 1, {**bound, **more} if more else bound, (*claims, *needed))
 
     def _match(self, atom: Atom, bound: Bound) -> Iterator[Match]:
+        if self._limit is not None:
+            self._limit.check()
         if atom.kind == swrl.CLASS:
             return self._match_class(atom, bound)
         if atom.kind == swrl.PROPERTY:

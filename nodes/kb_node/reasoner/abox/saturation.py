@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from semmap.nodes.kb_node.reasoner.abox.abox import ABox
 from semmap.nodes.kb_node.reasoner.abox.adjacency import NONE
@@ -15,6 +15,7 @@ from semmap.nodes.kb_node.reasoner.explain.reasons import Claim, Clash, Edge, Me
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.rules import swrl
 from semmap.nodes.kb_node.reasoner.rules.swrl import SwrlRule
+from semmap.nodes.kb_node.reasoner.rules.time_limit import TimeLimit
 from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME, Chain, NotCompilable
 from semmap.nodes.kb_node.reasoner.terms import TYPE
 
@@ -229,11 +230,11 @@ class Saturation:
         for rule in self._abox.schema.rules_by_head.get(predicate, ()):
             self._conclude(rule, self._matching.of_head(rule, (subject, object_)))
 
-    def count_matches(self, rule: SwrlRule) -> int:
-        """Return how often a SWRL rule holds: the number of matches, in which equal individuals are one."""
+    def matches(self, rule: SwrlRule, limit: TimeLimit) -> Iterator[tuple[int | Term, ...]]:
+        """Yield the values of the variables of each match of a SWRL rule, with one of equal individuals."""
         members = self._abox.members
-        found = (bound for bound, _ in self._matching.matches(rule))
-        return len({tuple(members(v)[0] if isinstance(v, int) else v for v in b.values()) for b in found})
+        for bound, _ in RuleMatching(self._abox, limit).matches(rule):
+            yield tuple(members(v)[0] if isinstance(v, int) else v for v in bound.values())
 
     def _conclude(self, rule: SwrlRule, matches: list[Match]) -> None:
         """Add the conclusions of a SWRL rule."""

@@ -9,12 +9,14 @@ from semmap.nodes.kb_node.reasoner.abox.abox import ABox
 from semmap.nodes.kb_node.reasoner.abox.adjacency import Adjacency
 from semmap.nodes.kb_node.reasoner.abox.columns import Claimed, Columns, KindSaid
 from semmap.nodes.kb_node.reasoner.abox.kinds import Kind, bits, mask_of
-from semmap.nodes.kb_node.reasoner.explain.reasons import Claim, Edge, Member
+from semmap.nodes.kb_node.reasoner.explain.reasons import Applied, Claim, Edge, Member
 from semmap.nodes.kb_node.reasoner.terms import is_named
 
 
 def columns_of(abox: ABox, *, schema: bytes, size: int) -> Columns | None:
-    """Return the columns of an ABox, which may change afterwards; None if it has equal nodes or SWRL rules.
+    """Return the columns of an ABox, which may change afterwards.
+
+    Returns None if it has equal nodes or conclusions of SWRL rules.
 
     `schema` is the digest of the schema, `size` the number of asserted triples.
     """
@@ -70,8 +72,8 @@ def fill(abox: ABox, columns: Columns) -> bool:
 
 
 def _is_plain(abox: ABox) -> bool:
-    if abox.schema.rules:
-        return False  # their reasons are not encoded
+    if abox.schema.rules and any(isinstance(c, Applied) for r in abox.reasons.values() for c in r.claims):
+        return False  # such reasons are not encoded
     is_pending = abox.changed_kinds or abox.fresh or abox.dirty
     return not (abox.equals or abox.spellings or abox.has_unknown_equals or is_pending)
 

@@ -69,6 +69,7 @@ class Steps:
         self._concerned: dict[int, tuple[int, int]] = {}
         self._producing_chains: dict[int, tuple[tuple[bool, Chain], ...]] = {}
         self._chain_starts: dict[int, tuple[Group, Group]] = {}
+        self._derived: dict[int, bool] = {}
         self._rules: dict[int, EdgeRules | None] = {}
 
     def step(self, prop: int, subject: Kind, object_: Kind) -> Step:
@@ -112,6 +113,14 @@ class Steps:
                 for chain in self._schema.chains
                 if chain.result == q
             )
+        return found
+
+    def may_be_derived(self, prop: int) -> bool:
+        """Return whether a chain or a SWRL rule may imply the same as an edge of a property."""
+        found = self._derived.get(prop)
+        if found is None:
+            is_result = self._schema.rules_by_head.keys() & {q for q, _ in self._schema.roles(prop)}
+            found = self._derived[prop] = bool(is_result or self.producing_chains(prop))
         return found
 
     def chain_starts(self, prop: int) -> tuple[Group, Group]:

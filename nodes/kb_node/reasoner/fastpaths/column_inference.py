@@ -41,6 +41,8 @@ class ColumnInference:
         rules = self._abox.steps.rules(column.predicate)
         if rules is None:
             return doubtful
+        if rules.triggers:
+            return range(len(edges))
         if rules.limits:
             is_alone = self._abox.store.out.is_alone
             return doubtful.union(
@@ -115,7 +117,7 @@ class ColumnInference:
             return
         new = now.mask & ~before.mask
         relevant_classes = abox.steps.relevant_classes
-        if not any(
+        if not new & abox.schema.rule_classes and not any(
             relevant_classes(p)[which] & new
             for which, side in enumerate((store.out, store.into))
             for p in side.predicates(node)

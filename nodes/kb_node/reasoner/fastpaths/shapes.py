@@ -19,6 +19,7 @@ from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from semmap.nodes.kb_node.reasoner.fastpaths.batches import read_batches
 from semmap.nodes.kb_node.reasoner.fastpaths.layout import Layout
 from semmap.nodes.kb_node.reasoner.fastpaths.runs import Form, Run, Runs, Shape, Terms
+from semmap.nodes.kb_node.reasoner.rules import swrl
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.reasoner.terms import TYPE
 
@@ -142,6 +143,7 @@ class Shapes:
         there, places = set(triples), first.places
         support = [fact for fact in proof.about(terms).support if not is_schema(fact)]
         is_independent = all(fact in there and (fact[1] == TYPE or fact[2] in places) for fact in support)
+        is_independent &= not any(map(swrl.is_of_rule, proof.about(terms).support))  # it may name individuals
         named = tuple([places.get(term, 0) for term in terms])  # the proof does not contain other terms
         self._remember(first, Contradiction(proof, named) if is_independent else None)
 
@@ -158,7 +160,7 @@ class Shapes:
         others = [store.numbers[term] for term in run.others]
         if run.kinds != tuple([store.kind[node] for node in others]):
             return None
-        if len(set(run.triples)) < len(run.triples):
+        if len(set(run.triples)) < len(run.triples) or self._may_match_rules(individuals, others):
             return None
         values = [e for node in individuals for e in store.out.all(node) if store.source[e] == VALUE]
         constants = [store.terms[store.object[edge]] for edge in values]
@@ -182,6 +184,12 @@ class Shapes:
         return KnownShape(
             self._layout(individuals, others, edges), tuple(constants), tuple(self._touched(run))
         )
+
+    def _may_match_rules(self, individuals: Sequence[int], others: Sequence[int]) -> bool:
+        """Return whether SWRL rules may match new nodes by their classes alone. Their edges are plain."""
+        abox, kind = self._abox, self._abox.store.kind
+        new = (*individuals, *filter(abox.is_literal, others))
+        return any(kind[node].mask & abox.schema.lone_rule_classes for node in new)
 
     def _edge(self, triple: Triple) -> int:
         store, predicate = self._abox.store, self._abox.schema.property(triple[1])

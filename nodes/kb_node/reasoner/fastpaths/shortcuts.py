@@ -67,6 +67,8 @@ def _is_independent(
     if node in abox.equals or node in abox.reasons_by_node:
         return False
     term = store.terms[node]
+    if term in schema.rule_results:
+        return False
     assertions = own[node] = [(term, TYPE, schema.classes[cls]) for cls in kinds[node].given]
     for edge in store.out.all(node):
         source, other = store.source[edge], store.object[edge]
@@ -107,6 +109,9 @@ def _are_independent(abox: ABox, nodes: Set[int], edges: Sequence[int]) -> bool:
     """Return whether removing nodes and their outgoing edges affects no other node."""
     store, kinds = abox.store, abox.store.kind
     if not abox.equals.keys().isdisjoint(nodes):
+        return False
+    results = abox.schema.rule_results  # a rule may imply an edge of them that was asserted, too
+    if results and not results.isdisjoint(store.terms[node] for node in nodes):
         return False
     if not (abox.reasons_by_node.keys().isdisjoint(nodes) and abox.reasons_by_edge.keys().isdisjoint(edges)):
         return False
@@ -169,5 +174,6 @@ def _only_edge(abox: ABox, s: Term, p: Term, o: Term) -> int:
     if abox.spellings and abox.value(literal) in abox.spellings:
         return NONE
     kind = store.kind[literal]
-    may_reappear = store.kind[subject].values or abox.steps.producing_chains(predicate)
-    return NONE if kind.base is not kind or may_reappear or not abox.is_plain(edge) else edge
+    may_reappear = store.kind[subject].values or abox.steps.may_be_derived(predicate)
+    is_matched = kind.mask & abox.schema.rule_classes
+    return NONE if kind.base is not kind or may_reappear or is_matched or not abox.is_plain(edge) else edge

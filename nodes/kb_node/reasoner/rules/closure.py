@@ -19,6 +19,7 @@ from semmap.nodes.kb_node.reasoner.rules import builtins, swrl
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts, Reason
 from semmap.nodes.kb_node.reasoner.rules.matching import Pattern, Plan, bind, pattern, patterns, plan, unify
 from semmap.nodes.kb_node.reasoner.rules.rule_table import AXIOMS, NUMBERS, RULES, Atom, Rule
+from semmap.nodes.kb_node.reasoner.rules.time_limit import TimeLimit
 from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, FIRST, REST, SAME_AS, TYPE, is_literal
 
 
@@ -168,19 +169,21 @@ class Closure(Facts):
                 if head is None or not is_literal(head[0]):
                     self._conclude("swrl", (*premises, *rule.triples), head)
 
-    def count_matches(self, rule: swrl.SwrlRule) -> int:
-        """Return the number of matches of a SWRL rule."""
-        return len({tuple(bound.values()) for bound, _ in self._match_swrl(rule.body, {})})
+    def matches(self, rule: swrl.SwrlRule, limit: TimeLimit) -> Iterator[tuple[Term, ...]]:
+        """Yield the values of the variables of each match of a SWRL rule. Raises OutOfTime at the limit."""
+        return (tuple(bound.values()) for bound, _ in self._match_swrl(rule.body, {}, limit))
 
     def _match_swrl(
-        self, atoms: Sequence[swrl.Atom], bound: dict[Term, Term]
+        self, atoms: Sequence[swrl.Atom], bound: dict[Term, Term], limit: TimeLimit | None = None
     ) -> Iterator[tuple[dict[Term, Term], tuple[Triple, ...]]]:
         """Yield the matches of the atoms of a SWRL rule, with the facts that they need."""
+        if limit is not None:
+            limit.check()
         if not atoms:
             yield bound, ()
             return
         for more, facts in self._match_swrl_atom(atoms[0], bound):
-            for found, others in self._match_swrl(atoms[1:], {**bound, **more}):
+            for found, others in self._match_swrl(atoms[1:], {**bound, **more}, limit):
                 yield found, (*facts, *others)
 
     def _match_swrl_atom(

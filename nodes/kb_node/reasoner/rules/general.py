@@ -14,6 +14,7 @@ from semmap.nodes.kb_node.reasoner.explain.words import Words
 from semmap.nodes.kb_node.reasoner.explanations import Explanation, Term, Triple
 from semmap.nodes.kb_node.reasoner.rules import swrl
 from semmap.nodes.kb_node.reasoner.rules.closure import Closure
+from semmap.nodes.kb_node.reasoner.rules.time_limit import TimeLimit
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.reasoner.terms import SAME_AS, TYPE, is_literal, is_named
 
@@ -49,9 +50,9 @@ class GeneralEngine:
         """The SWRL rules of the graph."""
         return swrl.read_triples(self._asserted)
 
-    def count_matches(self, rule: swrl.SwrlRule) -> int:
-        """Return how often a SWRL rule holds. Equal individuals are counted separately."""
-        return self._closure.count_matches(rule)
+    def matches(self, rule: swrl.SwrlRule, limit: TimeLimit) -> Iterator[tuple[Term, ...]]:
+        """Yield the matches of a SWRL rule, also for each of equal individuals. Raises OutOfTime."""
+        return self._closure.matches(rule, limit)
 
     def asserted(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
         """Return the asserted triples that match a pattern."""

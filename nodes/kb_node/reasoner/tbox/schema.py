@@ -54,8 +54,12 @@ class Schema:
         self.rules_by_property: dict[int, list[tuple[SwrlRule, int]]] = {}
         self.rule_classes = 0
         """The classes in the bodies of rules, as a mask."""
+        self.lone_rule_classes = 0
+        """Those of `rule_classes` that a rule may match with an individual that has no matching edge."""
         self.rules_by_head: dict[int, list[SwrlRule]] = {}
         """The rules whose conclusion is an edge of a property."""
+        self.rule_results: set[Term] = set()
+        """The individuals that the conclusions of rules mention."""
         self._class_numbers: dict[Term, int] = {}
         self._property_numbers: dict[Term, int] = {}
         self._roles: dict[int, dict[Role, tuple[Triple, ...]]] = {}
@@ -264,16 +268,21 @@ class Schema:
 
     def _compile_rules(self) -> None:
         for rule in self.rules:
+            related = set[Term]().union(*(atom.variables for atom in rule.body if atom.kind == swrl.PROPERTY))
             for i, atom in enumerate(rule.body):
                 if atom.kind == swrl.CLASS:
                     cls = self.cls(atom.predicate)
                     self.rules_by_class.setdefault(cls, []).append((rule, i))
                     self.rule_classes |= 1 << cls
+                    if related.isdisjoint(atom.variables):
+                        self.lone_rule_classes |= 1 << cls
                 elif atom.kind in (swrl.PROPERTY, swrl.DIFFERENT):
                     number = self.property(atom.predicate) if atom.kind == swrl.PROPERTY else DIFFERENT
                     self.rules_by_property.setdefault(number, []).append((rule, i))
             if rule.head is not None and (conclusion := self.conclusion(rule.head)) is not None:
                 self.rules_by_head.setdefault(conclusion, []).append(rule)
+            if rule.head is not None:
+                self.rule_results.update(term for term in rule.head.arguments if not swrl.is_variable(term))
 
     def conclusion(self, head: Atom) -> int | None:
         """Return the property of the edge that a rule adds; None for an equality.

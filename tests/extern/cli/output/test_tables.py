@@ -172,6 +172,7 @@ def test_each_note_on_a_commit_has_a_row_of_its_own():
 def test_the_table_of_rules_has_the_reason_of_a_rule_without_effect():
     rules = [
         RuleInfo(name="", text="if x is a mug, then x is a cup", holds=2),
+        RuleInfo(name="much", text="if x is a mug, then y is a cup", holds=9, at_least=True),
         RuleInfo(name="unused", text="", holds=0, unsupported="disabled"),
     ]
     console = Console(file=io.StringIO(), width=100)
@@ -179,5 +180,6 @@ def test_the_table_of_rules_has_the_reason_of_a_rule_without_effect():
     lines = console.file.getvalue().splitlines()
     assert [line.split() for line in lines[1:]] == [
         ["2", "if", "x", "is", "a", "mug,", "then", "x", "is", "a", "cup"],
+        ["≥", "9", "much", "if", "x", "is", "a", "mug,", "then", "y", "is", "a", "cup"],
         ["-", "unused", "no", "effect:", "disabled"],
     ]

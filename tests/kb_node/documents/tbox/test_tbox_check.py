@@ -56,6 +56,17 @@ def test_rules_and_shapes_are_counted(report):
     assert "ignored 1 x SWRL rule (incomplete body) (stored, but not evaluated)" in lines
 
 
+def test_terms_of_rules_that_nothing_declares_are_listed(report):
+    found = report(
+        "@prefix swrl: <http://www.w3.org/2003/11/swrl#> . :x a swrl:Variable . [] a swrl:Imp ;"
+        " swrl:body ( [ a swrl:ClassAtom ; swrl:classPredicate :Cpu ; swrl:argument1 :x ] ) ;"
+        " swrl:head ( [ a swrl:ClassAtom ; swrl:classPredicate :Cup ; swrl:argument1 :x ] ) ."
+    )
+    assert found.undeclared == ("http://o.org/o#Cpu",)
+    lines = [" ".join(line.split()) for line in show_tbox.report(found)]
+    assert "not declared http://o.org/o#Cpu (used by a SWRL rule)" in lines
+
+
 def test_a_class_with_impossible_members_is_unsatisfiable(report):
     """Like the ice cream of the Pizza ontology, which no rule of OWL 2 RL finds."""
     found = report("""

@@ -8,6 +8,7 @@ from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner.rules.closure import Closure
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from tests.kb_node.reasoner.graphs import triples
+from tests.kb_node.reasoner.swrl import graph
 from tests.kb_node.reasoner.test_worlds import check, refused
 from tests.kb_node.reasoner.worlds import AXIOMS, NOMINALS, TRANSITIVE, World
 
@@ -106,3 +107,14 @@ def test_equal_nodes_are_not_supported():
     reasoner = Reasoner(SCHEMA)
     reasoner.apply(insert=triples(":cup owl:sameAs :mug ."))
     assert reasoner.columns() is None
+
+
+def test_a_reasoner_with_rules_is_restored_unless_a_rule_has_concluded_something():
+    rules = graph("Cup(x), isNear(x, y) -> Full(y)")
+    reasoner = Reasoner([*SCHEMA, *rules])
+    reasoner.apply(insert=FACTS)
+    filled = Reasoner([*SCHEMA, *rules])
+    assert filled.fill(reasoner.columns())
+    filled.apply(insert=triples(":cup :isNear :table ."))
+    assert filled.holds(triples(":table a :Full .")[0])
+    assert filled.columns() is None

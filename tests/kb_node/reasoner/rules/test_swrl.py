@@ -14,6 +14,7 @@ from tests.kb_node.reasoner.swrl import graph
 from tests.kb_node.reasoner.test_worlds import promised, refused
 from tests.kb_node.reasoner.worlds import Change
 
+SWRL = "http://www.w3.org/2003/11/swrl#"
 AXIOMS = """
 :B rdfs:subClassOf :A . :q rdfs:subPropertyOf :p . :inv owl:inverseOf :p . :p rdfs:domain :D .
 :tra a owl:TransitiveProperty . :fun a owl:FunctionalProperty . :dfun a owl:FunctionalProperty .
@@ -182,6 +183,49 @@ def test_rules_of_functional_syntax_and_owl_xml_are_applied():
         reasoner = Reasoner(rdf.parse(text.encode(), name))
         reasoner.apply(insert=[triple(":i a :A")])
         assert reasoner.holds(triple(":i a :B")), name
+
+
+def test_rules_of_rdf_xml_and_manchester_syntax_are_applied():
+    def atom(kind, predicate, name, *variables):
+        arguments = "".join(
+            f'<swrl:argument{i} rdf:resource="urn:{variable}"/>' for i, variable in enumerate(variables, 1)
+        )
+        return (
+            f'<rdf:Description><rdf:type rdf:resource="{SWRL}{kind}"/>'
+            f'<swrl:{predicate} rdf:resource="http://example.org/{name}"/>{arguments}</rdf:Description>'
+        )
+
+    def atoms(part, *found):
+        return f'<swrl:{part} rdf:parseType="Collection">{"".join(found)}</swrl:{part}>'
+
+    body = atoms(
+        "body",
+        atom("ClassAtom", "classPredicate", "A", "x"),
+        atom("IndividualPropertyAtom", "propertyPredicate", "p", "x", "y"),
+    )
+    head = atoms("head", atom("ClassAtom", "classPredicate", "B", "y"))
+    rdf_xml = (
+        '<rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#" xmlns:swrl="'
+        f'{SWRL}"><swrl:Variable rdf:about="urn:x"/><swrl:Variable rdf:about="urn:y"/>'
+        f"<swrl:Imp>{body}{head}</swrl:Imp></rdf:RDF>"
+    )
+    manchester = (
+        "Prefix: : <http://example.org/>\nOntology: <http://example.org/o>\nClass: :A\nClass: :B\n"
+        "ObjectProperty: :p\nRule:\n    :A(?x), :p(?x, ?y) -> :B(?y)\n"
+    )
+    for text, name in ((rdf_xml, "a.owl"), (manchester, "a.omn")):
+        reasoner = Reasoner(rdf.parse(text.encode(), name))
+        reasoner.apply(insert=[triple(":i a :A"), triple(":i :p :j")])
+        assert reasoner.holds(triple(":j a :B")), name
+
+
+@pytest.mark.parametrize("axioms", ["", "owl:sameAs rdfs:subPropertyOf :same ."], ids=["compiled", "general"])
+def test_counting_the_matches_of_rules_stops_at_the_time_limit(axioms):
+    reasoner = Reasoner(graph("A(x), A(y) -> B(x)", "A(x) -> B(x)", axioms=axioms))
+    reasoner.apply(insert=[triple(f":i{i} a :A") for i in range(10)])
+    uses = sorted(reasoner.rules(), key=lambda use: use.holds)
+    assert [(use.holds, use.is_cut) for use in uses] == [(10, False), (100, False)]
+    assert all(use.is_cut and not use.holds for use in reasoner.rules(patience_s=0))
 
 
 @random_(tries(15))
