@@ -1,6 +1,7 @@
 """A small kitchen for resolving descriptions, with given instead of computed relations."""
 
 import math
+from typing import ClassVar
 
 from semmap.nodes.language.reference_resolution.map_index import Item, MapIndex, Terms
 from semmap.nodes.language.reference_resolution.resolution import find
@@ -75,7 +76,7 @@ class Written:
     """A MapGeometry with given positions, sizes and relations; the viewer looks along x."""
 
     at, holds, viewer = AT, HOLDS, "anna"
-    sizes = {name: (extent,) * 3 for name, extent in SIZES.items()}  # noqa: RUF012
+    sizes: ClassVar[dict[str, tuple[float, float, float]]] = {n: (m, m, m) for n, m in SIZES.items()}
 
     def __init__(self, has_viewer=False):
         self.has_viewer = has_viewer
