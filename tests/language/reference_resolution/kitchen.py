@@ -58,7 +58,7 @@ ITEMS = (
     item("lamp1", "Floor_Lamp", isSwitchedOn=True),
     item("glasses1", "Glasses", "glasses", isOwnedBy="anna"),
 )
-AT = {
+AT: dict[str, tuple[float, float, float]] = {
     "kitchen1": (0, 0, 0), "table1": (0, 0, 0),
     "cup1": (0, 0, 1), "cup2": (0, 1, 1), "cup3": (5, 0, 1), "sink1": (5, 0, 0),
     "fridge1": (9, 0, 0), "wine1": (9, 0, 1), "anna": (-3, 0, 0), "lamp1": (3, 3, 0), "glasses1": (0, 2, 1),
@@ -75,8 +75,9 @@ SIZES = {"cup1": 0.1, "cup2": 0.1, "cup3": 0.2}
 class Written:
     """A MapGeometry with given positions, sizes and relations; the viewer looks along x."""
 
-    at, holds, viewer = AT, HOLDS, "anna"
+    at: ClassVar[dict[str, tuple[float, float, float]]] = AT
     sizes: ClassVar[dict[str, tuple[float, float, float]]] = {n: (m, m, m) for n, m in SIZES.items()}
+    holds, viewer = HOLDS, "anna"
 
     def __init__(self, has_viewer=False):
         self.has_viewer = has_viewer
