@@ -203,7 +203,7 @@ class ArgumentReader(CorrectionReader):
             and (self._is_person(objects[0]) or objects[0].kind in ("pronoun", "speaker", "robot"))
             and (first := clause.role(role)) is not None
             and objects[0] in first.phrases
-            and not self._is_person(phrase)
+            and not (self._is_person(objects[0]) and self._is_person(phrase))
         ):
             first.role = roles["receiver"]
             if clause.frame == "Taking":  # get me a drink
