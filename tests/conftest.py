@@ -39,6 +39,7 @@ from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
 from semmap.schemas import errors
 from semmap.schemas.replies import SystemStatus
 from tests import tiers
+from tests.depth import tries
 from tests.shared_systems import SharedSystem, is_one_running, stop_unused
 
 # A shell that starts pytest in the background has it ignore Ctrl-C, and so would what it spawns.
@@ -49,7 +50,9 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
 # On a busy machine the clock says nothing of the code: no deadlines, and input may take its time to be made.
-settings.register_profile("busy", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile(
+    "busy", deadline=None, max_examples=tries(100), suppress_health_check=[HealthCheck.too_slow]
+)
 settings.load_profile("busy")
 
 tiers.forbid_processes()

@@ -95,21 +95,6 @@ def test_a_bad_world_is_reported_before_a_map_is_created(tmp_path):
     assert not (tmp_path / "data" / JOURNAL).exists()
 
 
-def test_the_working_directory_does_not_matter_and_another_version_can_stop_it(tmp_path, monkeypatch):
-    folder = tmp_path / "mine"
-    folder.mkdir()
-    for module in ("queue", "nodes", "supervisor"):
-        (folder / f"{module}.py").write_text("raise RuntimeError('not this one')\n")
-    monkeypatch.chdir(folder)
-    data = tmp_path / "data"
-    with running(data, "--abox", "none", "--no-sim", "--no-record") as system:
-        with system.client() as client:
-            assert client.sparql("ASK { ?s ?p ?o }").verdict
-        settings = data / SETTINGS
-        settings.write_text(settings.read_text().replace("{", '{"colour": "red", ', 1))
-        assert down("--connect", system.endpoint) == (0, "stopped")
-
-
 @pytest.mark.process
 def test_a_port_in_use_is_reported(tmp_path):
     with socket.socket() as taken:
@@ -206,12 +191,22 @@ def test_a_model_file_without_class_is_reported(tmp_path):
     assert "ignored, because no class has a model with this name: chiar.obj (did you mean chair" in line
 
 
-def test_one_system_a_data_folder_that_is_stopped_by_the_endpoint_it_listens_on(tmp_path):
+def test_a_system_is_the_only_one_of_its_folder_and_is_stopped_by_its_endpoint(tmp_path, monkeypatch):
+    """The modules in the working directory do not matter, and another version can stop it."""
+    folder = tmp_path / "mine"
+    folder.mkdir()
+    for module in ("queue", "nodes", "supervisor"):
+        (folder / f"{module}.py").write_text("raise RuntimeError('not this one')\n")
+    monkeypatch.chdir(folder)
     data = tmp_path / "my map"
     with running(data, "--abox", "none", "--no-sim", "--no-record") as system:
+        with system.client() as client:
+            assert client.sparql("ASK { ?s ?p ?o }").verdict
         status, line = up(data)
         assert status == 1
         assert f"semmap down --data '{data}'" in line
+        settings = data / SETTINGS
+        settings.write_text(settings.read_text().replace("{", '{"colour": "red", ', 1))
         status, line = down("--data", tmp_path / "other")
         assert status == 3
         assert f"{data} ({system.endpoint})" in line

@@ -122,10 +122,10 @@ def test_entities_are_sorted_by_a_column_and_those_without_a_value_come_last():
 
 
 def test_a_list_of_very_many_rows_takes_no_time():
-    chairs = [entity(f"chair{i}") for i in range(10_000)]
+    chairs = [entity(f"chair{i}") for i in range(2_000)]
     begun = time.process_time()
     drawn(show.entity_table(chairs), 100)
-    assert time.process_time() - begun < 5.0  # laid out it takes half a minute
+    assert time.process_time() - begun < 3.0  # laid out it takes six seconds
 
 
 def test_what_a_row_is_known_by_stays_on_one_line():
