@@ -61,8 +61,14 @@ def section(tab, title):
     """Return a section of the details, opened."""
     header = tab.locator(".semmap-detail .q-expansion-item").filter(has_text=title).first
     button = header.get_by_role("button").first
-    if button.get_attribute("aria-expanded") != "true":
-        button.click()
+
+    def is_open():
+        if button.get_attribute("aria-expanded") != "true":
+            button.click()
+            settle(tab)  # the details may be drawn again before the page has received the click
+        return button.get_attribute("aria-expanded") == "true"
+
+    until(is_open, f"the section {title} is open")
     return header
 
 

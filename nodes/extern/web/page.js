@@ -59,7 +59,7 @@
     requestAnimationFrame(() => requestAnimationFrame(() => window.dispatchEvent(new Event("scroll"))));
   }
 
-  // Labels for what the libraries draw without one: the attribute, the selector, the text.
+  // Attributes for what the libraries draw without them: the attribute, the selector, the value.
   const LABELS = [
     ["aria-label", ".q-drawer--left", "Lists"],
     ["aria-label", ".q-drawer--right", "Details"],
@@ -70,6 +70,7 @@
     ["aria-label", ".q-table thead .q-checkbox", "Select all rows"],
     ["aria-label", ".q-table tbody .q-checkbox", "Select the row"],
     ["alt", ".semmap-plan img", ""],
+    ["tabindex", ".q-table__middle.scroll", "0"], // scrolled with the keyboard
   ];
 
   function addLabels() {
