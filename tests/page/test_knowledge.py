@@ -9,7 +9,7 @@ import pytest
 
 from semmap.commands import Add
 from tests.conftest import until
-from tests.page.waiting import has_commit
+from tests.page.waiting import has_commit, settle
 
 _PLACES = itertools.cycle(range(12))
 

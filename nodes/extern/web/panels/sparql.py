@@ -39,7 +39,11 @@ class _Sparql:
                 self._inferred.tooltip("Include inferred and computed facts")
             with ui.element("div").classes("w-full").props('role="group" aria-label="SPARQL query"'):
                 self._editor = ui.codemirror(
-                    FIRST, language="SPARQL", line_wrapping=True, keymap={"Mod-Enter": self._run}
+                    FIRST,
+                    language="SPARQL",
+                    theme="vscodeDark" if page.dark else "vscodeLight",
+                    line_wrapping=True,
+                    keymap={"Mod-Enter": self._run},
                 )
                 self._editor.classes("w-full semmap-framed sparql-editor").style("height: 11rem")
             with ui.row().classes("w-full items-center gap-2"):
@@ -62,11 +66,6 @@ class _Sparql:
         self._save.set_enabled(False)
         self._update_examples()
         page.on_change(self._update_examples)
-        page.on_appearance_change(self._update_theme)
-        self._update_theme()
-
-    def _update_theme(self) -> None:
-        self._editor.theme = "vscodeDark" if self._page.dark else "vscodeLight"
 
     def _update_examples(self) -> None:
         """Offer the examples for the map at the moment shown."""
