@@ -10,7 +10,7 @@ from typing import Final
 
 _ANY: Final = re.compile(rb"""(@|xml:lang=["']|"@language": ")[a-z]{1,8}-""")
 _TAG: Final = r"[a-z]{1,8}(?:-[a-z0-9]{1,8})+"
-_TEXT: Final = re.compile(rf'("(?:[^"\\]|\\.)*")@({_TAG})|<[^<>\s]*>', re.DOTALL)
+_TEXT: Final = re.compile(rf'("(?:[^"\\]|\\.)*")(?:@({_TAG}))?|<[^<>\s]*>', re.DOTALL)
 _XML: Final = re.compile(rf'(<[^<>]*\sxml:lang=)"({_TAG})"')
 _JSON: Final = re.compile(rf'("@language": )"({_TAG})"')
 

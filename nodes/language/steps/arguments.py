@@ -249,7 +249,7 @@ class ArgumentReader(CorrectionReader):
             if last is not None:
                 last.end = last.phrases[-1].end = phrase.end
             return phrase.end
-        if last is not None and last.phrases:
+        if last is not None and last.phrases and last.phrases[-1].noun not in ("one", "ones"):
             self._complete_noun(last.phrases[-1], phrase)  # the red or the blue cup
         self._finish(clause)
         last = clause.roles[-1] if clause.roles else None

@@ -32,8 +32,6 @@ _BEFORE_VERB: Final = frozenset(
         "have",
         "has",
         "had",
-        "already",
-        "just",
     )
 )
 """Words after which a verb begins no clause."""
@@ -133,6 +131,8 @@ class ClauseBoundaries(ClauseStarts):
     def _continues_verb(self, j: int) -> bool:
         """Return whether the word before `j` makes a verb at `j` part of the same clause: to GO, you GO."""
         word = self._words[j - 1]
+        if word in ("already", "just"):  # has just closed it; but: if it is cold just close it
+            return j > 1 and self._continues_verb(j - 1)
         return word in _BEFORE_VERB or any(self._g.is_a(word, kind) for kind in ("modal", "be", "determiner"))
 
     def _continues(self, i: int) -> bool:

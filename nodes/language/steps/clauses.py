@@ -33,6 +33,7 @@ class ClauseReader(MessageReader):
                 i += 1
             elif self.found.clauses and (repair := self._corrects(i)) > i:
                 i = self._correct(self.found.clauses[-1], i, repair)
+                first_of_sentence = min(first_of_sentence, len(self.found.clauses))
             elif self._t.is_mark(i):
                 i += 1
             elif (end := self._condition(i, is_fronted=self._is_fronted(i, first_of_sentence))) > i:
@@ -66,9 +67,11 @@ class ClauseReader(MessageReader):
                 i = topic.end + 1
             elif wish := self._wish(i):
                 self._is_negated = negated
+                before = len(self.found.clauses)
                 i = self._wished(i, wish)
-                self.found.clauses[-1].negated = negated
-                self.found.clauses[-1].times += times
+                for clause in self.found.clauses[before:]:  # none if it was taken back
+                    clause.negated = negated
+                    clause.times += times
                 has_time, negated = True, False
             elif self._asks(i) or self._found_at(i) or self._declares(i):
                 before = len(self.found.clauses)
@@ -101,15 +104,17 @@ class ClauseReader(MessageReader):
                 before = len(self.found.clauses)
                 self._is_negated = negated
                 i = self._clause(i)
-                for clause in self.found.clauses[before:]:
+                made = self.found.clauses[before:]  # none if it was taken back
+                for clause in made:
                     clause.negated = negated and not clause.contrasts
                     clause.times += times
-                if manner is not None:
-                    self.found.clauses[before].roles.append(manner)
+                if made and manner is not None:
+                    made[0].roles.append(manner)
                     manner = None
-                if front is not None:
-                    self._add_front(self.found.clauses[before], *front)
-                has_time, negated, front = True, False, None
+                if made and front is not None:
+                    self._add_front(made[0], *front)
+                    front = None
+                has_time, negated = True, False
             else:
                 negated = negated and self._t.is_mark(i - 1)  # not the red one, take the blue one
                 start, i = i, self._unread(i)

@@ -38,6 +38,8 @@ class CorrectionReader(FrameCompletion):
             return i
         if self._t.ends_sentence(i - 1) and (not is_sure or g.match("polite", words, j)):
             return i  # sorry, could you also take the milk
+        if not is_sure and last in ("wait", "hold", "hang") and words[j - 1] != ",":
+            return i  # go to the kitchen, wait for Anna
         return j
 
     def _opens_repair(self, i: int) -> bool:
@@ -49,6 +51,10 @@ class CorrectionReader(FrameCompletion):
         """Read from `i` what replaces a role of a clause, after the marker at `first`; return its end."""
         if self._g.verb(self._words, i)[0] and not self._opens_repair(i):
             return self._replace(clause, first, i)
+        end = self._condition(i, is_fronted=True)
+        end += self._words[end : end + 1] == (",",)
+        if end > i and self._g.verb(self._words, end)[0]:
+            return self._replace(clause, first, i)  # no, if Anna is there, take the plate
         self._finish(clause)
         other = Clause(clause.frame, clause.verb, i)
         end = self._arguments(other, i)
@@ -68,7 +74,7 @@ class CorrectionReader(FrameCompletion):
             self.found.clauses.remove(clause)
             while self._t.is_mark(first - 1):
                 first -= 1
-            after = self._t.between(i, self._clause_end(i))
+            after = self._t.between(i, self._clause_end(i + 1))
             self.found.corrected.append((self._t.between(clause.first, first), after))
         return i
 

@@ -204,6 +204,7 @@ class NounGroupReader:
         is_form = len(word) > 4 and word.endswith(("ing", "ed")) and not self._g.is_a(word, "no_participle")
         return (
             is_form
+            and (word,) not in self._g.verbs  # bring
             and not self._g.match("condition", self._words, i)
             and not (self.is_known(i, i + 1) or self._is_modifier(i) or self._t.tokens[i].is_capital)
         )

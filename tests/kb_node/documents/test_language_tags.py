@@ -35,3 +35,12 @@ def test_only_tags_change(syntax):
 def test_a_document_without_regions_stays_as_it_is(syntax):
     document = rdf.serialise([("<urn:a>", "<urn:p:>", v.literal("cup", lang="en"))], syntax)
     assert language_tags.restore_case(document, syntax) is document
+
+
+@pytest.mark.parametrize("syntax", SYNTAXES)
+def test_text_that_begins_like_a_tag_stays(syntax):
+    texts = ["x", "@living-room", "@info-de", "y"]
+    triples = [("<urn:a:a>", "<urn:p:>", v.literal(text)) for text in texts]
+    triples.append(("<urn:a:b>", "<urn:p:>", v.literal("z", lang="en-gb")))
+    document = language_tags.restore_case(rdf.serialise(triples, syntax), syntax)
+    assert [document.count(part) for part in (b"@living-room", b"@info-de", b"en-GB")] == [1, 1, 1]
