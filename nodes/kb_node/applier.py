@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Set
-from itertools import islice
+from itertools import chain, islice
 from typing import Final
 
 from msgspec import structs
@@ -114,6 +114,8 @@ class Applier:
         """Revert the reasoner to before the last commit; `before` holds the entities of that state."""
         state = self._state
         self.change(delete=commit.inserted, insert=commit.retracted, lenient=True)
+        for subject in {s for s, p, _ in chain(commit.inserted, commit.retracted) if p == v.ENTITY_NAME}:
+            v.give_name(subject, entity_reading.stated_name(state.reasoner.about(subject)))
         if not state.derives_at_commits:
             return
         after: dict[str, Entity | None] = {departed.name: None for departed in commit.removed}

@@ -67,7 +67,9 @@ class Follower(Generic[C]):
         self._kb_started_ns = 0
         self._shapes_ns = self._requested_ns = 0
         self._is_outdated = False
-        """Whether relations have changed while the map was fetched."""
+        """Whether relations have changed since the map was last requested."""
+        self._is_renewing = False
+        """Whether the map is being fetched because relations have changed."""
         self._ahead: tuple[int, float] | None = None
         """A commit of the replica that the knowledge base did not have, and since when."""
         self._previous = -1
@@ -103,7 +105,7 @@ class Follower(Generic[C]):
         before = self._shapes_ns if health.started_ns == self._kb_started_ns else self._requested_ns
         self._shapes_ns = health.shapes_ns
         if health.shapes_ns > before:
-            self._is_outdated = self._fetching
+            self._is_outdated = True
             if self._replica.seq >= 0:
                 self._fetch()
 
@@ -131,7 +133,8 @@ class Follower(Generic[C]):
             self._fetch()
 
     def _check(self) -> None:
-        if not self._replica.is_current and not self._replica.is_being_fetched:
+        is_old = self._is_outdated and self._replica.seq >= 0
+        if (is_old or not self._replica.is_current) and not self._replica.is_being_fetched:
             self._fetch()
 
     def _fetch(self) -> None:
@@ -139,6 +142,7 @@ class Follower(Generic[C]):
         if self._fetching:
             return
         self._fetching, self._requested_ns = True, time.time_ns()
+        self._is_renewing, self._is_outdated = self._is_outdated, False
         pages = self._replica.begin_pages()
         classes: list[ClassInfo] = []
 
@@ -159,6 +163,7 @@ class Follower(Generic[C]):
 
     def _abort(self) -> None:
         self._fetching = False
+        self._is_outdated = self._is_outdated or self._is_renewing
         self._replica.cancel_pages()
 
     def _begin(self, snapshot: Snapshot, classes: tuple[ClassInfo, ...]) -> None:
@@ -166,9 +171,10 @@ class Follower(Generic[C]):
         if self._replica.begin(snapshot):
             self._begun_ns = time.time_ns()
             self._on_snapshot(SnapshotLoaded(before, snapshot.seq, classes))
-        if self._is_outdated:
-            self._is_outdated = False
-            self._fetch()
+            if self._is_outdated:
+                self._fetch()
+        elif self._is_renewing:
+            self._is_outdated = True  # a commit has arrived that the snapshot does not have; see _check
 
     def _ask(self, call: Call[Any], take: Callable[[Any], None], *, at: str = keys.BRIDGE) -> None:
         def on_done(done: Future[Any]) -> None:

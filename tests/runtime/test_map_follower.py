@@ -205,6 +205,18 @@ def test_relations_that_change_without_a_commit_are_fetched_once(both):
     assert kb.asked == 2
 
 
+def test_changed_relations_are_fetched_again_if_a_commit_is_newer_than_the_snapshot(both):
+    kb, follower = both
+    kb.beat(7, 1)
+    kb.publish(commit(2))
+    until(lambda: follower.map.seq == 2, "the commit was taken")
+    kb.beat(7, 2, shapes_ns=time.time_ns())
+    until(lambda: kb.asked == 2, "the map was requested")
+    retyped = msgspec.structs.replace(entity("cup1"), types=("Chair", "Supported_Thing"))
+    kb.snapshot = Snapshot(seq=2, entities=(retyped,))
+    until(lambda: follower.map.entities["cup1"].types == retyped.types, "the map was fetched again")
+
+
 def test_relations_that_changed_before_the_map_was_fetched_are_not_fetched_again(both):
     kb, follower = both
     kb.beat(7, 1, shapes_ns=1)

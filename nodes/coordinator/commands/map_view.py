@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Callable, Collection, Mapping
 from operator import attrgetter
-from typing import Final, TypeVar
+from typing import Any, Final, TypeVar
 
 from msgspec import Struct, structs
 
@@ -54,7 +55,7 @@ class MapView(map_replica.MapReplica[Effects]):
 
     def free_name(self, class_name: str) -> str:
         """Return the first free name for an entity of a class."""
-        return self._names.name(class_name, self.entities)
+        return self._names.name(class_name, ChainMap[str, Any](self.entities, self.primary_names))
 
     def free_place(self, size_m: Size | None) -> Vector:
         """Return the place nearest to a default position where an object of `size_m` touches nothing."""
@@ -114,7 +115,9 @@ class MapView(map_replica.MapReplica[Effects]):
                 changed[field] = now
         if isinstance(command, Batch):
             changed["changes"] = tuple(map(self.with_primary_names, command.changes))
-        return structs.replace(command, **changed) if changed and not isinstance(command, Add) else command
+        if isinstance(command, Add):
+            changed.pop("name", None)  # the name of a new entity
+        return structs.replace(command, **changed) if changed else command
 
     def _primary_name(self, word: str) -> str:
         return word if word in self.entities else self.primary_names.get(word, word)

@@ -66,7 +66,7 @@ def read_entity(
     if types.isdisjoint(classes.spatial):
         return None
     about = about or reasoner.about
-    if given := _given_name(about(iri)):
+    if given := stated_name(about(iri)):
         v.give_name(iri, given)
     if members := reasoner.equals(iri):
         if iri != equal_individuals.choose_primary(members, classes, about):
@@ -458,7 +458,7 @@ def _numbers(iri: Term, predicates: Sequence[Term], asserted: Objects) -> tuple[
     return tuple(found) if len(found) == len(predicates) else None
 
 
-def _given_name(asserted: Objects) -> str:
+def stated_name(asserted: Objects) -> str:
     """Return the name that is stated for an individual, or "". Raises BadRequest if it is not a name."""
     name = _text(min(terms)) if (terms := asserted.get(v.ENTITY_NAME, ())) else ""
     if name and not is_name(name):

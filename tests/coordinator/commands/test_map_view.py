@@ -35,6 +35,7 @@ def view():
         (c.Attach(name="mug", to="cup2"), {"name": "cup1", "to": "cup2"}),
         (c.Rename(name="mug", new="cup3"), {"name": "cup1", "new": "cup3"}),
         (c.Add(class_="Cup", name="mug"), {"name": "mug"}),  # and so it is taken
+        (c.Add(class_="Cup", name="mug", on="mug"), {"name": "mug", "on": "cup1"}),
         (c.Get(name="other"), {"name": "other"}),
     ],
 )
@@ -46,6 +47,16 @@ def test_a_command_names_an_entity_by_any_of_its_names(view, command, expected):
 def test_the_changes_of_a_batch_name_entities_by_any_name(view):
     batch = c.Batch(changes=(c.Update(name="mug", ref="mine"), c.Update(name="cup2", ref="yours")))
     assert [change.name for change in view.with_primary_names(batch).changes] == ["cup1", "cup2"]
+
+
+def test_another_name_of_an_entity_is_not_free(view):
+    view.take(
+        Effects(
+            seq=2, digest="2", changed=(entity("cup1", "cup2", "mug"),),
+            removed=(Departed(name="cup2", types=()),), id="2",
+        )
+    )  # fmt: skip
+    assert view.free_name("Cup") == "cup3"
 
 
 def test_the_names_follow_the_commits(view):

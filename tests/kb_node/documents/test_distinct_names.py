@@ -114,6 +114,15 @@ def test_a_file_may_state_another_name(semantic_map):
         load(semantic_map, f"<{B}> <urn:semmap:entityName> 'no name' .")
 
 
+def test_a_rejected_change_leaves_the_names(semantic_map):
+    load(semantic_map, TWO)
+    with pytest.raises(errors.SemmapError):
+        load(semantic_map, f"<{B}> a dm:Chair . <http://x.org/c> a dm:Chair, dm:Kitchen .", replace=True)
+    assert v.entity_name(v.iri(B)) == "b.mug"
+    semantic_map.commit(Transaction(id="r", source="operator", remove=("b.mug",)))
+    assert iris(semantic_map) == {"a.mug": A}
+
+
 def test_individuals_that_are_the_same_share_a_name(semantic_map):
     assert load(semantic_map, f"{TWO} <{A}> owl:sameAs <{B}> .") == []
     assert iris(semantic_map) == {"mug": A}
