@@ -272,7 +272,7 @@ def clear(view: MapView, command: Clear) -> KbCoroutine[Changed]:
     made = yield from commit(view, transactions.clear(command, names))
     if made is None:
         return Changed(commit=None, text="the map is already empty")
-    text = f"removed {len(names)}: {wording.few(names)}" if names else "removed all that is not in space"
+    text = f"removed {len(names)}: {wording.few(names)}" if names else "removed all non-spatial individuals"
     return make_reply(made, text, names=names)
 
 

@@ -85,12 +85,10 @@ class _Document:
                 for event, asserted in self._asserted.items():
                     pose = self._read_perception(known, words, asserted)
                     time_s = _read_time(asserted.get(words.time, ()))
-                    for thing in asserted.get(words.object, ()) if pose is not None else ():
-                        if (
-                            pose is not None
-                            and thing[0] != '"'
-                            and (time_s, event) > latest.get(thing, (-2.0, ""))[:2]
-                        ):
+                    if pose is None:
+                        continue
+                    for thing in asserted.get(words.object, ()):
+                        if thing[0] != '"' and (time_s, event) > latest.get(thing, (-2.0, ""))[:2]:
                             latest[thing] = (time_s, event, pose)
         self._perceived = {s: pose for s, (*_, pose) in latest.items() if self._own_pose(s) is None}
         return self._perceived

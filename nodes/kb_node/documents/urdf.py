@@ -32,7 +32,7 @@ def read(content: bytes, name: str) -> dict[str, Link]:
         if robot.tag != "robot":
             raise ValueError(f"its root element is {robot.tag}, not robot")
         return _read_links(robot)
-    except (Xml.ParseError, ValueError, KeyError) as error:
+    except (Xml.ParseError, LookupError, ValueError) as error:
         reason = f"an element lacks the attribute {error}" if isinstance(error, KeyError) else str(error)
         raise errors.BadFile(f"{name or 'the file'} is not valid URDF: {reason}") from None
 

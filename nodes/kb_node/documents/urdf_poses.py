@@ -1,6 +1,6 @@
-"""Adds poses and sizes from a URDF file to the individuals of a document that are called like its links.
+"""Adds poses and sizes from a URDF file to the individuals of a document that have the names of its links.
 
-An individual is called by a property such as `urdf:hasURDFName`, or by the last part of its IRI. What a
+The name is that of a property such as `urdf:hasURDFName`, or by the last part of its IRI. What a
 document states itself counts more.
 """
 
@@ -29,7 +29,7 @@ def add_poses(
     """Return the triples with poses and sizes from the links of the URDF file `name`, and notes.
 
     The frame of the root link is the map frame. A link without a box, such as one with meshes only, gives the
-    origin of its frame. Raises Refused if no individual is called like a link.
+    origin of its frame. Raises Refused if no individual has the name of a link.
     """
     about: dict[Term, dict[Term, list[Term]]] = {}
     for s, p, o in triples:
@@ -38,7 +38,8 @@ def add_poses(
     if not known:
         count, example = wording.counted(len(links), "link"), next(iter(links), "none")
         raise errors.Refused(
-            f"{name}: no individual of the map is called like one of its {count}, such as {example}"
+            f"{name}: no individual of the file has the name of one of its {count}, such as {example};"
+            " state it with urdf:hasURDFName"
         )
 
     def look_up(term: Term) -> Mapping[Term, Sequence[Term]]:
@@ -65,7 +66,7 @@ def add_poses(
 
 
 def _find_link(subject: Term, values: Mapping[Term, Sequence[Term]], links: Mapping[str, Link]) -> str | None:
-    """Return the name of the link that an individual is called like, or None."""
+    """Return the link that has the name of an individual, or None."""
     if subject.startswith("_:"):
         return None
     names = (o for p in values if v.local_name(p) in _NAME_PROPERTIES for o in values[p])

@@ -91,3 +91,8 @@ def test_a_wrong_file_is_rejected_in_one_line(content, text):
         urdf.read(content, "f")
     assert text in caught.value.text
     assert "\n" not in caught.value.text
+
+
+def test_an_unknown_encoding_is_reported():
+    with pytest.raises(errors.BadFile, match="unknown encoding: nonsense"):
+        urdf.read(b'<?xml version="1.0" encoding="nonsense"?><robot/>', "k.urdf")

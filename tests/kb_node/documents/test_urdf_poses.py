@@ -56,6 +56,7 @@ def test_a_stated_pose_counts_more(pose):
 
 def test_a_file_without_a_common_name_is_rejected():
     with pytest.raises(
-        errors.Refused, match=r"^k\.urdf: no individual of the map is called like one of its 2 links, such as"
+        errors.Refused,
+        match=r"^k\.urdf: no individual of the file has the name of one of its 2 links, such as",
     ):
         posed(":cup1 a soma:Cup .")

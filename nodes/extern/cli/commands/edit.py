@@ -226,7 +226,7 @@ def clear(client: Client, dry_run: bool) -> None:
 )
 @click.option("--extend", is_flag=True, help="With --tbox: add FILE to the current TBox.")
 @click.option("--parts", is_flag=True, help="Load in several commits, for files of any size.")
-@click.option("--urdf", type=click.Path(), help="URDF file with poses of individuals called like its links.")
+@click.option("--urdf", type=click.Path(), help="URDF file with poses of individuals named like its links.")
 @click.option("--graph", metavar="NAME", default="", help="Load this named graph, not the default graph.")
 @import_option
 @spatial_root_option

@@ -37,8 +37,8 @@ from semmap.schemas.replies import LoggedCommit, Sighting, SystemStatus
 
 _WIDE = 100_000
 _LEVEL = 1e-3
-_MOST_PROBLEMS: Final = 20
 """A quaternion with smaller x and y is a rotation about the z axis."""
+_MOST_PROBLEMS: Final = 20
 ENTITY_COLUMNS: Final = ("name", "class", "x", "y", "z", "yaw", "size", "label", "body")
 _NUMBERS: Final = ("x", "y", "z", "yaw")
 _HEADERS: Final = {"yaw": "yaw°", "size": "size [m]"}
