@@ -703,7 +703,11 @@ class Status(Command[SystemStatus], frozen=True, tag="status"):
 
 
 class History(Command[tuple[LoggedCommit, ...]], frozen=True, tag="history"):
-    """List the newest commits, or those that changed an entity, from `since` to `until` (inclusive)."""
+    """List the newest commits, or those that changed an entity, from `since` to `until` (inclusive).
+
+    `by` selects an author: an agent (`anna`), a source (`perception`) or both (`perception/camera1`). `in`
+    selects the commits that changed something that was in this place or container before or after them.
+    """
 
     ROLES: ClassVar[Roles] = ANYBODY
 
@@ -711,6 +715,8 @@ class History(Command[tuple[LoggedCommit, ...]], frozen=True, tag="history"):
     since: When | None = None
     until: When | None = None
     limit: Annotated[int, Meta(ge=1, le=10_000)] = 100
+    by: Text | None = None
+    in_: Text | None = field(name="in", default=None)
 
 
 class LastSeen(Command[Sighting], frozen=True, tag="last-seen"):

@@ -138,6 +138,10 @@ class History(Paged, frozen=True, kw_only=True):
     since: Moment | None = None
     until: Moment | None = None
     limit: Annotated[int, Meta(ge=1, le=1000, description="Number of commits; the newest are returned.")] = 20
+    by: Annotated[Text, Meta(description="Only commits of this agent or source.")] | None = None
+    in_: Annotated[Text, Meta(description="Only commits that changed something in this place.")] | None = (
+        field(name="in", default=None)
+    )
 
 
 class Diff(Paged, frozen=True, kw_only=True):

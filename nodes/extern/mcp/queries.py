@@ -179,6 +179,8 @@ def history(client: Client, arguments: a.History) -> Answer:
             since=arguments.since,
             until=as_of if arguments.until is None else arguments.until,
             limit=arguments.limit,
+            by=arguments.by,
+            in_=arguments.in_,
         )
         return {}, [rows.commit(commit) for commit in found]
 

@@ -125,7 +125,8 @@ READ_TOOLS: Final = (
     ),
     Tool(
         "history",
-        "The newest commits, or those of one entity: time, author, reason and changes.",
+        "The newest commits, or those of one entity, of one author or in one place: time, author, reason and"
+        " changes.",
         a.History,
         queries.history,
     ),

@@ -17,7 +17,7 @@ from semmap.nodes.kb_node.answers.entity_search import EntitySearch, describe_mi
 from semmap.nodes.kb_node.answers.live_poses import LiveEntities
 from semmap.nodes.kb_node.answers.location_queries import LocationQueries
 from semmap.nodes.kb_node.answers.pages import Pages
-from semmap.nodes.kb_node.answers.past import differences, fact_intervals, past_map
+from semmap.nodes.kb_node.answers.past import commit_selection, differences, fact_intervals, past_map
 from semmap.nodes.kb_node.answers.route_planning import RoutePlanning
 from semmap.nodes.kb_node.answers.sightings import Sightings, describe_closed, find_closed_container
 from semmap.nodes.kb_node.reasoner import GivenFacts
@@ -300,7 +300,8 @@ class QueryHandlers:
         """Return commits of the history."""
         if query.name is not None:
             query = structs.replace(query, name=self._resolve_past(query.name))
-        return self._aside.submit(self._past.history, query)
+        limits = self._map.classes.limits
+        return self._aside.submit(commit_selection.list_commits, self._journal, self._past, query, limits)
 
     def on_last_seen(self, query: LastSeen) -> Sighting | Future[Sighting]:
         """Return where an entity was last seen, or where it is."""

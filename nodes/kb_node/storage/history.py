@@ -7,7 +7,7 @@ n is in the last commit up to n that touched it. Nothing needs to be replayed or
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from datetime import datetime
 
 from msgspec import structs
@@ -37,8 +37,10 @@ class HistoryReader:
         self._journal = journal
         self._first: tuple[int, dict[str, Entity]] | None = None
 
-    def history(self, query: History) -> tuple[LoggedCommit, ...]:
+    def history(self, query: History, only: Set[int] | None = None) -> tuple[LoggedCommit, ...]:
         """Return the commits of a time span, newest last. Raises UnknownName, BadRequest.
+
+        `only` are the commits that may be returned; None stands for all of them.
 
         Times are compared with the stamps of commits, between which the clock may have been set back. After
         compaction, the start of the history is returned as a commit, too. The commits of a renamed entity
@@ -47,12 +49,17 @@ class HistoryReader:
         if query.name is not None:
             self._require_known(query.name)
         beginning = self._journal.beginning.seq
+        if only is None:
+            shown = self._list_shown(query)
+        else:
+            every = self._list_shown(structs.replace(query, limit=max(self._journal.last, 1)))
+            shown = [each for each in every if each[0] in only][-query.limit :]
         changes = Changelog(self._journal, self.initial_entities)
         return tuple(
             _describe_beginning(self._journal)
             if seq == beginning
             else _to_logged_commit(commit := self._journal.commit(seq), changes.of(commit, name))
-            for seq, name in self._list_shown(query)
+            for seq, name in shown
         )
 
     def _list_shown(self, query: History) -> list[tuple[int, str | None]]:

@@ -43,6 +43,14 @@ _PIPED_WIDTH = 120
 @click.argument("name", required=False, shell_complete=entity_names)
 @click.option("--since", metavar="COMMIT|TIME", help="First commit.")
 @click.option("--until", metavar="COMMIT|TIME", help=f"Last commit. {TIME}")
+@click.option("--by", metavar="AUTHOR", help="Only commits of this agent or source, such as perception.")
+@click.option(
+    "--in",
+    "in_",
+    metavar="PLACE",
+    shell_complete=entity_names,
+    help="Only commits that changed something in this place or container.",
+)
 @click.option(
     "--limit",
     type=click.IntRange(1, _MOST),
@@ -53,10 +61,16 @@ _PIPED_WIDTH = 120
 @_format
 @with_client
 def history(
-    client: Client, name: str | None, since: str | None, until: str | None, limit: int, format: str
+    client: Client,
+    name: str | None,
+    since: str | None,
+    until: str | None,
+    limit: int,
+    format: str,
+    **only: Any,
 ) -> None:
     """Show the newest commits, or those of one entity, in order."""
-    found = client.history(name, since=since, until=until, limit=min(limit + 1, _MOST))
+    found = client.history(name, since=since, until=until, limit=min(limit + 1, _MOST), **only)
     commits = found[-limit:]
     if format == "json":
         print_json(commits)
@@ -65,7 +79,7 @@ def history(
         output.show.console(_PIPED_WIDTH).print(output.show.history_table(commits))
     if len(found) == len(commits):
         print_count(wording.counted(len(commits), "commit"))
-    elif name is None and since is None and until is None:
+    elif not any((name, since, until, *only.values())):
         print_count(f"newest {len(commits)} of {commits[-1].seq} commits; for more: --limit N")
     else:
         print_count(f"newest {wording.counted(len(commits), 'commit')}; for more: --limit N")

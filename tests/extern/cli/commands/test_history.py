@@ -105,6 +105,22 @@ def test_get_shows_who_when_why_and_how_sure(system):
 
 
 @pytest.mark.parametrize(
+    ("words", "commits"),
+    [
+        (("--by", "camera"), [3]),
+        (("--by", "Perception/camera"), [3]),
+        (("--by", "ann"), [2, 4, 5]),
+        (("--by", "ann", "--limit", "1"), [5]),
+        (("chair2", "--by", "perception"), []),
+        (("--by", "ann", "--since", "3"), [4, 5]),
+    ],
+)
+def test_history_of_an_author(system, words, commits):
+    rows = json.loads(system.cli("history", *words, "--format", "json"))
+    assert [row["seq"] for row in rows] == commits
+
+
+@pytest.mark.parametrize(
     ("words", "status", "text"),
     [
         (("list", "--as-of", "999"), 1, "there is no commit 999 yet"),
@@ -115,6 +131,10 @@ def test_get_shows_who_when_why_and_how_sure(system):
         (("get", "chair2", "--as-of", "5"), 1, "no entity was named 'chair2' after commit 5"),
         (("history", "chair9"), 1, "no entity was ever named 'chair9'"),
         (("history", "--limit", "0"), 2, "limit"),
+        (("history", "--by", "an"), 1, "no commit is by 'an'; did you mean ann?"),
+        (("history", "--by", "ben"), 1, "no commit is by 'ben'; the authors are ann, "),
+        (("history", "--in", "kitchen9"), 1, "no entity was ever named 'kitchen9'"),
+        (("history", "--in", "chair1"), 1, "nothing can be in chair1"),
         (("history", "--since", "-1"), 2, "-1"),
         (("last-seen", "chair9"), 1, "no entity was ever named"),
         (("undo", "999"), 1, "there is no commit 999 yet"),

@@ -120,3 +120,16 @@ def test_a_place_is_in_a_place_and_an_object_on_its_support(told):
         found.text,
     )
     assert told.when("bowl1", "isOn", "book1").text == "bowl1 was never on book1"
+
+
+def test_commits_that_changed_something_in_a_place(told):
+    def listed(**fields):
+        return [commit.seq for commit in told.history(**fields)]
+
+    assert listed(in_="kitchen1", until=8) == [3, 4, 5, 6, 7, 8]
+    assert listed(in_="the kitchen", name="cup1", since=6, until=8) == [6, 7]
+    told.add("Kitchen", "kitchen2", at=(20, 0, 0), size=(6, 6, 3))
+    told.update("cup1", at=(20, 1, 0))
+    told.update("cup1", at=(1.1, 1, 0.7))
+    last = told.history()[-1].seq
+    assert listed(in_="kitchen2") == [last - 1, last], "what enters and what leaves a place"

@@ -1,0 +1,93 @@
+"""Selection of commits of the history by their author, and by the place of what they changed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from msgspec import Struct
+
+from semmap.nodes.kb_node.answers.past.fact_intervals import PoseChanges
+from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
+from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.nodes.kb_node.relations.selection import Targets, is_in, require_possible
+from semmap.nodes.kb_node.storage.history import HistoryReader
+from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.schemas import errors, wording
+from semmap.schemas.commands import History
+from semmap.schemas.entities import Entity
+from semmap.schemas.replies import LoggedCommit
+
+_FEW = 5
+
+
+class Authorship(Struct, frozen=True):
+    """The author of a commit."""
+
+    seq: int
+    source: str
+    agent: str = ""
+
+
+def list_commits(
+    journal: Journal, past: HistoryReader, query: History, limits: Thresholds
+) -> tuple[LoggedCommit, ...]:
+    """Return the commits that a query selects, newest last. Raises UnknownName, Refused, BadRequest."""
+    only: set[int] | None = None
+    if query.by is not None:
+        only = find_commits_by(journal.decode_partially(Authorship), query.by)
+    if query.in_ is not None:
+        present = past.entities(past.last) if past.last else ()
+        place = past.resolve(query.in_, present)
+        first = past.initial_entities().values()
+        there = find_commits_in(journal.decode_partially(PoseChanges), first, place, limits)
+        only = there if only is None else only & there
+    return past.history(query, only)
+
+
+def find_commits_by(commits: Iterable[Authorship], author: str) -> set[int]:
+    """Return the commits of an author: an agent, a source, or `source/agent`. Raises UnknownName."""
+    wanted = author.casefold()
+    found: set[int] = set()
+    known: dict[str, None] = {}
+    for commit in commits:
+        names = [commit.source, *((commit.agent, f"{commit.source}/{commit.agent}") if commit.agent else ())]
+        known.update(dict.fromkeys(names[:2]))
+        if wanted in (name.casefold() for name in names):
+            found.add(commit.seq)
+    if not found:
+        authors = sorted(known)
+        hint = errors.did_you_mean(author, authors) or f"; the authors are {wording.few(authors, _FEW)}"
+        raise errors.UnknownName(f"no commit is by '{author}'{hint if authors else ''}")
+    return found
+
+
+def find_commits_in(
+    history: Iterable[PoseChanges], first: Iterable[Entity], place: str, limits: Thresholds
+) -> set[int]:
+    """Return the commits that changed something in a place or container, before or after the change.
+
+    `history` are the commits in order and `first` the entities before them. Raises Refused if nothing can be
+    in the entity.
+    """
+    space = Space(first, limits)
+    holders = frozenset((place,))
+
+    def is_there(name: str) -> bool:
+        solid = space.solids.get(name)
+        return solid is not None and is_in(space, solid, holders, frozenset())
+
+    found: set[int] = set()
+    for moves in history:
+        names = [*(each.name for each in moves.changed), *(each.name for each in moves.removed)]
+        was_there = any(map(is_there, names))
+        for each in moves.removed:
+            space.remove(each.name)
+        placed: list[PlacedEntity] = [each.placed for each in moves.changed]
+        for _ in space.put_all(placed):
+            pass
+        if was_there or any(map(is_there, names)):
+            found.add(moves.seq)
+    if place in space.solids:
+        require_possible(space, Targets(None, holders, None, None))
+    return found
