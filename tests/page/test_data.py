@@ -60,9 +60,11 @@ def test_sparql_queries_run_select_and_become_standing_queries(tab, system):
 
 def test_files_have_a_dry_run_and_are_loaded_or_rejected(tab, system, tmp_path):
     name = fresh("cup")
-    more, large, prose = (tmp_path / file for file in ("more.ttl", "film.bin", "prose.txt"))
+    files = ("more.ttl", "film.bin", "prose.txt", "strange.ttl")
+    more, large, prose, strange = (tmp_path / file for file in files)
     more.write_text(f"<{ABOX}{name}> a <{DM}Cup> .\n")
     prose.write_text("Once upon a time <there> was no ontology.")
+    strange.write_text("".join(f"<{ABOX}{name}> a <{DM}Kind{n}Of{name}> .\n" for n in range(9)))
     with large.open("wb") as file:
         file.write(b"abc\0def")
         file.truncate(50 << 20)
@@ -72,6 +74,11 @@ def test_files_have_a_dry_run_and_are_loaded_or_rejected(tab, system, tmp_path):
     tab.get_by_role("alert").get_by_text("film.bin: unsupported binary format").wait_for()
     chooser.set_input_files(prose)
     tab.get_by_role("alert").get_by_text("prose.txt").wait_for()
+    chooser.set_input_files(strange)
+    tab.get_by_role("alert").get_by_text("unknown classes:").wait_for()
+    assert tab.get_by_role("alert").get_by_text(f"(of {name}").locator("visible=true").count() == 5
+    tab.get_by_role("alert").get_by_text("4 more").click()
+    tab.get_by_role("alert").get_by_text(f"'Kind8Of{name}'").wait_for()
     chooser.set_input_files(more)
     tab.get_by_text("Changes by more.ttl:").wait_for()
     with system.client() as client:

@@ -9,6 +9,7 @@ from typing import Any, Final
 from nicegui import events, ui
 from nicegui.elements.mixins.text_element import TextElement
 
+from semmap.nodes.extern.web.keyboard_moves import KeyboardMoves
 from semmap.nodes.extern.web.page import Page
 from semmap.nodes.extern.web.panels.commits import commits
 from semmap.nodes.extern.web.panels.consistency import consistency
@@ -62,6 +63,7 @@ KEYS: Final = {
     "u": "undo the last change",
     "Home": "return to the current map",
     "f": "show the selected entities in the scene; so does a double click there",
+    "arrow keys": "move the selected entities by 10 cm, with Shift by 1 cm",
     "Esc": "cancel dragging or picking; otherwise clear the selection",
     "?": "show this list",
 }
@@ -208,6 +210,7 @@ def _bind_keys(page: Page) -> None:
     page.on_key("Home", lambda: page.go_to(None))
     page.on_key("Escape", page.escape)
     page.on_key("?", show_keys)
+    KeyboardMoves(page)
     ui.on("semmap_key", lambda event: page.press(_event_data(event).get("key", "")))
 
 

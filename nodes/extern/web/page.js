@@ -4,7 +4,19 @@
   const isWriting = (element) =>
     element && (element.isContentEditable || /^(INPUT|TEXTAREA|SELECT)$/.test(element.tagName));
 
+  // Arrow keys move the selection, except in elements that use them.
+  const hasSelection = () => Boolean(document.querySelector(".semmap-marks")?.dataset.selected);
+  const takesArrows = (element) => !(element === document.body || element.id === "views"
+    || (element.matches("button, a") && !element.closest("[role=tablist], [role=radiogroup], .q-btn-toggle")));
+
+  function onArrow(event) {
+    if (takesArrows(event.target) || !hasSelection() || document.querySelector(".q-dialog, .q-menu")) return;
+    event.preventDefault();
+    emitEvent("semmap_key", { key: `${event.shiftKey ? "Shift+" : ""}${event.key}` });
+  }
+
   function onKey(event) {
+    if (event.key.startsWith("Arrow") && !(event.ctrlKey || event.altKey || event.metaKey)) return onArrow(event);
     if (event.ctrlKey || event.altKey || event.metaKey || !HANDLED.has(event.key)) return;
     const element = event.target;
     if (isWriting(element)) {

@@ -20,6 +20,7 @@ from semmap.nodes.extern.web.map_state import NOW, MapState, Moment, Snapshot
 from semmap.nodes.extern.web.notices import Notices, Tone, strip_cli_hints
 from semmap.schemas import errors
 from semmap.schemas.commands import Command
+from semmap.schemas.entities import Pose
 from semmap.schemas.relations import ViewPoint
 
 log = logging.getLogger(__name__)
@@ -63,6 +64,8 @@ class Page:
         """Draws the scene with its switches, once; set by the scene."""
         self.pick: Callable[[], Awaitable[Place | None]] | None = None
         """Returns the next position that the user clicks; set by the scene."""
+        self.preview: Callable[[Mapping[str, Pose]], None] | None = None
+        """Shows entities at other poses until it is called without any; set by the scene."""
         self.cancel_interaction: Callable[[], bool] | None = None
         """Cancels picking or dragging in the scene, and returns whether there was any; set by the scene."""
         self.get_viewpoint: Callable[[], ViewPoint | None] | None = None

@@ -30,11 +30,21 @@ addEventListener("keydown", (event) => {
   const { key, code, shiftKey, ctrlKey, altKey, metaKey } = event;
   press({ key, code, shiftKey, ctrlKey, altKey, metaKey });
 });
+addEventListener("keydown", (event) => {
+  if (!event.key.startsWith("Arrow") || event.ctrlKey || event.altKey || event.metaKey) return;
+  if (!parent.document.querySelector(".semmap-marks")?.dataset.selected) return;
+  event.stopImmediatePropagation();
+  const { key, shiftKey } = event;
+  press({ key, shiftKey });
+}, true);
 addEventListener("dblclick", (event) => {
   if (event.target.tagName === "CANVAS") press({ key: "f" });
 });
 </script>"""
-"""Hides the panels of viser, and forwards key presses to the page; a double click is the key `f`."""
+"""Hides the panels of viser, and forwards key presses to the page; a double click is the key `f`.
+
+The arrow keys turn the view only without a selection, which they move otherwise.
+"""
 
 
 def router(at: Path) -> APIRouter:

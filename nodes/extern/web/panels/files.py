@@ -11,6 +11,9 @@ from nicegui import events, ui
 
 from semmap.nodes.extern.cli.output.lines import format_change
 from semmap.nodes.extern.web.page import Page
+from semmap.nodes.extern.web.panels.details.proof import draw_proof
+from semmap.nodes.extern.web.panels.widgets.folded_list import draw_error, draw_folded
+from semmap.nodes.extern.web.panels.widgets.map_view import MapView
 from semmap.nodes.extern.web.views.uploads import (
     BEGINNING,
     LARGEST,
@@ -22,6 +25,7 @@ from semmap.nodes.extern.web.views.uploads import (
 )
 from semmap.schemas import errors
 from semmap.schemas.commands import Export, Load, RdfFormat
+from semmap.schemas.explanations import Explanation
 from semmap.schemas.packing import packed
 
 _TIMEOUT_S: Final = 1800.0
@@ -82,8 +86,7 @@ class _LoadForm:
             )
             self._upload.classes("w-full").props("flat bordered").mark("upload").on("failed", self._on_failed)
             self._status = ui.column().classes("w-full gap-0").props('role="status"').mark("load-status")
-            self._error = ui.label().classes("text-negative whitespace-pre-wrap").props('role="alert"')
-            self._error.mark("load-error")
+            self._error = ui.column().classes("w-full gap-0").props('role="alert"').mark("load-error")
             with ui.row().classes("gap-2"):
                 self._button = ui.button("Load", icon="file_upload", on_click=self._load)
                 self._button.props("no-caps dense").classes("px-3").mark("load-button")
@@ -93,7 +96,7 @@ class _LoadForm:
 
     def _on_rejected(self) -> None:
         self._reset()
-        self._error.text = size_error("file")
+        self._fail(size_error("file"))
 
     def _on_begin(self) -> None:
         self._reset()
@@ -119,7 +122,7 @@ class _LoadForm:
     def _on_failed(self) -> None:
         if self._stop.visible:  # not stopped by the user
             self._reset()
-            self._error.text = "upload incomplete; choose the file again"
+            self._fail("upload incomplete; choose the file again")
 
     async def _on_upload(self, event: events.UploadEventArguments) -> None:
         self._reset()
@@ -133,7 +136,7 @@ class _LoadForm:
             beginning = chunk
             break
         if error := check_upload(file.name, file.size(), beginning):
-            self._error.text = error
+            self._fail(error)
             return
         self._stop.visible = True
         content = await asyncio.to_thread(packed, await file.read())
@@ -165,7 +168,8 @@ class _LoadForm:
             dry_run=True,
         )
         name, size, began_s = self._tried.filename, self._size, time.monotonic()
-        self._error.text, self._button.visible, self._stop.visible = "", False, True
+        self._error.clear()
+        self._button.visible, self._stop.visible = False, True
         self._request += 1
         request = self._request
         self._show(
@@ -180,7 +184,8 @@ class _LoadForm:
         except errors.SemmapError as error:
             if request == self._request:
                 self._show()
-                self._error.text, self._stop.visible = error.text, False
+                self._fail(error.text, error.explanation)
+                self._stop.visible = False
             return
         finally:
             ticking.cancel()
@@ -215,15 +220,27 @@ class _LoadForm:
 
     def _reset(self) -> None:
         self._request += 1
-        self._tried, self._error.text = None, ""
+        self._tried = None
+        self._error.clear()
         self._button.visible = self._stop.visible = False
         self._show()
 
     def _show(self, *lines: str) -> None:
+        """Show a line, and the others as a list below."""
         self._status.clear()
         with self._status:
-            for line in lines:
+            for line in lines[:1]:
                 ui.label(line).classes("whitespace-pre-wrap")
+            draw_folded(lines[1:])
+
+    def _fail(self, text: str, proof: Explanation | None = None) -> None:
+        """Show why the file cannot be loaded, and the proof of a contradiction."""
+        self._error.clear()
+        with self._error:
+            draw_error(text, classes="text-negative")
+            if proof is not None:
+                with ui.expansion("Proof").classes("w-full").props("dense"):
+                    draw_proof(proof, MapView.of(self._page).knowledge.words, sentence=False)
 
 
 def _draw_export(page: Page) -> None:

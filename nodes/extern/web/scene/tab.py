@@ -122,10 +122,11 @@ class TabScene:
         page.on_select(self._on_select)
         page.on_appearance_change(self._on_appearance_change)
         page.on_key("f", self.show_selected)
-        page.pick, page.get_viewpoint, page.cancel_interaction = (
+        page.pick, page.get_viewpoint, page.cancel_interaction, page.preview = (
             self.pick_place,
             self.viewpoint,
             self.cancel_interaction,
+            self.preview,
         )
 
     # Connection of the frame
@@ -538,6 +539,17 @@ class TabScene:
         if thing is not None:
             solid = structs.replace(thing, appearance="solid", pose=pose)
             self._dragged.show({self._dragging: solid})
+
+    def preview(self, poses: Mapping[str, Pose]) -> None:
+        """Draw these entities at other poses, too; those of an earlier call disappear."""
+        if self._client is not None and not self._dragging:
+            self._dragged.show(
+                {
+                    name: structs.replace(self._things[name], appearance="solid", pose=pose)
+                    for name, pose in poses.items()
+                    if name in self._things
+                }
+            )
 
     async def _move(self, name: str, pose: Pose) -> None:
         """Move the body to the pose where it was released; after a rejection it returns."""

@@ -6,9 +6,9 @@ from typing import Any
 
 from nicegui import ui
 
-from semmap.nodes.extern.web.notices import strip_cli_hints
 from semmap.nodes.extern.web.page import Page
 from semmap.nodes.extern.web.panels.details.proof import draw_proof
+from semmap.nodes.extern.web.panels.widgets.folded_list import draw_error
 from semmap.nodes.extern.web.panels.widgets.map_view import MapView
 from semmap.nodes.extern.web.views.suggested_fixes import SuggestedFix, suggest_fixes
 from semmap.schemas import errors
@@ -28,9 +28,8 @@ def show_rejection(page: Page, command: Command[Any], error: errors.SemmapError)
         return
     with ui.dialog(value=True).props('aria-label="Rejected"') as dialog, ui.card().classes("semmap-refused"):
         ui.label("Change rejected").classes("text-subtitle1 text-weight-medium")
-        ui.label(errors.shortened(strip_cli_hints(error.text), 2000)).classes("semmap-sentence").props(
-            'role="alert"'
-        )
+        with ui.column().classes("w-full gap-0 semmap-sentence").props('role="alert"'):
+            draw_error(error.text)
         if error.explanation is not None:
             with ui.expansion("Proof", value=True).classes("w-full").props("dense"):
                 draw_proof(error.explanation, view.knowledge.words, sentence=False)
