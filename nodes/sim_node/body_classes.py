@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from importlib import resources
 from typing import Any, Final, Literal, NamedTuple
 
@@ -141,6 +141,24 @@ class BodyClasses:
         if around is None:
             return not (moves and is_part)
         return around.name != "Robot" and not is_part
+
+    def is_group(self, whole: Found, parts: Iterable[Found]) -> bool:
+        """Return whether all nested entities have the class of the body around them, or a more special one.
+
+        A place and a body with a stated class are never only a group.
+        """
+        around = self._classes.get(whole.class_ or "")
+        if whole.is_stated or (around is not None and around.place):
+            return False
+        return all(
+            part.class_ == whole.class_
+            or (whole.class_ is not None and whole.class_ in self._ancestors_of(part.class_))
+            for part in parts
+        )
+
+    def _ancestors_of(self, class_: str | None) -> Collection[str]:
+        known = self._classes.get(class_ or "")
+        return known.ancestors if known else ()
 
     def _begins_with(self, name: str, whole: str) -> bool:
         """Return whether a name has the words of a whole first: `cabinet_1_tray`, `cabinet_1_main`."""

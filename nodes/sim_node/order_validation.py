@@ -148,8 +148,9 @@ def validate_moves(
             if placement.name not in there:
                 raise ModelError(f"the scene has no body named {placement.name}")
             if (record := there[placement.name]).anchored:
-                holder = record.part_of or "its joint"
-                raise ModelError(f"{placement.name} is fixed by {holder}; only its joints can move it")
+                raise ModelError(
+                    f"{placement.name} is fixed by {_describe_fixture(record)}; only its joints can move it"
+                )
             if record.held_by:
                 raise ModelError(
                     f"{placement.name} is attached to {record.held_by}; to move it, first:"
@@ -188,10 +189,15 @@ def _check_grip(order: GripOrder, there: Mapping[str, BodyRecord]) -> None:
     if order.name in holders_of(order.holder, there):
         raise ModelError(f"cannot attach {order.name} to {order.holder}, which is attached to or part of it")
     if record.anchored or record.fixed:
-        where = f"fixed by {record.part_of or 'its joint'}" if record.anchored else "a fixed body"
+        where = f"fixed by {_describe_fixture(record)}" if record.anchored else "a fixed body"
         raise ModelError(f"cannot attach {order.name}: it is {where}")
     if order.commit is None and record.held_by not in ("", order.holder):
         raise ModelError(f"{order.name} is already attached to {record.held_by}")
+
+
+def _describe_fixture(record: BodyRecord) -> str:
+    """Return what holds an anchored body. A body in a mere group of bodies is part of no entity."""
+    return record.part_of or ("its joint" if record.joints else "the body around it")
 
 
 def _check_reach(pose: Pose) -> None:

@@ -143,16 +143,18 @@ def test_what_cannot_be_moved_has_a_reason():
     there = {
         "cup1": record("cup1"),
         "can1": record("can1"),
-        "door1": record("door1", anchored=True),
+        "door1": record("door1", anchored=True, joints=(Joint(name="hinge1", kind="hinge"),)),
+        "chair1": record("chair1", anchored=True),
         "lid1": record("lid1", anchored=True, part_of="pot1"),
         "ring1": record("ring1", held_by="hand1"),
     }
-    stays = [hand(name, pose(0, 0)) for name in ("x", "door1", "lid1", "ring1")]
+    stays = [hand(name, pose(0, 0)) for name in ("x", "door1", "chair1", "lid1", "ring1")]
     accepted, failed = validate_moves([first, *stays, hand("can1", pose(0, 2000)), last], there)
     assert accepted == [first, last]
     assert "no body named x" in failed["x"]
     assert "position is 2000 m from the origin; the limit is 1000 m" in failed["can1"]
     assert failed["door1"] == "door1 is fixed by its joint; only its joints can move it"
+    assert failed["chair1"] == "chair1 is fixed by the body around it; only its joints can move it"
     assert failed["lid1"] == "lid1 is fixed by pot1; only its joints can move it"
     assert "semmap detach ring1" in failed["ring1"]
 
@@ -163,7 +165,7 @@ THERE = {
     "cup1": record("cup1"),
     "ring1": record("ring1", held_by="hand1", grip=Pose(position_m=(0.0, 0.0, 0.0))),
     "wall1": record("wall1", fixed=True),
-    "door1": record("door1", anchored=True),
+    "door1": record("door1", anchored=True, joints=(Joint(name="hinge1", kind="hinge"),)),
     "lid1": record("lid1", anchored=True, part_of="pot1"),
 }
 

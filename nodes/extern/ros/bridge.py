@@ -12,7 +12,7 @@ from semmap.nodes.drawing.scene_state import SceneState
 from semmap.nodes.drawing.surfaces import Kind, SurfaceCache
 from semmap.nodes.extern.ros import messages
 from semmap.nodes.extern.ros.messages import Moment
-from semmap.nodes.extern.ros.planning_scene import planning_scene
+from semmap.nodes.extern.ros.planning_scene import forget_scene, planning_scene
 from semmap.nodes.extern.ros.published_frames import Placed, PublishedFrames
 from semmap.nodes.extern.ros.shapes import ShapeFeed
 from semmap.nodes.extern.ros.things import Thing, located_things
@@ -231,7 +231,7 @@ class Bridge:
 
     def _resend_planning_scene(self) -> None:
         """Publish the whole planning scene again."""
-        self._planned = {name: thing for name, thing in self._planned.items() if name not in self._things}
+        self._planned = forget_scene(self._planned, self._things)
         if self._things:
             self._plan(Moment(self._frame, time.time_ns()))
 

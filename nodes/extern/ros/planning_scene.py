@@ -10,12 +10,16 @@ import numpy as np
 from semmap.nodes.drawing.articulation import articulated
 from semmap.nodes.extern.ros import solids
 from semmap.nodes.extern.ros.messages import Moment, class_colour
-from semmap.nodes.extern.ros.things import Thing, pose_of
+from semmap.nodes.extern.ros.things import Thing, is_near, pose_of
 from semmap.nodes.extern.ros.types import new
 from semmap.schemas import errors
+from semmap.schemas.entities import relative
 from semmap.schemas.scenes import Surface
 
 _ADD, _REMOVE, _MOVE = 0, 1, 3
+_SAME_GRIP_M = 0.005
+_SAME_GRIP = 0.02
+"""The largest change of a quaternion component, 2 degrees, for which a grip is the same."""
 
 Surfaces = Mapping[str, Surface]
 """The known meshes of objects, by name."""
@@ -27,7 +31,8 @@ def planning_scene(now: Things, before: Things, surfaces: Surfaces, at: Moment) 
 
     The id of an object is its name, and the `type` its class. Its shape is the mesh in `surfaces` with its
     joints moved, its parts, or its bounding box. Places, objects without a size, and robots with their parts
-    are not obstacles. An object that a part of a robot holds is attached to the link with that part's name.
+    are not obstacles. An object that a part of a robot holds is attached to the link with that part's name,
+    and attached again when its pose in the frame of the link changes.
     """
     free, was_free = _obstacles(now), _obstacles(before)
     held, was_held = _held(now), _held(before)
@@ -39,7 +44,11 @@ def planning_scene(now: Things, before: Things, surfaces: Surfaces, at: Moment) 
             if name not in free:  # a detached object returns to the world
                 objects.append(_object(name, at, _REMOVE))
     for name, thing in held.items():
-        if name not in was_held or not thing.has_same_shape(was_held[name]):
+        if (
+            name not in was_held
+            or not thing.has_same_shape(was_held[name])
+            or _is_regripped(thing, now, was_held[name], before)
+        ):
             attached.append(_attached(thing, surfaces.get(name), at))
             colours.append(_colour(thing))
     for name, thing in free.items():
@@ -57,6 +66,28 @@ def planning_scene(now: Things, before: Things, surfaces: Surfaces, at: Moment) 
         world=new("moveit_msgs/msg/PlanningSceneWorld", collision_objects=objects),
         is_diff=True,
     )
+
+
+def forget_scene(sent: Things, now: Things) -> dict[str, Thing]:
+    """Return the sent objects whose removal is still to be sent, for a planning scene that is sent whole.
+
+    `planning_scene` then sends all objects of `now`. Objects that are not in `now` are kept, and so are
+    attached objects that no robot holds now: without a detachment they would stay attached.
+    """
+    return {
+        name: thing
+        for name, thing in sent.items()
+        if name not in now or (thing.grasp is not None and now[name].grasp is None)
+    }
+
+
+def _is_regripped(thing: Thing, now: Things, was: Thing, before: Things) -> bool:
+    """Return whether the pose of a held object in the frame of its link has changed."""
+    link = "" if thing.grasp is None else thing.grasp.link
+    if link not in now or link not in before:
+        return False
+    grip, earlier = relative(thing.pose, now[link].pose), relative(was.pose, before[link].pose)
+    return not is_near(grip, earlier, _SAME_GRIP_M, _SAME_GRIP)
 
 
 def _obstacles(things: Things) -> dict[str, Thing]:

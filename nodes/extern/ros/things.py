@@ -46,9 +46,7 @@ class Thing(NamedTuple):
 
     def has_same_pose(self, other: Thing) -> bool:
         """Return whether both have the same pose, to a millimetre."""
-        return _near(self.pose.position_m, other.pose.position_m, _STILL_M) and _near(
-            self.pose.orientation_wxyz, other.pose.orientation_wxyz, _STILL
-        )
+        return is_near(self.pose, other.pose, _STILL_M, _STILL)
 
 
 def located_things(
@@ -150,5 +148,13 @@ def vector(xyz: tuple[float, float, float]) -> Any:
     return new("geometry_msgs/msg/Vector3", x=x, y=y, z=z)
 
 
-def _near(one: tuple[float, ...], other: tuple[float, ...], within: float) -> bool:
-    return all(abs(a - b) <= within for a, b in zip(one, other, strict=True))
+def is_near(one: Pose, other: Pose, within_m: float, within: float) -> bool:
+    """Return whether two poses differ by at most a length [m], and a difference of quaternion components.
+
+    Opposite quaternions are the same orientation.
+    """
+    turn, its = one.orientation_wxyz, other.orientation_wxyz
+    side = 1.0 if sum(a * b for a, b in zip(turn, its, strict=True)) >= 0.0 else -1.0
+    return all(abs(a - b) <= within_m for a, b in zip(one.position_m, other.position_m, strict=True)) and all(
+        abs(a - side * b) <= within for a, b in zip(turn, its, strict=True)
+    )

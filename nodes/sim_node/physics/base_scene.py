@@ -357,7 +357,11 @@ def _record(
         body=body.name,
         label=found.label,
         is_sure=found.is_sure,
-        anchored=bool(part_of or (joints and joints[0].type != mujoco.mjtJoint.mjJNT_FREE)),
+        anchored=bool(
+            part_of
+            or model.body_parentid[number]
+            or (joints and joints[0].type != mujoco.mjtJoint.mjJNT_FREE)
+        ),
     )
 
 

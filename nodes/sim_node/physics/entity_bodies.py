@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
 import mujoco
@@ -17,7 +19,8 @@ def find_entities(
     """Return the entity that each body is or is a part of, 0 for none, and the classes of the entities.
 
     Bodies are numbers in `model`. Entities are all named bodies on the top level, and nested ones whose class
-    is declared, or certain and not that of a part. `declared` has classes by name.
+    is declared, or certain and not that of a part. `declared` has classes by name. A body that only groups
+    others, such as `chairs` without geoms around `chair_1` and `chair_2`, is not an entity.
     """
     names = [model.body(number).name for number in range(model.nbody)]
     of = [Found(None, is_sure=False)]
@@ -25,6 +28,7 @@ def find_entities(
         stated = declared.get(name)
         of.append(Found(stated, is_sure=True, is_stated=True) if stated else classes.find(name))
     frames = _find_frames(model, of)
+    numbered = _find_numbered(model, of)
     owner, found = [_GROUND] * model.nbody, dict[int, Found]()
     for number in range(1, model.nbody):  # parents have lower numbers than their parts
         parent = int(model.body_parentid[number])
@@ -32,10 +36,49 @@ def find_entities(
         moves = whole in frames and model.body_weldid[number] != model.body_weldid[whole]
         if names[number] and (
             parent == _GROUND
+            or number in numbered
             or classes.is_separate(names[number], of[number], names[whole], of[whole], moves=moves)
         ):
             owner[number], found[number] = number, of[number]
+    _drop_groups(model, classes, owner, found)
     return owner, found
+
+
+def _find_numbered(model: mujoco.MjModel, of: Sequence[Found]) -> set[int]:
+    """Return the bodies `chair_1`, `chair_2` and so on in a body `chair` without geoms and joints."""
+    rows = defaultdict[int, list[int]](list)
+    for number in range(1, model.nbody):
+        parent = int(model.body_parentid[number])
+        has_own = model.body_geomnum[parent] or model.body_jntnum[parent]
+        if parent == _GROUND or has_own or of[number].class_ != of[parent].class_:
+            continue
+        name, whole = model.body(number).name, model.body(parent).name
+        if whole and re.fullmatch(rf"{re.escape(whole)}[\W_]*\d+", name) and of[number].is_sure:
+            rows[parent].append(number)
+    return {number for row in rows.values() if len(row) > 1 for number in row}
+
+
+def _drop_groups(
+    model: mujoco.MjModel, classes: BodyClasses, owner: list[int], found: dict[int, Found]
+) -> None:
+    """Remove the entities that only group others of their class, without geoms and joints of their own."""
+    own, inner = defaultdict[int, list[int]](list), defaultdict[int, list[int]](list)
+    for number, whole in enumerate(owner):
+        own[whole].append(number)
+        if number in found:
+            inner[owner[model.body_parentid[number]]].append(number)
+    for number in sorted(found, reverse=True):  # inner groups first
+        parts = [found[part] for part in inner[number]]
+        if len(parts) < 2 or not classes.is_group(found[number], parts):
+            continue
+        if any(model.body_geomnum[part] or model.body_jntnum[part] for part in own[number]):
+            continue  # bodies that a joint moves together are one entity
+        above = owner[model.body_parentid[number]]
+        for part in own[number]:
+            owner[part] = above
+        inner[above] += inner[number]
+        inner[above].remove(number)
+        del found[number]
 
 
 def _find_frames(model: mujoco.MjModel, of: Sequence[Found]) -> set[int]:

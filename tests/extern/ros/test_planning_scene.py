@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from semmap.nodes.extern.ros.planning_scene import planning_scene
+from semmap.nodes.extern.ros.planning_scene import forget_scene, planning_scene
 from semmap.nodes.extern.ros.robots import Grasp
 from semmap.nodes.extern.ros.types import decode, encode
 from semmap.ontology.model_shapes import ConvexPart
@@ -135,3 +135,27 @@ def test_an_object_that_another_hand_takes_is_attached_again(scene_of):
     (attached,) = passed.robot_state.attached_collision_objects
     assert (attached.link_name, attached.object.operation) == ("left", ADD)
     assert passed.world.collision_objects == []
+
+
+def test_an_object_that_moves_in_the_hand_is_attached_again(scene_of):
+    hand, cup = thing("hand", robot=True), thing(grasp=HELD)
+    moved = [thing("hand", robot=True, at=(1, 2, 1), yaw=1.0), thing(grasp=HELD, at=(1, 2, 1), yaw=1.0)]
+    assert scene_of(moved, [hand, cup]) is None
+    slipped = scene_of([hand, thing(grasp=HELD, at=(1.0, 2.0, 0.75))], [hand, cup])
+    (attached,) = slipped.robot_state.attached_collision_objects
+    assert (attached.link_name, attached.object.operation) == ("hand", ADD)
+    assert attached.object.pose.position.z == 0.75
+    assert scene_of([hand, thing(grasp=HELD, yaw=0.1)], [hand, cup]) is not None
+
+
+def test_a_whole_scene_detaches_what_was_let_go_since_the_last_one(scene_of):
+    sent = by_name(thing("gone"), thing("kept"), thing(grasp=HELD), thing("plate1", grasp=HELD))
+    now = by_name(thing("kept"), thing(), thing("plate1", grasp=HELD))
+    whole = scene_of(now.values(), forget_scene(sent, now).values())
+    assert {(a.object.id, a.object.operation) for a in whole.robot_state.attached_collision_objects} == {
+        ("cup1", REMOVE),
+        ("plate1", ADD),
+    }
+    assert {(o.id, o.operation) for o in whole.world.collision_objects} == {
+        ("gone", REMOVE), ("kept", ADD), ("cup1", ADD),
+    }  # fmt: skip

@@ -116,7 +116,9 @@ def _may_support(space: Space, solid: Solid, other: Solid) -> bool:
         return False
     if measures.may_be_inside(other, solid, limits) or not (other.is_level and solid.is_level):
         return True
-    return other.bottom >= solid.bottom - limits.contact_m and other.highest_bottom >= solid.lowest_top - gap
+    if other.bottom < solid.bottom - limits.contact_m:
+        return False
+    return solid.form.has_slopes or other.highest_bottom >= solid.lowest_top - gap
 
 
 RULES: Final[tuple[Rule, ...]] = (

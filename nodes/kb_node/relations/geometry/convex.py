@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.geometry.polygons import Point, contains, hull
+from semmap.nodes.kb_node.relations.geometry.face_planes import FacePlanes, find_planes
 from semmap.nodes.kb_node.relations.geometry.lazy_property import lazy_property
 from semmap.nodes.kb_node.relations.geometry.projections import Projection, overlap_depth, project
 from semmap.schemas.entities import Vector
@@ -116,22 +117,31 @@ class Convex:
                 return tuple(corners)
         return tuple(hull([self._find_furthest(x, y) for x, y in _COMPASS]))
 
+    @lazy_property
+    def lowest_top(self) -> float:
+        """Return a height [m] below which no part of its upper side is: its top if that is level.
+
+        A ball counts as level, because an object that stands on it is near its highest point.
+        """
+        return self.high[2] if self.has_flat_top or len(self.round) == 3 else self.low[2]
+
+    @lazy_property
+    def face_planes(self) -> FacePlanes:
+        """Return the planes that bound it from above and from below."""
+        return find_planes(self.straight, self.round, self.points)
+
     def find_heights(self, point: Point) -> tuple[float, float]:
         """Return the heights at which a vertical line enters and leaves the part [m].
 
-        They are exact for boxes, such as a slope of a roof, else those of the whole part.
+        They are those of the whole part for a hull of many points, else those at the line, such as on the
+        slope of a roof or a ramp.
         """
         low, high = self.low[2], self.high[2]
-        if len(self.straight) != 3 or self.round or self.points:
+        if self.has_flat_top:
             return low, high
         cx, cy, cz = self.centre
-        x, y = point[0] - cx, point[1] - cy
-        for vx, vy, vz in self.straight:
-            if abs(vz) > _LEVEL:
-                square = vx * vx + vy * vy + vz * vz
-                ends = [cz + (side * square - x * vx - y * vy) / vz for side in (-1.0, 1.0)]
-                low, high = max(low, min(ends)), min(high, max(ends))
-        return low, high
+        bottom, top = self.face_planes.find_heights(point[0] - cx, point[1] - cy)
+        return max(low, cz + bottom), min(high, cz + top)
 
     def _find_furthest(self, nx: float, ny: float) -> Point:
         """Return the point on the floor plan that is furthest in a direction."""
@@ -162,6 +172,10 @@ class _Translated(Convex):
     def lowest(self) -> Point:
         x, y = self.original.lowest
         return self.x + x, self.y + y
+
+    @property
+    def face_planes(self) -> FacePlanes:
+        return self.original.face_planes
 
     @property
     def has_flat_top(self) -> bool:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.kb_node.relations.geometry.fitting import box, model_shape, need_quarter_turn, turn_quarter
-from semmap.nodes.kb_node.relations.geometry.forms import LOWEST_M, Form
+from semmap.nodes.kb_node.relations.geometry.forms import LOWEST_M, Form, have_slopes
 from semmap.ontology.model_shapes import ConvexPart, Corner, Interior, ModelShape
 
 Floats = NDArray[np.float64]
@@ -147,6 +147,8 @@ class FormColumns(Extents):
         """(F, 4) bounds that contain its base."""
         self.footing: Final[Ints] = np.full(len(forms), -1)
         """(F,) the row of the only part that it stands on, or -1 if there are several."""
+        self.has_slopes: Final[Bools] = np.zeros(len(forms), dtype=bool)
+        """(F,) `Form.has_slopes`"""
         self.parts, self.hollows = self._shaped()
 
     def _shaped(self) -> tuple[Parts, Hollows]:
@@ -167,6 +169,7 @@ class FormColumns(Extents):
             hollows.add(of, _hollows(containers, stretch, rotation))
         if not shape.parts:
             return
+        self.has_slopes[of] = have_slopes(shape.parts)
         made = [_parts(alike, stretch, rotation) for alike in _alike(shape.parts)]
         low, high, *others = (np.concatenate(column, axis=1) for column in zip(*made, strict=True))
         parts.add(of, [low, high, *others])

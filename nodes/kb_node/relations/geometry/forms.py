@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from itertools import product
 from typing import Final
@@ -14,7 +14,7 @@ from semmap.nodes.kb_node.relations.geometry.convex import Convex, make_convex
 from semmap.nodes.kb_node.relations.geometry.fitting import fit_model
 from semmap.nodes.kb_node.relations.geometry.lazy_property import lazy_property
 from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, Positions, open_shape
-from semmap.ontology.model_shapes import Interior, ModelShape
+from semmap.ontology.model_shapes import ConvexPart, Interior, ModelShape
 from semmap.schemas import errors
 from semmap.schemas.entities import IDENTITY, Quaternion, Size, Vector
 from semmap.schemas.polygons import Polygon, read_wkt
@@ -108,6 +108,11 @@ class Form:
     def lowest_top(self) -> float:
         """Return the height of the lowest top of a part."""
         return min([part.high[2] for part in self.parts], default=self.top)
+
+    @lazy_property
+    def has_slopes(self) -> bool:
+        """Return whether an object may stand lower on a part than its top, if the form is level."""
+        return have_slopes(self.shape.parts)
 
     @lazy_property
     def highest_bottom(self) -> float:
@@ -283,3 +288,9 @@ def _rotation(wxyz: Quaternion) -> Matrix:
         (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
         (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
     )
+
+
+def have_slopes(parts: Iterable[ConvexPart]) -> bool:
+    """Return whether the upper side of a part is neither level nor that of a ball, such as of a ramp."""
+    made = (make_convex(part.centre, part.straight, part.round, part.points) for part in parts)
+    return any(not part.has_flat_top and len(part.round) != 3 for part in made)

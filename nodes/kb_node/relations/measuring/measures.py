@@ -75,7 +75,10 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
     # An object put down on another does not end up lower than it: beside is not on.
     most = min(reach, upper.bottom - lower.bottom + limits.contact_m)
     is_level = upper.is_level and lower.is_level
-    if is_level and (most < 0.0 or upper.highest_bottom - lower.lowest_top < -reach):
+    if is_level and most < 0.0:
+        return None
+    has_level_tops = is_level and not lower.form.has_slopes
+    if has_level_tops and upper.highest_bottom - lower.lowest_top < -reach:
         return None
     most = max(most, limits.contact_m)
     pairs = []
@@ -84,7 +87,7 @@ def on(upper: Solid, lower: Solid, limits: Thresholds) -> Measure | None:
         for other in lower.parts:
             (low_x, low_y, low_z), (high_x, high_y, high_z) = other.low, other.high
             least = z0 - high_z
-            if least > most or z1 <= low_z or (is_level and least < -reach):
+            if least > most or z1 <= low_z or (has_level_tops and least < -reach):
                 continue
             if x0 <= high_x and low_x <= x1 and y0 <= high_y and low_y <= y1:
                 pairs.append((least, part, other))
@@ -503,9 +506,10 @@ def beneath(lower: Solid, upper: Solid, limits: Thresholds) -> Measure | None:
         return None
     if not overlap(lower.bounds, upper.bounds):
         return None
-    if upper.top < lower.lowest_top - limits.touch_m:
+    if upper.top < min([part.lowest_top for part in lower.parts]) - limits.touch_m:
         return None
-    if len(lower.parts) == len(upper.parts) == 1 and lower.is_level and upper.is_level:
+    are_single = len(lower.parts) == len(upper.parts) == 1 and lower.is_level and upper.is_level
+    if are_single and not lower.form.has_slopes:
         if upper.bottom < lower.top - limits.touch_m:
             return None
         (one,), (other,) = lower.parts, upper.parts
@@ -528,7 +532,7 @@ def _compute_covered_footprint(lower: Solid, upper: Solid, limits: Thresholds) -
     smaller = lower if lower.footprint < upper.footprint else upper
     points = _sample_footprint(smaller)
     tops, bottoms = _list_parts_over(lower, smaller.bounds), _list_parts_over(upper, smaller.bounds)
-    lowest = min([part.high[2] for part in tops], default=math.inf) - limits.touch_m
+    lowest = min([part.lowest_top for part in tops], default=math.inf) - limits.touch_m
     bottoms = [part for part in bottoms if part.high[2] >= lowest]
     gaps = list[tuple[float, float]]()
     for point in points:

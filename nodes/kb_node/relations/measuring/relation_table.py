@@ -51,8 +51,12 @@ def _measure_under(space: Space, one: Solid, other: Solid) -> Measure | None:
 def _explain_under(space: Space, one: Solid, other: Solid, made: Measure | None) -> str:
     if made is None or not made.holds:
         return _explain_not_beneath(space, one, other, made)
-    below = format_length(made.gap_m)
-    return f"its top is {below} below {other.name}, which is over {made.share:.0%} of it"
+    part = f"{other.name}, which is over {made.share:.0%} of it"
+    if abs(made.gap_m) <= _LEVEL_M:
+        return f"its top is level with the underside of {part}"
+    if made.gap_m < 0.0:
+        return f"its top is {format_length(-made.gap_m)} above the underside of {part}; they overlap"
+    return f"its top is {format_length(made.gap_m)} below {part}"
 
 
 def _measure_above(space: Space, one: Solid, other: Solid) -> Measure | None:
@@ -62,7 +66,13 @@ def _measure_above(space: Space, one: Solid, other: Solid) -> Measure | None:
 def _explain_above(space: Space, one: Solid, other: Solid, made: Measure | None) -> str:
     if made is None or not made.holds:
         return _explain_not_beneath(space, other, one, made)
-    return f"it is {format_length(made.gap_m)} above {other.name}, and over {made.share:.0%} of that"
+    over = f"over {made.share:.0%} of that"
+    if abs(made.gap_m) <= _LEVEL_M:
+        return f"its underside is level with the top of {other.name}, and it is {over}"
+    if made.gap_m < 0.0:
+        below = format_length(-made.gap_m)
+        return f"its underside is {below} below the top of {other.name}, and it is {over}; they overlap"
+    return f"it is {format_length(made.gap_m)} above {other.name}, and {over}"
 
 
 def _explain_not_beneath(space: Space, lower: Solid, upper: Solid, made: Measure | None) -> str:

@@ -103,6 +103,7 @@ def _find_meeting_parts(
 ) -> _Meeting:
     """Return the pairs of parts that `measures.on` compares, with the greatest height `most` above one."""
     parts, form, its = columns.forms.parts, columns.form[one], columns.form[other]
+    has_level_tops = is_level & ~columns.forms.has_slopes[its]
     number = parts.count[its]
     pair, turn = repeat_rows(parts.count[form] * number)
     each = number[pair]
@@ -111,7 +112,7 @@ def _find_meeting_parts(
     up = offset[:, 2]
     above = up + parts.low[upper, 2] - parts.high[lower, 2]
     found = _Meeting(pair, upper, lower, offset[:, :2], above, most[pair] - above)
-    found = found.restrict(np.where(is_level[pair], above + limits.gap_m, np.inf))
+    found = found.restrict(np.where(has_level_tops[pair], above + limits.gap_m, np.inf))
     upper, lower, offset = found.upper, found.lower, found.offset
     up = (columns.position[one, 2] - columns.position[other, 2])[found.pair]
     beside = np.minimum(

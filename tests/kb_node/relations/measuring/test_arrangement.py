@@ -125,3 +125,34 @@ def test_only_parts_are_above_not_the_box_around_them():
             assert (made is not None and made.holds) == is_below, (name, at)
     finally:
         model_shapes.exchange_world(model_shapes.WorldShapes())
+
+
+@pytest.mark.parametrize(
+    ("x", "height", "is_below"),
+    [(-0.6, 0.16, True), (-0.6, 0.05, False), (0.7, 0.5, True), (0.7, 0.2, False)],
+    ids=["over the low end", "in the low end", "over the high end", "in the high end"],
+)
+@pytest.mark.parametrize("kind", ["board", "wedge"])
+def test_a_ramp_is_under_an_object_where_its_slope_is_below_it(kind, x, height, is_below):
+    """The ball over the low end is lower than the high end."""
+    run, rise = 1.0, 0.5
+    across = (0.0, 0.3, 0.0)
+    if kind == "board":
+        parts = [
+            model_shapes.ConvexPart(
+                centre=(0.0, 0.0, rise / 2), straight=((run, 0.0, rise / 2), across, (0.0, 0.0, 0.01))
+            )
+        ]
+    else:
+        corners = ((-run, 0.0), (run, 0.0), (run, rise))
+        points = tuple((a, y, z) for y in (-0.3, 0.3) for a, z in corners)
+        parts = [model_shapes.ConvexPart(centre=(0.0, 0.0, 0.0), points=points)]
+    shape = model_shapes.ModelShape(size_m=(2 * run, 0.6, rise), parts=tuple(parts))
+    model_shapes.exchange_world(model_shapes.WorldShapes.of({"ramp1": shape}))
+    try:
+        ramp = thing("ramp1", (0.0, 0.0, 0.0), "", size=shape.size_m)
+        there = Space([ramp, thing("box1", (x, 0.0, height), "", size=(0.1, 0.1, 0.1))])
+        made = measures.beneath(there.solids["ramp1"], there.solids["box1"], there.limits)
+        assert (made is not None and made.holds) == is_below
+    finally:
+        model_shapes.exchange_world(model_shapes.WorldShapes())
