@@ -253,6 +253,7 @@ WORLD = {
 }
 
 
+@pytest.mark.long
 def test_where_the_scene_is_the_truth_what_stands_on_it_is_taken_along_there_first(tmp_path):
     (tmp_path / "world.json").write_text(json.dumps(WORLD))
     options = ("--abox", "none", "--world", tmp_path / "world.json", "--truth", "scene", "--no-record")

@@ -43,6 +43,7 @@ def counted(client):
     return int(v.lexical(found))
 
 
+@pytest.mark.long
 def test_an_abridged_commit_reaches_all_subscribers(tmp_path):
     with running(tmp_path / "data", *UP) as system, system.client() as client:
         with client.commits(timeout=60.0) as commits:
@@ -74,6 +75,7 @@ def checkpointed(data, copy):
         return db.execute("SELECT max(seq) FROM checkpoints").fetchone()[0]
 
 
+@pytest.mark.long
 def test_a_checkpoint_follows_a_very_large_commit_and_a_kill_loses_nothing(system, tmp_path):
     data, count = system.data, 8000
     big_files.write_turtle(tmp_path / "many.ttl", count)

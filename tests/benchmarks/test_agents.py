@@ -3,6 +3,8 @@
 import asyncio
 from collections import Counter
 
+import pytest
+
 from benchmarks.agents.__main__ import all_done, rows
 from benchmarks.agents.tasks import TASKS, prepare
 
@@ -14,6 +16,7 @@ def test_there_are_sixty_tasks_of_eight_kinds():
     }  # fmt: skip
 
 
+@pytest.mark.long
 def test_every_task_is_done_right_and_reads_little(flat_map):
     with flat_map.client() as client:
         prepare(client)

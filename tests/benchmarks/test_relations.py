@@ -1,5 +1,7 @@
 """The counts of the benchmark of spatial relations, on a few scenes."""
 
+import pytest
+
 from benchmarks.relations.accuracy import Counts, against_contacts, flat, inside_against_samples
 from benchmarks.relations.speed import rooms
 from benchmarks.relations.stability import at_rest
@@ -18,6 +20,7 @@ def test_shares_of_right_ones():
     assert Counts.together([some, some]) == Counts(2, 2, 4)
 
 
+@pytest.mark.long
 def test_settled_heaps_and_sampled_points():
     on, touches, _ = against_contacts(4)
     assert on.right > 20
@@ -58,6 +61,7 @@ def test_a_row_says_which_way_is_better():
     assert as_json(Row("move", 0.9, "ms", 1.0, 0.5))["better"] == "lower"
 
 
+@pytest.mark.long
 def test_things_at_rest_are_watched():
     """One second of cameras and perception: enough to know what stands on the table."""
     found = at_rest(0.2, things=6)

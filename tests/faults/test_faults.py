@@ -15,15 +15,9 @@ from tests.faults.table import SMALL, done_to
 SHORT = [fault for fault in FAULTS if fault.in_short]
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        pytest.param(SMALL, id="map"),
-        # `test_secure.py` has a node that hangs, and `test_mirror.py` a mirror and a server that are killed.
-        pytest.param(ALL, id="scene", marks=pytest.mark.long),
-        pytest.param(FLEET, id="fleet", marks=pytest.mark.long),
-    ],
-)
+# `make test` kills nodes in `test_kill.py`, `test_kill_coordinator.py`, `test_flow.py` and `test_mirror.py`.
+@pytest.mark.long
+@pytest.mark.parametrize("words", [SMALL, ALL, FLEET], ids=["map", "scene", "fleet"])
 def test_nothing_is_lost_or_done_twice(tmp_path, subtests, words):
     """One system for all faults: starting one for each takes most of the time."""
     faults = [fault for fault in SHORT if fault.words == words and not fault.missing()]

@@ -29,6 +29,7 @@ def root(tmp_path):
     return root
 
 
+@pytest.mark.long
 def test_a_change_that_a_test_notices_is_killed_and_another_survives(root, tmp_path):
     copy = Copy(root, tmp_path / "copy")
     tests = find_own_tests(root, "nodes/a/twice.py")
@@ -39,6 +40,7 @@ def test_a_change_that_a_test_notices_is_killed_and_another_survives(root, tmp_p
     assert (tmp_path / "copy" / "nodes" / "a" / "twice.py").read_text() == CODE
 
 
+@pytest.mark.long
 def test_a_change_that_the_mirrored_tests_miss_is_tried_against_those_of_the_folder(root, tmp_path):
     line = "from package.nodes.a.twice import twice"
     (root / "tests" / "a" / "test_other.py").write_text(

@@ -292,6 +292,8 @@ def _interiors(
         wall = _close_gaps(solid, 1 - axis, bars)
         walled &= _have_before(wall, axis) & np.flip(_have_before(np.flip(wall, axis), axis), axis)
     walled &= np.logical_or.accumulate(solid, axis=2)
+    is_covered = np.zeros_like(solid)
+    is_covered[..., :-1] = np.logical_or.accumulate(solid[..., :0:-1], axis=2)[..., ::-1]
     labels, count = ndimage.label(walled)
     found: list[Interior] = []
     for label in range(1, count + 1):
@@ -305,9 +307,9 @@ def _interiors(
             continue
         lid = solid[cells[:, 0], cells[:, 1]].shape[1]
         top = cells[cells[:, 2] == cells[:, 2].max()]
-        covered = [solid[i, j, k + 1 :].any() for i, j, k in top] if high[2] < lid else [False]
+        covered = is_covered[tuple(top.T)] if high[2] < lid else np.array([False])
         floor, lid_m = _floor_and_lid(cuts, cells, float(low[2] * rise), float(high[2] * rise), rise)
-        has_lid = all(covered) and lid_m is not None
+        has_lid = bool(covered.all()) and lid_m is not None
         top_m = float(high[2] * rise) if lid_m is None or not has_lid else lid_m
         width = float((high - low)[:2].min() * step)
         shallow = top_m - floor < SHALLOW * width and not has_lid
@@ -323,7 +325,7 @@ def _interiors(
                 high=(float(xs[0] + (high[0] - 0.5) * step), float(ys[0] + (high[1] - 0.5) * step), top_m),
                 fill=float(filled / np.prod(high - low)),
                 round=_is_round(cells[:, :2]),
-                open=not all(covered),
+                open=not covered.all(),
                 shallow=shallow,
             )
         )
@@ -334,10 +336,18 @@ def _reach_below(solid: NDArray[np.bool_], cells: NDArray[np.int64]) -> int:
     """Return the number of free levels between most of some free cells and the solids below them."""
     lowest = np.full(solid.shape[:2], LEVELS)
     np.minimum.at(lowest, tuple(cells[:, :2].T), cells[:, 2])
-    columns = tuple(np.unique(cells[:, :2], axis=0).T)
+    columns = _columns(cells)
     below = solid[columns] & (np.arange(LEVELS) < lowest[columns][:, None])
     floor = LEVELS - 1 - np.argmax(below[:, ::-1], axis=1)
     return int(np.median(lowest[columns] - 1 - floor))
+
+
+def _columns(cells: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the indices (i, j) of the columns that cells (n, 3) are in, each column once."""
+    is_used = np.zeros(cells[:, :2].max(axis=0) + 1, dtype=bool)
+    is_used[cells[:, 0], cells[:, 1]] = True
+    i, j = np.nonzero(is_used)
+    return i, j
 
 
 def _have_before(wall: NDArray[np.bool_], axis: int) -> NDArray[np.bool_]:
@@ -364,9 +374,9 @@ def _floor_and_lid(
     cuts: Intervals, cells: NDArray[np.int64], low_m: float, high_m: float, rise: float
 ) -> tuple[float, float | None]:
     """Return the exact heights of the solids below and above some free cells, None without one above."""
-    columns = np.unique(cells[:, :2], axis=0)
-    ends = np.concatenate([high[columns[:, 0], columns[:, 1]] for _, high in cuts])
-    starts = np.concatenate([low[columns[:, 0], columns[:, 1]] for low, _ in cuts])
+    columns = _columns(cells)
+    ends = np.concatenate([high[columns] for _, high in cuts])
+    starts = np.concatenate([low[columns] for low, _ in cuts])
     below = ends[(ends <= low_m + rise) & (ends >= low_m - 2 * rise)]
     above = starts[(starts >= high_m - rise) & (starts <= high_m + 2 * rise)]
     return (

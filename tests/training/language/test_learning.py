@@ -1,5 +1,7 @@
 """Training is reproducible, and the taggers recognise their training examples."""
 
+import pytest
+
 from benchmarks.language import trials
 from benchmarks.language.scoring import scores
 from semmap.nodes.language.understanding.interpretation import Interpreter
@@ -9,6 +11,7 @@ from semmap.nodes.training.language.learning import learn
 from tests.data import data_folder
 
 
+@pytest.mark.long
 def test_the_same_examples_give_the_same_files_which_understand_them(tmp_path):
     examples = made.examples(1, household())[::4]
     written = []
@@ -23,6 +26,7 @@ def test_the_same_examples_give_the_same_files_which_understand_them(tmp_path):
     assert found.spans > 0.9
 
 
+@pytest.mark.long
 def test_a_folder_that_was_not_learnt_from_is_understood():
     examples = corpus.read(data_folder() / "huric")
     learnt_from, kept = list(trials.groups(examples))[-1]

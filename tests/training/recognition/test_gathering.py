@@ -1,9 +1,11 @@
 import numpy as np
+import pytest
 
 from semmap.nodes.training.recognition import gathering
 from semmap.nodes.training.recognition.gathering import gather, joined, read
 
 
+@pytest.mark.long
 def test_what_is_gathered_is_the_same_each_time_and_out_of_its_files(tmp_path):
     gathered = gather(scenes=2, heaped=1, ours=1, seed=11, keep=tmp_path)
     assert set(gathered.things.scene.tolist()) == {0, 1}
