@@ -69,7 +69,7 @@ def test_stored_pairs_equal_a_full_search(seed, whole, some):
     pairs.set_scope(whole, some)
     known = facts(pairs, there.values())
     spots = [entity.pose.position_m for entity in there.values() if not entity.place]
-    for _ in range(40):
+    for _ in range(tries(40)):
         name = dice.choice([name for name in there if name not in ("kitchen1",)])
         if name.startswith("cup") and dice.random() < 0.1:
             del there[name]
@@ -151,7 +151,7 @@ def test_stored_pairs_of_a_crowd_equal_a_full_search(seed, monkeypatch):
     there = {entity.name: entity for entity in crowd(dice, 24)}
     pairs = PairFacts(Space(there.values()))
     pairs.set_scope(EVERY, ())
-    for _ in range(30):
+    for _ in range(tries(30)):
         name = f"cup{dice.randrange(24)}"
         if name in there and dice.random() < 0.3:
             del there[name]

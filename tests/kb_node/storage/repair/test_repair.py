@@ -13,6 +13,7 @@ from semmap.nodes.kb_node.storage.journal.sqlite_file import NotWritten
 from semmap.nodes.kb_node.storage.repair import repair as repair_module
 from semmap.nodes.kb_node.storage.repair.repair import repair
 from semmap.schemas import errors
+from tests.depth import tries
 from tests.kb_node import home
 from tests.kb_node.documents.tbox.test_tbox_validation import NEW_CLASSES, replace
 from tests.kb_node.home import chair, state, transaction
@@ -222,7 +223,7 @@ def test_a_repaired_map_accepts_commits(data):
     assert opened(data)[0][0] == 9
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(tries(30)))
 def test_flipped_bits_are_detected_or_harmless(data, seed):
     """Anywhere: in commits, indexes, the checkpoint, and SQLite's own pages."""
     semantic_map = SemanticMap(Journal(data / FILENAME))
