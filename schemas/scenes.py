@@ -391,3 +391,5 @@ class Poses(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     joints: tuple[float, ...] = ()
     joint_commits: tuple[int, ...] = ()
     """One commit for each body with joints."""
+    drives: dict[str, tuple[Point, ...]] = {}
+    """The points that driving robots still have to reach, by robot; the last one is the goal."""

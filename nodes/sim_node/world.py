@@ -321,6 +321,7 @@ class World:
             commits=tuple(record.commit for record in engine.index.records),
             joints=tuple(engine.positions().tolist()),
             joint_commits=tuple(record.joint_commit for record in engine.index.records if record.joints),
+            drives=engine.base_controller.paths,
         )
 
     def scene(self) -> Scene:

@@ -256,7 +256,7 @@ def _describe_drive(driven: Driven) -> str:
     if driven.outcome == "fallen":
         raise errors.Refused(f"{driven.name} {wording.fallen(driven.name, driven.pose)}")
     predicate = {"driving": "is on its way from", "there": "is at", "stopped": "stopped at"}[driven.outcome]
-    return f"{driven.name} {predicate} {where}, facing {math.degrees(driven.pose.yaw_rad):.0f}°"
+    return f"{driven.name} {predicate} {where}, facing {round(math.degrees(driven.pose.yaw_rad))}°"
 
 
 def _describe_rest(body: Body) -> str:

@@ -35,9 +35,9 @@ from semmap.schemas.commands import Command
 from semmap.schemas.commits import Commit
 from semmap.schemas.entities import ClassInfo, Entity, Pose
 from semmap.schemas.health import Health
-from semmap.schemas.scenes import Poses, Scene, SceneQuery
+from semmap.schemas.scenes import Point, Poses, Scene, SceneQuery
 
-Kind = Literal["commit", "poses", "scene", "reset", "connection", "health"]
+Kind = Literal["commit", "poses", "drives", "scene", "reset", "connection", "health"]
 
 PERIOD_S: Final = 0.1
 """Minimum interval between two updates."""
@@ -55,6 +55,7 @@ class LiveEvent(Struct, frozen=True, kw_only=True):
 
     - `commit`: `commits` were applied, in order
     - `poses`: the bodies `names` moved
+    - `drives`: robots began, continued or ended a drive
     - `scene`: bodies were added or removed, or became ghosts or solid
     - `reset`: the whole map was read again; `is_new_map` if it is another map
     - `connection`: the connection to the knowledge base was lost or restored
@@ -101,6 +102,8 @@ class Live:
         self.poses: Mapping[str, Pose] = MappingProxyType(self._poses)
         self.joint_positions: Mapping[str, JointPositions] = MappingProxyType(self._joint_positions)
         """The joints that are not at 0, and their positions, by body."""
+        self.drives: Mapping[str, tuple[Point, ...]] = {}
+        """The points that driving robots still have to reach, by robot."""
         self._listeners: list[Listener] = []
         self._loop: asyncio.AbstractEventLoop | None = None
         self._threads = ThreadPoolExecutor(_PARALLEL_REQUESTS, thread_name_prefix="request")
@@ -225,6 +228,9 @@ class Live:
             self._poses.update(updates.moved)
             self._joint_positions.update(updates.joint_positions)
             yield LiveEvent(kind="poses", names=tuple(updates.moved))
+        if updates.drives is not None and updates.drives != self.drives:
+            self.drives = updates.drives
+            yield LiveEvent(kind="drives", names=tuple(updates.drives))
         if updates.offline_reason is not None and (self.connected, self.offline_reason) != (
             not updates.offline_reason,
             updates.offline_reason,
@@ -271,6 +277,7 @@ class _Updates:
         self.scene: _Bodies | None = None
         self.moved: dict[str, Pose] = {}
         self.joint_positions: dict[str, JointPositions] = {}
+        self.drives: dict[str, tuple[Point, ...]] | None = None
         self.poses_received = 0
         self.health: dict[str, Health] = {}
         self.offline_reason: str | None = None
@@ -294,6 +301,7 @@ class _Subscriber:
         self._has_map = False
         """Whether the whole map was posted, so that single commits can follow."""
         self._scene = SceneState()
+        self._drives: dict[str, tuple[Point, ...]] = {}
         self._fetching_scene = False
         self._poses_s = 0.0
         self._kb_s = 0.0
@@ -365,6 +373,7 @@ class _Subscriber:
         self._schedule()
         if self._scene.known and time.monotonic() - self._poses_s > _SCENE_LOST_S:
             self._scene = SceneState()
+            self._updates.drives = self._drives = {}
             self._updates.scene, self._updates.moved = _Bodies(now=None), {}
             self._updates.joint_positions.clear()
 
@@ -380,6 +389,9 @@ class _Subscriber:
     def _on_poses(self, poses: Poses) -> None:
         self._poses_s = time.monotonic()
         self._updates.poses_received += 1
+        if poses.drives != self._drives:
+            self._updates.drives = self._drives = poses.drives
+            self._schedule()
         if not self._scene.matches(poses):
             self._fetch_scene()
             return

@@ -104,6 +104,13 @@
     });
   }
 
+  // Notices are above the timeline, which has two rows in a narrow window.
+  function reportTimeline() {
+    const timeline = document.querySelector(".semmap-time");
+    const set = () => document.documentElement.style.setProperty("--timeline", `${timeline.offsetHeight}px`);
+    new ResizeObserver(set).observe(timeline);
+  }
+
   let resized = 0;
   function onResize() {
     clearTimeout(resized);
@@ -189,6 +196,7 @@
       .observe(document.documentElement, { attributeFilter: ["class"] });
     new MutationObserver(addLabelsSoon).observe(document.body, { childList: true, subtree: true });
     window.addEventListener("resize", onResize);
+    reportTimeline();
     addLabels();
     reportAppearance();
     setTimeout(semmapBeginScene, 5000);

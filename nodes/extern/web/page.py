@@ -77,6 +77,7 @@ class Page:
         self._on_connection: list[Callable[[], None]] = []
         self._on_tab_change: list[Callable[[], None]] = []
         self._on_poses: list[Callable[[tuple[str, ...]], None]] = []
+        self._on_drives: list[Callable[[], None]] = []
         self._on_appearance_change: list[Callable[[], None]] = []
         self._on_key: dict[str, Callable[[], object]] = {}
         self._request = 0
@@ -99,6 +100,7 @@ class Page:
             self._on_change,
             self._on_connection,
             self._on_tab_change,
+            self._on_drives,
             self._on_appearance_change,
             self._on_pending,
         ):
@@ -204,6 +206,10 @@ class Page:
         """
         self._on_poses.append(function)
 
+    def on_drives(self, function: Callable[[], None]) -> None:
+        """Call a function when robots began, continued or ended a drive."""
+        self._on_drives.append(function)
+
     def on_connection(self, function: Callable[[], None]) -> None:
         """Call a function when the connection to the knowledge base was lost or restored."""
         self._on_connection.append(function)
@@ -231,6 +237,8 @@ class Page:
     def _on_event(self, event: LiveEvent) -> None:
         if event.kind == "connection":
             self._call(self._on_connection)
+        elif event.kind == "drives":
+            self._call(self._on_drives)
         elif event.kind == "reset":
             if event.is_new_map:
                 self.notify("the system now serves another map; the page was reset", "warning")

@@ -60,6 +60,11 @@ class BaseController:
         """Return the driving robots."""
         return tuple(self._active)
 
+    @property
+    def paths(self) -> dict[str, tuple[tuple[float, float], ...]]:
+        """Return the points [m] that each driving robot still has to reach."""
+        return {name: tuple(command.points) for name, command in self._active.items()}
+
     def begin(
         self, name: str, points: Sequence[tuple[float, float]], yaw_rad: float | None, speed_m_s: float
     ) -> None:

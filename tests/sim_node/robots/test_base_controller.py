@@ -179,14 +179,17 @@ def test_another_course_takes_the_place_of_one_and_stopping_ends_it():
     base = Base()
     base.courses.begin("base", [(2.0, 0.0)], None, 0.4)
     assert base.ended() is None
+    assert base.courses.paths == {"base": ((2.0, 0.0),)}
     base.courses.begin("base", [(-2.0, 0.0)], None, 0.3)
     assert base.ended() == "stopped"
+    assert base.courses.paths == {"base": ((-2.0, 0.0),)}
     base.put((0.0, 0.0), yaw_rad=math.pi)
     assert base.steer() == pytest.approx((0.3, 0.0, 0.0))
     base.courses.ended.clear()
     base.courses.stop(base.model, base.data, "base", "stopped")
     assert base.ended() == "stopped"
     base.courses.ended.clear()
+    assert not base.courses.paths
     base.courses.stop(base.model, base.data, "base", "stopped")
     assert base.ended() is None  # there was none
 

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import pairwise
 from typing import Final
 
+import numpy as np
 from msgspec import Struct
 
 from semmap.nodes.extern.phrasing import changed_in_short
 from semmap.nodes.extern.web.differences import Difference, Mark
+from semmap.nodes.extern.web.scene.annotations import Segments
 from semmap.schemas.entities import Entity, Pose, Size, Vector
 from semmap.schemas.relations import PHRASES, SIDES, Relation, RelationName
+from semmap.schemas.scenes import Point
 
 _WORDS: Final = {name: phrase.removeprefix("is ") for name, phrase in PHRASES.items()}
 _WITH_DISTANCE: Final = frozenset((*SIDES, "isUnder", "isAbove", "isNear", "isNextTo"))
@@ -23,6 +27,8 @@ _IMPLIED: Final[dict[RelationName, frozenset[RelationName]]] = {
     "isNextTo": frozenset(("isNear",)),
 }
 """Relations that are implied by another one, and thus not shown with it."""
+_PATH_M, _CROSS_M = 0.03, 0.12
+"""The height of the lines of a drive above the floor, and the length of the arms of a cross."""
 _UNKNOWN_M: Final[Size] = (0.2, 0.2, 0.2)
 
 
@@ -51,6 +57,19 @@ def relation_lines(
         for other, found in sorted(by_other.items(), key=lambda each: min(r.gap_m for r in each[1]))
         if other in centres and name in centres
     ]
+
+
+def path_lines(path: Sequence[Point], start: Vector) -> Segments:
+    """Return the lines of a drive on the floor from a robot at `start`, with a cross at the goal [m]."""
+    x, y, z = start
+    height_m = z + _PATH_M
+    corners = [(x, y, height_m), *((px, py, height_m) for px, py in path)]
+    goal_x, goal_y, _ = corners[-1]
+    arms = [
+        ((goal_x - dx, goal_y - dy, height_m), (goal_x + dx, goal_y + dy, height_m))
+        for dx, dy in ((_CROSS_M, _CROSS_M), (_CROSS_M, -_CROSS_M))
+    ]
+    return np.array([*pairwise(corners), *arms], dtype=np.float32)
 
 
 def _text(name: str, relations: list[Relation]) -> str:

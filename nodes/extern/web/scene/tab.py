@@ -28,7 +28,7 @@ from semmap.nodes.extern.web.scene.bodies import Bodies
 from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, fit_view, select_labels
 from semmap.nodes.extern.web.scene.drawables import BOX, Drawable, Key, drawable_of
 from semmap.nodes.extern.web.scene.gizmo import Gizmo, Phase, place_on_support
-from semmap.nodes.extern.web.scene.map_overlay import difference_boxes, relation_lines
+from semmap.nodes.extern.web.scene.map_overlay import difference_boxes, path_lines, relation_lines
 from semmap.nodes.extern.web.scene.picking import Solid, corners_of, edges_of, first_hit
 from semmap.nodes.extern.web.scene.rooms import Rooms
 from semmap.nodes.extern.web.scene.sensor_overlay import SensorOverlay
@@ -56,6 +56,7 @@ _ON: Final[frozenset[Switch]] = frozenset(("names", "walls", "relations"))
 _SELECTED: Final[Rgb] = (255, 120, 0)
 _BOX: Final[Rgb] = (120, 130, 150)
 _RELATION: Final[Rgb] = (0, 120, 200)
+_PATH: Final[Rgb] = (15, 118, 110)
 _CHANGED: Final[dict[Mark, Rgb]] = {
     "added": (0, 150, 70),
     "removed": (215, 40, 40),
@@ -121,6 +122,7 @@ class TabScene:
         page.on_poses(self._on_poses)
         page.on_select(self._on_select)
         page.on_appearance_change(self._on_appearance_change)
+        page.on_drives(self._on_drives)
         page.on_key("f", self.show_selected)
         page.pick, page.get_viewpoint, page.cancel_interaction, page.preview = (
             self.pick_place,
@@ -146,6 +148,7 @@ class TabScene:
         self._boxes = Lines(scene, "/boxes", width=1.0)
         self._relation_lines = Lines(scene, "/relations/lines", width=2.5)
         self._differences = Lines(scene, "/differences/lines", width=2.5)
+        self._paths = Lines(scene, "/drives", width=3.0)
         self._difference_labels = Labels(scene, "/differences/names")
         self._dragged = Bodies(scene, self._glb_of, "/dragged")
         self._gizmo = Gizmo(scene, self._on_loop(self._on_drag), lambda: self._is_open(client.client_id))
@@ -344,7 +347,13 @@ class TabScene:
         self._bodies.move(moved)
         if not moved.keys().isdisjoint(self.page.selected) or "boxes" in self.on:
             self._mark()
+        elif self.page.live.drives:
+            self._draw_paths()
         self._label_soon()
+
+    def _on_drives(self) -> None:
+        if self._client is not None and not self._is_deferred():
+            self._draw_paths()
 
     def _has_moved_joints(self, name: str) -> bool:
         """Return whether joints of a body have moved since it was drawn."""
@@ -367,7 +376,20 @@ class TabScene:
         self._put_gizmo(selected)
         self._draw_relations()
         self._draw_differences()
+        self._draw_paths()
         self._label()
+
+    def _draw_paths(self) -> None:
+        """Draw the rest of the drives of all robots, with a cross at their goals."""
+        drives = self.page.live.drives if self.page.moment.is_now else {}
+        poses = self.page.state.poses
+        self._paths.show(
+            [
+                (path_lines(path, poses[name].position_m), _PATH)
+                for name, path in drives.items()
+                if name in poses
+            ]
+        )
 
     def _draw_differences(self) -> None:
         pieces, labels = [], {}

@@ -1,6 +1,6 @@
 """Relations as lines."""
 
-from semmap.nodes.extern.web.scene.map_overlay import relation_lines
+from semmap.nodes.extern.web.scene.map_overlay import path_lines, relation_lines
 from semmap.schemas.relations import Relation
 
 MIDDLES = {
@@ -55,3 +55,11 @@ def test_between_has_two_lines():
 def test_places_have_no_lines():
     assert texts("cup1", relation("isLocatedIn", "cup1", "kitchen1")) == {}
     assert texts("ghost", relation("isOn", "ghost", "table1")) == {}
+
+
+def test_a_drive_is_a_line_through_its_points_with_a_cross_at_the_goal():
+    lines = path_lines(((1.0, 0.0), (1.0, 2.0)), (0.0, 0.0, 0.5))
+    assert lines.shape == (4, 2, 3)
+    assert lines[:2, :, :2].tolist() == [[[0.0, 0.0], [1.0, 0.0]], [[1.0, 0.0], [1.0, 2.0]]]
+    assert lines[2:, :, :2].mean(axis=1).tolist() == [[1.0, 2.0], [1.0, 2.0]]
+    assert ((lines[:, :, 2] > 0.5) & (lines[:, :, 2] < 0.6)).all()

@@ -14,6 +14,7 @@ from semmap.nodes.extern.web.panels.details import detail_requests
 from semmap.nodes.extern.web.panels.details.edit import Edit, draw_several
 from semmap.nodes.extern.web.panels.details.fact_list import FactList
 from semmap.nodes.extern.web.panels.details.history import History
+from semmap.nodes.extern.web.panels.details.robot import Robot, draw_robot, has_panel
 from semmap.nodes.extern.web.panels.details.states import States
 from semmap.nodes.extern.web.panels.widgets.map_view import Changed, MapView
 from semmap.nodes.extern.web.panels.widgets.rows import Rows
@@ -45,6 +46,7 @@ class _Detail:
         self._is_requesting = False
         self._is_stale = False
         """Whether the entity has changed since the current request was sent."""
+        self._robot: Robot | None = None
         self._body = ui.column().classes("w-full gap-2 semmap-detail")
         page.on_select(self._draw)
         page.on_moment(self._draw)
@@ -85,6 +87,9 @@ class _Detail:
 
     def _draw(self) -> None:
         """Redraw everything for another selection."""
+        if self._robot is not None:
+            self._robot.close()
+            self._robot = None
         self._body.clear()
         names = self._of = self._present()
         with self._body:
@@ -112,6 +117,7 @@ class _Detail:
             self._geometry = ui.label().classes("semmap-quiet semmap-figures")
         self._description = ui.label().classes("semmap-sentence")
         self._conflict = ui.label().classes("semmap-doubt").props('role="status"')
+        self._robot = draw_robot(page, entity)
         with ui.column().classes("w-full gap-0") as facts:
             self._facts = FactList(page)
         facts.set_visibility(False)  # until the first reply
@@ -138,6 +144,9 @@ class _Detail:
             self._draw()
         elif len(names) == 1 and self._page.moment.is_now:  # the past does not change
             entity = self._page.state.entities[names[0]]
+            if has_panel(self._page, entity) is (self._robot is None):
+                self._draw()
+                return
             self._show_entity(entity)
             self._refresh(entity)
 

@@ -78,7 +78,7 @@ def page():
         moment=NOW,
         selected=("cup1",),
         state=state,
-        live=SimpleNamespace(classes=()),
+        live=SimpleNamespace(classes=(), scene=None),
         is_allowed=lambda verb: False,
         on_select=lambda function: None,
         on_moment=lambda function: None,
