@@ -19,7 +19,7 @@ from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.relations.facts.contradictions import PROPERTIES, fact_of
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import containment, proximity
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
 from semmap.ontology import vocabulary as v
@@ -90,7 +90,7 @@ def _in_scene(seed: int) -> Contacts:
     touching = {
         (one, other)
         for one, other in combinations(sorted(names), 2)
-        if measures.touches(solids[one], solids[other], limits) is not None
+        if proximity.touches(solids[one], solids[other], limits) is not None
     }
     true = {tuple(sorted(pair)) for pair in scene.touching}
     steep = Counts.of(on & scene.steeply, scene.steeply)
@@ -115,7 +115,7 @@ def inside_against_samples(pairs: int) -> Counts:
         at = (rng.uniform(-x, x) / 2, rng.uniform(-y, y) / 2, rng.uniform(0.0, z))
         inner = _solid(f"inner{number}", None, at, tuple(rng.uniform(0.1, 0.6) * s for s in outer.size))
         pair = (inner.name, outer.name)
-        made = measures.inside(inner, outer, Thresholds())
+        made = containment.inside(inner, outer, Thresholds())
         if made is not None and made.holds:
             found.add(pair)
         own = points.uniform((-0.5, -0.5, 0.0), (0.5, 0.5, 1.0), (_SAMPLES, 3)) * inner.size + at
@@ -132,7 +132,7 @@ def inside_against_samples(pairs: int) -> Counts:
         if any(h.is_sealed for h in outer.hollows):
             if share == 1.0:
                 true.add(pair)
-        elif share >= 0.5 or (base > 0.5 and any(map(measures.is_holder, outer.hollows))):
+        elif share >= 0.5 or (base > 0.5 and any(map(containment.is_holder, outer.hollows))):
             true.add(pair)
     return Counts.of(found, true)
 

@@ -9,7 +9,7 @@ from typing import Final
 
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import proximity
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.language import nouns
@@ -123,7 +123,7 @@ class Inventories:
             (made.gap_m, other.name)
             for other in space.counted_around(solid, space.limits.near_most_m)
             if _is_table(self._map.find(other.name))
-            and (made := measures.near(solid, other, space.limits)) is not None
+            and (made := proximity.near(solid, other, space.limits)) is not None
             and made.holds
         ]
         return min(tables)[1] if tables else None

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from msgspec import structs
 
 from semmap.nodes.kb_node.relations.geometry.opening import joint_at
-from semmap.nodes.kb_node.relations.measuring.measures import hollow_around
+from semmap.nodes.kb_node.relations.measuring.containment import hollow_around
 from semmap.nodes.kb_node.storage.history import HistoryReader, make_sighting
 from semmap.ontology import vocabulary as v
 from semmap.schemas import wording

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import proximity
 from semmap.nodes.kb_node.relations.measuring.space import Space
 
 
@@ -72,7 +72,7 @@ class Contents:
 
     def _overlap(self, solid: Solid, other: Solid) -> bool:
         """Return whether two objects penetrate each other by more than the position tolerance."""
-        contact = measures.touches(solid, other, self._space.limits)
+        contact = proximity.touches(solid, other, self._space.limits)
         return contact is not None and contact.gap_m < -self._space.limits.gap_m
 
     def _carrier(self, solid: Solid) -> Carrier | None:

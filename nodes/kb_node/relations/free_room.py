@@ -15,7 +15,7 @@ from semmap.nodes.kb_node.relations.geometry.forms import Form, form_of
 from semmap.nodes.kb_node.relations.geometry.opening import AS_DRAWN, joint_at
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Shape, Solid, shape_of
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import containment, places, proximity
 from semmap.nodes.kb_node.relations.measuring.arrangement import measure_next_to
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.ontology.model_shapes import Interior, own_size_m
@@ -149,7 +149,7 @@ class _Search:
         """Yield the surfaces on which the target itself stands."""
         container, supports, place = self._space.spatial_relations(self._target)
         if container is not None:
-            yield from _levels_in(container[0], measures.hollow_around(self._target, container[0]))
+            yield from _levels_in(container[0], containment.hollow_around(self._target, container[0]))
         elif supports:
             support, made = supports[0]
             for surface in support.supports:
@@ -169,21 +169,21 @@ class _Search:
             if other.is_place or other.bottom > solid.top or other.top < solid.bottom:
                 continue
             is_support = other is self._target and self._placing != "next_to"
-            if measures.touches(solid if is_support else around, other, limits) is not None:
+            if proximity.touches(solid if is_support else around, other, limits) is not None:
                 if not is_support:
                     self._obstacles[other.name] = None
                 return False
         return True
 
     def _is_contained(self, solid: Solid) -> bool:
-        made = measures.inside(solid, self._target, self._space.limits)
+        made = containment.inside(solid, self._target, self._space.limits)
         return made is not None and made.holds
 
     def holds(self, solid: Solid) -> bool:
         """Return whether the relation to the target holds for an object."""
         space, target = self._space, self._target
         if target.is_place:
-            made = measures.within(solid, target, space.limits)
+            made = places.within(solid, target, space.limits)
             return made is not None and made.share > _BASE_SHARE
         if self._placing == "next_to":
             beside = measure_next_to(space, solid, target)
@@ -226,7 +226,7 @@ class _Search:
         target = self._target
         if self._placing != "in" or target.is_place:
             return ""
-        behind = measures.hollow_around(solid, target).behind
+        behind = containment.hollow_around(solid, target).behind
         form = target.form
         positions = form.joints or (0.0,) * len(form.shape.leaves)
         leaves = [joint_at(leaf, at) for leaf, at in zip(form.shape.leaves, positions, strict=True)]

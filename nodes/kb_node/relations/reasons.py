@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import containment, places, proximity, support_contact
 from semmap.nodes.kb_node.relations.measuring.arrangement import measure_attachment
 from semmap.nodes.kb_node.relations.measuring.phrases import (
     UNSUPPORTED,
@@ -76,9 +76,9 @@ def _explain_not_on(space: Space, solid: Solid, other: Solid) -> str:
     limits = space.limits
     if not other.supports:
         return f"{other.name} has no supporting surface; it {describe_support(space, solid)}"
-    made = measures.over(solid, other, limits)
+    made = support_contact.over(solid, other, limits)
     if made is None:
-        apart = measures.gap(solid, other)
+        apart = proximity.gap(solid, other)
         where = f"{format_length(apart)} apart" if apart > 0.0 else "touching or overlapping"
         support = describe_support(space, solid)
         return f"it is not above any surface of {other.name} (they are {where}); it {support}"
@@ -138,9 +138,9 @@ def _explain_not_inside(space: Space, solid: Solid, other: Solid) -> str:
         return f"{other.name} has no known hollow"
     if solid.volume >= other.volume:
         return f"it is not smaller than {other.name}"
-    made = measures.inside(solid, other, space.limits)
+    made = containment.inside(solid, other, space.limits)
     if made is None or made.share == 0.0:
-        apart = measures.gap(solid, other)
+        apart = proximity.gap(solid, other)
         if apart == 0.0 and all(hollow.is_sealed for hollow in other.hollows):
             return f"not all of it is within the hollow of {other.name}, which is closed"
         return f"none of its volume is within a hollow of {other.name}; they are {format_length(apart)} apart"
@@ -162,8 +162,8 @@ def _explain_not_in(space: Space, solid: Solid, other: Solid) -> str:
         return "it is a place itself, and relations between places are only asserted, never computed"
     if not other.is_measured:
         return f"the extent of {other.name} is unknown"
-    made = measures.within(solid, other, space.limits)
-    apart = measures.gap(solid, other)
+    made = places.within(solid, other, space.limits)
+    apart = proximity.gap(solid, other)
     if made is None or apart > space.limits.touch_m:
         return f"it is {format_length(apart)} from it"
     if made.share == 0.0:
@@ -180,7 +180,7 @@ def _explain_not_attached(space: Space, solid: Solid, other: Solid) -> str:
         return f"it {support}, so it is not attached to a side"
     made = measure_attachment(space, solid, other)
     if made is None:
-        apart = format_length(measures.gap(solid, other))
+        apart = format_length(proximity.gap(solid, other))
         return f"it is not against a side of {other.name}; they are {apart} apart"
     limit = f"isAttachedTo allows up to {format_length(space.limits.attached_m)}"
     if made.gap_m > made.limit:

@@ -10,7 +10,7 @@ from msgspec import structs
 
 from semmap.nodes.kb_node.relations.facts.pair_facts import is_separate, measure_pair
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import containment, places, proximity, support_contact
 from semmap.nodes.kb_node.relations.measuring.arrangement import (
     find_attachments,
     find_between,
@@ -93,14 +93,14 @@ def list_relations_of(space: Space, name: str, *, is_fixed: bool = False) -> Ite
         yield _make_relation(space, relation, upper, solid, measure)
     known = {relation.object for relation in found}
     nearby = [o for o in space.counted_around(solid, space.limits.near_most_m) if not o.is_place]
-    nearby = sorted(nearby, key=lambda other: (measures.gap(solid, other), other.name))
+    nearby = sorted(nearby, key=lambda other: (proximity.gap(solid, other), other.name))
     for other in nearby:
         if other.name not in known:
             holding = (relation for relation in _list_pair_relations(space, solid, other) if relation.holds)
             is_content = other.name in above
             yield from _drop_implied_near(r for r in holding if not (is_content and r.relation == "touches"))
     near = [other for other in nearby if other.name not in known and not other.is_place][:_NEIGHBOURS_BETWEEN]
-    pairs = sorted(combinations(near, 2), key=lambda pair: measures.gap(*pair))
+    pairs = sorted(combinations(near, 2), key=lambda pair: proximity.gap(*pair))
     amid = (pair for pair in pairs if solid in find_between(space, *pair))
     yield from (_make_between(solid, *pair) for pair in islice(amid, _MOST_BETWEEN))
 
@@ -109,7 +109,7 @@ def _select_nearest(space: Space, name: str, sides: Iterable[Relation], viewer: 
     """Return the viewer and the nearest neighbours, for which sides are reported."""
     others = {side.object for side in sides if side.object in space.solids and side.object != viewer}
     solid = space.solids[name]
-    near = sorted(others, key=lambda other: (measures.gap(solid, space.solids[other]), other))
+    near = sorted(others, key=lambda other: (proximity.gap(solid, space.solids[other]), other))
     return {*near[:_MOST_SIDES], *filter(None, (viewer,))}
 
 
@@ -122,7 +122,7 @@ def _drop_implied_near(relations: Iterable[Relation]) -> Iterator[Relation]:
 
 def _make_between(solid: Solid, one: Solid, other: Solid) -> Relation:
     first, second = sorted((one.name, other.name))
-    apart = measures.gap(one, other)
+    apart = proximity.gap(one, other)
     return Relation(
         relation="isBetween",
         subject=solid.name,
@@ -194,7 +194,7 @@ def _make_negative(space: Space, relation: RelationName, solid: Solid, other: So
         subject=solid.name,
         object=other.name,
         holds=False,
-        gap_m=round(measures.gap(solid, other), 4),
+        gap_m=round(proximity.gap(solid, other), 4),
         share=0.0,
         text=f"{solid.name} {phrase_relation(relation, False)} {other.name}:"
         f" {explain_absence(space, relation, solid, other)}",
@@ -230,7 +230,7 @@ def measure_relation(space: Space, relation: RelationName, solid: Solid, other: 
     """
     limits = space.limits
     if relation == "isLocatedIn":
-        return measures.within(solid, other, limits)
+        return places.within(solid, other, limits)
     if relation not in ("isOn", "isInside"):
         return None
     container, supports, _ = space.spatial_relations(solid)
@@ -239,7 +239,9 @@ def measure_relation(space: Space, relation: RelationName, solid: Solid, other: 
         if best[0] is other:
             return best[1]
     made = (
-        measures.over(solid, other, limits) if relation == "isOn" else measures.inside(solid, other, limits)
+        support_contact.over(solid, other, limits)
+        if relation == "isOn"
+        else containment.inside(solid, other, limits)
     )
     return None if made is None else made._replace(holds=False)
 

@@ -12,7 +12,7 @@ from semmap.nodes.kb_node.relations.facts.pair_facts import are_near
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import places, proximity
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.schemas import errors, wording
 from semmap.schemas.entities import Entity, Pose, Size
@@ -238,7 +238,7 @@ def is_in(space: Space, solid: Solid, holders: Set[str], left_out: Set[Fact]) ->
     for name in holders:
         other = space.solids.get(name)
         if other is not None and other.is_place and other is not solid:
-            made = measures.within(solid, other, space.limits)
+            made = places.within(solid, other, space.limits)
             if made is not None and made.holds and (solid.name, "isLocatedIn", name) not in left_out:
                 return True
     seen = {solid.name}
@@ -255,7 +255,7 @@ def is_in(space: Space, solid: Solid, holders: Set[str], left_out: Set[Fact]) ->
 
 
 def _make_distance_test(metres: float) -> Callable[[Solid, Solid], bool]:
-    return lambda solid, other: not solid.is_place and measures.gap(solid, other) <= metres
+    return lambda solid, other: not solid.is_place and proximity.gap(solid, other) <= metres
 
 
 def _select_nearest(space: Space, found: list[Entity], targets: list[Solid], where: Where) -> list[Entity]:
@@ -267,7 +267,7 @@ def _select_nearest(space: Space, found: list[Entity], targets: list[Solid], whe
     for entity in found:
         solid = space.solids[entity.name]
         if not solid.is_place and entity.name not in to:
-            distance[entity.name] = min(measures.gap(solid, target) for target in targets)
+            distance[entity.name] = min(proximity.gap(solid, target) for target in targets)
     limit = where.within if where.within is not None else math.inf
     there = [e for e in found if distance.get(e.name, math.inf) <= limit and e.name in distance]
     return sorted(there, key=lambda e: (distance[e.name], e.name))[: where.nearest]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import support_contact
 from semmap.nodes.kb_node.relations.measuring.arrangement import find_attachments, is_supported
 from semmap.nodes.kb_node.relations.measuring.phrases import format_height, format_length
 from semmap.nodes.kb_node.relations.measuring.space import Found, Space
@@ -82,7 +82,7 @@ def _find_nearest_surface(space: Space, solid: Solid, floor_m: float) -> Found |
     found: Found | None = None
     nearest = abs(floor_m)
     for other in space.counted_around(solid):
-        made = None if other.is_place else measures.over(solid, other, space.limits)
+        made = None if other.is_place else support_contact.over(solid, other, space.limits)
         if made is not None and abs(made.gap_m) < nearest and made.gap_m > solid.bottom - solid.top:
             found, nearest = (other, made), abs(made.gap_m)
     return found

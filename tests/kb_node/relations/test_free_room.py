@@ -8,7 +8,7 @@ import pytest
 from msgspec import structs
 
 from semmap.nodes.kb_node.relations.free_room import find_room
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import proximity
 from semmap.nodes.kb_node.relations.measuring.arrangement import measure_next_to
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.sim_node.models.library import build
@@ -46,7 +46,7 @@ def test_ten_cups_on_a_table_stand_apart():
         put(space, "on", "table1", f"cup{number}")
     assert all(relations(space, f"cup{n}") == (None, ["table1"], "kitchen1") for n in range(10))
     cups = [space.solids[f"cup{n}"] for n in range(10)]
-    assert all(measures.touches(*both, space.limits) is None for both in combinations(cups, 2))
+    assert all(proximity.touches(*both, space.limits) is None for both in combinations(cups, 2))
 
 
 def test_the_first_is_in_the_middle_along_the_axes_of_a_turned_table():
@@ -94,7 +94,7 @@ def test_a_room_takes_it_on_its_floor():
     space = Space([ROOM, TABLE])
     put(space, "in", "kitchen1", "chair1", "chair")
     assert relations(space, "chair1") == (None, [], "kitchen1")
-    assert measures.gap(space.solids["chair1"], space.solids["table1"]) > 0.01
+    assert proximity.gap(space.solids["chair1"], space.solids["table1"]) > 0.01
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import containment, overhead, places, proximity, support_contact
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.relation_reports import explain_relation, list_relations
 from semmap.schemas.commands import Relations
@@ -17,7 +17,10 @@ from tests.kb_node.relations.kitchen import THINGS
 
 FOLDER = Path(__file__).parent / "scene"
 VIEWPOINT = (-2.5, -1.0, 1.5, 0.3)
-MEASURES = ("on", "over", "inside", "touches", "within", "against", "beneath")
+MEASURES = (
+    *(support_contact.on, support_contact.over, containment.inside, proximity.touches, places.within),
+    *(proximity.against, overhead.beneath),
+)
 EXPLAINED = (
     *("isOn", "isInside", "isAttachedTo", "isLeaningAgainst", "isUnder", "isNextTo", "isLeftOf", "isBehind"),
     *("isLocatedIn", "touches"),
@@ -40,12 +43,12 @@ def measure_all(kitchen):
     for one, other in permutations(kitchen.solids.values(), 2):
         if "kitchen1" in (one.name, other.name):
             continue
-        for name in MEASURES:
-            made = getattr(measures, name)(one, other, kitchen.limits)
+        for measure in MEASURES:
+            made = measure(one, other, kitchen.limits)
             if made is not None:
-                yield f"{one.name} {name} {other.name}: {show(made)}"
-        if one.name < other.name and (apart := measures.gap(one, other)) < 0.5:
-            near = measures.near(one, other, kitchen.limits)
+                yield f"{one.name} {measure.__name__} {other.name}: {show(made)}"
+        if one.name < other.name and (apart := proximity.gap(one, other)) < 0.5:
+            near = proximity.near(one, other, kitchen.limits)
             limit = (
                 "" if near is None else f", {'near' if near.holds else 'not near'} up to {number(near.limit)}"
             )
@@ -72,7 +75,7 @@ def report_all(kitchen):
 
 def explain_all(kitchen):
     for one, other in permutations(kitchen.solids.values(), 2):
-        if one.name not in PLACES and measures.gap(one, other) <= MOST_EXPLAINED_M:
+        if one.name not in PLACES and proximity.gap(one, other) <= MOST_EXPLAINED_M:
             for relation in EXPLAINED if other.name not in PLACES else ("isLocatedIn",):
                 yield explain_relation(kitchen, one.name, relation, other.name).text
 
@@ -91,6 +94,6 @@ def test_why_relations_hold_or_do_not(kitchen):
 
 def test_whatever_may_be_inside_is_found_by_the_fast_check(kitchen):
     for one, other in permutations(kitchen.solids.values(), 2):
-        made = measures.inside(one, other, kitchen.limits)
+        made = containment.inside(one, other, kitchen.limits)
         if made is not None and made.holds:
-            assert measures.may_be_inside(one, other, kitchen.limits), (one.name, other.name)
+            assert containment.may_be_inside(one, other, kitchen.limits), (one.name, other.name)

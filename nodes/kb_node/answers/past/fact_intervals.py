@@ -18,7 +18,7 @@ from semmap.nodes.kb_node.relations.facts.rules import RULES
 from semmap.nodes.kb_node.relations.geometry.opening import positions_of
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import places
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.storage.history import HistoryReader
@@ -221,7 +221,7 @@ class _Neighbourhood:
         place = self._space.solids.get(other) if relation == "isLocatedIn" else None
         if place is None or not place.is_place or place is solid:
             return False
-        made = measures.within(solid, place, self._space.limits, also_places=True)
+        made = places.within(solid, place, self._space.limits, also_places=True)
         return made is not None and made.holds
 
     def _is_near(self, placed: PlacedEntity | None) -> bool:

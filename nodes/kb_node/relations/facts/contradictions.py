@@ -9,7 +9,7 @@ from semmap.nodes.geometry.polygons import distance
 from semmap.nodes.kb_node.entities.alignments import shipped
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import places, proximity, support_contact
 from semmap.nodes.kb_node.relations.measuring.phrases import explain_location, format_length
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.ontology import vocabulary as v
@@ -71,7 +71,7 @@ def find_contradiction(space: Space, fact: Fact) -> Relation | None:
         subject=name,
         object=other_name,
         holds=False,
-        gap_m=0.0 if solid is None or other is None else round(measures.gap(solid, other), 4),
+        gap_m=0.0 if solid is None or other is None else round(proximity.gap(solid, other), 4),
         share=0.0,
         text=f"{name} was asserted {phrase} {other_name}; {reason}",
     )
@@ -80,10 +80,10 @@ def find_contradiction(space: Space, fact: Fact) -> Relation | None:
 def _find_reason(space: Space, relation: RelationName, solid: Solid, other: Solid) -> str | None:
     limits = space.limits
     if relation == "isLocatedIn":
-        made = measures.within(solid, other, limits)
+        made = places.within(solid, other, limits)
         if made is None or made.holds:
             return None
-        apart = measures.gap(solid, other)
+        apart = proximity.gap(solid, other)
         return (
             explain_location(relation, solid, other, made)
             if apart < limits.touch_m
@@ -95,7 +95,7 @@ def _find_reason(space: Space, relation: RelationName, solid: Solid, other: Soli
         return None  # its support may not be among the compared objects
     if other in _find_supporters(space, solid):
         return None
-    apart = measures.gap(solid, other)
+    apart = proximity.gap(solid, other)
     if apart > limits.gap_m:
         return _describe_distance(solid, apart)
     if relation == "isInside":
@@ -105,7 +105,7 @@ def _find_reason(space: Space, relation: RelationName, solid: Solid, other: Soli
     has_support = bool(carrier.supports) or carrier.container is not None
     if not other.supports or not (has_support or solid.bottom <= other.bottom + limits.gap_m):
         return None  # it may be attached or lean there
-    made = measures.over(solid, other, limits)
+    made = support_contact.over(solid, other, limits)
     return (
         f"it is not above any surface of {other.name}"
         if made is None

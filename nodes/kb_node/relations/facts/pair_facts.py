@@ -13,7 +13,7 @@ from semmap.nodes.kb_node.relations.facts.place_facts import Changed, Fact
 from semmap.nodes.kb_node.relations.geometry.forms import Bounds
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import measures, proximity
 from semmap.nodes.kb_node.relations.measuring.arrangement import stands_on_ground
 from semmap.nodes.kb_node.relations.measuring.measures import Measure
 from semmap.nodes.kb_node.relations.measuring.relation_table import (
@@ -62,7 +62,7 @@ def _is_on_or_in(space: Space, solid: Solid, other: Solid) -> bool:
 
 def are_near(space: Space, one: Solid, other: Solid) -> bool:
     """Return whether `isNear` is a fact, with the same meaning as in `list --near` and SPARQL."""
-    made = measures.near(one, other, space.limits)
+    made = proximity.near(one, other, space.limits)
     if made is None or not made.holds or not (space.counts(one) and space.counts(other)):
         return False
     return is_separate(space, one, other) or is_separate(space, other, one)
@@ -257,7 +257,7 @@ def _orient(fact: Fact) -> Fact:
 def _may_be_beside(space: Space, one: Solid, other: Solid) -> bool:
     """Return whether two objects are close enough for any of the relations, by their bounds."""
     limits = space.limits
-    reach = max(measures.near_limit(one, other, limits), limits.contact_m, limits.lean_gap_m)
+    reach = max(proximity.near_limit(one, other, limits), limits.contact_m, limits.lean_gap_m)
     return measures.overlap(one.bounds, other.bounds, reach)
 
 

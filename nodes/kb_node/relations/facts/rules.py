@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from typing import Final, NamedTuple
 
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import containment
 from semmap.nodes.kb_node.relations.measuring.arrangement import find_attachments
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.survey import NO_ROW, Survey
@@ -114,7 +114,7 @@ def _may_support(space: Space, solid: Solid, other: Solid) -> bool:
     gap = limits.gap_m + _ROUNDING
     if other.bottom > solid.top + gap or other.top < solid.bottom - gap:
         return False
-    if measures.may_be_inside(other, solid, limits) or not (other.is_level and solid.is_level):
+    if containment.may_be_inside(other, solid, limits) or not (other.is_level and solid.is_level):
         return True
     if other.bottom < solid.bottom - limits.contact_m:
         return False

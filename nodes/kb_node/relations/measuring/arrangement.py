@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from semmap.nodes.geometry.polygons import area, clipped, hull
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import measures, proximity
 from semmap.nodes.kb_node.relations.measuring.measures import Measure
 from semmap.nodes.kb_node.relations.measuring.space import Space
 
@@ -21,7 +21,7 @@ def measure_next_to(space: Space, one: Solid, other: Solid) -> Measure | None:
     None if they are not near. Otherwise `holds` is False with `share` 0 on different supports, and with
     `share` 0.5 if an object is between them.
     """
-    made = measures.near(one, other, space.limits)
+    made = proximity.near(one, other, space.limits)
     if made is None or not made.holds:
         return None
     if not _share_support(space, one, other):
@@ -51,7 +51,7 @@ def find_between(space: Space, one: Solid, other: Solid) -> list[Solid]:
 def _iterate_between(space: Space, one: Solid, other: Solid) -> Iterator[Solid]:
     strip = hull([*one.outline, *other.outline])
     low, high = max(one.bottom, other.bottom), min(one.top, other.top)
-    apart = measures.gap(one, other)
+    apart = proximity.gap(one, other)
     for third in space.counted_around(one, apart):
         if third is other or third.is_place or not third.is_measured:
             continue
@@ -74,7 +74,7 @@ def measure_attachment(space: Space, solid: Solid, other: Solid) -> Measure | No
 
     None if it is not beside the other one, or is supported.
     """
-    made = measures.against(solid, other, space.limits)
+    made = proximity.against(solid, other, space.limits)
     if made is None or is_supported(space, solid) or not space.may_hold(other, solid):
         return None
     return made
@@ -92,7 +92,7 @@ def find_attachments(space: Space, solid: Solid) -> Iterator[Solid]:
         if other.top > solid.bottom
         and other.bottom < highest
         and not other.is_place
-        and (made := measures.against(solid, other, space.limits))
+        and (made := proximity.against(solid, other, space.limits))
         and made.holds
         and space.may_hold(other, solid)
     ]

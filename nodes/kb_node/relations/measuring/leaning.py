@@ -16,7 +16,7 @@ from semmap.nodes.kb_node.relations.geometry.convex import (
     over_flat_top,
 )
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import measures, proximity
 from semmap.nodes.kb_node.relations.measuring.arrangement import stands_on_ground
 from semmap.nodes.kb_node.relations.measuring.measures import Measure
 from semmap.nodes.kb_node.relations.measuring.phrases import format_length
@@ -77,7 +77,7 @@ def explain_leaning(space: Space, solid: Solid, other: Solid, made: Measure | No
     contacts = list(_list_contacts(space, solid, other))
     sideways = [height for _, normal, height, _ in contacts if abs(normal[2]) <= _STEEPEST]
     if not contacts:
-        apart, limit = measures.gap(solid, other), format_length(limits.lean_gap_m)
+        apart, limit = proximity.gap(solid, other), format_length(limits.lean_gap_m)
         if apart > limits.lean_gap_m:
             return f"they are {format_length(apart)} apart (isLeaningAgainst allows up to {limit})"
         return f"no part of one is beside a part of the other within {limit}"

@@ -5,7 +5,8 @@ from __future__ import annotations
 from semmap.nodes.kb_node.relations.geometry.opening import joint_at
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring.arrangement import stands_on_floor
-from semmap.nodes.kb_node.relations.measuring.measures import Measure, hollow_around
+from semmap.nodes.kb_node.relations.measuring.containment import hollow_around
+from semmap.nodes.kb_node.relations.measuring.measures import Measure
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.schemas import errors
 from semmap.schemas.joints import OPEN_FROM, Joint, in_words

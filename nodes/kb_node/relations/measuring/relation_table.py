@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 
 from semmap.nodes.geometry.polygons import distance
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import overhead, proximity
 from semmap.nodes.kb_node.relations.measuring.arrangement import find_between, measure_next_to
 from semmap.nodes.kb_node.relations.measuring.leaning import explain_leaning, measure_leaning
 from semmap.nodes.kb_node.relations.measuring.measures import Measure
@@ -32,20 +32,20 @@ class PairRelation(NamedTuple):
 
 
 def _measure_touch(space: Space, one: Solid, other: Solid) -> Measure | None:
-    return None if other.is_place else measures.touches(one, other, space.limits)
+    return None if other.is_place else proximity.touches(one, other, space.limits)
 
 
 def _explain_touch(space: Space, one: Solid, other: Solid, made: Measure | None) -> str:
     if made is not None and made.holds:
         return f"they are {format_length(made.gap_m)} apart" if made.gap_m > _LEVEL_M else "they meet"
-    apart, limit = measures.gap(one, other), format_length(space.limits.contact_m)
+    apart, limit = proximity.gap(one, other), format_length(space.limits.contact_m)
     if apart > space.limits.contact_m:
         return f"they are {format_length(apart)} apart (touches allows up to {limit})"
     return f"no part of one is within {limit} of a part of the other, although their boxes are"
 
 
 def _measure_under(space: Space, one: Solid, other: Solid) -> Measure | None:
-    return measures.beneath(one, other, space.limits)
+    return overhead.beneath(one, other, space.limits)
 
 
 def _explain_under(space: Space, one: Solid, other: Solid, made: Measure | None) -> str:
@@ -60,7 +60,7 @@ def _explain_under(space: Space, one: Solid, other: Solid, made: Measure | None)
 
 
 def _measure_above(space: Space, one: Solid, other: Solid) -> Measure | None:
-    return measures.beneath(other, one, space.limits)
+    return overhead.beneath(other, one, space.limits)
 
 
 def _explain_above(space: Space, one: Solid, other: Solid, made: Measure | None) -> str:
@@ -88,7 +88,7 @@ def _explain_not_beneath(space: Space, lower: Solid, upper: Solid, made: Measure
 
 
 def _measure_near(space: Space, one: Solid, other: Solid) -> Measure | None:
-    return measures.near(one, other, space.limits)
+    return proximity.near(one, other, space.limits)
 
 
 def _explain_near(_: Space, one: Solid, other: Solid, made: Measure | None) -> str:

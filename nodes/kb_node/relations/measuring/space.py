@@ -12,10 +12,11 @@ from semmap.nodes.kb_node.relations.geometry.columns import solids_of
 from semmap.nodes.kb_node.relations.geometry.forms import Bounds
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity, holder_in
 from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import containment, measures, places, proximity, support_contact
 from semmap.nodes.kb_node.relations.measuring.broad_phase import add_to_grid, find_nearby
+from semmap.nodes.kb_node.relations.measuring.containment import may_be_inside
 from semmap.nodes.kb_node.relations.measuring.grid import Grid
-from semmap.nodes.kb_node.relations.measuring.measures import Measure, may_be_inside
+from semmap.nodes.kb_node.relations.measuring.measures import Measure
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.schemas.entities import Entity
 
@@ -213,17 +214,17 @@ class Space:
         least = solid.bottom - limits.gap_m - 1e-6
         for other in self.supporters_around(solid):
             if other.is_place:
-                made = measures.within(solid, other, limits)
+                made = places.within(solid, other, limits)
                 if made and made.holds and (place is None or _area(other) < _area(place[0])):
                     place = (other, made)
                 continue
             if other.top < least or not self._may_support_attached(other, solid):
                 continue
             if other.form.hollow_bounds and may_be_inside(solid, other, limits):
-                made = measures.inside(solid, other, limits)
+                made = containment.inside(solid, other, limits)
                 if made and made.holds and (container is None or _volume(other) < _volume(container[0])):
                     container = (other, made)
-            made = measures.on(solid, other, limits)
+            made = support_contact.on(solid, other, limits)
             if made is not None:
                 below.append((other, made))
         if solid.is_fixed and below:
@@ -244,7 +245,7 @@ class Space:
             return False
         if support.hollows and self._is_within(solid, support):
             return True
-        made = measures.on(solid, support, self.limits)
+        made = support_contact.on(solid, support, self.limits)
         return made is not None and made.holds
 
     def _may_support_attached(self, support: Solid, solid: Solid) -> bool:
@@ -274,7 +275,9 @@ class Space:
         gaps = [made.gap_m for _, made in leaning]
         below = [found for found in below if found[1].holds and not self._is_below(solid, *found)]
         on_floor = floor_m is not None and abs(floor_m) <= limits.gap_m
-        trays = [made.height_m for other, made in below if measures.is_in_open_hollow(other, solid, made)]
+        trays = [
+            made.height_m for other, made in below if support_contact.is_in_open_hollow(other, solid, made)
+        ]
         if trays:
             lowest = max(trays) - limits.contact_m
             below = [found for found in below if found[1].height_m >= lowest]
@@ -288,7 +291,7 @@ class Space:
             gaps.append(floor_m)
         nearest = gaps[0] if len(gaps) == 1 else min(gaps, key=_nearness)
         level = [found for found in below if abs(found[1].gap_m - nearest) <= limits.contact_m]
-        if sum(made.share for _, made in level) < limits.base_share and not measures.is_balanced(
+        if sum(made.share for _, made in level) < limits.base_share and not support_contact.is_balanced(
             solid, [other for other, _ in level], solid.bottom - nearest
         ):
             return ()
@@ -316,7 +319,7 @@ class Space:
             if abs(made.gap_m) <= _MOUNTED_M and (other.is_fixed or _stands_in(other, place, limits))
         ]
         for other in self.supporters_around(solid, limits.attached_m):
-            made = measures.against(solid, other, limits)
+            made = proximity.against(solid, other, limits)
             if made is None or not made.holds or any(other is support for support, _ in may_hold):
                 continue
             if other.is_fixed or _stands_in(other, place, limits):
@@ -324,14 +327,14 @@ class Space:
         return may_hold
 
     def _is_within(self, solid: Solid, container: Solid) -> bool:
-        made = measures.inside(solid, container, self.limits)
+        made = containment.inside(solid, container, self.limits)
         return made is not None and made.holds
 
     def _is_below(self, solid: Solid, other: Solid, made: Measure) -> bool:
         """Return whether `other` rests on `solid` instead, as with objects that interlock."""
         if other.bottom < solid.bottom - self.limits.contact_m:
             return False
-        back = measures.on(other, solid, self.limits)
+        back = support_contact.on(other, solid, self.limits)
         return (
             back is not None and back.holds and (abs(back.gap_m), solid.name) < (abs(made.gap_m), other.name)
         )

@@ -19,7 +19,7 @@ from semmap.nodes.kb_node.relations.geometry.columns import Columns
 from semmap.nodes.kb_node.relations.geometry.form_columns import Bools, Floats, Ints
 from semmap.nodes.kb_node.relations.geometry.planar import GUARD
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import containment, places, proximity
 from semmap.nodes.kb_node.relations.measuring.broad_phase import (
     BroadPhase,
     find_cells,
@@ -140,7 +140,7 @@ class Survey:
         )
         inside &= sure & (level > GUARD) & ~out
         for k in np.flatnonzero(~inside & ~(sure & out)).tolist():
-            made = measures.within(self.solids[one[k]], self.solids[other[k]], limits)
+            made = places.within(self.solids[one[k]], self.solids[other[k]], limits)
             inside[k] = made is not None and made.holds
         self._store_smallest(
             self.place, one[inside], other[inside], lambda solid: (solid.footprint, solid.name)
@@ -202,10 +202,10 @@ class Survey:
         least = np.where(is_exact, most, np.where(covers, area * deep, 0.0))
         is_sealed = forms.hollows.is_sealed[hollow] > 0.0
         walls = 2.0 * np.sort([np.hypot(*u.T), np.hypot(*v.T)], axis=0)
-        spare = measures.FIT * walls - np.sort(forms.size[form, :2], axis=1).T
+        spare = containment.FIT * walls - np.sort(forms.size[form, :2], axis=1).T
         least[is_sealed | (spare.min(axis=0) < GUARD)] = 0.0
         above = columns.bottom[i] - base
-        stands = (above > measures.FLOOR_M - GUARD) & (above < (floor + lid) / 2 + GUARD) & (shared > 0.0)
+        stands = (above > containment.FLOOR_M - GUARD) & (above < (floor + lid) / 2 + GUARD) & (shared > 0.0)
         stands &= ~is_sealed
         begins = np.cumsum(count) - count
         most, least = np.maximum.reduceat(most, begins), np.maximum.reduceat(least, begins)
@@ -215,7 +215,7 @@ class Survey:
         inside = sure & is_smaller & (least > limits.inside_share + doubt)
         outside = sure & ~may_stand & (~is_smaller | (most < limits.inside_share - doubt))
         for k in np.flatnonzero(~inside & ~outside).tolist():
-            made = measures.inside(self.solids[one[k]], self.solids[other[k]], limits)
+            made = containment.inside(self.solids[one[k]], self.solids[other[k]], limits)
             inside[k] = made is not None and made.holds
         self._store_smallest(
             self.container, one[inside], other[inside], lambda solid: (solid.volume, solid.name)
@@ -252,7 +252,7 @@ class Survey:
         bottom, top = columns.bottom[one], columns.top[one]
         alongside = (np.minimum(top, columns.top[other]) - bottom) / np.maximum(
             top - bottom, 1e-12
-        ) - measures.ALONGSIDE
+        ) - proximity.ALONGSIDE
         above = bottom - columns.bottom[other] - limits.gap_m
         is_near = columns.is_near[one] & columns.is_near[other]
         may = ((alongside > -GUARD) & (above > -GUARD)) | ~is_near
@@ -261,7 +261,9 @@ class Survey:
             columns.bounds[one, :2] - columns.bounds[other, 2:],
             columns.bounds[other, :2] - columns.bounds[one, 2:],
         )
-        slack = min(limits.attached_m, measures.BESIDE_M) - np.sqrt((np.maximum(apart, 0.0) ** 2).sum(axis=1))
+        slack = min(limits.attached_m, proximity.BESIDE_M) - np.sqrt(
+            (np.maximum(apart, 0.0) ** 2).sum(axis=1)
+        )
         exact = is_near[may] & forms.is_square[columns.form[one]] & forms.is_square[columns.form[other]]
         plain = exact & columns.is_sure[one] & (np.minimum(alongside, above) > GUARD) & (slack > GUARD)
         self.may_hang[one[~plain & ~(exact & (slack < -GUARD))]] = True

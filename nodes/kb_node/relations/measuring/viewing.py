@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from semmap.nodes.kb_node.relations.geometry.convex import contact, make_convex
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import proximity
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.schemas.entities import Vector
 from semmap.schemas.relations import RelationName
@@ -60,7 +60,7 @@ def list_sides(space: Space, solid: Solid, view: View) -> Iterator[Side]:
     """
     reach = 2.0 * space.limits.near_most_m
     for other in space.around(solid, reach):
-        if other.is_place or measures.gap(solid, other) > reach:
+        if other.is_place or proximity.gap(solid, other) > reach:
             continue
         for relation, by_m in _list_facing_sides(solid, other, view):
             yield Side(relation, other, by_m)
@@ -68,7 +68,7 @@ def list_sides(space: Space, solid: Solid, view: View) -> Iterator[Side]:
 
 def is_on_side(space: Space, relation: RelationName, solid: Solid, other: Solid, view: View) -> bool:
     """Return whether a solid is on the given side of a neighbour, as seen from a view."""
-    if other.is_place or measures.gap(solid, other) > 2.0 * space.limits.near_most_m:
+    if other.is_place or proximity.gap(solid, other) > 2.0 * space.limits.near_most_m:
         return False
     return any(side == relation for side, _ in _list_facing_sides(solid, other, view))
 

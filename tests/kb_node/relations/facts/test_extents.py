@@ -6,7 +6,7 @@ from msgspec import structs
 
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import solid_of
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring import places, proximity
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.schemas.entities import Pose
 from semmap.schemas.polygons import EXTENT, box_around, read_wkt
@@ -47,7 +47,7 @@ def test_the_polygon_counts_and_not_its_box():
 
 def test_half_a_footprint_is_enough():
     space = Space([place("room1", L_SHAPE), thing("box1", (2.1, 3.0, 0.0), "", size=(1.0, 1.0, 1.0))])
-    made = measures.within(space.solids["box1"], space.solids["room1"], space.limits)
+    made = places.within(space.solids["box1"], space.solids["room1"], space.limits)
 
     assert made is not None
     assert (round(made.share, 9), made.holds) == (0.4, False)
@@ -64,8 +64,8 @@ def test_without_a_size_the_position_counts():
 def test_distances_are_those_of_the_polygon():
     space = Space([place("room1", L_SHAPE), thing("box1", (4.0, 4.0, 0.0), "", size=(1.0, 1.0, 1.0))])
 
-    assert measures.gap(space.solids["box1"], space.solids["room1"]) == 1.5
-    assert measures.gap(space.solids["room1"], space.solids["box1"]) == 1.5
+    assert proximity.gap(space.solids["box1"], space.solids["room1"]) == 1.5
+    assert proximity.gap(space.solids["room1"], space.solids["box1"]) == 1.5
 
 
 def test_floor_and_height_count():

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from semmap.nodes.kb_node.relations.facts.contradictions import find_contradiction
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
-from semmap.nodes.kb_node.relations.measuring import crowds, measures
+from semmap.nodes.kb_node.relations.measuring import crowds, support_contact
 from semmap.nodes.kb_node.relations.measuring.broad_phase import BroadPhase
 from tests.kb_node.relations.entities import ROOM, TABLE, TOP, thing
 
@@ -86,8 +86,8 @@ def test_only_counted_objects_of_equal_size_are_compared():
     facts.update([ROOM, TABLE, *heap(1000, "book")])
     counted = next(f"book{k}" for k in range(1000) if facts.space.counts(facts.space.solids[f"book{k}"]))
     compared = []
-    on = measures.on
-    with patch.object(measures, "on", lambda *args: compared.append(args) or on(*args)):
+    on = support_contact.on
+    with patch.object(support_contact, "on", lambda *args: compared.append(args) or on(*args)):
         facts.update([thing(counted, (0.31, 0.3, TOP), "book")])
     assert len(compared) < 2 * crowds.MOST**2 + 2 * 1000
     assert ("book999", "isOn", "table1") in set(facts)
