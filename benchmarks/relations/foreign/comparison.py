@@ -146,7 +146,13 @@ def _entity(body: Body) -> PlacedEntity:
         place=False,
         model=model_in_world(body.name, body.model, body.size_m),
         joints=joints if any(np.abs(joints) > 0.002) else (),
+        fixed=body.class_ in _fixed_classes(),
     )
+
+
+@cache
+def _fixed_classes() -> frozenset[str]:
+    return frozenset(known.name for known in household_classes() if known.fixed)
 
 
 @cache

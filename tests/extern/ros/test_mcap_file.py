@@ -1,5 +1,4 @@
 import itertools
-import math
 
 import pytest
 from mcap.reader import make_reader
@@ -10,10 +9,7 @@ from rosbags.rosbag2 import Reader
 from semmap.nodes.extern.ros import mcap_file
 from semmap.nodes.extern.ros.bridge import topics
 from semmap.schemas import errors
-
-ADD, REMOVE, MOVE = 0, 1, 3
-NUMBERS = {1: 3, 2: 1, 3: 2}
-"""Dimensions of a box, a sphere and a cylinder."""
+from tests.extern.ros.planner import Planner
 
 
 def read(file):
@@ -24,50 +20,6 @@ def read(file):
         for _, channel, _, message in reader.iter_decoded_messages():
             heard.setdefault(channel.topic, []).append(message)
     return heard
-
-
-class Planner:
-    """What a planning scene's monitor makes of diffs: obstacles, and the objects attached to links."""
-
-    def __init__(self):
-        self.obstacles, self.attached = {}, {}
-
-    def take(self, scene):
-        assert scene.is_diff
-        assert scene.robot_state.is_diff
-        for each in scene.robot_state.attached_collision_objects:
-            name = each.object.id
-            if each.object.operation == ADD:
-                assert each.link_name in each.touch_links
-                self._check_solid(each.object)
-                self.obstacles.pop(name, None)
-                self.attached[name] = each.link_name
-            else:
-                assert self.attached.pop(name) == each.link_name
-                self.obstacles[name] = each.object  # as MoveIt does
-        for each in scene.world.collision_objects:
-            if each.operation == ADD:
-                self._check_solid(each)
-                assert each.id not in self.attached
-                self.obstacles[each.id] = each
-            elif each.operation == MOVE:
-                assert each.id in self.obstacles
-            else:
-                self.obstacles.pop(each.id, None)
-        return self
-
-    @staticmethod
-    def _check_solid(found):
-        assert found.header.frame_id == "map"
-        assert found.primitives or found.meshes
-        assert len(found.primitives) == len(found.primitive_poses)
-        assert len(found.meshes) == len(found.mesh_poses)
-        for primitive in found.primitives:
-            assert len(primitive.dimensions) == NUMBERS[primitive.type]
-            assert min(primitive.dimensions) > 0.0
-        for pose in (found.pose, *found.primitive_poses, *found.mesh_poses):
-            q = pose.orientation
-            assert math.hypot(q.x, q.y, q.z, q.w) == pytest.approx(1.0)
 
 
 @pytest.fixture

@@ -1,4 +1,5 @@
 import math
+import random
 
 import numpy as np
 import pytest
@@ -9,8 +10,8 @@ from semmap.nodes.extern.ros.types import decode, encode
 from semmap.ontology.model_shapes import ConvexPart
 from semmap.schemas.scenes import Leaf, Surface
 from tests.extern.ros.made import AT, by_name, thing
+from tests.extern.ros.planner import ADD, MOVE, REMOVE, Planner
 
-ADD, REMOVE, MOVE = 0, 1, 3
 HELD = Grasp("hand", ("hand", "finger"))
 
 
@@ -159,3 +160,27 @@ def test_a_whole_scene_detaches_what_was_let_go_since_the_last_one(scene_of):
     assert {(o.id, o.operation) for o in whole.world.collision_objects} == {
         ("gone", REMOVE), ("kept", ADD), ("cup1", ADD),
     }  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_planner_that_follows_the_differences_has_the_objects_of_the_map(scene_of, seed):
+    """Objects come, move, grow, are held by either hand, and are sent again at any time."""
+    lots, planner, sent = random.Random(seed), Planner(), {}
+    for _ in range(40):
+        now = by_name(thing("hand", robot=True, at=(0, lots.random(), 1)), thing("left", robot=True))
+        for name in ("cup1", "cup2", "plate1"):
+            grasp = lots.choice([None, HELD, Grasp("left", ("left",))])
+            height = lots.choice([0.1, 0.2])
+            if lots.random() < 0.8:
+                now[name] = thing(name, at=(lots.random(), 2, 1), size_m=(0.1, 0.1, height), grasp=grasp)
+        before = forget_scene(sent, now) if lots.random() < 0.3 else sent
+        if (scene := scene_of(now.values(), before.values())) is not None:
+            planner.take(scene)
+        sent = now
+        objects = {name: each for name, each in now.items() if not each.robot}
+        assert planner.attached == {n: each.grasp.link for n, each in objects.items() if each.grasp}
+        assert planner.obstacles.keys() == {n for n, each in objects.items() if not each.grasp}
+        for name, each in objects.items():
+            if not each.grasp:
+                assert planner.obstacles[name].primitives or planner.obstacles[name].operation == MOVE
+            assert planner.poses[name].position.x == pytest.approx(each.pose.position_m[0], abs=0.01)

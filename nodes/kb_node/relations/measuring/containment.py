@@ -10,6 +10,7 @@ from semmap.nodes.geometry.polygons import Point, area, clipped, contains
 from semmap.nodes.kb_node.relations.geometry.convex import Convex
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring.measures import Measure, overlap
+from semmap.nodes.kb_node.relations.measuring.recessed import may_be_recessed, measure_recess
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.ontology.model_shapes import Interior
 
@@ -31,8 +32,10 @@ def inside(inner: Solid, outer: Solid, limits: Thresholds) -> Measure | None:
     """Return the share of a volume within a hollow of the other solid, in which the object must fit.
 
     If the object sticks out of a hollow in which it stands, such as an umbrella, it is the share of its
-    base. None without a hollow, or if that is smaller.
+    base. A fixture, such as a sink, may be let into a top. None without a hollow, or if that is smaller.
     """
+    if inner.is_fixed and (made := measure_recess(inner, outer, limits)) is not None and made.holds:
+        return made
     if not outer.hollows or inner is outer or inner.is_place or not inner.is_measured:
         return None
     if not overlap(inner.bounds, outer.bounds):
@@ -53,6 +56,8 @@ def inside(inner: Solid, outer: Solid, limits: Thresholds) -> Measure | None:
 
 def may_be_inside(inner: Solid, outer: Solid, limits: Thresholds) -> bool:
     """Return whether `inside` may hold. It is fast and may return True too often."""
+    if may_be_recessed(inner, outer, limits):
+        return True
     around = outer.form.hollow_bounds
     if around is None or not outer.is_measured:
         return False

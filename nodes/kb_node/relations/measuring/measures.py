@@ -25,6 +25,8 @@ class Measure(NamedTuple):
     """The greatest gap, or least share, for which the relation holds."""
     by_base: bool = False
     """Whether the share is of the base, for an object that stands in a container and sticks out of it."""
+    by_edge: bool = False
+    """Whether the share is of the edge, for a fixture that is let into a top."""
 
 
 def is_rectangle_within(one: Bounds, other: Bounds) -> bool:

@@ -48,6 +48,9 @@ def explain_location(relation: RelationName, solid: Solid, other: Solid, made: M
                 f"its bottom is {format_height(made.gap_m)} a surface of {other.name},"
                 f" at {format_length(made.height_m)}, and {made.share:.0%} of its base is over it"
             )
+        case "isInside" if made.by_edge:
+            top = f"a top of {other.name}, at {format_length(made.height_m)}, which is around"
+            return f"it is let into {top} {made.share:.0%} of its edge"
         case "isInside" if made.by_base:
             return f"{made.share:.0%} of its base is within {_hollow(solid, other)}, and it sticks out"
         case "isInside":

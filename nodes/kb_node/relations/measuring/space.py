@@ -220,7 +220,7 @@ class Space:
                 continue
             if other.top < least or not self._may_support_attached(other, solid):
                 continue
-            if other.form.hollow_bounds and may_be_inside(solid, other, limits):
+            if (solid.is_fixed or other.form.hollow_bounds) and may_be_inside(solid, other, limits):
                 made = containment.inside(solid, other, limits)
                 if made and made.holds and (container is None or _volume(other) < _volume(container[0])):
                     container = (other, made)
@@ -243,7 +243,7 @@ class Space:
             return False
         if not self._may_support_attached(support, solid):
             return False
-        if support.hollows and self._is_within(solid, support):
+        if (solid.is_fixed or support.hollows) and self._is_within(solid, support):
             return True
         made = support_contact.on(solid, support, self.limits)
         return made is not None and made.holds

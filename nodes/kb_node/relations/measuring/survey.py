@@ -158,12 +158,12 @@ class Survey:
         below = columns.top[other] >= columns.bottom[one] - limits.gap_m - 2.0 * GUARD
         below &= columns.is_measured[one]
         one, other = one[below], other[below]
+        self.is_open[one[columns.is_fixed[one]]] = True  # it may be let into a top
         sure = columns.is_sure[one] & columns.is_near[other]
         self.is_open[one[~sure]] = True
         one, other = one[sure], other[sure]
         self._find_containers(one, other)
         found = find_supports(columns, one, other, limits)
-        self.is_open[found.upper[columns.is_fixed[found.upper]]] = True
         # The supports of a contained solid are in the same container, and so smaller than it or above it.
         container = self.container[found.upper]
         has_container = container != NO_ROW
