@@ -14,6 +14,7 @@ from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
 from semmap.nodes.kb_node.relations.measuring import places, proximity
 from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.support import find_contents
 from semmap.schemas import errors, wording
 from semmap.schemas.entities import Entity, Pose, Size
 from semmap.schemas.relations import Where, position_in
@@ -63,7 +64,7 @@ def require_complete(where: Where) -> None:
 def require_possible(space: Space, targets: Targets, within_m: float | None = None) -> None:
     """Raise Refused if nothing can be on, in or near any of the targets."""
     _require_supporting(_find_placed(space, targets.on, "on"))
-    _require_containing(_find_placed(space, targets.in_, "in"))
+    _require_containing(space, _find_placed(space, targets.in_, "in"))
     near = _find_placed(space, targets.near, "near")
     if near and within_m is None and all(solid.is_place for solid in near):
         raise errors.Refused(
@@ -97,9 +98,11 @@ def _require_supporting(solids: Sequence[Solid]) -> None:
         )
 
 
-def _require_containing(solids: Sequence[Solid]) -> None:
+def _require_containing(space: Space, solids: Sequence[Solid]) -> None:
     if not solids or any(solid.hollows or (solid.is_place and solid.is_measured) for solid in solids):
         return
+    if any(relation == "isInside" for solid in solids for relation, _, _ in find_contents(space, solid)):
+        return  # a fixture is let into it
     if all(solid.is_place for solid in solids):
         raise errors.Refused(
             f"the extent of {_format_names(solids)} is unknown, so what is in there is unknown"

@@ -1,4 +1,5 @@
 import pytest
+from msgspec import structs
 
 from semmap.nodes.kb_node.relations.facts.pair_facts import PairFacts
 from semmap.nodes.kb_node.relations.measuring.space import Space
@@ -119,6 +120,12 @@ def test_incomplete_conditions_are_rejected(where):
 def test_impossible_targets_are_rejected(where, reason):
     with pytest.raises(errors.Refused, match=reason):
         names(**where)
+
+
+def test_a_table_contains_a_sink_that_is_let_into_it():
+    sink = structs.replace(thing("sink1", (0.0, 0.0, TOP - 0.2), "", size=(0.4, 0.5, 0.2)), fixed=True)
+    found = select_entities(Space([TABLE, sink]), [TABLE, sink], Where(in_="table1"), [TABLE, sink])
+    assert [entity.name for entity in found] == ["sink1"]
 
 
 def test_a_place_of_unknown_extent():

@@ -266,12 +266,12 @@ def status_table(status: SystemStatus) -> Table:
 
 def status_line(status: SystemStatus) -> str:
     """Return the state of the map and the scene in one line."""
+    is_starting = any(node.node == "sim_node" and node.state == "starting" for node in status.nodes)
+    without_scene = "the simulator is starting" if is_starting else "no simulator is running"
     verdicts = {
         True: "map and scene agree" + (", except for the problems below" if status.problems else ""),
         False: "map and scene do not agree yet",
-        None: "the map is updated by perception only"
-        if status.truth == "perceived"
-        else "no simulator is running",
+        None: "the map is updated by perception only" if status.truth == "perceived" else without_scene,
     }
     agree = verdicts[status.in_agreement]
     counts = f"{wording.entities(status.entities)}, {wording.bodies(status.bodies)}, commit {status.commit}"

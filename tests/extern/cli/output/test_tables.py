@@ -61,6 +61,18 @@ def system(*nodes):
     )
 
 
+@pytest.mark.parametrize(
+    ("nodes", "text"),
+    [
+        ((), "no simulator is running"),
+        ((structs.replace(node("sim_node"), state="starting"),), "the simulator is starting"),
+    ],
+)
+def test_a_status_without_a_scene_tells_whether_the_simulator_starts(nodes, text):
+    status = structs.replace(system(*nodes), in_agreement=None)
+    assert f"; {text}; " in f"{show.status_line(status)}; "
+
+
 TABLES = {
     "entities": lambda: show.entity_table([entity("chair1"), entity("chair_in_the_corner_12")]),
     "card": lambda: show.entity_card(Described.of(entity("chair1"))),
