@@ -143,6 +143,9 @@ def test_plan_graph_check_and_nodes_are_shown(tab):
     turn_to(tab, "Plan")
     image = tab.get_by_role("img", name="Plan of the rooms").locator("img")
     until(lambda: image.evaluate("image => image.naturalWidth") > 1000, "the plan is drawn")
+    width = image.bounding_box()["width"]
+    tab.get_by_role("button", name="Zoom in").click()
+    until(lambda: image.bounding_box()["width"] > 1.4 * width, "the plan is larger")
     with tab.expect_download() as download:
         tab.get_by_role("button", name="SVG").click()
     svg = ET.fromstring(download.value.path().read_text())
@@ -153,6 +156,15 @@ def test_plan_graph_check_and_nodes_are_shown(tab):
     tab.get_by_text("No selection: the graph shows all places").wait_for()
     tab.get_by_role("button", name="Table").click()
     tab.get_by_role("row", name="kitchen").get_by_text("isLocatedIn").first.wait_for()
+
+    turn_to(tab, "Ontology")
+    view = tab.get_by_role("tabpanel", name="Ontology")
+    view.get_by_role("combobox", name="Class").fill("Cup ·")
+    tab.get_by_role("option", name="Cup ·").first.click()
+    view.get_by_text("every cup has material").wait_for()
+    view.get_by_text("Dishware", exact=True).click()  # a superclass
+    view.get_by_role("heading", name="dishware").wait_for()
+    assert view.get_by_role("alert").count() == 0
 
     turn_to(tab, "System")
     tab.get_by_role("row", name="kb_node").get_by_text("ready").first.wait_for()

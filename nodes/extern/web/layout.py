@@ -22,6 +22,7 @@ from semmap.nodes.extern.web.panels.files import files
 from semmap.nodes.extern.web.panels.find import find
 from semmap.nodes.extern.web.panels.graph import graph
 from semmap.nodes.extern.web.panels.log import log
+from semmap.nodes.extern.web.panels.ontology import ontology
 from semmap.nodes.extern.web.panels.plan import plan
 from semmap.nodes.extern.web.panels.sparql import sparql
 from semmap.nodes.extern.web.panels.standing_queries import standing_queries
@@ -46,6 +47,7 @@ CENTRE: Final[Panels] = {
     "Graph": (graph,),
     "Plan": (plan,),
     "SPARQL": (sparql, standing_queries),
+    "Ontology": (ontology,),
     "Check": (consistency,),
     "Files": (files,),
     "System": (status, log),

@@ -6,6 +6,7 @@ import asyncio
 import base64
 import contextlib
 from collections.abc import Awaitable, Callable, Coroutine
+from functools import partial
 from typing import Any, Final
 
 from nicegui import events, ui
@@ -22,6 +23,7 @@ _PAUSE_S: Final = 1.0
 """Minimum interval between two drawings, and thus between two requests for the plan [s]."""
 _PATIENCE_S: Final = 0.5
 """Time that a drawing waits for the plan [s]."""
+_ZOOMS: Final = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
 _MARKED: Final = 'fill="rgba(47,129,247,.25)" stroke="#2f81f7" stroke-width="2"'
 _PRINT: Final = """
 const frame = document.createElement("iframe");
@@ -100,6 +102,7 @@ class _Plan:
         self._floor: Floor | None = None
         self._drawing: Drawing | None = None
         self._redraw: LazyRedraw | None = None
+        self._zoom = 1.0
         with ui.column().classes("w-full gap-2"):
             with ui.row().classes("w-full items-center gap-2"):
                 self._title = ui.input("Title", value="Plan").props("dense outlined").classes("grow")
@@ -108,12 +111,23 @@ class _Plan:
                     "dense no-caps flat"
                 ).tooltip("Save the plan as a file").mark("plan-download")
                 ui.button("Print", icon="print", on_click=self._print).props("dense no-caps flat")
+                for icon, label, by in (("zoom_out", "Zoom out", -1), ("zoom_in", "Zoom in", 1)):
+                    button = ui.button(icon=icon, on_click=partial(self._zoom_by, by)).tooltip(label)
+                    button.props(f'flat round dense color=secondary aria-label="{label}"')
+            self._scroll = ui.element("div").classes("w-full semmap-plan-scroll")
+            self._scroll.props('tabindex=0 role="region" aria-label="Plan drawing"')
+        with self._scroll:
             self._image = ui.interactive_image(on_mouse=self._click, events=["click"], sanitize=False)
             self._image.classes("w-full semmap-framed semmap-plan").style("background: #fff")
             self._image.props('role="img" aria-label="Plan of the rooms and the furniture"').mark("plan")
         self._redraw = LazyRedraw(page, self._draw, pause_s=_PAUSE_S)
         page.on_change(self._again)
         page.on_select(self._mark)
+
+    def _zoom_by(self, steps: int) -> None:
+        """Enlarge or reduce the plan, at least to the width of the panel."""
+        self._zoom = next_zoom(self._zoom, steps)
+        self._image.style(f"width: {round(100 * self._zoom)}%; max-width: none")
 
     def _again(self) -> None:
         if self._redraw is not None:
@@ -178,6 +192,11 @@ class _Plan:
             sheet = "A4 landscape" if self._drawing.wide_mm > self._drawing.high_mm else "A4 portrait"
             values = {"sheet": sheet, "wide": self._drawing.wide_mm, "source": _source(self._drawing.svg)}
             ui.run_javascript(_PRINT % values)
+
+
+def next_zoom(zoom: float, steps: int) -> float:
+    """Return the magnification after some steps of the buttons, from the width of the panel (1) to 8."""
+    return _ZOOMS[max(0, min(len(_ZOOMS) - 1, _ZOOMS.index(zoom) + steps))]
 
 
 def _source(svg: str) -> str:

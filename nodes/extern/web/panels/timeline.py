@@ -13,6 +13,7 @@ from semmap.nodes.extern.phrasing import author, moment
 from semmap.nodes.extern.web.differences import Difference, Mark, format_counts
 from semmap.nodes.extern.web.page import Page
 from semmap.nodes.extern.web.panels.widgets.rows import Rows
+from semmap.nodes.extern.web.views.time_scale import STEPS, index_at, positions_of
 from semmap.nodes.runtime import playback_clock
 from semmap.schemas import errors
 
@@ -47,6 +48,10 @@ class _Timeline:
         self._page = page
         self._is_playing = False
         self._has_choices = False
+        self._is_over_time = False
+        """Whether the slider is over time, not over commits."""
+        self._position = 0
+        """The position of the slider over time that the user has set last."""
         self._requested: int | None = None
         with ui.column().classes("semmap-bar") as self._bar:
             self._bar.props('role="group" aria-label="Time"')
@@ -68,6 +73,8 @@ class _Timeline:
                     self._when = ui.input(placeholder="commit or time").classes("w-36")
                     self._when.props(f'{_SMALL} aria-label="Go to commit or time, such as 12:30 or 2h ago"')
                     self._when.on("keydown.enter", self._go_to_when)
+                    self._scale = self._button("schedule", "Slider over time", self._toggle_scale)
+                    self._scale.props("aria-pressed=false")
                     self._speed = ui.select(_SPEEDS, value=1.0)
                     self._speed.props(f'{_SMALL} aria-label="Speed"')
                     compared = ui.select(_COMPARED, value=page.compared, label="Compare with")
@@ -95,6 +102,35 @@ class _Timeline:
         self._has_choices = not self._has_choices
         self._bar.classes(**{"add" if self._has_choices else "remove": "has-choices"})
         self._options.props(f"aria-expanded={str(self._has_choices).lower()}")
+
+    def _toggle_scale(self) -> None:
+        """Show the slider over time or over commits."""
+        self._is_over_time = not self._is_over_time
+        colour = "primary" if self._is_over_time else "secondary"
+        self._scale.props(f"color={colour} aria-pressed={str(self._is_over_time).lower()}")
+        self._slider.props(f'aria-label="{"Time" if self._is_over_time else "Commit"}"')
+        self._show()
+
+    def _positions(self) -> list[int]:
+        """Return the positions of the known commits on the slider over time."""
+        return positions_of([row.stamp_ns for row in self._page.history.rows])
+
+    def _slider_props(self, shown: int, last: int) -> dict[str, object]:
+        """Return the range, the position and the label of the slider."""
+        history = self._page.history
+        if not self._is_over_time:
+            return {
+                "min": history.first,
+                "max": max(last, history.first),
+                "model-value": shown,
+                "label-value": shown,
+            }
+        positions, index = self._positions(), shown - history.first
+        row = history.row(shown)
+        is_chosen = row is not None and index_at(positions, self._position) == index
+        position = self._position if is_chosen else positions[index] if row is not None else STEPS
+        label = "" if row is None else moment(row.stamp_ns)
+        return {"min": 0, "max": STEPS, "model-value": position, "label-value": label}
 
     def _close(self) -> None:
         self._is_playing = False
@@ -126,8 +162,13 @@ class _Timeline:
 
     def _on_slider(self, event: Any) -> None:
         """Go to the position of the slider. Only the last position counts, and one request runs at a time."""
-        commit = int(event.args)
+        commit = self._position = int(event.args)
         self._slider.props["model-value"] = commit
+        rows = self._page.history.rows
+        if self._is_over_time:
+            if not rows:
+                return
+            commit = rows[index_at(self._positions(), commit)].seq
         self._is_playing = False
         was, self._requested = self._requested, commit
         if was is None:
@@ -201,9 +242,9 @@ class _Timeline:
         page, shown = self._page, self._shown
         last = page.live.commit
         is_past = not page.moment.is_now
-        at = {"min": page.history.first, "max": max(last, page.history.first)}
-        if self._requested is None:
-            at["model-value"] = shown
+        at = self._slider_props(shown, last)
+        if self._requested is not None:
+            del at["model-value"]
         if not at.items() <= self._slider.props.items():
             self._slider.props.update(at)
         self._play.props(f"icon={'pause' if self._is_playing else 'play_arrow'}")

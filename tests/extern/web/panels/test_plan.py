@@ -45,6 +45,13 @@ def requests_to(coordinator, late):
     return PlanRequests(coordinator.ask, asyncio.ensure_future, lambda: late.append(len(coordinator.asked)))
 
 
+@pytest.mark.parametrize(
+    ("zoom", "steps", "next_"), [(1.0, 1, 1.5), (1.0, -1, 1.0), (8.0, 1, 8.0), (3.0, -1, 2.0)]
+)
+def test_the_plan_zooms_in_steps(zoom, steps, next_):
+    assert panel.next_zoom(zoom, steps) == next_
+
+
 def test_a_plan_is_requested_once_for_the_same_content(monkeypatch):
     monkeypatch.setattr(panel, "_PATIENCE_S", 10.0)
     coordinator, late = Coordinator(PLAN), []
