@@ -57,6 +57,7 @@ def test_the_timeline_steps_and_returns_to_now(tab, cup):
     track = tab.locator(".q-slider__track-container")
     tab.get_by_role("slider", name="Time").wait_for()
     track.click(position={"x": 1, "y": 2})
+    track.press("PageDown")
     until(lambda: caption(tab).startswith("Past: commit 1 of "), "the first moment is the first commit")
     track.click(position={"x": track.bounding_box()["width"] - 2, "y": 2})
     track.press("PageUp")
