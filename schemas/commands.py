@@ -39,7 +39,7 @@ from semmap.schemas.exemplars import LessonTold, ShownView
 from semmap.schemas.explanations import Explanation
 from semmap.schemas.frames import Frame, FrameName
 from semmap.schemas.language import Account, Found, Language, Understood
-from semmap.schemas.map_history import Difference, KeptRelation, Spells
+from semmap.schemas.map_history import Difference, KeptRelation, Spells, Trail
 from semmap.schemas.moments import When
 from semmap.schemas.plans import HEIGHTS_M, RADIUS_M, Clearance, HeightRange, Plan, Way
 from semmap.schemas.relations import Described, Relation, ViewPoint, Where
@@ -79,6 +79,7 @@ __all__ = [
     "Explain",
     "Export",
     "Find",
+    "FindTrail",
     "FindWay",
     "Forget",
     "Get",
@@ -587,6 +588,25 @@ class WasWhen(Command[Spells], frozen=True, tag="when"):
     name: Word
     relation: KeptRelation
     other: Word
+
+
+class FindTrail(Command[Trail], frozen=True, tag="trail"):
+    """Return when tracked entities entered and left places by their live poses, and where they were.
+
+    `name` may be a label or class of several. `in` selects visits of a place, `since` and `until` (inclusive)
+    a period, `at` a time. Of the visits, the newest `limit` are returned. The track is thinned to `points`
+    positions.
+    """
+
+    ROLES: ClassVar[Roles] = ANYBODY
+
+    name: Word
+    since: When | None = None
+    until: When | None = None
+    at: When | None = None
+    in_: Text | None = field(name="in", default=None)
+    limit: Annotated[int, Meta(ge=1, le=10_000)] = 100
+    points: Annotated[int, Meta(ge=0, le=10_000)] = 1000
 
 
 class Tell(Command[Account], frozen=True, tag="tell"):

@@ -7,6 +7,7 @@ from typing import Literal
 from msgspec import Struct
 
 from semmap.schemas.changes import Change
+from semmap.schemas.entities import Vector
 
 KeptRelation = Literal["isOn", "isInside", "isLocatedIn", "isAttachedTo"]
 """The spatial relations that are known for every commit."""
@@ -58,4 +59,48 @@ class Spells(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     spells: tuple[Spell, ...]
     total_s: float
     """The total duration [s], by the time stamps of the commits."""
+    text: str
+    visits: tuple[Visit, ...] = ()
+    """When a tracked entity was in the place by its live poses, if the relation is `isLocatedIn`."""
+
+
+class Visit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A time in which a live entity was in a place; `until_ns` is None while it is there.
+
+    `left` is False if its live poses ended in the place, so that it may have been there for longer. Time
+    stamps are nanoseconds since 1970.
+    """
+
+    name: str
+    place: str
+    since_ns: int
+    until_ns: int | None = None
+    left: bool = True
+
+
+class TrailPoint(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The position [m] of a live entity at a time [ns since 1970], and the places that contain it.
+
+    It holds until the next one of the same entity, at most until `until_ns` if that is given.
+    """
+
+    name: str
+    ns: int
+    at: Vector
+    places: tuple[str, ...] = ()
+    until_ns: int | None = None
+
+
+class Trail(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The recorded live poses of entities: the places that they entered and left, and their tracks.
+
+    `kept_since_ns` is the time from which on trails are stored. `omitted` visits and points are left out.
+    """
+
+    names: tuple[str, ...]
+    visits: tuple[Visit, ...]
+    track: tuple[TrailPoint, ...]
+    kept_since_ns: int
+    omitted_visits: int = 0
+    omitted_points: int = 0
     text: str

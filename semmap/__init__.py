@@ -79,7 +79,7 @@ if TYPE_CHECKING:
         ThingDescription,
         Understood,
     )
-    from semmap.schemas.map_history import Difference, Related, Spell, Spells
+    from semmap.schemas.map_history import Difference, Related, Spell, Spells, Trail, TrailPoint, Visit
     from semmap.schemas.plans import Outline, Plan, PlannedPlace, PlannedThing, Way
     from semmap.schemas.relations import Described, Relation
     from semmap.schemas.replies import (
@@ -171,10 +171,13 @@ __all__ = [
     "Step",
     "SystemStatus",
     "ThingDescription",
+    "Trail",
+    "TrailPoint",
     "Understood",
     "UnknownClass",
     "UnknownName",
     "UnknownVerb",
+    "Visit",
     "Watching",
     "Way",
     "aio",
@@ -246,6 +249,9 @@ _NAMES_OF: Final = {
         "Related",
         "Spell",
         "Spells",
+        "Trail",
+        "TrailPoint",
+        "Visit",
     ),
     "schemas.joints": ("Joint",),
     "schemas.language": (

@@ -135,6 +135,7 @@ class Coordinator:
             c.Find.answered_by(relay),
             c.Diff.answered_by(relay),
             c.WasWhen.answered_by(relay),
+            c.FindTrail.answered_by(relay),
             c.Export.answered_by(relay),
             c.PlanFloor.answered_by(wall_queries.plan),
             c.FindWay.answered_by(wall_queries.route),

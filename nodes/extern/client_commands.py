@@ -466,6 +466,7 @@ class CommandMethods:
     find = CommandMethod(commands.Find)
     diff = CommandMethod(commands.Diff)
     when = CommandMethod(commands.WasWhen)
+    trail = CommandMethod(commands.FindTrail)
     export = CommandMethod(commands.Export)
     floorplan = CommandMethod(commands.PlanFloor)
     route = CommandMethod(_route)

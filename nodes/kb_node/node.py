@@ -9,6 +9,7 @@ from pathlib import Path
 
 from semmap.nodes.kb_node.answers import entity_queries
 from semmap.nodes.kb_node.answers.location_queries import LocationQueries
+from semmap.nodes.kb_node.answers.past.trail_recording import WRITE_PERIOD_S
 from semmap.nodes.kb_node.commit_publisher import CommitPublisher
 from semmap.nodes.kb_node.config import KbConfig
 from semmap.nodes.kb_node.derived_facts import DerivedChanges
@@ -69,7 +70,12 @@ class KnowledgeBase:
         self.map.prepare = self._sparql.prepare
         self._location_queries = LocationQueries(self.map, RowPublisher(node.session).publish)
         self._queries = QueryHandlers(
-            self.map, journal, self._sparql, self._location_queries, asker=lambda: node.asker
+            self.map,
+            journal,
+            self._sparql,
+            self._location_queries,
+            asker=lambda: node.asker,
+            report=node.report,
         )
         report_progress = self._report_progress
         changes = ChangeHandlers(
@@ -106,8 +112,9 @@ class KnowledgeBase:
         for verb in keys.OF_THE_MAP:
             for prefix in (keys.CMD, keys.commands_as()):
                 node.serve_one(prefix, handlers[verb])
-        node.follow_newest(keys.LIVE_POSES, self._queries.live.update)
+        node.follow_newest(keys.LIVE_POSES, self._queries.on_live_poses)
         node.follow(keys.OBSERVATIONS, self._queries.sightings.record)
+        node.every(WRITE_PERIOD_S, self._queries.trail.write)
         node.every(CHECKPOINT_PERIOD_S, self._checkpointing.begin_if_due)
         node.every(CHECKPOINT_PERIOD_S, self._location_queries.drop_expired)
         node.note(self._notes())

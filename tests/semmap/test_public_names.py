@@ -30,14 +30,14 @@ PUBLIC = {
         Outline Picture PlaceChanges PlaceRelation Plan PlannedPlace PlannedThing Pose Possible
         PreconditionFailed PropertyInfo Provenance Refused Related Relation Request Restored
         RowsChanged RuleInfo SemanticFrame SemmapError ShownView Sighting SparqlResult Spell Spells
-        StandingQuery Step SystemStatus ThingDescription Understood UnknownClass UnknownName
-        UnknownVerb Watching Way aio commands connect fleet local_name reasoner recordings restore
+        StandingQuery Step SystemStatus ThingDescription Trail TrailPoint Understood UnknownClass UnknownName
+        UnknownVerb Visit Watching Way aio commands connect fleet local_name reasoner recordings restore
         testing wire
     """,
     "semmap.aio": "AsyncClient AsyncStandingQuery connect",
     "semmap.commands": """
         Add Approve Attach Backup Batch Check Classes Clear Close Command Compact Could Detach Diff
-        Drive Explain Export Find FindWay Forget Get History Infer LastSeen Learn Learned List
+        Drive Explain Export Find FindTrail FindWay Forget Get History Infer LastSeen Learn Learned List
         ListFrames Load Move Open Pause PlanFloor Properties Relations Remove Rename Renew Reset Rules
         Set Sparql
         Status StepOnce Submit TakePicture Tell Track Understand Undo Unset Update WasWhen Watch

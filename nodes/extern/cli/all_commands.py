@@ -28,7 +28,7 @@ _GROUPS: Final = {
             *("classes", "properties", "rules", "sparql", "watch"),
         ),
         "language": ("find", "tell", "understand"),
-        "history": ("history", "diff", "when", "last-seen"),
+        "history": ("history", "diff", "when", "trail", "last-seen"),
         "navigation": ("floorplan", "route"),
         "tbox": ("tbox",),
     },

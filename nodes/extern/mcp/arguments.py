@@ -159,6 +159,24 @@ class WasWhen(Paged, frozen=True, kw_only=True):
     other: Named
 
 
+class FindTrail(Paged, frozen=True, kw_only=True):
+    """A tracked entity and a period or time."""
+
+    name: Named
+    since: Moment | None = None
+    until: Moment | None = None
+    at: Moment | None = None
+    in_: Annotated[Text, Meta(description="Only visits of this place.")] | None = field(
+        name="in", default=None
+    )
+
+
+class LastSeen(Arguments, frozen=True, kw_only=True):
+    """An entity, present or removed."""
+
+    name: Named
+
+
 class Picture(Arguments, frozen=True, kw_only=True):
     """A place and an image size."""
 

@@ -219,6 +219,51 @@ def when_(client: Client, arguments: a.WasWhen) -> Answer:
     return _paged(client, arguments, None, read, of="spells")
 
 
+def trail(client: Client, arguments: a.FindTrail) -> Answer:
+    """Return when live entities entered and left places, and their last position in the period."""
+
+    def read(_: When | None) -> Found:
+        found = client.trail(
+            arguments.name,
+            since=arguments.since,
+            until=arguments.until,
+            at=arguments.at,
+            in_=arguments.in_,
+            limit=MOST_ROWS,
+            points=_FEW,
+        )
+        visits = [
+            {
+                "name": visit.name,
+                "place": visit.place,
+                "from": format_time(visit.since_ns),
+                "to": "now" if visit.until_ns is None else format_time(visit.until_ns),
+            }
+            for visit in reversed(found.visits)
+        ]
+        last = [
+            {"name": p.name, "time": format_time(p.ns), "at": p.at, "places": p.places}
+            for p in found.track[-1:]
+        ]
+        head = {"answer": found.text, "stored_since": format_time(found.kept_since_ns), "last_position": last}
+        return head, visits if arguments.at is None else []
+
+    return _paged(client, arguments, None, read, of="visits")
+
+
+def last_seen(client: Client, arguments: a.LastSeen) -> Answer:
+    """Return where and when an entity was last seen or placed, also if it was removed."""
+
+    def read() -> dict[str, Any]:
+        found = client.last_seen(arguments.name)
+        position = {} if found.pose is None else {"position": found.pose.position_m}
+        seen = {} if found.seen_ns is None else {"last_observed": format_time(found.seen_ns)}
+        status = {"removed": True} if found.removed is not None else {}
+        return {"name": found.name, "answer": found.text, **position, **seen, **status}
+
+    return _answer(client, read)
+
+
 def render_picture(client: Client, arguments: a.Picture) -> tuple[Answer, bytes]:
     """Return an image of the scene (PNG) with its caption."""
     png, first, last = _now(

@@ -143,6 +143,19 @@ READ_TOOLS: Final = (
         queries.when_,
     ),
     Tool(
+        "trail",
+        "When a tracked robot or person entered and left places, by its live poses, the newest first; with"
+        " at: where it was. name may be a class, such as Person.",
+        a.FindTrail,
+        queries.trail,
+    ),
+    Tool(
+        "last_seen",
+        "Where and when an entity was last seen or placed, also if it is missing or removed.",
+        a.LastSeen,
+        queries.last_seen,
+    ),
+    Tool(
         "picture",
         "An image (PNG) of the scene, or of one place, with the names of the objects.",
         a.Picture,

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import logging
 import threading
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future
 from functools import partial
 from typing import TypeVar
@@ -17,17 +19,21 @@ from semmap.nodes.kb_node.answers.entity_search import EntitySearch, describe_mi
 from semmap.nodes.kb_node.answers.live_poses import LiveEntities
 from semmap.nodes.kb_node.answers.location_queries import LocationQueries
 from semmap.nodes.kb_node.answers.pages import Pages
-from semmap.nodes.kb_node.answers.past import commit_selection, differences, fact_intervals, past_map
+from semmap.nodes.kb_node.answers.past import commit_selection, differences, fact_intervals, past_map, trails
+from semmap.nodes.kb_node.answers.past.trail_recording import TrailRecorder
 from semmap.nodes.kb_node.answers.route_planning import RoutePlanning
 from semmap.nodes.kb_node.answers.sightings import Sightings, describe_closed, find_closed_container
 from semmap.nodes.kb_node.reasoner import GivenFacts
 from semmap.nodes.kb_node.reasoner.entailment.explaining import nearby
 from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from semmap.nodes.kb_node.relations.free_room import find_room
+from semmap.nodes.kb_node.relations.geometry.solids import Solid
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.sparql.service import SparqlService
-from semmap.nodes.kb_node.storage import history
+from semmap.nodes.kb_node.storage import history, trail_file
 from semmap.nodes.kb_node.storage.journal import Journal
+from semmap.nodes.kb_node.storage.trail_file import TrailLine
 from semmap.nodes.runtime.fair_queue import FairPool
 from semmap.schemas import errors
 from semmap.schemas.bridge import (
@@ -52,6 +58,7 @@ from semmap.schemas.commands import (
     Explain,
     Export,
     Find,
+    FindTrail,
     Get,
     History,
     Infer,
@@ -70,10 +77,13 @@ from semmap.schemas.commits import Commit, Snapshot, Star
 from semmap.schemas.entities import ClassInfo, Entity, PropertyInfo, RuleInfo
 from semmap.schemas.explanations import Explanation
 from semmap.schemas.language import Found
-from semmap.schemas.map_history import Difference, Spells
+from semmap.schemas.live import LivePoses
+from semmap.schemas.map_history import Difference, Spells, Trail
 from semmap.schemas.relations import Described, Relation
 from semmap.schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
 from semmap.schemas.sparql import SparqlResult, Watching
+
+log = logging.getLogger(__name__)
 
 R = TypeVar("R", Explanation, Possible)
 
@@ -88,10 +98,11 @@ class QueryHandlers:
         sparql: SparqlService,
         location_queries: LocationQueries,
         asker: Callable[[], str] = str,
+        report: Callable[[str], None] = log.error,
     ) -> None:
         """Create the handlers. The node passes each commit to `sparql` and `location_queries`.
 
-        `asker()` returns the client of the current request.
+        `asker()` returns the client of the current request. `report(text)` reports an error of the node.
         """
         self._asker = asker
         self._map = semantic_map
@@ -103,6 +114,8 @@ class QueryHandlers:
         self._now = entity_queries.CurrentState(semantic_map)
         self.live = LiveEntities(semantic_map)
         """Receives live poses."""
+        self.trail = TrailRecorder(trail_file.TrailFile(journal.path.parent), self._list_solids, report)
+        """Records live poses."""
         self._search = EntitySearch(semantic_map)
         self._parser = CommandParser(semantic_map, self._search, self._seen)
         self._then = entity_queries.PastState(semantic_map, self._past)
@@ -135,6 +148,7 @@ class QueryHandlers:
             Relations.answered_by(self.on_relations),
             Diff.answered_by(self.on_diff),
             WasWhen.answered_by(self.on_when),
+            FindTrail.answered_by(self.on_trail),
             Understand.answered_by(self._parser.parse),
             Tell.answered_by(self._descriptions.describe),
             Find.answered_by(self.on_find),
@@ -148,6 +162,15 @@ class QueryHandlers:
             Watch.answered_by(self.on_watch),
             Renew.answered_by(self.on_renew),
         )
+
+    def _list_solids(self) -> tuple[int, Iterable[Solid], Thresholds]:
+        """Return the version of the map, its solids and the thresholds of relations."""
+        return self._map.seq, self._map.places.space().solids.values(), self._map.classes.limits
+
+    def on_live_poses(self, message: LivePoses) -> None:
+        """Use and record the live poses of all tracked entities."""
+        self.live.update(message)
+        self.trail.update(message)
 
     @property
     def is_being_fetched(self) -> bool:
@@ -263,7 +286,25 @@ class QueryHandlers:
     def on_when(self, query: WasWhen) -> Future[Spells]:
         """Return when one object was on, in or at another."""
         limits = self._map.classes.limits
-        return self._aside.submit(differences.find_spells, self._journal, self._past, query, limits)
+        self.trail.write()
+        return self._aside.submit(self._find_spells, query, limits)
+
+    def _find_spells(self, query: WasWhen, limits: Thresholds) -> Spells:
+        found = differences.find_spells(self._journal, self._past, query, limits)
+        if query.relation != "isLocatedIn":
+            return found
+        return trails.add_visits(found, trails.Trails(self._trail_lines(), {found.subject}), time.time_ns())
+
+    def _trail_lines(self) -> Iterator[TrailLine]:
+        return trail_file.read_lines(self._journal.path.parent)
+
+    def on_trail(self, query: FindTrail) -> Future[Trail]:
+        """Return where live entities were, by their stored trail."""
+        self.trail.write()
+        present = tuple(self._map.entities())
+        return self._aside.submit(
+            lambda: trails.find_trail(self._trail_lines(), self._past, present, query, time.time_ns())
+        )
 
     def on_could(self, query: Could) -> Possible | Future[Possible]:
         """Return whether a statement could hold."""
@@ -309,6 +350,13 @@ class QueryHandlers:
         entity = self._map.find(name)
         if entity is not None and not self.sightings.is_missing(entity):
             found = self.sightings.describe_present(entity)
+            if entity.tracked:
+                self.trail.write()
+                return self._aside.submit(
+                    lambda: trails.add_last_pose(
+                        found, trails.Trails(self._trail_lines(), {found.name}), time.time_ns()
+                    )
+                )
             closed = find_closed_container(self._map, entity)
             if closed is None:
                 return found

@@ -26,7 +26,7 @@ from semmap.schemas.changes import Change
 from semmap.schemas.commands import History
 from semmap.schemas.commits import Commit
 from semmap.schemas.entities import Entity, Provenance
-from semmap.schemas.moments import When, read_moment
+from semmap.schemas.moments import Moment, When, read_moment
 from semmap.schemas.replies import LoggedCommit, Sighting
 
 
@@ -245,6 +245,15 @@ class HistoryReader:
             return ()
         reasoner = closure_cache.load_reasoner(tbox, self._journal.path.parent, of_the_past=True)
         return entity_reading.read_tbox_entities(reasoner, ClassTable(reasoner))
+
+    def moment(self, when: When) -> Moment:
+        """Return a commit or time as an interval of time. Raises BadRequest, Refused for unknown commits."""
+        moment = read_moment(when)
+        if moment.commit is None:
+            return moment
+        seq = self.commit_at(when)
+        stamp_ns = self._journal.stamps.of(seq) if seq > self._compacted else self._journal.beginning.stamp_ns
+        return Moment(first_ns=stamp_ns, last_ns=stamp_ns)
 
     def commit_at(self, when: When) -> int:
         """Return the last commit at a time. Raises Refused for the future and before the history."""

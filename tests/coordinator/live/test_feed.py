@@ -39,6 +39,15 @@ def test_a_robot_is_tracked_while_it_drives_and_committed_where_it_stops(system)
         until(lambda: client.get("robot1").pose.position_m[0] == 7.95, "the commit of where it stopped")
         last = next(commit for commit in client.history() if (commit.reason or "").startswith("robot1"))
         assert (last.source, last.reason) == ("perception", "robot1 stopped")
+        trail = client.trail("robot1", in_="kitchen1")
+        assert [visit.place for visit in trail.visits] == ["kitchen1"]
+        assert [point.name for point in trail.track][-1:] == ["robot1"]
+        assert client.when("robot1", "isLocatedIn", "kitchen1").visits == trail.visits
+        assert " m in kitchen1 and flat1" in client.last_seen("robot1").text
+        assert "robot1 was at (7." in system.cli("trail", "robot1", "--at", "now")
+        assert "kitchen1" in system.cli("trail", "Robot", "--in", "kitchen1")
+        assert "no live poses of chair1 are stored" in system.cli("trail", "chair1", status=1)
+        assert "was never in bathroom1 (" in system.cli("trail", "robot1", "--in", "bathroom1", status=1)
 
 
 def test_a_silent_stream_is_reported_as_stale(system):

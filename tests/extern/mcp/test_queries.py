@@ -109,6 +109,7 @@ def test_pages_are_of_the_commit_of_the_first(client):
         ("history", {"name": "cup1", "limit": 3}),
         ("diff", {"since": 1}),
         ("when", {"name": "cup1", "relation": "isOn", "other": "desk1"}),
+        ("last_seen", {"name": "cup1"}),
     ],
 )
 def test_every_answer_has_its_commit_and_units_and_keeps_to_the_budget(client, tool, arguments):

@@ -85,7 +85,7 @@ def test_every_tool_is_described_and_has_a_schema_without_references():
 
 
 @pytest.mark.parametrize(
-    "name", ["find", "understand", "list", "get", "relations", "explain", "history", "diff", "when"]
+    "name", ["find", "understand", "list", "get", "relations", "explain", "history", "diff", "when", "trail"]
 )
 def test_arguments_are_named_as_the_fields_of_the_command(name):
     tool = next(tool for tool in READ_TOOLS if tool.name == name)

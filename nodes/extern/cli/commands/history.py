@@ -128,14 +128,56 @@ def diff(client: Client, since: str, until: str | None, format: str) -> None:
 def when(client: Client, name: str, relation: Any, other: str, format: str) -> None:
     """Show when one entity was on, in or attached to another.
 
-    RELATION is isOn, isInside, isLocatedIn or isAttachedTo. The exit status is 1 if the relation never held.
+    RELATION is isOn, isInside, isLocatedIn or isAttachedTo. Stored live poses of tracked entities count, too:
+    see semmap trail. The exit status is 1 if the relation never held.
     """
     found = client.when(name, relation, other)
     if format == "json":
         print_json(found)
     else:
         print_lines([found.text])
-    if not found.spells:
+    if not (found.spells or found.visits):
+        sys.exit(errors.Refused.exit_status)
+
+
+@command(example="semmap trail robot1 --in kitchen1 --since yesterday")
+@click.argument("name", shell_complete=entity_names)
+@click.option("--since", metavar="COMMIT|TIME", help="Begin of the period.")
+@click.option("--until", metavar="COMMIT|TIME", help=f"End of the period. {TIME}")
+@click.option("--at", metavar="COMMIT|TIME", help="Only the position at a time.")
+@click.option("--in", "in_", metavar="PLACE", shell_complete=entity_names, help="Only visits of this place.")
+@click.option(
+    "--limit",
+    type=click.IntRange(1, _MOST),
+    default=20,
+    show_default=True,
+    help="Number of visits; the newest are shown.",
+)
+@click.option(
+    "--points",
+    type=click.IntRange(0, _MOST),
+    default=1000,
+    show_default=True,
+    help="With --format json: number of positions, evenly selected.",
+)
+@_format
+@with_client
+def trail(client: Client, name: str, format: str, points: int, **fields: Any) -> None:
+    """Show when tracked entities entered and left places, by their live poses.
+
+    NAME may be a class or label of several entities. Unlike the other commands about the history, this one
+    includes what a robot or person passed without stopping. The exit status is 1 if there was no visit.
+    """
+    found = client.trail(name, points=points if format == "json" else 1, **fields)
+    if format == "json":
+        print_json(found)
+    else:
+        if found.visits and fields["at"] is None:
+            output.show.console(_PIPED_WIDTH).print(output.show.visit_table(found.visits))
+        if found.omitted_visits:
+            print_count(f"{found.omitted_visits} earlier visits are not shown; for more: --limit N")
+        print_lines([found.text])
+    if not (found.visits if fields["at"] is None else found.track):
         sys.exit(errors.Refused.exit_status)
 
 

@@ -32,6 +32,7 @@ from semmap.schemas.commits import Commit
 from semmap.schemas.entities import ClassInfo, Entity, Pose, PropertyInfo, RuleInfo, Value
 from semmap.schemas.frames import Frame
 from semmap.schemas.joints import in_words
+from semmap.schemas.map_history import Visit
 from semmap.schemas.relations import Described, Relation
 from semmap.schemas.replies import LoggedCommit, Sighting, SystemStatus
 
@@ -359,6 +360,23 @@ def history_table(commits: Iterable[LoggedCommit]) -> Table:
         )
         for note in c.notes:
             rows.add("", "", "", "", "", f"note: {note}")
+    return rows
+
+
+def visit_table(visits: Iterable[Visit]) -> Table:
+    """Return a table with one row per visit of a place."""
+    rows = table("entity", "place", "from", "until", "duration", fold=())
+    for visit in visits:
+        until_ns = visit.until_ns or time.time_ns()
+        rows.add(
+            visit.name,
+            visit.place,
+            moment(visit.since_ns),
+            "now"
+            if visit.until_ns is None
+            else f"{moment(visit.until_ns)}{'' if visit.left else ' or later'}",
+            wording.duration(max(0, until_ns - visit.since_ns) / 1e9),
+        )
     return rows
 
 
