@@ -15,7 +15,7 @@ from msgspec import Struct
 
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import Solid, solid_of
-from semmap.nodes.kb_node.relations.measuring import measures
+from semmap.nodes.kb_node.relations.measuring.places import within
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.storage.trail_file import TrailFile, TrailLine
 from semmap.schemas.entities import Pose, Vector
@@ -114,7 +114,7 @@ class TrailRecorder:
         found = [
             place
             for place in self._all_places
-            if (made := measures.within(point, place, self._limits)) is not None and made.holds
+            if (made := within(point, place, self._limits)) is not None and made.holds
         ]
         return tuple(place.name for place in sorted(found, key=lambda place: place.footprint))
 
