@@ -163,10 +163,10 @@ def when(client: Client, name: str, relation: Any, other: str, format: str) -> N
 @_format
 @with_client
 def trail(client: Client, name: str, format: str, points: int, **fields: Any) -> None:
-    """Show when tracked entities entered and left places, by their live poses.
+    """Show when a tracked entity entered and left places.
 
-    NAME may be a class or label of several entities. Unlike the other commands about the history, this one
-    includes what a robot or person passed without stopping. The exit status is 1 if there was no visit.
+    Live poses of tracked entities are stored as a trail, which also has the places that were passed without a
+    stop. NAME may be a class or label of several entities. The exit status is 1 if there was no visit.
     """
     found = client.trail(name, points=points if format == "json" else 1, **fields)
     if format == "json":
