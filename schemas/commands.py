@@ -39,7 +39,7 @@ from semmap.schemas.exemplars import LessonTold, ShownView
 from semmap.schemas.explanations import Explanation
 from semmap.schemas.frames import Frame, FrameName
 from semmap.schemas.language import Account, Found, Language, Understood
-from semmap.schemas.map_history import Difference, KeptRelation, Spells, Trail
+from semmap.schemas.map_history import Difference, Spells, Trail
 from semmap.schemas.moments import When
 from semmap.schemas.plans import HEIGHTS_M, RADIUS_M, Clearance, HeightRange, Plan, Way
 from semmap.schemas.relations import Described, Relation, ViewPoint, Where
@@ -578,16 +578,21 @@ class Diff(Command[Difference], frozen=True, tag="diff"):
 
     since: When
     until: When | None = None
+    on: Text | None = None
+    in_: Text | None = field(name="in", default=None)
 
 
 class WasWhen(Command[Spells], frozen=True, tag="when"):
-    """List when an entity was on, inside, in or attached to another, as computed after each commit."""
+    """List when an entity was on, inside, in, near or attached to another, as computed after each commit.
+
+    `relation` may also be a property and `other` its value: `isOpen`, `false`. The value is true by default.
+    """
 
     ROLES: ClassVar[Roles] = ANYBODY
 
     name: Word
-    relation: KeptRelation
-    other: Word
+    relation: Word
+    other: Value = True
 
 
 class FindTrail(Command[Trail], frozen=True, tag="trail"):
@@ -726,7 +731,8 @@ class History(Command[tuple[LoggedCommit, ...]], frozen=True, tag="history"):
     """List the newest commits, or those that changed an entity, from `since` to `until` (inclusive).
 
     `by` selects an author: an agent (`anna`), a source (`perception`) or both (`perception/camera1`). `in`
-    selects the commits that changed something that was in this place or container before or after them.
+    selects the commits that changed something that was in this place or container before or after them, and
+    `on` something that was on this object.
     """
 
     ROLES: ClassVar[Roles] = ANYBODY
@@ -737,6 +743,7 @@ class History(Command[tuple[LoggedCommit, ...]], frozen=True, tag="history"):
     limit: Annotated[int, Meta(ge=1, le=10_000)] = 100
     by: Text | None = None
     in_: Text | None = field(name="in", default=None)
+    on: Text | None = None
 
 
 class LastSeen(Command[Sighting], frozen=True, tag="last-seen"):

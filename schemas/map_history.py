@@ -11,6 +11,8 @@ from semmap.schemas.entities import Vector
 
 KeptRelation = Literal["isOn", "isInside", "isLocatedIn", "isAttachedTo"]
 """The spatial relations that are known for every commit."""
+TimedRelation = KeptRelation | Literal["isNear"]
+"""The spatial relations whose times are computed on request."""
 
 
 class Related(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -51,10 +53,13 @@ class Spell(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Spells(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The intervals in which an entity was on, inside, in or attached to another, in order."""
+    """The intervals in which a spatial relation or a property's value held, in order.
+
+    `object` is an entity, or the value of the property as text.
+    """
 
     subject: str
-    relation: KeptRelation
+    relation: str
     object: str
     spells: tuple[Spell, ...]
     total_s: float

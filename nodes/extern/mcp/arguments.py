@@ -12,7 +12,6 @@ from msgspec import Meta, Struct, field
 
 from semmap.schemas.entities import Angle, Probability, Size, Text, Value, Vector, Word
 from semmap.schemas.language import Language
-from semmap.schemas.map_history import KeptRelation
 from semmap.schemas.moments import When
 from semmap.schemas.relations import ViewPoint
 
@@ -142,6 +141,7 @@ class History(Paged, frozen=True, kw_only=True):
     in_: Annotated[Text, Meta(description="Only commits that changed something in this place.")] | None = (
         field(name="in", default=None)
     )
+    on: Annotated[Text, Meta(description="Only commits that changed something on this object.")] | None = None
 
 
 class Diff(Paged, frozen=True, kw_only=True):
@@ -149,14 +149,21 @@ class Diff(Paged, frozen=True, kw_only=True):
 
     since: Moment
     until: Moment | None = None
+    on: Annotated[Text, Meta(description="Only what came onto or left this object.")] | None = None
+    in_: Annotated[Text, Meta(description="Only what came into or left this place.")] | None = field(
+        name="in", default=None
+    )
 
 
 class WasWhen(Paged, frozen=True, kw_only=True):
-    """A relation of two entities."""
+    """A relation of two entities, or a property and its value."""
 
     name: Named
-    relation: KeptRelation
-    other: Named
+    relation: Annotated[
+        Word,
+        Meta(description="isOn, isInside, isLocatedIn, isNear, isAttachedTo; or a property, e.g. isOpen."),
+    ]
+    other: Annotated[Value, Meta(description="The other entity, or the value of the property.")] = True
 
 
 class FindTrail(Paged, frozen=True, kw_only=True):

@@ -181,6 +181,7 @@ def history(client: Client, arguments: a.History) -> Answer:
             limit=arguments.limit,
             by=arguments.by,
             in_=arguments.in_,
+            on=arguments.on,
         )
         return {}, [rows.commit(commit) for commit in found]
 
@@ -191,7 +192,12 @@ def diff(client: Client, arguments: a.Diff) -> Answer:
     """Return the changes between two commits or times."""
 
     def read(as_of: When | None) -> Found:
-        found = client.diff(arguments.since, as_of if arguments.until is None else arguments.until)
+        found = client.diff(
+            arguments.since,
+            as_of if arguments.until is None else arguments.until,
+            on=arguments.on,
+            in_=arguments.in_,
+        )
         return {"since": found.first, "until": found.last}, list(rows.difference(found))
 
     return _paged(client, arguments, None, read, of="changes")

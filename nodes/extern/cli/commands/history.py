@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -21,7 +21,6 @@ from semmap.nodes.extern.cli.common import (
 from semmap.nodes.extern.cli.output import lines
 from semmap.nodes.extern.cli.shell_completion import entity_names
 from semmap.schemas import errors, wording
-from semmap.schemas.map_history import KeptRelation
 
 if TYPE_CHECKING:
     from semmap.nodes.extern.client import Client
@@ -50,6 +49,9 @@ _PIPED_WIDTH = 120
     metavar="PLACE",
     shell_complete=entity_names,
     help="Only commits that changed something in this place or container.",
+)
+@click.option(
+    "--on", metavar="THING", shell_complete=entity_names, help="Only commits that changed something on it."
 )
 @click.option(
     "--limit",
@@ -105,14 +107,18 @@ def last_seen(client: Client, name: str, format: str) -> None:
 @command(example="semmap diff 12:30")
 @click.argument("since", metavar="COMMIT|TIME")
 @click.argument("until", metavar="[COMMIT|TIME]", required=False)
+@click.option("--on", metavar="THING", shell_complete=entity_names, help="Only what came onto it or left it.")
+@click.option(
+    "--in", "in_", metavar="PLACE", shell_complete=entity_names, help="Only what came into it or left it."
+)
 @_text_or_json
 @with_client
-def diff(client: Client, since: str, until: str | None, format: str) -> None:
+def diff(client: Client, since: str, until: str | None, format: str, **where: Any) -> None:
     """Show what changed between two commits or times.
 
     Without a second argument, show what has changed since the first.
     """
-    found = client.diff(since, until)
+    found = client.diff(since, until, **where)
     if format == "json":
         print_json(found)
     else:
@@ -121,17 +127,18 @@ def diff(client: Client, since: str, until: str | None, format: str) -> None:
 
 @command(example="semmap when cup1 isOn table1")
 @click.argument("name", shell_complete=entity_names)
-@click.argument("relation", metavar="RELATION", type=click.Choice(get_args(KeptRelation)))
-@click.argument("other", shell_complete=entity_names)
+@click.argument("relation")
+@click.argument("other", metavar="[OTHER|VALUE]", required=False, shell_complete=entity_names)
 @_text_or_json
 @with_client
-def when(client: Client, name: str, relation: Any, other: str, format: str) -> None:
-    """Show when one entity was on, in or attached to another.
+def when(client: Client, name: str, relation: str, other: str | None, format: str) -> None:
+    """Show when one entity was on, in, near or attached to another, or when a property had a value.
 
-    RELATION is isOn, isInside, isLocatedIn or isAttachedTo. Stored live poses of tracked entities count, too:
+    RELATION is isOn, isInside, isLocatedIn, isNear or isAttachedTo, or a property such as isOpen. Without
+    VALUE, the property is true. Stored live poses of tracked entities count, too:
     see semmap trail. The exit status is 1 if the relation never held.
     """
-    found = client.when(name, relation, other)
+    found = client.when(name, relation, True if other is None else other)
     if format == "json":
         print_json(found)
     else:

@@ -10,7 +10,7 @@ from semmap.nodes.kb_node.answers.past.fact_intervals import PoseChanges
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
-from semmap.nodes.kb_node.relations.selection import Targets, is_in, require_possible
+from semmap.nodes.kb_node.relations.selection import Targets, is_in, is_on, require_possible
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.schemas import errors, wording
@@ -36,11 +36,12 @@ def list_commits(
     only: set[int] | None = None
     if query.by is not None:
         only = find_commits_by(journal.decode_partially(Authorship), query.by)
-    if query.in_ is not None:
-        present = past.entities(past.last) if past.last else ()
-        place = past.resolve(query.in_, present)
+    for how, word in (("in", query.in_), ("on", query.on)):
+        if word is None:
+            continue
+        place = past.resolve(word, past.entities(past.last) if past.last else ())
         first = past.initial_entities().values()
-        there = find_commits_in(journal.decode_partially(PoseChanges), first, place, limits)
+        there = find_commits_at(journal.decode_partially(PoseChanges), first, place, limits, on=how == "on")
         only = there if only is None else only & there
     return past.history(query, only)
 
@@ -62,20 +63,21 @@ def find_commits_by(commits: Iterable[Authorship], author: str) -> set[int]:
     return found
 
 
-def find_commits_in(
-    history: Iterable[PoseChanges], first: Iterable[Entity], place: str, limits: Thresholds
+def find_commits_at(
+    history: Iterable[PoseChanges], first: Iterable[Entity], place: str, limits: Thresholds, *, on: bool
 ) -> set[int]:
     """Return the commits that changed something in a place or container, before or after the change.
 
-    `history` are the commits in order and `first` the entities before them. Raises Refused if nothing can be
-    in the entity.
+    With `on`, return those that changed something on an object. `history` are the commits in order and `first`
+    the entities before them. Raises Refused if nothing can be in or on the entity.
     """
     space = Space(first, limits)
     holders = frozenset((place,))
+    holds = is_on if on else is_in
 
     def is_there(name: str) -> bool:
         solid = space.solids.get(name)
-        return solid is not None and is_in(space, solid, holders, frozenset())
+        return solid is not None and holds(space, solid, holders, frozenset())
 
     found: set[int] = set()
     for moves in history:
@@ -89,5 +91,5 @@ def find_commits_in(
         if was_there or any(map(is_there, names)):
             found.add(moves.seq)
     if place in space.solids:
-        require_possible(space, Targets(None, holders, None, None))
+        require_possible(space, Targets(holders if on else None, None if on else holders, None, None))
     return found

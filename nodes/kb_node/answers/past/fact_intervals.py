@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from msgspec import Struct
 
+from semmap.nodes.kb_node.relations.facts.pair_facts import are_near
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.facts.rules import RULES
 from semmap.nodes.kb_node.relations.geometry.opening import positions_of
@@ -175,6 +176,8 @@ class _Neighbourhood:
         """Create the neighbourhood. `facts` are about the object; `placed_by_name` has all entities."""
         self._in_any_place = in_any_place
         self.facts = facts
+        self._near = frozenset(fact[2] for fact in facts if fact[1] == "isNear")
+        self._margin_m = max(_MARGIN_M, limits.near_most_m + _MARGIN_M) if self._near else _MARGIN_M
         self._name = name
         self._limits = limits
         self._begin(placed_by_name)
@@ -213,6 +216,9 @@ class _Neighbourhood:
             found = {(self._name, *about) for rule in RULES for about in rule.facts(self._space, solid)}
         if self._in_any_place:
             found.update(fact for fact in self.facts if self._is_within(solid, fact))
+        for other in map(self._space.solids.get, self._near):
+            if other is not None and are_near(self._space, solid, other):
+                found.add((self._name, "isNear", other.name))
         return self.facts & found
 
     def _is_within(self, solid: Solid, fact: Fact) -> bool:
@@ -229,7 +235,7 @@ class _Neighbourhood:
         if placed is None or placed.pose is None or own is None or own.pose is None:
             return False
         apart = math.dist(placed.pose.position_m[:2], own.pose.position_m[:2])
-        return apart <= _reach(placed) + _reach(own) + _MARGIN_M
+        return apart <= _reach(placed) + _reach(own) + self._margin_m
 
 
 def _reach(placed: PlacedEntity) -> float:
