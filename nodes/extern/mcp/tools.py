@@ -138,8 +138,8 @@ READ_TOOLS: Final = (
     ),
     Tool(
         "when",
-        "When, how long and how often one entity was on, inside, in, near or attached to another, or a property"
-        " had a value: since when a drawer is open.",
+        "When, how long and how often one entity was on, inside, in, near or attached to another, or a"
+        " property had a value: since when a drawer is open.",
         a.WasWhen,
         queries.when_,
     ),

@@ -68,8 +68,8 @@ def find_commits_at(
 ) -> set[int]:
     """Return the commits that changed something in a place or container, before or after the change.
 
-    With `on`, return those that changed something on an object. `history` are the commits in order and `first`
-    the entities before them. Raises Refused if nothing can be in or on the entity.
+    With `on`, return those that changed something on an object. `history` are the commits in order, and
+    `first` the entities before them. Raises Refused if nothing can be in or on the entity.
     """
     space = Space(first, limits)
     holders = frozenset((place,))
