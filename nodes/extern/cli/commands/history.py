@@ -132,7 +132,7 @@ def diff(client: Client, since: str, until: str | None, format: str, **where: An
 @_text_or_json
 @with_client
 def when(client: Client, name: str, relation: str, other: str | None, format: str) -> None:
-    """Show when one entity was on, in, near or attached to another, or when a property had a value.
+    """Show when a relation or the value of a property held.
 
     RELATION is isOn, isInside, isLocatedIn, isNear or isAttachedTo, or a property such as isOpen. Without
     VALUE, the property is true. Stored live poses of tracked entities count, too:
