@@ -527,11 +527,18 @@ class ListFrames(Command[tuple[Frame, ...]], frozen=True, tag="frames"):
 
 
 class Check(Command[Checked], frozen=True, tag="check"):
-    """Check whether the map is consistent, and explain why not. `owlrl` is a slow, independent reasoner."""
+    """Check whether the map is consistent, and explain why not. `owlrl` is a slow, independent reasoner.
+
+    The facts are also validated against the SHACL shapes of the map and its TBox, and those of the document
+    `shapes`, whose name is `filename`.
+    """
 
     ROLES: ClassVar[Roles] = ANYBODY
+    LARGEST: ClassVar[int] = DOCUMENT
 
     engine: Literal["semmap", "owlrl"] = "semmap"
+    shapes: bytes = b""
+    filename: Annotated[str, Meta(max_length=5000)] = ""
 
 
 class Infer(Command[Inferred], frozen=True, tag="infer"):

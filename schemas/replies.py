@@ -32,6 +32,23 @@ class Changed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """For undo: the changes of the undone commits, for the first affected entities."""
 
 
+class Violation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A fact that violates a SHACL shape."""
+
+    name: str
+    """The entity, or the individual, class or value that the shape is about."""
+    message: str
+    """The message of the shape, or the constraint that is violated."""
+    path: str = ""
+    """The property, or the property path, that leads to the value."""
+    value: str = ""
+    severity: Literal["violation", "warning", "info"] = "violation"
+    shape: str = ""
+    """The name of the shape; empty if it has none."""
+    text: str
+    """The violation in one line: the name, the message, the path and the value."""
+
+
 class Checked(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The result of a consistency check."""
 
@@ -47,6 +64,13 @@ class Checked(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Computed spatial relations that are suppressed as they would contradict the map, with the reason."""
     crowds: tuple[str, ...] = ()
     """Spots with so many things that not all are considered as supports, one sentence each."""
+    conforms: bool = True
+    """Whether no SHACL shape is violated."""
+    shapes: int = 0
+    """The number of SHACL shapes with a target that the facts were compared with."""
+    violations: tuple[Violation, ...] = ()
+    notes: tuple[str, ...] = ()
+    """What of the shapes was not evaluated."""
 
 
 class Compacted(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -95,6 +95,7 @@ if TYPE_CHECKING:
         Possible,
         Sighting,
         SystemStatus,
+        Violation,
     )
     from semmap.schemas.scenes import Picture
     from semmap.schemas.sparql import RowsChanged, SparqlResult, Watching
@@ -177,6 +178,7 @@ __all__ = [
     "UnknownClass",
     "UnknownName",
     "UnknownVerb",
+    "Violation",
     "Visit",
     "Watching",
     "Way",
@@ -296,6 +298,7 @@ _NAMES_OF: Final = {
         "Possible",
         "Sighting",
         "SystemStatus",
+        "Violation",
     ),
     "schemas.scenes": ("Picture",),
     "schemas.sparql": (

@@ -23,8 +23,12 @@ class Replay:
 
 @dataclass(frozen=True)
 class KbConfig:
-    """Configuration of the node. `data` is the folder of the journal, seeded or prepared for a replay."""
+    """Configuration of the node. `data` is the folder of the journal, seeded or prepared for a replay.
+
+    With `enforce_shapes`, commits that violate a SHACL shape of the TBox are rejected.
+    """
 
     data: Path
     network: Network = field(default_factory=Network)
     replay: Replay | None = None
+    enforce_shapes: bool = False

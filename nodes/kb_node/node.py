@@ -21,6 +21,7 @@ from semmap.nodes.kb_node.handlers.maintenance import MaintenanceHandlers
 from semmap.nodes.kb_node.handlers.queries import QueryHandlers
 from semmap.nodes.kb_node.replaying import ReplayPlayer, rejecting_handlers
 from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.shacl.enforcement import ShapeEnforcement
 from semmap.nodes.kb_node.sparql.protocol import Placements
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.sparql.standing_queries.row_publisher import RowPublisher
@@ -55,6 +56,8 @@ class KnowledgeBase:
         if problem := body_shapes.load(file):
             node.report(problem)
         self.map = SemanticMap(journal, progress=node.beat)
+        if config.enforce_shapes:
+            self.map.enforcement = ShapeEnforcement(self.map.tbox)
         self._publisher = CommitPublisher(
             node.session, self.map.entities(), entity_queries.CurrentState(self.map).describe
         )

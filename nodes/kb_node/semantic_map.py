@@ -18,6 +18,8 @@ from semmap.nodes.kb_node.entities import entity_reading
 from semmap.nodes.kb_node.map_state import MapState
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
+from semmap.nodes.kb_node.shacl import violations
+from semmap.nodes.kb_node.shacl.enforcement import ShapeEnforcement, ViolatesShapes
 from semmap.nodes.kb_node.storage import closure_cache, conclusions_format
 from semmap.nodes.kb_node.storage.checkpointing import CheckpointSchedule
 from semmap.nodes.kb_node.storage.encoding import commit_encoding
@@ -85,6 +87,8 @@ class SemanticMap(MapState):
         must restart."""
         self.on_failure: Callable[[], None] = lambda: None
         """Called when `is_sound` becomes False."""
+        self.enforcement: ShapeEnforcement | None = None
+        """Validates new commits against the shapes of the TBox, if that is enabled."""
         self._inspect: Callable[[Commit], Any] | None = None
         """During a dry run: the function that inspects the commit."""
         self._undo_log: list[_Memento] | None = None
@@ -132,7 +136,7 @@ class SemanticMap(MapState):
         """Return the commit of `change`. Raises NoAnswer for an unexpected error."""
         try:
             return change()
-        except (errors.SemmapError, _DryRunDone):
+        except (errors.SemmapError, ViolatesShapes, _DryRunDone):
             raise
         except Exception as error:
             self.is_sound = False
@@ -151,16 +155,32 @@ class SemanticMap(MapState):
             return self._make_commit(transaction)
 
     def _make_commit(self, transaction: Transaction) -> Commit | None:
+        try:
+            return self._make_valid_commit(transaction, self.enforcement)
+        except ViolatesShapes as violation:
+            self._require_known(violation)
+            return self._make_valid_commit(transaction, None)
+
+    def _require_known(self, violation: ViolatesShapes) -> None:
+        """Raise Refused for violations that the map did not have before the commit, which is reverted."""
+        known = self.enforcement.find_violations(violation.touched, self.reasoner) if self.enforcement else []
+        if new := [result for result in violation.results if result not in known]:
+            raise errors.Refused(violations.describe_rejection(new, self))
+
+    def _make_valid_commit(
+        self, transaction: Transaction, enforcement: ShapeEnforcement | None
+    ) -> Commit | None:
         plan = planning.make_plan(self, transaction)
         # edits keep one pose for each entity, but triples from outside may state several
         apply = partial(self._applier.apply, strict=bool(transaction.insert), is_new=True)
         if plan is None:
             return None
         commit = planning.make_commit(transaction, plan, self.seq + 1)
+        validated = partial(self._write_valid, enforcement=enforcement)
         if self._inspect is not None:
-            return self._accept(apply(commit, self._write, self._with_notes))
+            return self._accept(apply(commit, validated, self._with_notes))
         rollback, begun = self.prepare(commit), commit_encoding.begin_body(commit, self.digest)
-        write, noted = partial(self._write, begun=begun), partial(self._with_notes, begun=begun)
+        write, noted = partial(validated, begun=begun), partial(self._with_notes, begun=begun)
         try:
             return self._accept(apply(commit, write, noted))
         except BaseException:
@@ -194,6 +214,19 @@ class SemanticMap(MapState):
             self._inspect = None
         return None
 
+    def _write_valid(
+        self,
+        commit: Commit,
+        *,
+        enforcement: ShapeEnforcement | None,
+        begun: commit_encoding.EarlyBody | None = None,
+    ) -> Commit:
+        """Write the commit. Raises ViolatesShapes before that."""
+        if enforcement is not None:
+            derived = self._applier.derived_changes.get(commit.seq, UNCHANGED)
+            enforcement.require(commit, derived, self.reasoner)
+        return self._write(commit, begun=begun)
+
     def _write(
         self, commit: Commit, tbox: bytes | None = None, *, begun: commit_encoding.EarlyBody | None = None
     ) -> Commit:
@@ -226,12 +259,15 @@ class SemanticMap(MapState):
         commit = planning.make_commit(transaction, plan, self.seq + 1, tbox=True)
         self.derive_all()
         before = self.classes
+        enforcement = None if self.enforcement is None else ShapeEnforcement(new)
 
         def make_durable(commit: Commit) -> Commit:
             tbox_validation.require_fit(self.abox(), before, self.classes)
             return self._write(commit, rdf.serialise(new, "ntriples"))
 
-        return self._run_change(lambda: self._accept(self._applier.switch(commit, new, make_durable, closed)))
+        made = self._run_change(lambda: self._accept(self._applier.switch(commit, new, make_durable, closed)))
+        self.enforcement = enforcement
+        return made
 
     def restate(self, commit: Commit, tbox: bytes | None = None) -> Commit:
         """Commit a commit of another journal with its number and author.

@@ -12,8 +12,8 @@ from semmap.schemas import errors
 
 MODULES: Mapping[str, tuple[str, ...]] = {
     "kb": (
-        *("numpy", "owlrl", "psutil", "pycrfsuite", "pyhornedowl", "pyoxigraph", "rapidfuzz", "rdflib"),
-        "supervisor",
+        *("numpy", "owlrl", "psutil", "pycrfsuite", "pyhornedowl", "pyoxigraph", "pyshacl"),
+        *("rapidfuzz", "rdflib", "supervisor"),
     ),
     "sim": ("PIL", "mujoco", "numpy", "scipy", "trimesh"),
     "perception": ("PIL", "numpy", "scipy"),  # and Open3D, where there is one

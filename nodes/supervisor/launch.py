@@ -137,6 +137,7 @@ def _kb_node(settings: Settings) -> None:
             replay=None
             if replay is None
             else Replay(replay.until, replay.speed, replay.longest_s, settings.nodes),
+            enforce_shapes=settings.enforce_shapes,
         )
     )
 

@@ -57,6 +57,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """None for an empty map."""
     skip_unknown: bool = False
     """Whether individuals of the ABox file whose classes are unknown are left out."""
+    enforce_shapes: bool = False
+    """Whether commits that violate a SHACL shape of the TBox are rejected."""
     world: str
     truth: Literal["map", "scene", "perceived", "replayed"] = "map"
     threshold_m: Annotated[float, Meta(gt=0.0)] = 0.05

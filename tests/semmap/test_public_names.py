@@ -31,8 +31,8 @@ PUBLIC = {
         PreconditionFailed PropertyInfo Provenance Refused Related Relation Request Restored
         RowsChanged RuleInfo SemanticFrame SemmapError ShownView Sighting SparqlResult Spell Spells
         StandingQuery Step SystemStatus ThingDescription Trail TrailPoint Understood UnknownClass UnknownName
-        UnknownVerb Visit Watching Way aio commands connect fleet local_name reasoner recordings restore
-        testing wire
+        UnknownVerb Violation Visit Watching Way aio commands connect fleet local_name reasoner recordings
+        restore testing wire
     """,
     "semmap.aio": "AsyncClient AsyncStandingQuery connect",
     "semmap.commands": """

@@ -11,12 +11,13 @@ from typing import NamedTuple
 
 from semmap.nodes.kb_node.documents import blank_nodes, distinct_names
 from semmap.nodes.kb_node.documents.blank_nodes import is_blank
-from semmap.nodes.kb_node.documents.inert_statements import SHACL, SWRL, count_inert, inert_note
+from semmap.nodes.kb_node.documents.inert_statements import SWRL, count_inert, inert_note
 from semmap.nodes.kb_node.documents.map_frame import FindFrame, express_in_map_frame
 from semmap.nodes.kb_node.documents.rule_terms import undeclared_note, undeclared_terms
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.entities.property_values import retype
 from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.shacl.shape_triples import SHACL
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.ontology.prefixes import Prefixes

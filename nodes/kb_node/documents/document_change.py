@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from itertools import chain
 from operator import is_
 from pathlib import Path
@@ -16,6 +16,7 @@ from semmap.nodes.kb_node.documents.tbox import tbox_declarations, tbox_validati
 from semmap.nodes.kb_node.entities.aligned_values import shift_along_z
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.shacl.shape_triples import find_shapes
 from semmap.ontology import vocabulary as v
 from semmap.ontology.prefixes import Prefixes
 from semmap.schemas import errors, wording
@@ -128,10 +129,10 @@ def complete_tbox(semantic_map: SemanticMap, load: LoadTBox, document: rdf.Docum
     )
 
 
-def _require_schema(semantic_map: SemanticMap, load: LoadTBox, triples: Iterable[Triple]) -> None:
-    """Raise BadFile for a file that neither has an axiom nor describes a term of the present TBox."""
+def _require_schema(semantic_map: SemanticMap, load: LoadTBox, triples: Collection[Triple]) -> None:
+    """Raise BadFile for a file without axioms, SHACL shapes and statements about terms of the TBox."""
     known = {s for s, _, _ in semantic_map.tbox}
-    if not any(s in known or is_schema((s, p, o)) for s, p, o in triples):
+    if not (any(s in known or is_schema((s, p, o)) for s, p, o in triples) or find_shapes(triples)):
         raise errors.BadFile(
             f"{load.filename or 'the file'} has no axiom to extend the TBox by; to load a map leave out"
             " --tbox --extend"

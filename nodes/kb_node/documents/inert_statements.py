@@ -1,4 +1,4 @@
-"""Statements that semmap stores but does not evaluate: unsupported SWRL rules, and SHACL shapes."""
+"""Statements that semmap stores but does not evaluate: unsupported SWRL rules, and parts of SHACL."""
 
 from __future__ import annotations
 
@@ -7,23 +7,11 @@ from collections.abc import Iterable
 from typing import Final
 
 from semmap.nodes.kb_node.reasoner.rules import swrl
-from semmap.ontology import vocabulary as v
+from semmap.nodes.kb_node.shacl.shape_triples import find_unsupported
 from semmap.schemas import wording
 from semmap.schemas.explanations import Triple
 
 SWRL: Final = "http://www.w3.org/2003/11/swrl#"
-SHACL: Final = "http://www.w3.org/ns/shacl#"
-_SHACL_SHAPE, _SHACL_RULE = "SHACL shape", "SHACL rule"
-_CLASSES: Final = {
-    v.iri(f"{SHACL}NodeShape"): _SHACL_SHAPE,
-    v.iri(f"{SHACL}PropertyShape"): _SHACL_SHAPE,
-}
-_OF_SHAPES: Final = frozenset(
-    v.iri(SHACL + name)
-    for name in ("property", "targetClass", "targetNode", "targetSubjectsOf", "targetObjectsOf")
-)
-"""Properties of shapes, which need no type."""
-_RULE: Final = v.iri(f"{SHACL}rule")
 
 
 def count_inert(triples: Iterable[Triple]) -> Counter[str]:
@@ -31,14 +19,7 @@ def count_inert(triples: Iterable[Triple]) -> Counter[str]:
     triples = list(triples)
     unsupported = swrl.read_triples(triples).unsupported
     found = {(f"SWRL rule ({reason})", node) for node, reason in unsupported.items()}
-    for s, p, o in triples:
-        if p == v.RDF_TYPE:
-            if (kind := _CLASSES.get(o)) is not None:
-                found.add((kind, s))
-        elif p in _OF_SHAPES:
-            found.add((_SHACL_SHAPE, s))
-        elif p == _RULE:
-            found.add((_SHACL_RULE, o))
+    found |= find_unsupported(triples)
     return Counter(kind for kind, _ in found)
 
 

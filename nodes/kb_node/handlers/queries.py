@@ -30,6 +30,8 @@ from semmap.nodes.kb_node.relations.free_room import find_room
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.shacl import violations
+from semmap.nodes.kb_node.shacl.validation_process import ShapeValidator
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.storage import history, trail_file
 from semmap.nodes.kb_node.storage.journal import Journal
@@ -126,6 +128,7 @@ class QueryHandlers:
         self._routes = RoutePlanning(semantic_map, self._past, self._aside.submit)
         self._second_opinions = FairPool(1, asker)
         """For checks with owlrl, which take seconds to minutes, so that no other work waits behind them."""
+        self._validator = ShapeValidator()
         self._is_over = threading.Event()
 
     def handlers(self) -> dict[str, Handler]:
@@ -391,14 +394,16 @@ class QueryHandlers:
         )
 
     def on_check(self, query: Check) -> Future[Checked]:
-        """Check the consistency in another thread."""
+        """Check the consistency in another thread, and validate the facts in another process."""
         self._map.derive_all()
         held, denied = self._map.reasoner.given_facts(), self._now.find_denied()
         withheld, crowds = tuple(answers.suppressed_facts(self._map)), self._map.places.crowds()
+        names = violations.Names.of(self._map)
 
         def check() -> Checked:
             checked = answers.check(held.asserted, query.engine, self._is_over.is_set)
-            return structs.replace(checked, denied=denied, withheld=withheld, crowds=crowds)
+            checked = structs.replace(checked, denied=denied, withheld=withheld, crowds=crowds)
+            return violations.with_validation(checked, self._validator, query, held, names)
 
         return (self._second_opinions if query.engine == "owlrl" else self._aside).submit(check)
 
@@ -430,5 +435,6 @@ class QueryHandlers:
     def close(self) -> None:
         """Stop the threads."""
         self._is_over.set()
+        self._validator.close()
         self._second_opinions.close()
         self._aside.close()

@@ -31,7 +31,7 @@ from semmap.nodes.extern.cli.output import lines
 from semmap.nodes.extern.cli.output.formats import FORMATS
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.shell_completion import class_names, entity_names
-from semmap.nodes.extern.files import write_atomically
+from semmap.nodes.extern.files import read_file, write_atomically
 from semmap.schemas import commands, errors, keys, roles
 
 if TYPE_CHECKING:
@@ -148,13 +148,19 @@ def get(client: Client, name: str, format: str, as_of: str | None, frame: str | 
 
 @command(example="semmap check")
 @click.option("--engine", type=click.Choice(["semmap", "owlrl"]), default="semmap", show_default=True)
+@click.option("--shapes", type=click.Path(path_type=Path), metavar="FILE", help="File with SHACL shapes.")
 @json_option
 @with_client
-def check(client: Client, engine: Any) -> None:
-    """Check whether the map is consistent; if not, explain why."""
-    checked = client.check(engine)
+def check(client: Client, engine: Any, shapes: Path | None) -> None:
+    """Check whether the map is consistent and conforms to SHACL shapes; if not, explain why.
+
+    The shapes are those of the TBox, of the map and of FILE. The exit status is 1 if the map is inconsistent
+    or violates a shape.
+    """
+    content, filename = (b"", "") if shapes is None else (read_file(shapes), shapes.name)
+    checked = client.check(engine, shapes=content, filename=filename)
     print_result(checked, lines.format_check)
-    if not checked.consistent:
+    if not (checked.consistent and checked.conforms):
         sys.exit(errors.Inconsistent.exit_status)
 
 

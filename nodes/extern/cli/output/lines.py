@@ -31,10 +31,16 @@ def format_change(reply: Changed) -> Iterable[str]:
 
 
 def format_check(reply: Checked) -> Iterable[str]:
-    """Yield the result of a consistency check, and the relations that the geometry or the map contradicts."""
+    """Yield the result of a consistency check, the violations of shapes, and contradicted relations."""
     yield f"{reply.text} ({reply.engine}, {reply.triples} triples, {reply.elapsed_s:.3f} s)"
+    if reply.shapes:
+        found = wording.counted(len(reply.violations), "violation") if reply.violations else "no violations"
+        yield f"{wording.counted(reply.shapes, 'SHACL shape')}: {found}"
+    for violation in reply.violations:
+        kind = "" if violation.severity == "violation" else f"{violation.severity}: "
+        yield f"  {kind}{violation.text}"
     yield from (f"note: {relation.text}" for relation in reply.denied)
-    yield from (f"note: {text}" for text in (*reply.withheld, *reply.crowds))
+    yield from (f"note: {text}" for text in (*reply.withheld, *reply.crowds, *reply.notes))
 
 
 def format_move(reply: Moved) -> Iterable[str]:

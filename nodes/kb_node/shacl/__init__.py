@@ -1,0 +1,1 @@
+"""Validates the facts of a map against SHACL shapes, with pySHACL."""

@@ -1,0 +1,165 @@
+"""SHACL shapes, and the facts that violate them.
+
+pySHACL evaluates the constraints of SHACL Core. Its inference is off, because the facts contain what the
+reasoner infers. Targets are found here, so that a commit is validated without a search through the map.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any, Final
+
+from pyshacl.errors import ShapeRecursionWarning
+from pyshacl.helper.path_helper import shacl_path_to_sparql_path
+from pyshacl.pytypes import SHACLExecutor
+from pyshacl.shape import Shape
+from pyshacl.shapes_graph import ShapesGraph
+from rdflib import SH, Graph, Literal, URIRef
+from rdflib.term import Node
+
+from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.shacl.fact_graph import fact_graph, representative, to_node, to_term
+from semmap.nodes.kb_node.shacl.results import Result
+from semmap.nodes.kb_node.shacl.shape_triples import select_shapes
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
+from semmap.schemas.explanations import Term, Triple
+
+_SEVERITIES: Final = {SH.Warning: "warning", SH.Info: "info"}
+_LANGUAGES: Final = (None, "en")
+"""The languages of the message that is chosen, the best first."""
+
+
+class Shapes:
+    """The shapes of a document or a TBox."""
+
+    def __init__(self, triples: Iterable[Triple], name: str) -> None:
+        """Read shapes. Raises BadFile, with `name` as the subject of its text, for invalid ones."""
+        self._name = name
+        graph = Graph()
+        for s, p, o in select_shapes(triples):
+            graph.add((to_node(s), to_node(p), to_node(o)))
+        self._graph = ShapesGraph(graph)
+        with self._named_errors():
+            self._shapes: list[Shape] = [shape for shape in self._graph.shapes if not shape.deactivated]
+
+    def __len__(self) -> int:
+        return sum(1 for shape in self._shapes if any(map(tuple, shape.target())))
+
+    def validate(self, reasoner: Reasoner, touched: Iterable[Term] | None = None) -> list[Result]:
+        """Return the violations of all individuals, or of the `touched` ones, in the order of their names.
+
+        Raises BadFile for shapes that cannot be evaluated.
+        """
+        find = representative(reasoner)
+        facts, executor = fact_graph(reasoner), SHACLExecutor()
+        known = None if touched is None else {find(term) for term in touched}
+        found: dict[Result, None] = {}
+        for shape in self._shapes:
+            terms = _all_targets(shape, reasoner) if known is None else _targets(shape, reasoner, known)
+            focus = sorted(set(map(find, terms)))
+            if not focus:
+                continue
+            with self._named_errors():
+                _, reports = shape.validate(executor, facts, focus=[to_node(term) for term in focus])
+                found.update(dict.fromkeys(self._read(_by_property(parts)) for _, _, parts in reports))
+        return sorted(found, key=lambda one: (one.focus, one.path, one.message, one.value))
+
+    @contextmanager
+    def _named_errors(self) -> Iterator[None]:
+        """Raise BadFile for the errors of pySHACL, which has many kinds of them for invalid shapes."""
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error", ShapeRecursionWarning)
+                yield
+        except MemoryError:
+            raise
+        except ShapeRecursionWarning:
+            raise errors.BadFile(f"{self._name}: invalid SHACL shape: a shape refers to itself") from None
+        except Exception as error:
+            text = " ".join(str(getattr(error, "message", "") or error).split())
+            reason = text or type(error).__name__
+            raise errors.BadFile(f"{self._name}: invalid SHACL shape: {reason}") from None
+
+    def _read(self, report: dict[Node, list[Any]]) -> Result:
+        source = report[SH.sourceShape][0]
+        path = report.get(SH.resultPath, [None])[0]
+        value = report.get(SH.value, [None])[0]
+        return Result(
+            focus=to_term(report[SH.focusNode][0]),
+            message=self._message(source, report),
+            path="" if path is None else self._path(path),
+            value="" if value is None else to_term(value),
+            severity=_SEVERITIES.get(report[SH.resultSeverity][0], "violation"),
+            shape=to_term(source),
+        )
+
+    def _message(self, source: Node, report: dict[Node, list[Any]]) -> str:
+        """Return the message of the shape, or the constraint that is violated."""
+        own = [text for text in self._graph.objects(source, SH.message) if isinstance(text, Literal)]
+        if own:
+            return str(min(own, key=lambda text: (_rank(text.language), str(text))))
+        component = str(report[SH.sourceConstraintComponent][0])
+        name = component.removeprefix(str(SH)).removesuffix("ConstraintComponent")
+        parameter = name[:1].lower() + name[1:]
+        values = [o for o in self._graph.objects(source, SH[parameter]) if isinstance(o, (URIRef, Literal))]
+        limit = (
+            f" {v.lexical(to_term(values[0]))}" if len(values) == 1 and isinstance(values[0], Literal) else ""
+        )
+        if len(values) == 1 and isinstance(values[0], URIRef):
+            limit = f" {v.local_name(to_term(values[0]))}"
+        return f"violates sh:{parameter}{limit}"
+
+    def _path(self, path: Node) -> str:
+        if isinstance(path, URIRef):
+            return to_term(path)
+        return str(shacl_path_to_sparql_path(self._graph, path, prefixes={}))
+
+
+def _by_property(parts: Iterable[tuple[Node, Node, Any]]) -> dict[Node, list[Any]]:
+    """Return a validation result of pySHACL by property. It writes some nodes as (graph, node)."""
+    found: dict[Node, list[Any]] = {}
+    for _, predicate, value in parts:
+        found.setdefault(predicate, []).append(value[1] if isinstance(value, tuple) else value)
+    return found
+
+
+def _rank(language: str | None) -> int:
+    return _LANGUAGES.index(language) if language in _LANGUAGES else len(_LANGUAGES)
+
+
+def _all_targets(shape: Shape, reasoner: Reasoner) -> Iterator[Term]:
+    nodes, classes, subjects_of, objects_of = _target_terms(shape)
+    yield from nodes
+    for cls in classes:
+        yield from reasoner.instances(cls)
+    for p in subjects_of:
+        yield from (s for s, _, _ in _holding(reasoner, None, p, None))
+    for p in objects_of:
+        yield from (o for _, _, o in _holding(reasoner, None, p, None))
+
+
+def _targets(shape: Shape, reasoner: Reasoner, touched: set[Term]) -> Iterator[Term]:
+    """Yield those of `touched` that are targets of the shape."""
+    nodes, classes, subjects_of, objects_of = _target_terms(shape)
+    for term in touched:
+        if (
+            term in nodes
+            or (classes and not classes.isdisjoint(reasoner.types(term)))
+            or any(next(_holding(reasoner, term, p, None), None) for p in subjects_of)
+            or any(next(_holding(reasoner, None, p, term), None) for p in objects_of)
+        ):
+            yield term
+
+
+def _target_terms(shape: Shape) -> tuple[set[Term], set[Term], set[Term], set[Term]]:
+    """Return the nodes, classes, and properties of subjects and of objects that a shape targets."""
+    nodes, classes, implicit, objects_of, subjects_of = (set(map(to_term, found)) for found in shape.target())
+    return nodes, classes | implicit, subjects_of, objects_of
+
+
+def _holding(reasoner: Reasoner, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
+    yield from reasoner.given(s, p, o)
+    yield from reasoner.inferred(s, p, o)

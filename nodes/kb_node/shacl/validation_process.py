@@ -1,0 +1,95 @@
+"""The process that validates a map against shapes of unknown origin, within limits of memory and time.
+
+`ShapeValidator` starts it. Besides a document, a pattern of a shape may take very long to match.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from msgspec import Struct, msgpack
+
+from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.documents.inert_statements import count_inert, inert_note
+from semmap.nodes.kb_node.reasoner import GivenFacts, Reasoner
+from semmap.nodes.kb_node.shacl.results import Result
+from semmap.nodes.runtime.isolated_process import CPU_S, IsolatedProcess, program, serve
+from semmap.schemas import errors
+from semmap.schemas.explanations import Triple
+
+_LABEL: Final = "shape"
+"""Prefix of the blank nodes of a document, which differ from those of the TBox."""
+
+
+class Request(Struct, frozen=True):
+    """The facts of a map, with its TBox and the shapes in both, and a document with more shapes."""
+
+    asserted: list[Triple]
+    computed: list[Triple]
+    content: bytes = b""
+    filename: str = ""
+
+
+class Validation(Struct, frozen=True):
+    """The number of shapes with a target, and what violates them."""
+
+    shapes: int = 0
+    results: list[Result] = []
+    notes: list[str] = []
+    error: str = ""
+
+
+class ShapeValidator(IsolatedProcess):
+    """Validates one map at a time. The process starts with the first."""
+
+    remedy = "use fewer or simpler shapes"
+
+    def __init__(self, command: Sequence[str] = program(__name__), *, cpu_s: float = CPU_S) -> None:
+        """Create it; `command` is the program of the process."""
+        super().__init__(command, cpu_s=cpu_s)
+
+    def validate(self, facts: GivenFacts, content: bytes, filename: str) -> Validation:
+        """Return the violations of the shapes in the map, its TBox and a document. Any thread may call this.
+
+        Raises BadFile for a document that is not valid, and for shapes that exceed a limit.
+        """
+        request = Request(list(facts.asserted), list(facts.computed), content, filename)
+        reply = self.exchange(msgpack.encode(request), filename or "validation with SHACL")
+        validation = msgpack.decode(reply, type=Validation)
+        if validation.error:
+            raise errors.BadFile(validation.error)
+        return validation
+
+
+def answer(content: bytes) -> bytes:
+    """Return the encoded reply to an encoded request."""
+    request = msgpack.decode(content, type=Request)
+    try:
+        return msgpack.encode(validate(request))
+    except errors.BadFile as error:
+        return msgpack.encode(Validation(error=error.text))
+
+
+def validate(request: Request) -> Validation:
+    """Return the violations of the shapes of a request. Raises BadFile."""
+    from semmap.nodes.kb_node.shacl.shapes import Shapes  # pySHACL takes half a second to import
+
+    sets, notes = [Shapes(request.asserted, "the map")], list[str]()
+    if request.content:
+        name = request.filename or "the file"
+        triples = rdf.read(request.content, request.filename, label_prefix=_LABEL).triples
+        sets.append(Shapes(triples, name))
+        if not len(sets[-1]):
+            raise errors.BadFile(
+                f"{name}: no SHACL shapes with a target; add sh:targetClass or another target"
+            )
+        if unsupported := inert_note(count_inert(triples)):
+            notes.append(f"{name}: {unsupported}")
+    reasoner = Reasoner.of(GivenFacts(request.asserted, request.computed))
+    results = [result for shapes in sets for result in shapes.validate(reasoner)]
+    return Validation(sum(map(len, sets)), results, notes)
+
+
+if __name__ == "__main__":
+    serve(answer)

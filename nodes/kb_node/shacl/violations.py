@@ -1,0 +1,107 @@
+"""Violations of SHACL shapes in words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Final, NamedTuple, cast
+
+from msgspec import structs
+
+from semmap.nodes.kb_node.map_state import MapState
+from semmap.nodes.kb_node.reasoner import GivenFacts
+from semmap.nodes.kb_node.shacl.results import Result
+from semmap.nodes.kb_node.shacl.shape_triples import find_shapes
+from semmap.nodes.kb_node.shacl.validation_process import ShapeValidator
+from semmap.ontology import vocabulary as v
+from semmap.schemas import errors, wording
+from semmap.schemas.commands import Check
+from semmap.schemas.explanations import Term
+from semmap.schemas.replies import Checked, Violation
+
+_IRI: Final = re.compile(r"<[^<>]*>")
+
+
+def to_violation(result: Result, name_of: Callable[[Term], str], names: Mapping[Term, str]) -> Violation:
+    """Return a result for the client.
+
+    `name_of(individual)` returns the name of an individual, and `names` has those of classes and properties
+    whose local names are not unique.
+    """
+
+    def words(term: Term) -> str:
+        if term.startswith('"'):
+            return v.lexical(term)
+        return "an individual without a name" if term.startswith("_:") else names.get(term) or name_of(term)
+
+    path = _IRI.sub(lambda found: names.get(found[0]) or v.local_name(found[0]), result.path)
+    value = words(result.value) if result.value and result.value != result.focus else ""
+    name = words(result.focus)
+    return Violation(
+        name=name,
+        message=result.message,
+        path=path,
+        value=value,
+        severity=cast(Any, result.severity),
+        shape="" if result.shape.startswith("_:") else v.local_name(result.shape),
+        text="; ".join(filter(None, (f"{name}: {result.message}", path, value))),
+    )
+
+
+def describe_rejection(results: Sequence[Result], map_state: MapState) -> str:
+    """Return why a commit is rejected, with the first violation."""
+
+    def name_of(term: Term) -> str:
+        entity = map_state.find_by_individual(term)
+        return v.entity_name(term) if entity is None else entity.name
+
+    first = to_violation(results[0], name_of, map_state.classes.qualified_names).text
+    more = f" (and {wording.counted(len(results) - 1, 'more violation')})" if len(results) > 1 else ""
+    return f"{first}{more}; required by the shapes of the TBox (semmap up --enforce-shapes)"
+
+
+class Names(NamedTuple):
+    """The names of a map at one moment, for another thread."""
+
+    individuals: Mapping[Term, str]
+    terms: Mapping[Term, str]
+
+    @classmethod
+    def of(cls, map_state: MapState) -> Names:
+        """Return the names of a map. Equal individuals have the name of their entity."""
+        equals = map_state.reasoner.equals
+        individuals = {
+            one: entity.name
+            for entity in map_state.by_name.values()
+            for one in equals(v.iri(entity.iri)) or (v.iri(entity.iri),)
+        }
+        return cls(individuals, map_state.classes.qualified_names)
+
+    def individual(self, term: Term) -> str:
+        """Return the name of an individual."""
+        return self.individuals.get(term) or v.entity_name(term)
+
+
+def with_validation(
+    checked: Checked, validator: ShapeValidator, query: Check, facts: GivenFacts, names: Names
+) -> Checked:
+    """Return the result of a check with the violations of SHACL shapes.
+
+    Raises BadFile for a document of the query that is not valid. If shapes of the map cannot be evaluated,
+    a note says so.
+    """
+    if not checked.consistent or not (query.shapes or find_shapes(facts.asserted)):
+        return checked
+    try:
+        validation = validator.validate(facts, query.shapes, query.filename)
+    except errors.BadFile as error:
+        if query.shapes:
+            raise
+        return structs.replace(checked, notes=(*checked.notes, f"shapes not evaluated: {error.text}"))
+    return structs.replace(
+        checked,
+        conforms=not validation.results,
+        shapes=validation.shapes,
+        violations=tuple(to_violation(one, names.individual, names.terms) for one in validation.results),
+        notes=(*checked.notes, *validation.notes),
+    )

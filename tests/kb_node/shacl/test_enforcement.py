@@ -1,0 +1,69 @@
+"""A commit that violates a shape of the TBox is rejected, and changes nothing."""
+
+import pytest
+
+from semmap.nodes.kb_node.shacl.enforcement import ShapeEnforcement
+from semmap.schemas import errors
+from tests.kb_node import home
+from tests.kb_node.home import transaction, turtle
+from tests.kb_node.shacl.test_shapes import SH
+
+SHAPES = turtle(
+    SH
+    + """
+:S sh:targetClass dm:Chair ; sh:property [ sh:path dm:isLocatedIn ; sh:minCount 1 ;
+        sh:message "needs a room" ] ;
+    sh:property [ sh:path ( dm:isLocatedIn dm:closed ) ; sh:maxCount 0 ; sh:message "its room is closed" ] ;
+    sh:property [ sh:path dm:seats ; sh:maxCount 0 ; sh:severity sh:Warning ] .
+"""
+)
+CHAIR = ":chair1 a dm:Chair ; dm:isLocatedIn :kitchen1 . :kitchen1 a dm:Kitchen ."
+REFUSED = "required by the shapes of the TBox"
+
+
+@pytest.fixture
+def enforcing(tmp_path):
+    made = home.new_map(tmp_path, [*home.TBOX, *SHAPES])
+    made.enforcement = ShapeEnforcement(made.tbox)
+    yield made
+    home.close(made)
+
+
+def test_a_violation_is_refused_with_its_message(enforcing):
+    with pytest.raises(errors.Refused, match=f"^chair2: needs a room; isLocatedIn; {REFUSED}"):
+        enforcing.commit(transaction(1, turtle(":chair2 a dm:Chair .")))
+    assert (enforcing.seq, enforcing.abox()) == (0, [])
+    assert enforcing.commit(transaction(2, turtle(CHAIR))).seq == 1
+    with pytest.raises(errors.Refused, match=REFUSED):
+        enforcing.commit(transaction(3, (), turtle(":chair1 dm:isLocatedIn :kitchen1 .")))
+    assert set(enforcing.abox()) == set(turtle(CHAIR))
+
+
+def test_what_refers_to_a_change_is_validated(enforcing):
+    enforcing.commit(transaction(1, turtle(CHAIR)))
+    with pytest.raises(errors.Refused, match="chair1: its room is closed"):
+        enforcing.commit(transaction(2, turtle(":kitchen1 dm:closed true .")))
+
+
+def test_warnings_and_earlier_violations_refuse_nothing(enforcing):
+    enforcement, enforcing.enforcement = enforcing.enforcement, None
+    enforcing.commit(transaction(1, turtle(":chair2 a dm:Chair .")))
+    enforcing.enforcement = enforcement
+    assert enforcing.commit(transaction(2, turtle(":chair2 dm:seats 2 ."))).seq == 2
+
+
+def test_each_transaction_of_several_is_validated(enforcing):
+    made = enforcing.commit_together(
+        [transaction(1, turtle(CHAIR)), transaction(2, turtle(":b a dm:Chair ."))]
+    )
+    assert made[0].seq == enforcing.seq == 1
+    assert isinstance(made[1], errors.Refused)
+
+
+def test_another_tbox_brings_other_shapes(enforcing):
+    enforcing.replace_tbox(transaction(1), home.TBOX)
+    assert enforcing.commit(transaction(2, turtle(":chair2 a dm:Chair ."))).seq == 2
+    broken = turtle(SH + ":S sh:targetClass dm:Chair ; sh:property [ sh:path dm:a , dm:b ] .")
+    with pytest.raises(errors.BadFile, match="the TBox: invalid SHACL shape"):
+        enforcing.replace_tbox(transaction(3), [*home.TBOX, *broken])
+    assert enforcing.seq == 2

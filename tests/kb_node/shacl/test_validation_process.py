@@ -1,0 +1,40 @@
+"""The validation of shapes of unknown origin, without its process."""
+
+import pytest
+from msgspec import msgpack
+
+from semmap.nodes.kb_node.shacl.validation_process import Request, Validation, answer
+from tests.kb_node import home
+from tests.kb_node.home import PREFIXES, turtle
+from tests.kb_node.shacl.test_shapes import FACTS, SH, of_chairs
+
+SHAPE = of_chairs("sh:path dm:isLocatedIn ; sh:minCount 1")
+
+
+def validate(content, tbox=""):
+    text = (PREFIXES + SH + content).encode() if content else b""
+    facts = [*home.TBOX, *turtle(FACTS + SH + tbox)]
+    return msgpack.decode(answer(msgpack.encode(Request(facts, [], text, "s.ttl"))), type=Validation)
+
+
+@pytest.mark.parametrize(("content", "tbox", "shapes"), [(SHAPE, "", 1), ("", SHAPE, 1), (SHAPE, SHAPE, 2)])
+def test_shapes_of_map_and_document_are_validated(content, tbox, shapes):
+    found = validate(content, tbox)
+    assert (found.error, found.shapes, len(found.results)) == ("", shapes, shapes)
+
+
+@pytest.mark.parametrize(
+    ("content", "error"),
+    [
+        (":a :b", "s.ttl is not valid Turtle"),
+        (":a :b :c .", "s.ttl: no SHACL shapes with a target"),
+        (":s sh:targetNode :a ; sh:minLength 'x' .", "s.ttl: invalid SHACL shape"),
+    ],
+)
+def test_an_invalid_document_is_an_error(content, error):
+    assert validate(content).error.startswith(error)
+
+
+def test_what_is_not_evaluated_is_noted():
+    found = validate(SHAPE + " :s sh:sparql [ sh:select '' ] ; sh:rule [] .")
+    assert found.notes == ["s.ttl: stored, but not evaluated: 1 SHACL SPARQL constraint, 1 SHACL rule"]
