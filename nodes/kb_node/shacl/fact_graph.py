@@ -8,17 +8,17 @@ from typing import Any, cast
 
 from rdflib import BNode, Graph, Literal, URIRef
 from rdflib.store import Store
-from rdflib.term import Node
+from rdflib.term import IdentifiedNode, Node
 
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import vocabulary as v
-from semmap.schemas.explanations import Term
+from semmap.schemas.explanations import Term, Triple
 
 Pattern = tuple[Node | None, Node | None, Node | None]
 
 
 @lru_cache(maxsize=1 << 16)
-def to_node(term: Term) -> Node:
+def to_node(term: Term) -> IdentifiedNode | Literal:
     """Return the RDFLib node of a term, with the spelling of literals."""
     if term.startswith("<"):
         return URIRef(v.bare(term))
@@ -66,7 +66,7 @@ class _FactStore(Store):
     def triples(self, pattern: Pattern, context: Any = None) -> Iterator[Any]:
         """Yield the facts of a pattern, each once."""
         s, p, o = (None if node is None else to_term(node) for node in pattern)
-        found = {}
+        found = dict[Triple, None]()
         for subject, predicate, value in (*self._reasoner.given(s, p, o), *self._reasoner.inferred(s, p, o)):
             found[self._find(subject), predicate, self._find(value)] = None
         for fact in found:

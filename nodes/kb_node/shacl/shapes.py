@@ -46,7 +46,7 @@ class Shapes:
             self._shapes: list[Shape] = [shape for shape in self._graph.shapes if not shape.deactivated]
 
     def __len__(self) -> int:
-        return sum(1 for shape in self._shapes if any(map(tuple, shape.target())))
+        return sum(1 for shape in self._shapes if any(_target_terms(shape)))
 
     def validate(self, reasoner: Reasoner, touched: Iterable[Term] | None = None) -> list[Result]:
         """Return the violations of all individuals, or of the `touched` ones, in the order of their names.
@@ -98,13 +98,15 @@ class Shapes:
 
     def _message(self, source: Node, report: dict[Node, list[Any]]) -> str:
         """Return the message of the shape, or the constraint that is violated."""
-        own = [text for text in self._graph.objects(source, SH.message) if isinstance(text, Literal)]
+        own = [text for text in self._graph.graph.objects(source, SH.message) if isinstance(text, Literal)]
         if own:
             return str(min(own, key=lambda text: (_rank(text.language), str(text))))
         component = str(report[SH.sourceConstraintComponent][0])
         name = component.removeprefix(str(SH)).removesuffix("ConstraintComponent")
         parameter = name[:1].lower() + name[1:]
-        values = [o for o in self._graph.objects(source, SH[parameter]) if isinstance(o, (URIRef, Literal))]
+        values = [
+            o for o in self._graph.graph.objects(source, SH[parameter]) if isinstance(o, (URIRef, Literal))
+        ]
         limit = (
             f" {v.lexical(to_term(values[0]))}" if len(values) == 1 and isinstance(values[0], Literal) else ""
         )
@@ -156,7 +158,8 @@ def _targets(shape: Shape, reasoner: Reasoner, touched: set[Term]) -> Iterator[T
 
 def _target_terms(shape: Shape) -> tuple[set[Term], set[Term], set[Term], set[Term]]:
     """Return the nodes, classes, and properties of subjects and of objects that a shape targets."""
-    nodes, classes, implicit, objects_of, subjects_of = (set(map(to_term, found)) for found in shape.target())
+    found: tuple[Iterable[Node], ...] = shape.target()  # type: ignore[no-untyped-call]
+    nodes, classes, implicit, objects_of, subjects_of = (set(map(to_term, terms)) for terms in found)
     return nodes, classes | implicit, subjects_of, objects_of
 
 
