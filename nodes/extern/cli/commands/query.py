@@ -152,7 +152,7 @@ def get(client: Client, name: str, format: str, as_of: str | None, frame: str | 
 @json_option
 @with_client
 def check(client: Client, engine: Any, shapes: Path | None) -> None:
-    """Check whether the map is consistent and conforms to SHACL shapes; if not, explain why.
+    """Check consistency and SHACL shapes; explain violations.
 
     The shapes are those of the TBox, of the map and of FILE. The exit status is 1 if the map is inconsistent
     or violates a shape.
