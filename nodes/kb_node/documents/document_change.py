@@ -84,7 +84,7 @@ def make_document_transaction(
 
 def _find_frame(semantic_map: SemanticMap, iri: Term) -> Pose | None:
     """Return the pose of an entity of the map, with its middle as position."""
-    entity = semantic_map.find_by_iri(iri)
+    entity = semantic_map.find_by_individual(iri)
     if entity is None or entity.pose is None:
         return None
     pose, half_m = entity.pose, entity.size_m[2] / 2.0 if entity.size_m is not None else 0.0

@@ -7,6 +7,7 @@ other syntaxes have native parsers that build the whole document in memory.
 
 from __future__ import annotations
 
+import codecs
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Final
 
@@ -46,7 +47,8 @@ class IsolatedParser(IsolatedProcess):
     @staticmethod
     def isolates(content: bytes) -> bool:
         """Return whether a document is parsed in the process."""
-        return text_encoding.is_wide(content) or rdf.syntax_of(content) != "turtle"
+        text = content.removeprefix(codecs.BOM_UTF8)
+        return text_encoding.is_wide(content) or rdf.syntax_of(text) != "turtle"
 
     def read(
         self,

@@ -76,6 +76,8 @@ class _Document:
         for s, p, o in triples:
             self._asserted.setdefault(s, {}).setdefault(p, []).append(o)
         self._perceived: dict[Term, AlignedPose] = {}
+        self._resolved: dict[Term, Pose | None] = {}
+        """The poses in the map frame that are known already, so that a chain is followed once."""
 
     def find_perceived(self) -> Mapping[Term, AlignedPose]:
         """Return the latest perceived pose of each object for which the document states no other."""
@@ -127,26 +129,25 @@ class _Document:
 
         Raises BadFile for a cycle.
         """
-        chain: list[Term] = []
-        steps: list[Pose] = []
+        chain: dict[Term, Pose] = {}
         node: Term | None = subject
-        base: Pose | None = _ORIGIN
-        while node is not None:
+        while node is not None and node not in self._resolved:
             if node in chain:
-                names = " to ".join(map(v.entity_name, [*chain[chain.index(node) :], node]))
+                names = " to ".join(map(v.entity_name, [*list(chain)[list(chain).index(node) :], node]))
                 raise errors.BadFile(
                     f"poses are relative to each other: {names}; state one of them in the map frame"
                 )
-            chain.append(node)
             stated = self._own_pose(node) or self._perceived.get(node)
             if stated is None:
                 is_map = v.entity_name(node).lower() in _MAP_FRAMES
-                base, node = _ORIGIN if is_map else self._find_frame(node), None
+                self._resolved[node] = _ORIGIN if is_map else self._find_frame(node)
             else:
-                steps.append(Pose(position_m=stated.position, orientation_wxyz=stated.orientation))
+                chain[node] = Pose(position_m=stated.position, orientation_wxyz=stated.orientation)
                 node = stated.reference
-        for step in reversed(steps if base is not None else []):
-            base = entities.compose(base or _ORIGIN, step)
+        base = _ORIGIN if node is None else self._resolved[node]
+        for one, step in reversed(chain.items()):
+            base = None if base is None else entities.compose(base, step)
+            self._resolved[one] = base
         return base
 
     def state(self, subject: Term, stated: AlignedPose, pose: Pose) -> tuple[list[Triple], list[Triple]]:

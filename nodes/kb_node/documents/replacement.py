@@ -119,6 +119,7 @@ class _Draft:
     def replace(self, subject: Term) -> None:
         """Find what the document replaces of an individual that both describe."""
         stated, asserted = self._stated[subject], self._reasoner.about(subject)
+        self._replace_of_equals(subject, stated)
         is_copy = all(o in stated.get(p, ()) for p, objects in asserted.items() for o in objects)
         if is_copy and not self._classes.alignments:
             return  # the usual case of a file that is loaded again
@@ -137,6 +138,22 @@ class _Draft:
         if self._classes.alignments:
             self._replace_aligned(subject, stated, asserted)
         self._imply(subject, stated, asserted)
+
+    def _replace_of_equals(self, subject: Term, stated: Objects) -> None:
+        """Remove the pose, the size and other single values that the map has by another name of `subject`.
+
+        What the document states by the other name stays, so that two different values are rejected.
+        """
+        for other in self._reasoner.equals(subject):
+            if other == subject:
+                continue
+            asserted, of_other = self._reasoner.about(other), self._about(other)
+            for p, new in stated.items():
+                if p in asserted and p not in of_other and self._is_single(p) and p != v.ENTITY_NAME:
+                    old = [o for o in asserted[p] if o not in new]
+                    self._remove(subject, ((other, p, o) for o in old))
+            if self._classes.alignments and not is_blank(other):
+                self._replace_aligned(other, {p: o for p, o in stated.items() if p not in of_other}, asserted)
 
     def _replace_aligned(self, subject: Term, stated: Objects, asserted: Objects) -> None:
         """Remove the pose, the size and the name that the map has in another vocabulary, or elsewhere."""

@@ -84,7 +84,12 @@ def add_effects(
                 and not _is_asserted(reasoner, iri)
             ):
                 entity = None  # only computed facts still mention it, and they will be removed
-        if entity is not None and entity.other_names and _is_regrouped(entity, was) and reading.is_new:
+        if (
+            entity is not None
+            and entity.other_names
+            and (strict or _is_regrouped(entity, was))
+            and reading.is_new
+        ):
             merged = equal_individuals.about_entity(reasoner, iri, about)
             name = f"{entity.name} (the same as {wording.few(entity.other_names)})"
             entity_reading.require_one_place(merged, classes, iri, name)

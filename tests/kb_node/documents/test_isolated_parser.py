@@ -1,5 +1,6 @@
 """A document costs its parser process at most, and is then rejected in one line."""
 
+import codecs
 import os
 import signal
 
@@ -28,6 +29,15 @@ def test_a_reply_contains_the_document():
 def test_turtle_needs_no_process():
     with IsolatedParser(["no such program"]) as parser:
         assert parser.read(TURTLE, "x", "f") == rdf.read(TURTLE, "x", label_prefix="f")
+
+
+@pytest.mark.parametrize(
+    ("content", "isolated"),
+    [(TURTLE, False), (FUNCTIONAL, True), (b"<?xml version='1.0'?><a/>", True), (b'{"@id": "a"}', True)],
+)
+@pytest.mark.parametrize("mark", [b"", codecs.BOM_UTF8])
+def test_a_byte_order_mark_does_not_change_what_is_isolated(content, isolated, mark):
+    assert IsolatedParser.isolates(mark + content) == isolated
 
 
 def test_deep_class_expressions_are_rejected_although_their_text_is_flat():

@@ -139,3 +139,16 @@ def test_a_rotation_matrix_becomes_its_quaternion(axis, angle):
     ]
     found = aligned_values.quaternion_of(rows)
     assert abs(sum(a * b for a, b in zip(found, (w, x, y, z), strict=True))) == pytest.approx(1.0)
+
+
+def test_a_long_chain_is_followed_once(monkeypatch):
+    count = 300
+    text = pose("c0", "1 0 0", reference="map") + "".join(
+        pose(f"c{i}", "1 0 0", reference=f"c{i - 1}") for i in range(1, count)
+    )
+    calls = []
+    compose = map_frame.entities.compose
+    monkeypatch.setattr(map_frame.entities, "compose", lambda a, b: calls.append(1) or compose(a, b))
+    poses, _ = converted(text)
+    assert poses[f"c{count - 1}"][0] == count
+    assert len(calls) == count

@@ -223,3 +223,25 @@ def test_a_pose_that_two_entities_share_stays_with_the_other(kitchen):
     loaded(kitchen, MOVED)
     assert kitchen.entity("drawer1").pose.position_m == (2.0, 2.0, 0.68)
     assert kitchen.entity("drawer2").pose.position_m == (1.4, 0.9, 0.75)
+
+
+def test_a_pose_by_another_name_of_an_entity_replaces_its_pose(semantic_map):
+    loaded(semantic_map, chair() + ":twin owl:sameAs :a .")
+    count = len(semantic_map.abox())
+    again = chair(x=5, size=2).replace(":a a dm:Chair", ":twin a dm:Chair")
+    loaded(semantic_map, again)
+    entity = semantic_map.resolve("a") if "a" in semantic_map.names else semantic_map.resolve("twin")
+    assert (entity.pose.position_m, entity.size_m) == ((5.0, 2.0, 0.0), (2.0, 1.0, 1.0))
+    assert len(semantic_map) == 1
+    assert len(semantic_map.abox()) <= count + 5  # the class and the label of the other name
+    assert not loaded(semantic_map, again).retract
+
+
+def test_a_second_pose_by_another_name_is_rejected_from_the_wire(semantic_map):
+    loaded(semantic_map, chair() + ":twin owl:sameAs :a .")
+    second = turtle(
+        ":twin dm:hasPosition :p . :p dm:float_coordinates_x '9'^^xsd:float ;"
+        " dm:float_coordinates_y '2'^^xsd:float ; dm:float_coordinates_z '0'^^xsd:float ."
+    )
+    with pytest.raises(errors.BadRequest, match="has two positions"):
+        semantic_map.commit(home.transaction("w", second))
