@@ -7,15 +7,14 @@ import math
 from functools import partial
 from typing import Final
 
-from msgspec import structs
-
+from semmap.nodes.extern.web.live import PERIOD_S, LiveEvent
 from semmap.nodes.extern.web.page import Page
-from semmap.nodes.extern.web.views.entities.forms import build_move
 from semmap.nodes.extern.web.views.key_steps import KEYS, step_of
-from semmap.schemas.entities import Entity
+from semmap.nodes.extern.web.views.pending_moves import PendingMoves
+from semmap.schemas import errors
 
 _QUIET_S: Final = 0.3
-"""The change is sent when no key was pressed for this time."""
+"""A change is sent when no key was pressed for this time."""
 _POSE_DELAY_S: Final = 0.2
 """Time after which the bodies have followed the map."""
 _NORTH_RAD: Final = math.pi / 2.0
@@ -23,68 +22,73 @@ _NORTH_RAD: Final = math.pi / 2.0
 
 
 class KeyboardMoves:
-    """The steps of one tab that are not sent yet."""
+    """The steps of one tab. One task at a time sends them, change by change, until none is left."""
 
     def __init__(self, page: Page) -> None:
         """Handle the arrow keys of a tab; the browser sends them while something is selected."""
         self._page = page
-        self._names: tuple[str, ...] = ()
-        self._offset_m = (0.0, 0.0)
-        self._presses = 0
+        self._moves = PendingMoves()
+        self._is_sending = False
         for key in KEYS:
             page.on_key(key, partial(self._press, key))
-        page.on_select(self._forget)
+        page.on_select(self._moves.close)
+        page.client.on_delete(page.live.listen(self._on_event))
 
     def _press(self, key: str) -> None:
         page = self._page
         if not page.selected or not page.is_allowed("batch"):
             return
         viewpoint = page.viewpoint
-        x, y = step_of(key, _NORTH_RAD if viewpoint is None else viewpoint[3])
-        self._offset_m = self._offset_m[0] + x, self._offset_m[1] + y
-        is_first = not self._names
-        self._names = page.selected
-        self._presses += 1
+        self._moves.add(page.selected, step_of(key, _NORTH_RAD if viewpoint is None else viewpoint[3]))
         self._preview()
-        if is_first:
+        if not self._is_sending:
+            self._is_sending = True
             page.start_task(self._send())
 
-    def _forget(self) -> None:
-        """Drop the steps for another selection."""
-        self._names, self._offset_m = (), (0.0, 0.0)
-        self._preview()
-
-    def _entities(self) -> list[Entity]:
-        known = self._page.live.entities
-        return [known[name] for name in self._names if name in known]
+    def _on_event(self, event: LiveEvent) -> None:
+        if event.is_new_map:
+            self._moves.clear()
+            self._preview()
 
     def _preview(self) -> None:
-        """Show the entities at their new poses before the change is sent."""
+        """Show the entities at their new poses before the map has them."""
         if self._page.preview is not None:
-            x, y = self._offset_m
-            self._page.preview(
-                {
-                    entity.name: structs.replace(entity.pose, position_m=(px + x, py + y, pz))
-                    for entity in self._entities()
-                    if entity.pose is not None
-                    for px, py, pz in (entity.pose.position_m,)
-                }
-            )
+            self._page.preview(self._moves.poses_after(self._page.live.entities))
 
     async def _send(self) -> None:
-        names = self._names
+        try:
+            while not self._moves.is_empty:
+                await self._wait_until_quiet()
+                await self._send_first()
+        finally:
+            self._is_sending = False
+        self._preview()
+
+    async def _wait_until_quiet(self) -> None:
         presses = -1
-        while presses != self._presses:
-            presses = self._presses
+        while self._moves.is_first_open and presses != self._moves.presses:
+            presses = self._moves.presses
             await asyncio.sleep(_QUIET_S)
-        if names != self._names:
-            return  # another selection was made
-        entities, offset_m = self._entities(), tuple(round(metres, 3) for metres in self._offset_m)
-        self._names, self._offset_m = (), (0.0, 0.0)
-        if any(offset_m) and any(entity.pose is not None for entity in entities):
-            reply = await self._page.change(build_move(entities, (*offset_m, 0.0)))
-            if reply is not None:
-                self._page.notify(reply.text, "positive")
-                await asyncio.sleep(_POSE_DELAY_S)
-        if not self._names:
-            self._preview()
+
+    async def _send_first(self) -> None:
+        """Send the first move, and wait until the map has it: the next one begins at the new poses."""
+        page, map_id = self._page, self._page.live.map_id
+        if self._moves.is_empty:  # another map is served
+            return
+        try:
+            change = self._moves.take(page.live.entities)
+        except errors.BadRequest as error:
+            page.notify(error.text, "warning")
+            return
+        if change is None:
+            return
+        reply = await page.change(change)
+        if reply is not None:
+            page.notify(reply.text, "positive")
+            while page.live.map_id == map_id and page.live.commit < (reply.commit or 0):
+                await asyncio.sleep(PERIOD_S)
+        self._moves.finish()
+        if reply is None:
+            self._preview()  # without the rejected change
+        else:
+            await asyncio.sleep(_POSE_DELAY_S)

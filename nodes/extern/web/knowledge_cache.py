@@ -17,6 +17,7 @@ from semmap.nodes.extern.web.live import Live, LiveEvent
 from semmap.nodes.extern.web.views.entities.locations import QUERY, Locations
 from semmap.nodes.extern.web.views.proof_lines import words_of
 from semmap.nodes.kb_node.reasoner.explain.words import Words
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.schemas import errors
 from semmap.schemas.commands import Properties, Sparql
 from semmap.schemas.commits import Commit
@@ -44,6 +45,8 @@ class KnowledgeCache:
         self.properties: dict[str, PropertyInfo] = {}
         self.words: Words = words_of((), ())
         """Labels of classes and properties for sentences."""
+        self.ontology_version = 0
+        """Another number after each change of classes, properties and axioms, also those in the map."""
         self._live = live
         self._scene = live.scene
         self._listeners: list[Listener] = []
@@ -85,6 +88,7 @@ class KnowledgeCache:
 
     def _on_event(self, event: LiveEvent) -> None:
         if event.kind == "reset":
+            self.ontology_version += 1
             self._read()
             self._notify(None)
         elif event.kind == "commit":
@@ -98,6 +102,8 @@ class KnowledgeCache:
     def _apply(self, commits: tuple[Commit, ...]) -> None:
         if self._since is not None:
             self._since.extend(commits)
+        if any(map(_changes_ontology, commits)):
+            self.ontology_version += 1
         if any(commit.tbox or commit.abridged is not None for commit in commits):
             self._read()
             self._notify(None)
@@ -142,3 +148,10 @@ class KnowledgeCache:
     def _notify(self, names: frozenset[str] | None) -> None:
         for listener in tuple(self._listeners):
             listener(names)
+
+
+def _changes_ontology(commit: Commit) -> bool:
+    """Return whether a commit changes axioms; an abridged one may do so."""
+    if commit.tbox or commit.abridged is not None:
+        return True
+    return any(map(is_schema, commit.inserted)) or any(map(is_schema, commit.retracted))

@@ -7,8 +7,10 @@ import pytest
 from semmap.nodes.extern.web import knowledge_cache
 from semmap.nodes.extern.web.knowledge_cache import KnowledgeCache
 from semmap.nodes.extern.web.live import LiveEvent
+from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commands import Properties
+from semmap.schemas.commits import Extent
 from semmap.schemas.sparql import SparqlResult
 from tests.extern.web.scene.sample_scenes import body, pose, scene
 from tests.extern.web.views.sample_maps import commit, fact, thing
@@ -133,5 +135,34 @@ def test_a_scene_change_reports_changed_bodies_only():
         live.scene = None
         live.happen("scene")
         assert told == [None, frozenset(("cup1", "cup2")), None]
+
+    asyncio.run(scenario())
+
+
+AXIOM = (v.dm("Cup"), v.RDFS_SUB_CLASS_OF, v.dm("Vessel"))
+
+
+@pytest.mark.parametrize(
+    ("kind", "fields", "changes"),
+    [
+        ("commit", {}, False),
+        ("commit", {"inserted": (fact("cup1", "isOn", "desk1"),)}, False),
+        ("commit", {"inserted": (AXIOM,)}, True),
+        ("commit", {"retracted": (AXIOM,)}, True),
+        ("commit", {"tbox": True}, True),
+        ("commit", {"abridged": Extent(inserted=1, retracted=0, changed=0, removed=0)}, True),
+        ("reset", {}, True),
+    ],
+)
+def test_the_version_of_the_ontology_follows_its_axioms(kind, fields, changes):
+    async def scenario():
+        live = Live(5)
+        live.may_answer.set()
+        known = KnowledgeCache(live)
+        versions = []
+        known.listen(lambda _: versions.append(known.ontology_version))
+        before = known.ontology_version
+        live.happen(kind, *([commit(6, **fields)] if kind == "commit" else []))
+        assert (versions[0] != before) is changes  # listeners already have the new one
 
     asyncio.run(scenario())

@@ -7,6 +7,7 @@ from typing import Final
 
 from nicegui import ui
 
+from semmap.nodes.extern.web.class_requests import ClassReport, ClassRequests
 from semmap.nodes.extern.web.page import Page
 from semmap.nodes.extern.web.panels.details.proof import draw_proof
 from semmap.nodes.extern.web.panels.widgets.folded_list import draw_error, draw_folded
@@ -16,21 +17,18 @@ from semmap.nodes.extern.web.panels.widgets.select_field import SelectField
 from semmap.nodes.extern.web.views.class_details import (
     ClassDetails,
     axiom_sentences,
-    axioms_query,
+    clash_sentence,
     class_details,
     class_names,
-    users_query,
+    class_options,
+    is_unsatisfiable,
 )
-from semmap.nodes.extern.web.views.entities.forms import class_choices
 from semmap.ontology import vocabulary as v
-from semmap.schemas import errors, wording
-from semmap.schemas.commands import Add, Sparql
+from semmap.schemas import wording
 from semmap.schemas.entities import ClassInfo
-from semmap.schemas.explanations import Triple
 
 _MOST: Final = 12
 """The number of classes that are shown at once."""
-_TIMEOUT_S: Final = 20.0
 
 
 def ontology(page: Page) -> None:
@@ -41,6 +39,9 @@ def ontology(page: Page) -> None:
 class _Ontology:
     def __init__(self, page: Page) -> None:
         self._page, self._view = page, MapView.of(page)
+        self._requests = ClassRequests(page.live, self._view.knowledge)
+        self._classes: tuple[ClassInfo, ...] = ()
+        """The classes that are offered."""
         self._redraw: LazyRedraw | None = None
         self._class = (
             SelectField({}, label="Class", with_input=True, clearable=True)
@@ -51,7 +52,7 @@ class _Ontology:
         self._content = ui.column().classes("w-full gap-2 semmap-ontology")
         self._view.on_filter(self._follow_filter)
         self._view.on_entities_changed(self._again)
-        self._class.set_options(class_choices(page.live.classes), value=self._view.filter.class_ or None)
+        self._offer(self._view.filter.class_)
         self._redraw = LazyRedraw(page, self._draw)
 
     def _again(self, *_: object) -> None:
@@ -66,11 +67,12 @@ class _Ontology:
         if name in self._class.options:
             self._class.value = name
         else:  # not a class of physical things
-            self._class.set_options({**dict(self._class.options), name: name}, value=name)
+            self._offer(name)
 
     async def _draw(self) -> None:
         """Draw the class, when everything about it is known."""
         page = self._page
+        self._update_options()
         classes = {c.name: c for c in page.live.classes}
         name = str(self._class.value or "")
         if name not in classes:
@@ -82,35 +84,25 @@ class _Ontology:
         details = class_details(
             name, classes, self._view.knowledge.properties.values(), page.state.entities.values()
         )
-        axioms: tuple[str, ...] = ()
-        users: tuple[str, ...] = ()
-        problem: errors.SemmapError | None = None
-        try:
-            found = await page.live.ask(Sparql(query=axioms_query(known.iri), timeout=_TIMEOUT_S), _TIMEOUT_S)
-            named = [v.iri(classes[parent].iri) for parent in details.superclasses if parent in classes]
-            axioms = axiom_sentences(_triples(found.rows), named, self._view.knowledge.words)
-            used = await page.live.ask(Sparql(query=users_query(known.iri), timeout=_TIMEOUT_S), _TIMEOUT_S)
-            users = tuple(user for user in class_names(used.rows, classes.values()) if user != name)
-        except errors.SemmapError as error:
-            problem = error
-        clash = await self._contradiction(known)
+        report = await self._requests.fetch(known)
+        named = [v.iri(classes[parent].iri) for parent in details.superclasses if parent in classes]
+        axioms = axiom_sentences(report.axioms, named, self._view.knowledge.words)
+        users = tuple(user for user in class_names(report.users, classes.values()) if user != name)
         self._content.clear()
         with self._content:
-            self._draw_class(known, details, axioms, users, clash)
-            if problem is not None:
-                draw_error(problem.text, classes="text-negative")
+            self._draw_class(known, details, axioms, users, report)
+            if report.problem is not None:
+                draw_error(report.problem.text, classes="text-negative")
 
-    async def _contradiction(self, known: ClassInfo) -> errors.Inconsistent | None:
-        """Return why an entity of the class would contradict the map, by a dry run; None if it can exist."""
-        if not known.spatial or not self._page.is_allowed("add"):
-            return None
-        try:
-            await self._page.live.ask(Add(class_=known.name, dry_run=True))
-        except errors.Inconsistent as clash:
-            return clash
-        except errors.SemmapError:
-            return None  # for example, no free place
-        return None
+    def _update_options(self) -> None:
+        """Offer the classes of the current ontology; the chosen one is kept if it still exists."""
+        if self._page.live.classes is not self._classes:
+            self._offer(str(self._class.value or ""))
+
+    def _offer(self, chosen: str) -> None:
+        self._classes = self._page.live.classes
+        options = class_options(self._classes, chosen)
+        self._class.set_options(options, value=chosen if chosen in options else None)
 
     def _draw_class(
         self,
@@ -118,14 +110,16 @@ class _Ontology:
         details: ClassDetails,
         axioms: Sequence[str],
         users: Sequence[str],
-        clash: errors.Inconsistent | None,
+        report: ClassReport,
     ) -> None:
-        tone = "text-negative" if clash is not None else ""
+        clash = report.clash
+        is_faulty = clash is not None and is_unsatisfiable(known, clash.explanation)
+        tone = "text-negative" if is_faulty else ""
         ui.label(details.title).classes(f"semmap-heading {tone}").props('role="heading" aria-level="3"')
         ui.label(known.iri).classes("semmap-quiet semmap-iri")
         if clash is not None:
             with ui.column().classes("w-full gap-0").props('role="alert"'):
-                ui.label("Unsatisfiable: an entity of this class contradicts the ontology.").classes(tone)
+                draw_error(clash_sentence(known, clash, report.commit), classes=tone)
                 if clash.explanation is not None:
                     with ui.expansion("Proof").classes("w-full").props("dense"):
                         draw_proof(clash.explanation, self._view.knowledge.words, sentence=False)
@@ -170,7 +164,3 @@ def _draw_list(title: str, lines: Sequence[str]) -> None:
         ui.label(title).classes("semmap-title")
         with ui.column().classes("w-full gap-0"):
             draw_folded(lines)
-
-
-def _triples(rows: Sequence[Sequence[str | None]]) -> list[Triple]:
-    return [(row[0] or "", row[1] or "", row[2] or "") for row in rows]

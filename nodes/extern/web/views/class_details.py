@@ -6,11 +6,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, NamedTuple
 
 from semmap.nodes.extern.phrasing import english
+from semmap.nodes.extern.web.views.entities.forms import class_choices
 from semmap.nodes.kb_node.reasoner.explain.sentences import clauses
 from semmap.nodes.kb_node.reasoner.explain.words import Words
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from semmap.schemas.entities import ClassInfo, Entity, PropertyInfo
-from semmap.schemas.explanations import Term, Triple
+from semmap.schemas.explanations import Explanation, Term, Triple
 
 _PARTS: Final = (
     "(owl:intersectionOf|owl:unionOf|owl:complementOf|owl:oneOf|owl:someValuesFrom|owl:allValuesFrom|"
@@ -76,6 +79,33 @@ def class_names(rows: Iterable[Sequence[Term | None]], classes: Iterable[ClassIn
     """Return the names of the classes in the first column of a result."""
     names = {v.iri(c.iri): c.name for c in classes}
     return tuple(names[row[0]] for row in rows if row and row[0] in names)
+
+
+def class_options(classes: Iterable[ClassInfo], chosen: str) -> dict[str, str]:
+    """Return the classes to choose from with their labels: those of physical things, and the chosen one."""
+    classes = tuple(classes)
+    options = class_choices(classes)
+    if any(known.name == chosen for known in classes):
+        options.setdefault(chosen, chosen)
+    return options
+
+
+def is_unsatisfiable(known: ClassInfo, proof: Explanation | None) -> bool:
+    """Return whether a proof that a new entity makes the map inconsistent uses its class and axioms only.
+
+    A proof with any other fact, such as the size of the entity or another entity, holds for this map only.
+    """
+    if proof is None:
+        return False
+    facts = [triple for triple in proof.support if not is_schema(triple)]
+    return len(facts) <= 1 and all(fact[1:] == (v.RDF_TYPE, v.iri(known.iri)) for fact in facts)
+
+
+def clash_sentence(known: ClassInfo, clash: errors.Inconsistent, commit: int) -> str:
+    """Return the sentence about a class of which the map could not have another entity after a commit."""
+    if is_unsatisfiable(known, clash.explanation):
+        return "Unsatisfiable: an entity of this class contradicts the ontology."
+    return f"An entity of this class cannot be added to this map (as of commit {commit}): {clash.text}"
 
 
 def class_details(

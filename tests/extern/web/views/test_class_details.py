@@ -1,15 +1,22 @@
 import pyoxigraph
 import pytest
+from msgspec import structs
 
 from semmap.nodes.extern.web.views.class_details import (
     axiom_sentences,
     axioms_query,
+    clash_sentence,
     class_details,
     class_names,
+    class_options,
+    is_unsatisfiable,
     users_query,
 )
 from semmap.nodes.extern.web.views.proof_lines import words_of
+from semmap.nodes.kb_node.proofs import to_error
+from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
 from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from semmap.schemas.entities import PropertyInfo
 from tests.extern.web.views.sample_maps import by_name, class_, thing
 
@@ -27,6 +34,12 @@ TTL = """
 :Vessel rdfs:subClassOf [ a owl:Restriction ; owl:onProperty :madeOf ; owl:hasValue :clay ] .
 :Set owl:equivalentClass [ owl:intersectionOf ( :Thing [ owl:unionOf ( :Cup :Mug ) ] ) ] .
 """
+
+
+def _parse(turtle):
+    prefixes = f"@prefix : <{v.TBOX}> . @prefix owl: <{v.OWL}> . @prefix rdfs: <{v.RDFS}> .\n"
+    quads = pyoxigraph.parse((prefixes + turtle).encode(), format=pyoxigraph.RdfFormat.TURTLE)
+    return {tuple(str(term) for term in quad.triple) for quad in quads}
 
 
 def property_(name, **fields):
@@ -76,3 +89,44 @@ def test_a_class_has_its_neighbours_properties_and_entities():
     assert (found.superclasses, found.subclasses) == (("Vessel",), ("Mug",))
     assert found.properties == ("holds: domain and range",)
     assert (found.asserted, found.inferred) == (("a", "b"), ("m",))
+
+
+def test_the_chosen_class_is_offered_even_if_it_is_not_of_physical_things():
+    classes = [CUP, structs.replace(class_("Action"), spatial=False), class_("Bed")]
+    assert list(class_options(classes, "")) == ["Bed", "Cup"]
+    assert list(class_options(classes, "Cup")) == ["Bed", "Cup"]
+    assert class_options(classes, "Action")["Action"] == "Action"
+    assert "Removed" not in class_options(classes, "Removed")
+
+
+ONTOLOGY = """
+:Pan rdfs:subClassOf :Hot, :Cold . :Hot owl:disjointWith :Cold .
+:Tool rdfs:subClassOf [ a owl:Restriction ; owl:onProperty :size ; owl:hasValue 1 ] .
+:size a owl:DatatypeProperty, owl:FunctionalProperty .
+:Lid rdfs:subClassOf [ a owl:Restriction ; owl:onProperty :closes ; owl:hasValue :pot1 ] .
+:closes a owl:ObjectProperty ; rdfs:range :Hot .
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "facts", "expected"),
+    [
+        ("Pan", ":new a :Pan", True),
+        ("Pan", ":new a :Pan ; :size 2", True),  # the size is not part of the proof
+        ("Tool", ":new a :Tool ; :size 2", False),
+        ("Lid", ":pot1 a :Cold . :new a :Lid", False),  # another entity
+    ],
+)
+def test_a_class_is_unsatisfiable_if_the_proof_uses_axioms_only(name, facts, expected):
+    reasoner = Reasoner(_parse(ONTOLOGY))
+    with pytest.raises(Inconsistent) as raised:
+        reasoner.apply(insert=_parse(f"{facts} ."))
+    known, clash = class_(name), to_error(raised.value)
+    assert is_unsatisfiable(known, clash.explanation) is expected
+    text = clash_sentence(known, clash, 12)
+    assert text.startswith("Unsatisfiable: ") is expected
+    assert text.endswith(f"cannot be added to this map (as of commit 12): {clash.text}") is not expected
+
+
+def test_a_clash_without_a_proof_is_about_the_map():
+    assert "to this map (as of commit 3): no" in clash_sentence(CUP, errors.Inconsistent("no"), 3)
