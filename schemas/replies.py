@@ -184,12 +184,13 @@ class LoggedCommit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
 
 class Sighting(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The last pose of an entity with its provenance, and whether the entity was observed to be absent.
+    """The last pose of an entity, and whether the entity was observed to be absent.
 
-    `removed` is the commit that removed it from the map. `gone` is the commit in which perception reported
-    that the place was observed and the entity absent; None if there is none. `seen_ns` is the time of the
-    last observation by a camera [ns since 1970], since the knowledge base was started; None if there is none.
-    `text` is a summary in one sentence.
+    `pose` is the live pose, or the last stored one if that is newer than the committed pose; otherwise it is
+    the committed pose, which has the `provenance`. `removed` is the commit that removed it from the map.
+    `gone` is the commit in which perception reported that the place was observed and the entity absent; None
+    if there is none. `seen_ns` is the time of the live pose, or of the last observation by a camera since the
+    knowledge base was started [ns since 1970]; None if there is neither. `text` is a summary in one sentence.
     """
 
     name: str

@@ -32,6 +32,12 @@ class LiveEntities:
         """Store the live poses of all tracked entities, as published by the coordinator."""
         self._live, self._received_s = message.entities, self._clock()
 
+    def find(self, entity: Entity) -> Live | None:
+        """Return the live pose of a tracked or attached entity, unless it is outdated."""
+        if not (entity.tracked or entity.grip_provenance) or self._clock() - self._received_s > _TIMEOUT_S:
+            return None
+        return self._live.get(entity.name)
+
     @contextmanager
     def applied(self) -> Iterator[None]:
         """Within this context, tracked and attached entities have their live poses."""
@@ -43,15 +49,9 @@ class LiveEntities:
             yield
 
     def _moved_entities(self) -> Iterator[Entity]:
-        if not self._live or self._clock() - self._received_s > _TIMEOUT_S:
-            return
-        for name, live in self._live.items():
-            entity = self._map.find(name)
-            if (
-                entity is not None
-                and (entity.tracked or entity.grip_provenance)
-                and _is_different(entity, live)
-            ):
+        for entity in filter(None, map(self._map.find, self._live)):
+            live = self.find(entity)
+            if live is not None and _is_different(entity, live):
                 yield structs.replace(entity, pose=live.pose)
 
 

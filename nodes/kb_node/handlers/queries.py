@@ -19,7 +19,14 @@ from semmap.nodes.kb_node.answers.entity_search import EntitySearch, describe_mi
 from semmap.nodes.kb_node.answers.live_poses import LiveEntities
 from semmap.nodes.kb_node.answers.location_queries import LocationQueries
 from semmap.nodes.kb_node.answers.pages import Pages
-from semmap.nodes.kb_node.answers.past import commit_selection, differences, fact_intervals, past_map, trails
+from semmap.nodes.kb_node.answers.past import (
+    commit_selection,
+    differences,
+    fact_intervals,
+    live_sightings,
+    past_map,
+    trails,
+)
 from semmap.nodes.kb_node.answers.past.trail_recording import TrailRecorder
 from semmap.nodes.kb_node.answers.route_planning import RoutePlanning
 from semmap.nodes.kb_node.answers.sightings import Sightings, describe_closed, find_closed_container
@@ -29,6 +36,7 @@ from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from semmap.nodes.kb_node.relations.free_room import find_room
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.nodes.kb_node.relations.selection import is_in
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.shacl import violations
 from semmap.nodes.kb_node.shacl.validation_process import ShapeValidator
@@ -296,7 +304,8 @@ class QueryHandlers:
         found = differences.find_spells(self._journal, self._past, query, limits)
         if query.relation != "isLocatedIn":
             return found
-        return trails.add_visits(found, trails.Trails(self._trail_lines(), {found.subject}), time.time_ns())
+        now_ns = time.time_ns()
+        return trails.add_visits(found, trails.Trails(self._trail_lines(), now_ns, {found.subject}), now_ns)
 
     def _trail_lines(self) -> Iterator[TrailLine]:
         return trail_file.read_lines(self._journal.path.parent)
@@ -351,20 +360,33 @@ class QueryHandlers:
         """Return where an entity was last seen, or where it is."""
         name = self._resolve_past(query.name)
         entity = self._map.find(name)
-        if entity is not None and not self.sightings.is_missing(entity):
-            found = self.sightings.describe_present(entity)
-            if entity.tracked:
-                self.trail.write()
-                return self._aside.submit(
-                    lambda: trails.add_last_pose(
-                        found, trails.Trails(self._trail_lines(), {found.name}), time.time_ns()
-                    )
-                )
-            closed = find_closed_container(self._map, entity)
-            if closed is None:
-                return found
-            return structs.replace(found, text=f"{found.text}; {describe_closed(closed)}")
-        return self._aside.submit(self.sightings.describe_removed, name, entity)
+        if entity is None or self.sightings.is_missing(entity):
+            return self._aside.submit(self.sightings.describe_removed, name, entity)
+        found, closed = self.sightings.describe_present(entity), self._describe_closed(entity)
+        if (live := self.live.find(entity)) is not None:
+            places = self.trail.find_places(live.pose.position_m)
+            found = live_sightings.set_live_pose(found, live.pose, places, time.time_ns())
+        elif entity.tracked:
+            self.trail.write()
+            return self._aside.submit(self._find_last_pose, found, closed)
+        return structs.replace(found, text=f"{found.text}{closed}")
+
+    def _find_last_pose(self, found: Sighting, closed: str) -> Sighting:
+        now_ns = time.time_ns()
+        last = trails.Trails(self._trail_lines(), now_ns, {found.name})
+        found = live_sightings.set_last_pose(found, last, now_ns)
+        return structs.replace(found, text=f"{found.text}{closed}")
+
+    def _describe_closed(self, entity: Entity) -> str:
+        """Return `; not observable: ...` if an entity is in a closed container, also by its live pose."""
+        closed = find_closed_container(self._map, entity)
+        if closed is not None and self.live.find(entity) is not None:
+            with self.live.applied():
+                space = self._map.places.space()
+                solid = space.solids.get(entity.name)
+                if solid is None or not is_in(space, solid, {closed.entity.name}, frozenset()):
+                    return ""
+        return "" if closed is None else f"; {describe_closed(closed)}"
 
     def _resolve_past(self, word: str) -> str:
         """Return the name, present or former, that a word means. Raises UnknownName, BadRequest."""
@@ -433,7 +455,8 @@ class QueryHandlers:
         return self._location_queries.renew(renewal) or self._sparql.ask(renewal, self._map.seq)
 
     def close(self) -> None:
-        """Stop the threads."""
+        """Stop the threads, and write the end of the live poses."""
+        self.trail.close()
         self._is_over.set()
         self._validator.close()
         self._second_opinions.close()

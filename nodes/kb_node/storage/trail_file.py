@@ -6,9 +6,11 @@ the newest segment is full, it replaces the older one, whose lines are dropped.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator
+from contextlib import ExitStack
 from pathlib import Path
-from typing import Final, Literal
+from typing import BinaryIO, Final, Literal
 
 import msgspec
 from msgspec import Struct
@@ -19,6 +21,11 @@ from semmap.schemas.entities import Vector
 FILENAME: Final = f"{JOURNAL}.trail"
 """Beside the journal, with which it is archived if a new map is started."""
 _OLDER: Final = f"{FILENAME}.1"
+ON_PERIOD_NS: Final = 5_000_000_000
+"""The interval of the `on` lines.
+
+If no line follows within twice this time, recording ended with the last one, also without an `end`.
+"""
 SEGMENT_BYTES: Final = 16 << 20
 """The size of a full segment. The file and the older segment together have at most twice this size."""
 
@@ -70,16 +77,27 @@ class TrailFile:
 def read_lines(folder: Path) -> Iterator[TrailLine]:
     """Yield the complete lines of both segments, in order. For any thread."""
     decoder = msgspec.json.Decoder(TrailLine)
-    older, newer = _read(folder / _OLDER), _read(folder / FILENAME)
-    for line in (*older, *newer):
+    for line in _read_segments(folder):
         try:
             yield decoder.decode(line)
-        except msgspec.DecodeError:  # written in part when the process or the machine ended
+        except (msgspec.DecodeError, UnicodeDecodeError):  # torn by the end of the process, or damaged
             continue
 
 
-def _read(file: Path) -> list[bytes]:
+def _read_segments(folder: Path) -> list[bytes]:
+    """Return the lines of both segments, also if a new segment is begun meanwhile.
+
+    The newer segment is opened first: if it is then moved, it is still read, once.
+    """
+    with ExitStack() as opened:
+        newer, older = (_open(folder / name, opened) for name in (FILENAME, _OLDER))
+        if newer and older and os.path.sameopenfile(newer.fileno(), older.fileno()):
+            older = None
+        return [line for file in (older, newer) if file for line in file.read().splitlines()]
+
+
+def _open(file: Path, opened: ExitStack) -> BinaryIO | None:
     try:
-        return file.read_bytes().splitlines()
+        return opened.enter_context(file.open("rb"))
     except FileNotFoundError:
-        return []
+        return None

@@ -6,12 +6,15 @@ import time
 import pytest
 
 from semmap.nodes.kb_node.answers.sightings import Sightings, describe_closed, find_closed_container
+from semmap.nodes.kb_node.handlers.queries import QueryHandlers
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
+from semmap.schemas.commands import LastSeen
 from semmap.schemas.commits import Edit, NewEntity, Statement, Transaction
-from semmap.schemas.entities import Pose
+from semmap.schemas.entities import Live, Pose
+from semmap.schemas.live import LivePoses
 from semmap.schemas.perception import MISSING, Observation, Observations
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction
@@ -127,6 +130,19 @@ def test_milk_in_a_closed_fridge_is_not_observable_since_it_was_closed(kitchen):
     assert re.fullmatch(said, describe_closed(closed))
     assert find_closed_container(kitchen, kitchen.entity("cup1")) is None
     assert find_closed_container(kitchen, kitchen.entity("fridge1")) is None
+
+
+@pytest.mark.parametrize(("x", "is_inside"), [(-0.1, True), (-0.09, True), (3.0, False)])
+def test_a_tracked_carton_is_not_observable_while_it_is_live_in_a_closed_fridge(kitchen, x, is_inside):
+    say(kitchen, 2, "false")
+    kitchen.commit(transaction(3, edit=(Edit(name="carton1", tracked="sim"),)))
+    queries = QueryHandlers(kitchen, kitchen._journal, sparql=None, location_queries=None)
+    live = Live(pose=Pose(position_m=(x, 0.0, 0.645)), stamp_ns=1, age_s=0.0, source="sim")
+    queries.on_live_poses(LivePoses(stamp_ns=1, entities={"carton1": live}))
+    text = queries.on_last_seen(LastSeen(name="carton1")).text
+    assert text.startswith(f"live now at ({x:.2f}, 0.00, 0.65) m" if is_inside else "live now at (3.00")
+    assert ("not observable: fridge1 has been closed" in text) == is_inside
+    queries.close()
 
 
 def test_it_is_observable_once_the_fridge_is_open(kitchen):

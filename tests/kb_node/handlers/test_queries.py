@@ -1,9 +1,15 @@
 """Handlers of queries, without the wire."""
 
+import re
+
 import pytest
 
 from semmap.nodes.kb_node.handlers.queries import QueryHandlers
-from semmap.schemas.commands import Rules
+from semmap.nodes.kb_node.storage import trail_file
+from semmap.schemas.commands import LastSeen, Rules
+from semmap.schemas.commits import Edit
+from semmap.schemas.entities import Live, Pose, orientation_from_yaw
+from semmap.schemas.live import LivePoses
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
 
@@ -29,3 +35,41 @@ def test_rules_are_listed_with_their_matches_in_the_map(chairs):
     found = {rule.name: rule for rule in queries.on_rules(Rules())}
     assert (found["seats"].text, found["seats"].holds) == ("if x is a chair, then x is a Seat", 2)
     assert (found["off"].text, found["off"].unsupported) == ("", "empty")
+
+
+@pytest.fixture
+def queries(chairs):
+    chairs.commit(transaction(2, edit=(Edit(name="chair1", tracked="stream"),)))
+    made = QueryHandlers(chairs, chairs._journal, sparql=None, location_queries=None)
+    yield made
+    made.close()
+
+
+LIVE = Live(
+    pose=Pose(position_m=(7.0, 2.0, 0.0), orientation_wxyz=orientation_from_yaw(1.0)),
+    stamp_ns=1,
+    age_s=0.0,
+    source="stream",
+)
+
+
+def test_last_seen_returns_the_live_pose_without_reading_the_trail(queries, monkeypatch):
+    queries.on_live_poses(LivePoses(stamp_ns=1, entities={"chair1": LIVE}))
+    monkeypatch.delattr(trail_file, "read_lines")
+    found = queries.on_last_seen(LastSeen(name="chair1"))
+    assert (found.pose, found.text) == (LIVE.pose, "live now at (7.00, 2.00, 0.00) m")
+
+
+def test_last_seen_returns_the_last_stored_position_after_the_live_poses(queries):
+    queries.on_live_poses(LivePoses(stamp_ns=1, entities={"chair1": LIVE}))
+    queries.on_live_poses(LivePoses(stamp_ns=2, entities={}))
+    found = queries.on_last_seen(LastSeen(name="chair1")).result(timeout=60)
+    assert found.pose == Pose(position_m=(7.0, 2.0, 0.0))
+    assert re.fullmatch(r"live \d+ s ago at \(7.00, 2.00, 0.00\) m", found.text)
+
+
+def test_closing_writes_the_end_of_live_poses(queries, chairs):
+    queries.on_live_poses(LivePoses(stamp_ns=1, entities={"chair1": LIVE}))
+    queries.close()
+    kinds = [line.kind for line in trail_file.read_lines(chairs._journal.path.parent)]
+    assert kinds == ["start", "at", "end"]

@@ -10,13 +10,12 @@ from msgspec import structs
 
 from semmap.nodes.kb_node.relations.selection import resolve_word
 from semmap.nodes.kb_node.storage.history import HistoryReader
-from semmap.nodes.kb_node.storage.trail_file import TrailLine
+from semmap.nodes.kb_node.storage.trail_file import ON_PERIOD_NS, TrailLine
 from semmap.schemas import errors, wording
 from semmap.schemas.commands import FindTrail
 from semmap.schemas.entities import Entity
 from semmap.schemas.map_history import Spells, Trail, TrailPoint, Visit
 from semmap.schemas.moments import When
-from semmap.schemas.replies import Sighting
 
 _BRIDGED_NS: Final = 30_000_000_000
 """A visit continues after a gap in the live poses of at most this length."""
@@ -26,9 +25,9 @@ _NO_END: Final = 1 << 63
 
 
 class Trails:
-    """The visits and positions of the entities in a trail, in order of time."""
+    """The visits and positions of the entities in a trail, in order of time, as known at `now_ns`."""
 
-    def __init__(self, lines: Iterable[TrailLine], names: Set[str] | None = None) -> None:
+    def __init__(self, lines: Iterable[TrailLine], now_ns: int, names: Set[str] | None = None) -> None:
         """Read the lines, or only those about some entities."""
         self.visits: list[Visit] = []
         self.points: dict[str, list[TrailPoint]] = {}
@@ -47,9 +46,10 @@ class Trails:
             elif line.kind == "end":
                 self._interrupt(line.name, line.ns)
             elif line.kind == "start":
-                for name in self.points:
-                    self._interrupt(name, last_ns)
-            last_ns = max(last_ns, line.ns)
+                self._interrupt_all(last_ns)
+            last_ns = line.ns
+        if now_ns - last_ns > 2 * ON_PERIOD_NS:  # recording stopped, perhaps without an end
+            self._interrupt_all(last_ns)
         self.visits.sort(key=lambda visit: visit.since_ns)
 
     def _place(self, line: TrailLine) -> None:
@@ -74,6 +74,10 @@ class Trails:
                 self.visits.append(Visit(name=line.name, place=place, since_ns=line.ns))
         for key in [key for key in self._interrupted if key[0] == line.name]:
             del self._interrupted[key]
+
+    def _interrupt_all(self, ns: int) -> None:
+        for name in self.points:
+            self._interrupt(name, ns)
 
     def _interrupt(self, name: str, ns: int) -> None:
         """End the visits and the last position of an entity whose live poses ended."""
@@ -116,7 +120,7 @@ def find_trail(
     every = list(lines)
     names = _resolve({line.name for line in every if line.name}, present, query.name)
     known_places = {place for line in every for place in line.places}
-    trails = Trails(every, names)
+    trails = Trails(every, now_ns, names)
     places = None if query.in_ is None else _resolve(known_places, present, query.in_, are_places=True)
     first_ns, last_ns = _read_period(past, query, now_ns)
     visits = trails.select_visits(names, places, first_ns, last_ns)
@@ -131,8 +135,7 @@ def find_trail(
         text = _describe_visits(
             sorted(names), query.in_, visits, max(first_ns, 0), min(last_ns, now_ns), now_ns
         )
-        stored = wording.duration((now_ns - trails.kept_since_ns) / 1e9)
-        text += f" (live poses are stored for the last {stored})"
+        text += f" (live poses are stored for the last {describe_age(trails.kept_since_ns, now_ns)})"
     track = _thin(points, query.points)
     return Trail(
         names=tuple(sorted(names)),
@@ -150,7 +153,7 @@ def add_visits(spells: Spells, trails: Trails, now_ns: int) -> Spells:
     visits = trails.select_visits({spells.subject}, {spells.object})
     if spells.subject not in trails.points:
         return spells
-    stored = f"live poses, stored for {wording.duration((now_ns - trails.kept_since_ns) / 1e9)}"
+    stored = f"live poses, stored for {describe_age(trails.kept_since_ns, now_ns)}"
     if not visits:
         return structs.replace(spells, text=f"{spells.text}; its {stored}, show no visit")
     by_poses = describe(visits, 0, now_ns, now_ns)
@@ -159,22 +162,6 @@ def add_visits(spells: Spells, trails: Trails, now_ns: int) -> Spells:
     else:
         text = f"{by_poses}, by its {stored}; no commit has a position of it there"
     return structs.replace(spells, text=text, visits=tuple(visits[-_MOST_VISITS:]))
-
-
-def add_last_pose(found: Sighting, trails: Trails, now_ns: int) -> Sighting:
-    """Return where a tracked entity was last seen, by its last live pose if that is newer than its commit."""
-    points = trails.points.get(found.name)
-    if not points:
-        return found
-    last = points[-1]
-    seen_ns = last.until_ns or now_ns
-    if seen_ns <= max(found.provenance.stamp_ns, found.seen_ns or 0):
-        return found
-    x, y, z = last.at
-    where = f" in {wording.few(last.places, _FEW)}" if last.places else ""
-    when = "now" if last.until_ns is None else f"{wording.duration((now_ns - seen_ns) / 1e9)} ago"
-    text = f"live {when} at ({x:.2f}, {y:.2f}, {z:.2f}) m{where}"
-    return structs.replace(found, seen_ns=seen_ns, text=text)
 
 
 def _resolve(
@@ -257,13 +244,16 @@ def describe(visits: Sequence[Visit], first_ns: int, last_ns: int, now_ns: int) 
     total_s = sum(_lasted_s(visit, first_ns, last_ns) for visit in visits)
     often = "once" if len(visits) == 1 else f"{len(visits)} times"
     if newest.until_ns is None:
-        last = f"has been in {newest.place} for {wording.duration((now_ns - newest.since_ns) / 1e9)}"
-    elif not newest.left:
-        ago = wording.duration((now_ns - newest.until_ns) / 1e9)
-        last = f"was in {newest.place} when its live poses ended {ago} ago"
+        last = f"has been in {newest.place} for {describe_age(newest.since_ns, now_ns)}"
     else:
-        last = f"was in {newest.place} until {wording.duration((now_ns - newest.until_ns) / 1e9)} ago"
+        how = "until" if newest.left else "when its live poses ended"
+        last = f"was in {newest.place} {how} {describe_age(newest.until_ns, now_ns)} ago"
     return f"{newest.name} {last}, {often}, {wording.duration(total_s)} in all"
+
+
+def describe_age(ns: int, now_ns: int) -> str:
+    """Return `12 s`; `0 s` for a time that is in the future because the clock was set back."""
+    return wording.duration(max(0, now_ns - ns) / 1e9)
 
 
 def _lasted_s(visit: Visit, first_ns: int, last_ns: int) -> float:

@@ -1,79 +1,18 @@
-"""The trail of live poses: recording, the file, and the answers from it."""
+"""The answers from the trail of live poses."""
 
 from __future__ import annotations
 
 import itertools
-from types import SimpleNamespace
 
 import pytest
 
 from semmap.nodes.kb_node.answers.past import trails
-from semmap.nodes.kb_node.answers.past.trail_recording import TrailRecorder
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.storage.trail_file import FILENAME, TrailFile, TrailLine, read_lines
 from semmap.schemas import errors
-from semmap.schemas.commands import FindTrail
-from semmap.schemas.entities import Live, Pose, Provenance
-from semmap.schemas.live import LivePoses
 from semmap.schemas.map_history import Spells
-from semmap.schemas.moments import read_moment
-from semmap.schemas.replies import Sighting
+from tests.kb_node.answers.past.recording import BEGIN, ROOMS, Recording, S
 from tests.kb_node.relations.entities import thing
-
-S = 1_000_000_000
-BEGIN = 1_700_000_000 * S
-ROOMS = [
-    thing("hall1", (0.0, 0.0, 0.0), size=(4.0, 4.0, 3.0), place=True),
-    thing("kitchen1", (4.0, 0.0, 0.0), size=(4.0, 4.0, 3.0), place=True),
-    thing("flat1", (2.0, 0.0, 0.0), size=(8.0, 4.0, 3.0), place=True),
-]
-PAST = SimpleNamespace(moment=read_moment)
-PRESENT = [*ROOMS, thing("r1", (0.0, 0.0, 0.0), "box", size=(0.4, 0.4, 0.4)), thing("cup1", (0.0, 0.0, 0.0))]
-
-
-class Recording:
-    """A recorder with a clock of its own, in steps of 0.1 s."""
-
-    def __init__(self, folder, **options):
-        self.folder, self.now_ns, self.problems = folder, BEGIN, []
-        self.version = 1
-        self.begin(**options)
-
-    def begin(self, **options):
-        self.space = Space(ROOMS)
-        self.recorder = TrailRecorder(
-            TrailFile(self.folder, **options),
-            lambda: (self.version, self.space.solids.values(), Thresholds()),
-            self.problems.append,
-            lambda: self.now_ns,
-        )
-
-    def publish(self, **at):
-        live = {
-            name: Live(pose=Pose(position_m=position), stamp_ns=1, age_s=0.0, source="stream")
-            for name, position in at.items()
-        }
-        self.recorder.update(LivePoses(stamp_ns=1, entities=live))
-
-    def drive(self, start_x, end_x, seconds, name="r1"):
-        for i in range(seconds * 10):
-            x = start_x + (end_x - start_x) * (i + 1) / (seconds * 10)
-            self.now_ns += S // 10
-            self.publish(**{name: (x, 0.0, 0.0)})
-            if i % 10 == 9:
-                self.recorder.write()
-
-    def wait(self, seconds):
-        for _ in range(seconds):
-            self.now_ns += S
-            self.recorder.write()
-
-    def ask(self, name="r1", **fields):
-        self.recorder.write()
-        return trails.find_trail(
-            read_lines(self.folder), PAST, PRESENT, FindTrail(name=name, **fields), self.now_ns
-        )
 
 
 @pytest.fixture
@@ -154,7 +93,7 @@ def test_a_restart_continues_a_visit_and_a_long_gap_ends_it(recording):
     recording.begin()
     recording.now_ns += 600 * S
     recording.drive(0.5, 0.6, 1)
-    assert spans(recording.ask(in_="hall1")) == [("hall1", 0, 8), ("hall1", 609, None)]
+    assert spans(recording.ask(in_="hall1")) == [("hall1", 0, 9), ("hall1", 609, None)]
 
 
 def test_torn_lines_are_left_out(recording):
@@ -165,7 +104,7 @@ def test_torn_lines_are_left_out(recording):
     assert len(list(read_lines(recording.folder))) == whole - 1
     recording.begin()
     recording.drive(5.0, 4.9, 1)
-    assert len(list(read_lines(recording.folder))) == whole + 2, "a start, a position, and that it is on"
+    assert len(list(read_lines(recording.folder))) == whole + 3, "a start, two positions, and that it is on"
 
 
 def test_the_file_is_bounded_and_begins_with_the_state(tmp_path):
@@ -248,26 +187,6 @@ def test_when_includes_visits_that_no_commit_has(place, text):
         total_s=0.0,
         text=f"r1 was never in {place}",
     )
-    found = trails.add_visits(never, trails.Trails(lines), BEGIN + 20 * S)
+    found = trails.add_visits(never, trails.Trails(lines, BEGIN + 20 * S), BEGIN + 20 * S)
     assert found.text == text
     assert len(found.visits) == (place == "kitchen1")
-
-
-def test_the_last_live_pose_is_where_an_entity_was_last_seen():
-    lines = [
-        TrailLine(BEGIN, "at", "r1", (3.0, 0.0, 0.0), ("kitchen1",)),
-        TrailLine(BEGIN + 10 * S, "end", "r1"),
-    ]
-    placed = Sighting(
-        name="r1",
-        pose=Pose(position_m=(0.0, 0.0, 0.0)),
-        provenance=Provenance(commit=3, stamp_ns=BEGIN - S, source="operator", agent="", reason="add r1"),
-        removed=None,
-        text="placed",
-    )
-    found = trails.add_last_pose(placed, trails.Trails(lines), BEGIN + 70 * S)
-    assert (found.text, found.seen_ns) == (
-        "live 60 s ago at (3.00, 0.00, 0.00) m in kitchen1",
-        BEGIN + 10 * S,
-    )
-    assert trails.add_last_pose(placed, trails.Trails([]), BEGIN).text == "placed"
