@@ -62,6 +62,7 @@ EXPECTED = {
     "semmap set door1 isOpen false --if-is yes": 1,  # it is shut already
     "semmap explain apple1 isOn table1": 1,  # it is in a bowl
     "semmap explain apple1 isInside drawer1": 1,  # so it is not in a drawer there
+    "semmap check --shapes demo/shapes.ttl": 1,  # which warns of the fridge
 }
 """Exit status of those that are printed because they are refused."""
 

@@ -12,7 +12,7 @@ from typing import IO
 from tests.suite.failures import Failure, read_failures
 
 PARTS: tuple[tuple[str, ...], ...] = (
-    ("-n", "4", "--dist", "worksteal", "--deal", "--ignore", "tests/page"),  # many wait for a system
+    ("-n", "3", "--dist", "worksteal", "--deal", "--ignore", "tests/page"),  # many wait for a system
     ("-n", "3", "--dist", "loadfile", "tests/page"),  # after the others: Chromium uses both cores
 )
 """Arguments for pytest. The parts run one after the other."""
