@@ -8,7 +8,7 @@ from typing import NamedTuple
 from xml.etree import ElementTree as Xml
 
 from semmap.schemas import entities, errors
-from semmap.schemas.entities import IDENTITY, Pose, Size, Vector
+from semmap.schemas.entities import IDENTITY, REACH_M, Pose, Size, Vector
 from semmap.schemas.nesting import require_shallow_xml
 
 _ORIGIN = Pose(position_m=(0.0, 0.0, 0.0))
@@ -51,7 +51,12 @@ def _read_links(robot: Xml.Element) -> dict[str, Link]:
             raise ValueError(f"the link {child.attrib['link']} has two parents")
         joints[child.attrib["link"]] = (parent.attrib["link"], _read_origin(joint))
     frames: dict[str, Pose] = {}
-    return {name: _read_link(link, _find_frame(name, joints, frames)) for name, link in links.items()}
+    found = {name: _read_link(link, _find_frame(name, joints, frames)) for name, link in links.items()}
+    for name, (frame, box, _) in found.items():
+        lengths = (*frame.position_m, *(() if box is None else (*box[0].position_m, *box[1])))
+        if not all(abs(length) <= REACH_M for length in lengths):
+            raise ValueError(f"the link {name} reaches farther than {REACH_M:g} m from the root")
+    return found
 
 
 def _find_frame(name: str, joints: Mapping[str, tuple[str, Pose]], frames: dict[str, Pose]) -> Pose:

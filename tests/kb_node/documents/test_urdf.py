@@ -95,6 +95,10 @@ def test_meshes_are_listed_and_have_no_box():
             robot('<link name="a"><visual><geometry><cone/></geometry></visual></link>'),
             "unknown shape 'cone'",
         ),
+        (
+            robot('<link name="a"/><link name="b"/>' + joint("a", "b", "1e300 1e300 0")),
+            "the link b reaches farther than 10000 m from the root",
+        ),
     ],
 )
 def test_a_wrong_file_is_rejected_in_one_line(content, text):
