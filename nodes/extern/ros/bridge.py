@@ -12,7 +12,7 @@ from semmap.nodes.drawing.scene_state import SceneState
 from semmap.nodes.drawing.surfaces import Kind, SurfaceCache
 from semmap.nodes.extern.ros import messages
 from semmap.nodes.extern.ros.messages import Moment
-from semmap.nodes.extern.ros.planning_scene import forget_scene, planning_scene
+from semmap.nodes.extern.ros.planning_scene import follow_scene, forget_scene, planning_scene
 from semmap.nodes.extern.ros.published_frames import Placed, PublishedFrames
 from semmap.nodes.extern.ros.shapes import ShapeFeed
 from semmap.nodes.extern.ros.things import Thing, located_things
@@ -219,8 +219,8 @@ class Bridge:
             self._put(self._topics.transforms, messages.transforms(news, at, moved))
 
     def _plan(self, at: Moment) -> None:
-        before, self._planned = self._planned, self._things
-        scene = planning_scene(self._things, before, self._known_surfaces(), at)
+        scene = planning_scene(self._things, self._planned, self._known_surfaces(), at)
+        self._planned = follow_scene(self._planned, self._things)
         if scene is not None:
             self._put(self._topics.planning_scene, scene)
 

@@ -15,7 +15,7 @@ from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.ros import messages
 from semmap.nodes.extern.ros.bridge import Topics
 from semmap.nodes.extern.ros.messages import Moment
-from semmap.nodes.extern.ros.planning_scene import planning_scene
+from semmap.nodes.extern.ros.planning_scene import follow_scene, planning_scene
 from semmap.nodes.extern.ros.shapes import ShapeTable
 from semmap.nodes.extern.ros.things import Thing, located_things
 from semmap.nodes.extern.ros.types import encode, store
@@ -146,7 +146,7 @@ class _Recording:
             self._add(self._of.transforms, messages.transforms(things, at), state)
             if (scene := planning_scene(state.things, before, {}, at)) is not None:
                 self._add(self._of.planning_scene, scene, state)
-            before = state.things
+            before = follow_scene(before, state.things)
         self._writer.finish()  # type: ignore[no-untyped-call]
         return self._count
 

@@ -13,7 +13,7 @@ from semmap.nodes.extern.ros.messages import Moment, class_colour
 from semmap.nodes.extern.ros.things import Thing, is_near, pose_of
 from semmap.nodes.extern.ros.types import new
 from semmap.schemas import errors
-from semmap.schemas.entities import relative
+from semmap.schemas.entities import Pose, compose, relative
 from semmap.schemas.scenes import Surface
 
 _ADD, _REMOVE, _MOVE = 0, 1, 3
@@ -28,6 +28,8 @@ Things = Mapping[str, Thing]
 
 def planning_scene(now: Things, before: Things, surfaces: Surfaces, at: Moment) -> Any | None:
     """Return a `moveit_msgs/PlanningScene` with the differences of two states; None without any.
+
+    `before` is the state that a planner has, which `follow_scene` returns.
 
     The id of an object is its name, and the `type` its class. Its shape is the mesh in `surfaces` with its
     joints moved, its parts, or its bounding box. Places, objects without a size, and robots with their parts
@@ -81,13 +83,39 @@ def forget_scene(sent: Things, now: Things) -> dict[str, Thing]:
     }
 
 
+def follow_scene(sent: Things, now: Things) -> dict[str, Thing]:
+    """Return the objects as a planner has them after `planning_scene` was sent from `sent` to `now`.
+
+    Changes within the tolerances are not sent. The poses that a planner has are kept, so that the changes add
+    up until they are sent. It moves attached objects with their links.
+    """
+    followed = dict(now)
+    for name, thing in now.items():
+        was = sent.get(name)
+        if was is None or not _is_solid(thing) or not thing.has_same_shape(was):
+            continue
+        if thing.grasp is None:
+            if thing.has_same_pose(was):
+                followed[name] = thing._replace(pose=was.pose)
+        elif not _is_regripped(thing, now, was, sent):
+            link, earlier = now.get(thing.grasp.link), _find_grip(was, sent)
+            if link is not None and earlier is not None:
+                followed[name] = thing._replace(pose=compose(link.pose, earlier))
+    return followed
+
+
 def _is_regripped(thing: Thing, now: Things, was: Thing, before: Things) -> bool:
     """Return whether the pose of a held object in the frame of its link has changed."""
-    link = "" if thing.grasp is None else thing.grasp.link
-    if link not in now or link not in before:
+    grip, earlier = _find_grip(thing, now), _find_grip(was, before)
+    if grip is None or earlier is None:
         return False
-    grip, earlier = relative(thing.pose, now[link].pose), relative(was.pose, before[link].pose)
     return not is_near(grip, earlier, _SAME_GRIP_M, _SAME_GRIP)
+
+
+def _find_grip(thing: Thing, things: Things) -> Pose | None:
+    """Return the pose of a held object in the frame of its link, or None if the link has no pose."""
+    link = None if thing.grasp is None else things.get(thing.grasp.link)
+    return None if link is None else relative(thing.pose, link.pose)
 
 
 def _obstacles(things: Things) -> dict[str, Thing]:

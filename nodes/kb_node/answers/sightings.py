@@ -104,7 +104,10 @@ class Closed(NamedTuple):
 
 
 def find_closed_container(semantic_map: SemanticMap, entity: Entity) -> Closed | None:
-    """Return the innermost closed container that an entity is inside, as far as the map states it."""
+    """Return the innermost closed container that an entity is inside, as far as the map states it.
+
+    A fixture in the top of a closed counter is in view, and so are its contents.
+    """
     seen = {entity.name}
     inside = [entity]
     while inside:
@@ -112,7 +115,7 @@ def find_closed_container(semantic_map: SemanticMap, entity: Entity) -> Closed |
         around = semantic_map.reasoner.given(v.iri(inner.iri), _IS_INSIDE, None)
         for name in sorted(v.entity_name(outer) for _, _, outer in around):
             outer = semantic_map.find(name)
-            if outer is None or name in seen:
+            if outer is None or name in seen or _is_let_into_top(semantic_map, inner, outer):
                 continue
             if outer.properties.get(IS_OPEN) is False:
                 return Closed(outer)
@@ -121,6 +124,14 @@ def find_closed_container(semantic_map: SemanticMap, entity: Entity) -> Closed |
             seen.add(name)
             inside.append(outer)
     return None
+
+
+def _is_let_into_top(semantic_map: SemanticMap, inner: Entity, outer: Entity) -> bool:
+    """Return whether an entity is a fixture that is let into the top of another one."""
+    space = semantic_map.places.space()
+    solid = space.solids.get(inner.name)
+    container = None if solid is None else space.spatial_relations(solid).container
+    return container is not None and container[0].name == outer.name and container[1].by_edge
 
 
 def _find_closing_joints(semantic_map: SemanticMap, inner: Entity, outer: Entity) -> tuple[str, ...]:

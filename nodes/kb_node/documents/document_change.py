@@ -10,7 +10,7 @@ from types import MappingProxyType
 
 from msgspec import structs
 
-from semmap.nodes.kb_node.documents import abox_document, rdf, urdf, urdf_poses
+from semmap.nodes.kb_node.documents import abox_document, rdf
 from semmap.nodes.kb_node.documents.replacement import Replacement, find_replacement
 from semmap.nodes.kb_node.documents.tbox import tbox_declarations, tbox_validation
 from semmap.nodes.kb_node.entities.aligned_values import shift_along_z
@@ -24,7 +24,6 @@ from semmap.schemas.bridge import LoadDocument, LoadTBox
 from semmap.schemas.commits import Transaction
 from semmap.schemas.entities import Pose
 from semmap.schemas.explanations import Term, Triple
-from semmap.schemas.packing import unpacked
 
 
 def make_document_transaction(
@@ -40,11 +39,6 @@ def make_document_transaction(
     Raises UnknownClass, BadFile for a TBox, UnknownName for undescribed individuals if the load is strict,
     and NameTaken if it may only add and the document has other values for what is in the map.
     """
-    of_urdf: list[str] = []
-    if load.urdf:
-        links = urdf.read(unpacked(load.urdf, "the URDF file"), "the URDF file")
-        known = semantic_map.classes.alignments
-        triples, of_urdf = urdf_poses.add_poses(list(triples), links, known, "the URDF file")
     filtered = abox_document.filter_document(
         triples,
         semantic_map.classes,
@@ -56,7 +50,6 @@ def make_document_transaction(
         ),
         find_frame=lambda iri: None if load.replace else _find_frame(semantic_map, iri),
     )
-    filtered.notes[:0] = of_urdf
     stays = semantic_map.tbox.__contains__ if load.replace else lambda _: True
     if found := abox_document.find_undescribed(filtered.triples, semantic_map.reasoner, stays):
         note = abox_document.undescribed_note(found)

@@ -24,7 +24,10 @@ from semmap.nodes.kb_node.documents.parser_process import (
     OwlRequest,
     Reply,
     Request,
+    UrdfReply,
+    UrdfRequest,
 )
+from semmap.nodes.kb_node.documents.urdf import Link
 from semmap.nodes.kb_node.reasoner import Inconsistent
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts, unpack
 from semmap.nodes.runtime.isolated_process import IsolatedProcess, program
@@ -77,6 +80,17 @@ class IsolatedParser(IsolatedProcess):
                 f"{filename or 'the document'}: {error}; define a class for inner ones"
             ) from None
         return document
+
+    def read_urdf(self, content: bytes, filename: str) -> dict[str, Link]:
+        """Return the links of a URDF file like `urdf.read`. Any thread may call this.
+
+        Raises BadFile also for a file that ends its process or exceeds a limit.
+        """
+        request = msgpack.encode(UrdfRequest(content, filename))
+        reply = msgpack.decode(self.exchange(request, filename), type=UrdfReply)
+        if reply.error:
+            raise errors.BadFile(reply.error)
+        return reply.links
 
     def write_owl(
         self, triples: Iterable[Triple], syntax: OwlFormat, prefixes: Mapping[str, str]

@@ -1,4 +1,4 @@
-"""The process that parses documents, writes those of OWL and closes TBoxes, within limits of memory and time.
+"""The process that parses documents and URDF, writes OWL and closes TBoxes, within limits of memory and time.
 
 `isolated_parser.py` starts it.
 """
@@ -9,7 +9,7 @@ from array import array
 
 from msgspec import Struct, msgpack
 
-from semmap.nodes.kb_node.documents import owl_export, rdf
+from semmap.nodes.kb_node.documents import owl_export, rdf, urdf
 from semmap.nodes.kb_node.documents.owl_export import OwlDocument, OwlFormat
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner.explanations import Explanation
@@ -60,6 +60,20 @@ class Reply(Struct, frozen=True, tag=True):
         return rdf.Document(list(zip(terms, terms, terms, strict=True)), self.prefixes, self.notes)
 
 
+class UrdfRequest(Struct, frozen=True, tag=True):
+    """A URDF file to parse; see `urdf.read`."""
+
+    content: bytes
+    filename: str
+
+
+class UrdfReply(Struct, frozen=True, tag=True):
+    """The links of a URDF file, or the error text of a file that is not valid."""
+
+    error: str = ""
+    links: dict[str, urdf.Link] = {}
+
+
 class OwlRequest(Struct, frozen=True, tag=True):
     """Triples to write in a syntax of OWL; see `owl_export.write`."""
 
@@ -91,9 +105,11 @@ class ClosureReply(Struct, frozen=True, tag=True):
 
 def answer(content: bytes) -> bytes:
     """Return the encoded reply to an encoded request."""
-    request = msgpack.decode(content, type=Request | OwlRequest | ClosureRequest)
+    request = msgpack.decode(content, type=Request | UrdfRequest | OwlRequest | ClosureRequest)
     if isinstance(request, Request):
         return msgpack.encode(_parse(request))
+    if isinstance(request, UrdfRequest):
+        return msgpack.encode(_parse_urdf(request))
     return msgpack.encode(_write(request) if isinstance(request, OwlRequest) else _close(request))
 
 
@@ -105,6 +121,13 @@ def _parse(request: Request) -> Reply:
         return Reply.of(document)
     except errors.BadFile as error:
         return Reply(error=error.text)
+
+
+def _parse_urdf(request: UrdfRequest) -> UrdfReply:
+    try:
+        return UrdfReply(links=urdf.read(request.content, request.filename))
+    except errors.BadFile as error:
+        return UrdfReply(error=error.text)
 
 
 def _write(request: OwlRequest) -> OwlReply:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from xml.etree import ElementTree as Xml
 
 from semmap.schemas import entities, errors
-from semmap.schemas.entities import IDENTITY, Pose, Size, Vector
+from semmap.schemas.entities import IDENTITY, REACH_M, Pose, Size, Vector
 from semmap.schemas.nesting import require_shallow_xml
 
 _ORIGIN = Pose(position_m=(0.0, 0.0, 0.0))
@@ -50,21 +50,27 @@ def _read_links(robot: Xml.Element) -> dict[str, Link]:
         if child.attrib["link"] in joints:
             raise ValueError(f"the link {child.attrib['link']} has two parents")
         joints[child.attrib["link"]] = (parent.attrib["link"], _read_origin(joint))
-    return {name: _read_link(link, _find_frame(name, joints)) for name, link in links.items()}
+    frames: dict[str, Pose] = {}
+    found = {name: _read_link(link, _find_frame(name, joints, frames)) for name, link in links.items()}
+    for name, (frame, box, _) in found.items():
+        lengths = (*frame.position_m, *(() if box is None else (*box[0].position_m, *box[1])))
+        if not all(abs(length) <= REACH_M for length in lengths):
+            raise ValueError(f"the link {name} reaches farther than {REACH_M:g} m from the root")
+    return found
 
 
-def _find_frame(name: str, joints: Mapping[str, tuple[str, Pose]]) -> Pose:
-    """Return the frame of a link in that of the root."""
-    steps: list[Pose] = []
+def _find_frame(name: str, joints: Mapping[str, tuple[str, Pose]], frames: dict[str, Pose]) -> Pose:
+    """Return the frame of a link in that of the root. `frames` are those found before, to which it adds."""
+    links: list[str] = []
     link = name
-    while link in joints:
-        link, step = joints[link]
-        steps.append(step)
-        if len(steps) > len(joints):
+    while link not in frames and link in joints:
+        links.append(link)
+        link, _ = joints[link]
+        if len(links) > len(joints):
             raise ValueError(f"the joints above {name} form a cycle")
-    frame = _ORIGIN
-    for step in reversed(steps):
-        frame = entities.compose(frame, step)
+    frame = frames.get(link, _ORIGIN)
+    for below in reversed(links):
+        frame = frames[below] = entities.compose(frame, joints[below][1])
     return frame
 
 

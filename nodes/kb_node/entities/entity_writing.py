@@ -202,6 +202,7 @@ class Draft:
             raise errors.NameTaken(
                 f"the name '{name}' is taken by an individual that is not an entity; use another name"
             )
+        self._require_primary(entity, new, name)
         asserted = {*self._reasoner.asserted(iri), *self._reasoner.asserted(None, None, iri)}
         triples = sorted(
             t for t in (*asserted, *self.insert) if iri in (t[0], t[2]) and t not in self.retract
@@ -214,6 +215,19 @@ class Draft:
             if (s, p) != (iri, v.ENTITY_NAME)
         )
         self._new.add(new)
+
+    def _require_primary(self, entity: Entity, new: Term, name: str) -> None:
+        """Raise Refused if an equal individual would give an entity its name after its IRI becomes `new`."""
+        iri, about = v.iri(entity.iri), self._reasoner.about
+        members = {new if member == iri else member for member in self._members(entity)}
+        primary = equal_individuals.choose_primary(
+            members, self._classes, lambda member: about(iri if member == new else member)
+        )
+        if primary != new:
+            raise errors.Refused(
+                f"{entity.name} is the same as {v.entity_name(primary)}, which would give it its name instead"
+                f" of {name}; to label it: semmap update {entity.name} --ref TEXT"
+            )
 
     def _require(self, name: str, asserted: Objects, only_if: Sequence[Statement]) -> None:
         """Raise PreconditionFailed unless each property has one of the values, or none if none is given."""

@@ -11,9 +11,17 @@ from functools import partial
 from typing import Final, TypeVar
 
 from semmap.nodes.kb_node.answers import dry_runs
-from semmap.nodes.kb_node.documents import abox_document, blank_nodes, document_change, load_parts, rdf
+from semmap.nodes.kb_node.documents import (
+    abox_document,
+    blank_nodes,
+    document_change,
+    load_parts,
+    rdf,
+    urdf_poses,
+)
 from semmap.nodes.kb_node.documents.isolated_parser import IsolatedParser
 from semmap.nodes.kb_node.documents.tbox import tbox_validation
+from semmap.nodes.kb_node.documents.urdf import Link
 from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, ReportProgress, effects
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
@@ -37,6 +45,7 @@ _MANY_AXIOMS: Final = 1000
 """Axioms of a map document whose closure the node computes itself."""
 _AXIOMS_S: Final = 30.0
 """Time limit of the closure of more axioms."""
+_URDF: Final = "the URDF file"
 _Progress = Callable[[int], None]
 T = TypeVar("T")
 
@@ -83,14 +92,23 @@ class LoadHandlers:
         """Load an RDF document in one commit or in parts."""
         content = unpacked(load.content, load.filename)
         label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # stable across retries
-        if self._parser.isolates(content):
+        read = partial(self._parser.read, content, load.filename, label, graph=load.graph)
+        if load.urdf:
+            urdf = unpacked(load.urdf, _URDF)
             return self._run_aside(
-                partial(self._parser.read, content, load.filename, label, graph=load.graph),
-                lambda document: self._load(load, lambda _: document),
+                lambda: (read(), self._parser.read_urdf(urdf, _URDF)),
+                lambda both: self._load(load, lambda _: self._add_poses(*both)),
             )
+        if self._parser.isolates(content):
+            return self._run_aside(read, lambda document: self._load(load, lambda _: document))
         if not (load.replace or load.parts or load.dry_run):
             self._sparql.prefetch(load.id, content, v.ABOX, packed=load.content)
-        return self._load(load, partial(self._parser.read, content, load.filename, label, graph=load.graph))
+        return self._load(load, read)
+
+    def _add_poses(self, document: rdf.Document, links: Mapping[str, Link]) -> rdf.Document:
+        """Return the document with the poses and sizes of the links of a URDF file."""
+        triples, notes = urdf_poses.add_poses(document.triples, links, self._map.classes.alignments, _URDF)
+        return rdf.Document(triples, document.prefixes, (*document.notes, *notes))
 
     def _run_aside(
         self, work: Callable[[], T], use: Callable[[T], Loaded | Future[Loaded]]

@@ -148,10 +148,10 @@ class _Search:
     def _levels_beside(self) -> Iterator[_Level]:
         """Yield the surfaces on which the target itself stands."""
         container, supports, place = self._space.spatial_relations(self._target)
-        if container is not None:
+        if container is not None and not container[1].by_edge:
             yield from _levels_in(container[0], containment.hollow_around(self._target, container[0]))
-        elif supports:
-            support, made = supports[0]
+        elif container is not None or supports:  # a fixture in a top is next to objects on this top
+            support, made = container or supports[0]
             for surface in support.supports:
                 if abs(surface.height - made.height_m) <= self._space.limits.gap_m:
                     yield _Level(surface.height, surface.outline)

@@ -84,6 +84,19 @@ class HistoryReader:
             return None
         return find_earlier_names(self._journal.commit(seq)).get(name)
 
+    def list_names(self, name: str) -> list[tuple[int, str]]:
+        """Return the names of an entity, newest first, each with the commit that gave it, 0 for the first."""
+        found: list[tuple[int, str]] = []
+        before = self._journal.last + 1
+        while True:
+            for seq in reversed(self._journal.touching(name, until=before - 1)):
+                if (earlier := self._find_earlier_name(seq, name)) is not None:
+                    found.append((seq, name))
+                    name, before = earlier, seq
+                    break
+            else:
+                return [*found, (0, name)]
+
     def find_later_names(self, names: Iterable[str], until: int) -> dict[str, str]:
         """Return the names after commit `until` of entities that were renamed, by their earlier names.
 

@@ -4,10 +4,11 @@ import random
 import numpy as np
 import pytest
 
-from semmap.nodes.extern.ros.planning_scene import forget_scene, planning_scene
+from semmap.nodes.extern.ros.planning_scene import follow_scene, forget_scene, planning_scene
 from semmap.nodes.extern.ros.robots import Grasp
 from semmap.nodes.extern.ros.types import decode, encode
 from semmap.ontology.model_shapes import ConvexPart
+from semmap.schemas.entities import Pose, compose
 from semmap.schemas.scenes import Leaf, Surface
 from tests.extern.ros.made import AT, by_name, thing
 from tests.extern.ros.planner import ADD, MOVE, REMOVE, Planner
@@ -149,6 +150,24 @@ def test_an_object_that_moves_in_the_hand_is_attached_again(scene_of):
     assert scene_of([hand, thing(grasp=HELD, yaw=0.1)], [hand, cup]) is not None
 
 
+def test_small_changes_that_add_up_are_sent(scene_of):
+    """A cup slips by 4 mm and another one slides by 0.6 mm a step, while the hand moves and turns."""
+    planner, sent, counts = Planner(), {}, []
+    for step in range(20):
+        hand = thing("hand", robot=True, at=(step / 10, 2.0, 1.0), yaw=step / 10)
+        grip = Pose(position_m=(0.1, 0.0, -0.004 * step))
+        slipping = thing(grasp=HELD)._replace(pose=compose(hand.pose, grip))
+        now = by_name(hand, slipping, thing("cup2", at=(0.0006 * step, 0.0, 0.0)))
+        if (scene := scene_of(now.values(), sent.values())) is not None:
+            planner.take(scene)
+        counts.append(0 if scene is None else len(scene.robot_state.attached_collision_objects))
+        sent = follow_scene(sent, now)
+        assert planner.poses["cup2"].position.x == pytest.approx(0.0006 * step, abs=1e-3)
+        assert sent["cup1"].pose.position_m[:2] == pytest.approx(slipping.pose.position_m[:2])
+        assert sent["cup1"].pose.position_m[2] == pytest.approx(slipping.pose.position_m[2], abs=0.005)
+    assert counts == [1, 0] * 10, "two steps are more than the tolerance"
+
+
 def test_a_whole_scene_detaches_what_was_let_go_since_the_last_one(scene_of):
     sent = by_name(thing("gone"), thing("kept"), thing(grasp=HELD), thing("plate1", grasp=HELD))
     now = by_name(thing("kept"), thing(), thing("plate1", grasp=HELD))
@@ -176,7 +195,7 @@ def test_a_planner_that_follows_the_differences_has_the_objects_of_the_map(scene
         before = forget_scene(sent, now) if lots.random() < 0.3 else sent
         if (scene := scene_of(now.values(), before.values())) is not None:
             planner.take(scene)
-        sent = now
+        sent = follow_scene(before, now)
         objects = {name: each for name, each in now.items() if not each.robot}
         assert planner.attached == {n: each.grasp.link for n, each in objects.items() if each.grasp}
         assert planner.obstacles.keys() == {n for n, each in objects.items() if not each.grasp}

@@ -199,3 +199,30 @@ def test_only_the_contents_of_an_open_drawer_of_a_chest_are_observable(tmp_path)
         assert find_closed_container(made, made.entity("apple1")) == (made.entity("chest1"), ())
     finally:
         home.close(made)
+
+
+def test_a_sink_in_the_top_of_a_closed_counter_and_its_contents_are_observable(tmp_path):
+    made = SemanticMap(home.new_household_journal(tmp_path))
+    at = {"counter1": (0.0, 0.0, 0.0), "sink1": (0.0, 0.0, 0.47), "potato1": (0.0, 0.0, 0.82)}
+    classes = {"counter1": "Counter", "sink1": "Sink", "potato1": "Potato"}
+    new = tuple(
+        NewEntity(
+            name=name,
+            class_iri=v.bare(v.dm(classes[name])),
+            pose=Pose(position_m=at[name]),
+            size=(0.45, 0.5, 0.5) if name == "sink1" else None,
+        )
+        for name in at
+    )
+    made.commit(Transaction(id="1", source="operator", add=new))
+    try:
+        say(made, 2, "false", name="counter1")
+        inside = {
+            (v.entity_name(s), v.entity_name(o))
+            for s, _, o in made.reasoner.given(None, v.dm("isInside"), None)
+        }
+        assert inside == {("sink1", "counter1"), ("potato1", "sink1")}
+        assert find_closed_container(made, made.entity("sink1")) is None
+        assert find_closed_container(made, made.entity("potato1")) is None
+    finally:
+        home.close(made)

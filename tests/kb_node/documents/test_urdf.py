@@ -25,6 +25,17 @@ def test_frames_are_composed_along_the_joints():
     assert links["door"].frame.yaw_rad == pytest.approx(math.pi / 2)
 
 
+def test_a_long_chain_is_composed_once(monkeypatch):
+    count, composed = 300, []
+    compose = urdf.entities.compose
+    monkeypatch.setattr(urdf.entities, "compose", lambda *of: composed.append(of) or compose(*of))
+    text = "".join(f'<link name="l{n}"/>' for n in range(count + 1))
+    text += "".join(joint(f"l{n}", f"l{n + 1}", "0.1 0 0") for n in range(count))
+    links = urdf.read(robot(text), "f")
+    assert links[f"l{count}"].frame.position_m == pytest.approx((0.1 * count, 0.0, 0.0))
+    assert len(composed) == count
+
+
 def test_roll_pitch_and_yaw_are_about_the_axes_of_the_parent():
     text = '<link name="a"/><link name="b"/>' + joint("a", "b", rpy="0.1 0.2 0.3")
     frame = urdf.read(robot(text), "f")["b"].frame
@@ -83,6 +94,10 @@ def test_meshes_are_listed_and_have_no_box():
         (
             robot('<link name="a"><visual><geometry><cone/></geometry></visual></link>'),
             "unknown shape 'cone'",
+        ),
+        (
+            robot('<link name="a"/><link name="b"/>' + joint("a", "b", "1e300 1e300 0")),
+            "the link b reaches farther than 10000 m from the root",
         ),
     ],
 )

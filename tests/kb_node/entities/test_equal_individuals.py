@@ -124,6 +124,15 @@ def test_an_entity_of_several_names_is_renamed(pair):
     assert pair.entity("throne").pose.position_m == (1.0, 2.0, 0.0)
 
 
+def test_a_rename_is_rejected_if_another_individual_would_give_the_name(semantic_map):
+    semantic_map.commit(transaction(1, turtle(":a a dm:Chair . :b a dm:Chair . :a owl:sameAs :b .")))
+    with pytest.raises(errors.Refused, match="a is the same as b, which would give it its name instead of c"):
+        semantic_map.commit(edit(2, name="a", rename="c"))
+    assert names(semantic_map) == ["a"]
+    semantic_map.commit(edit(3, name="a", rename="aa"))
+    assert [(entity.name, entity.other_names) for entity in semantic_map.entities()] == [("aa", ("b",))]
+
+
 def test_a_class_is_that_of_all(pair):
     pair.commit(edit(2, name="b", class_iri=v.bare(v.dm("Seat"))))
     assert pair.entity("b").class_ == "Seat"

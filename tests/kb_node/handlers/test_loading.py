@@ -5,7 +5,7 @@ from contextlib import nullcontext
 import pytest
 from msgspec import structs
 
-from semmap.nodes.kb_node.documents import rdf
+from semmap.nodes.kb_node.documents import parser_process, rdf
 from semmap.nodes.kb_node.handlers import loading as handlers_loading
 from semmap.nodes.kb_node.handlers.changes import ChangeHandlers
 from semmap.nodes.kb_node.handlers.loading import LoadHandlers
@@ -65,6 +65,33 @@ def test_a_load_counts_described_entities_and_not_those_with_changed_inferences(
     }  # it is a Filled_Thing now
     assert loaded.names == ("apple9",)
     assert said[-1] == f"loading apple.nt: {len(star)} triples to check and write"
+
+
+def test_a_urdf_file_is_parsed_outside_the_node(flat, monkeypatch):
+    loads, requests = loading(flat, []), []
+    monkeypatch.setattr(
+        loads._parser,
+        "exchange",
+        lambda request, _: requests.append(request) or parser_process.answer(request),
+    )
+    box = '<visual><geometry><box size="0.1 0.2 0.3"/></geometry></visual>'
+    load = LoadDocument(
+        id="1",
+        source="file",
+        content=f"<{v.ABOX}apple9> a {v.dm('Apple')} .".encode(),
+        filename="apple.ttl",
+        replace=False,
+        skip_unknown=False,
+        urdf=f'<robot><link name="apple9">{box}</link></robot>'.encode(),
+    )
+    loaded = loads.on_load(load).result(60)
+    apple = flat.entity("apple9")
+    assert (apple.pose, apple.size_m) == (Pose(position_m=(0.0, 0.0, -0.15)), (0.1, 0.2, 0.3))
+    assert loaded.notes[0] == "1 pose from the URDF file: apple9"
+    with pytest.raises(errors.BadFile, match="the URDF file is not valid URDF: "):
+        loads.on_load(structs.replace(load, id="2", urdf=b"<robot")).result(60)
+    loads.close()
+    assert len(requests) == 2
 
 
 SOME = "<http://o#A{}> rdfs:subClassOf [ a owl:Restriction ; owl:onProperty <http://o#p> ; {} ] ."

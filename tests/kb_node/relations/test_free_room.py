@@ -144,6 +144,19 @@ def test_where_nothing_can_be_placed_the_reason_is_given(placing, target, reason
     assert error.value.text.startswith(reason)
 
 
+@pytest.mark.parametrize("model", ["table", "counter"])
+def test_room_next_to_a_sink_in_a_top_is_on_the_top(model):
+    counter = thing(f"{model}1", (0.0, 0.0, 0.0))
+    top = counter.size_m[2]
+    sink = structs.replace(thing("sink1", (0.0, 0.0, top - 0.2), "", size=(0.4, 0.4, 0.21)), fixed=True)
+    space = Space([ROOM, counter, sink])
+    assert relations(space, "sink1")[0] == counter.name
+    put(space, "next_to", "sink1")
+    assert relations(space, "cup1") == (None, [counter.name], "kitchen1")
+    assert space.solids["cup1"].bottom == pytest.approx(top, abs=5e-3)
+    assert measure_next_to(space, space.solids["cup1"], space.solids["sink1"]).holds
+
+
 def test_an_object_without_a_size_is_refused():
     with pytest.raises(Refused, match="the size of thing1 is unknown, so no room can be found; give a size"):
         put(Space([TABLE]), "on", "table1", "thing1", "unheard of")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Set
 
 from msgspec import Struct
 
@@ -39,9 +39,9 @@ def list_commits(
     for how, word in (("in", query.in_), ("on", query.on)):
         if word is None:
             continue
-        place = past.resolve(word, past.entities(past.last) if past.last else ())
+        names = past.list_names(past.resolve(word, past.entities(past.last) if past.last else ()))
         first = past.initial_entities().values()
-        there = find_commits_at(journal.decode_partially(PoseChanges), first, place, limits, on=how == "on")
+        there = find_commits_at(journal.decode_partially(PoseChanges), first, names, limits, on=how == "on")
         only = there if only is None else only & there
     return past.history(query, only)
 
@@ -64,32 +64,40 @@ def find_commits_by(commits: Iterable[Authorship], author: str) -> set[int]:
 
 
 def find_commits_at(
-    history: Iterable[PoseChanges], first: Iterable[Entity], place: str, limits: Thresholds, *, on: bool
+    history: Iterable[PoseChanges],
+    first: Iterable[Entity],
+    names: Iterable[tuple[int, str]],
+    limits: Thresholds,
+    *,
+    on: bool,
 ) -> set[int]:
     """Return the commits that changed something in a place or container, before or after the change.
 
     With `on`, return those that changed something on an object. `history` are the commits in order, and
-    `first` the entities before them. Raises Refused if nothing can be in or on the entity.
+    `first` the entities before them. `names` are those of the place, by the commits that gave them, 0 for the
+    first name. Raises Refused if nothing can be in or on the entity.
     """
     space = Space(first, limits)
-    holders = frozenset((place,))
+    holders_since = {seq: frozenset((name,)) for seq, name in names}
+    holders = holders_since[0]
     holds = is_on if on else is_in
 
-    def is_there(name: str) -> bool:
-        solid = space.solids.get(name)
-        return solid is not None and holds(space, solid, holders, frozenset())
+    def are_there(changed: Iterable[str], holders: Set[str]) -> bool:
+        solids = filter(None, map(space.solids.get, changed))
+        return any(holds(space, solid, holders, frozenset()) for solid in solids)
 
     found: set[int] = set()
     for moves in history:
-        names = [*(each.name for each in moves.changed), *(each.name for each in moves.removed)]
-        was_there = any(map(is_there, names))
+        changed = [*(each.name for each in moves.changed), *(each.name for each in moves.removed)]
+        was_there = are_there(changed, holders)
         for each in moves.removed:
             space.remove(each.name)
         placed: list[PlacedEntity] = [each.placed for each in moves.changed]
         for _ in space.put_all(placed):
             pass
-        if was_there or any(map(is_there, names)):
+        holders = holders_since.get(moves.seq, holders)
+        if was_there or are_there(changed, holders):
             found.add(moves.seq)
-    if place in space.solids:
+    if not holders.isdisjoint(space.solids):
         require_possible(space, Targets(holders if on else None, None if on else holders, None, None))
     return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 
 from semmap.nodes.geometry.polygons import area, clipped, hull
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
@@ -31,16 +31,22 @@ def measure_next_to(space: Space, one: Solid, other: Solid) -> Measure | None:
 
 
 def _share_support(space: Space, one: Solid, other: Solid) -> bool:
-    ours, theirs = space.spatial_relations(one), space.spatial_relations(other)
-    if ours.container is not None or theirs.container is not None:
-        return (
-            ours.container is not None
-            and theirs.container is not None
-            and (ours.container[0] is theirs.container[0])
-        )
-    if ours.supports or theirs.supports:
-        return not {s for s, _ in ours.supports}.isdisjoint(s for s, _ in theirs.supports)
+    (around, below), (around_other, below_other) = (_find_bearers(space, solid) for solid in (one, other))
+    if around is not None or around_other is not None:
+        return around is around_other
+    if below or below_other:
+        return not below.isdisjoint(below_other)
     return abs(one.bottom - other.bottom) <= space.limits.gap_m
+
+
+def _find_bearers(space: Space, solid: Solid) -> tuple[Solid | None, Set[Solid]]:
+    """Return what encloses a solid, and its supports, such as the top that a fixture is let into."""
+    container, supports, _ = space.spatial_relations(solid)
+    below = {support for support, _ in supports}
+    if container is None:
+        return None, below
+    outer, made = container
+    return (None, {*below, outer}) if made.by_edge else (outer, below)
 
 
 def find_between(space: Space, one: Solid, other: Solid) -> list[Solid]:
