@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
-from itertools import chain
 from typing import TYPE_CHECKING, Final
 
-from semmap.nodes.kb_node.derived_facts import DerivedChanges
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.shacl.results import Result
 from semmap.nodes.kb_node.shacl.shape_triples import find_shapes
-from semmap.ontology import vocabulary as v
+from semmap.nodes.kb_node.shacl.touched_individuals import TouchedIndividuals
 from semmap.schemas.commits import Commit
 from semmap.schemas.explanations import Term, Triple
 
@@ -42,11 +40,12 @@ class ShapeEnforcement:
 
             self._shapes = Shapes(tbox, "the TBox")
 
-    def require(self, commit: Commit, derived: DerivedChanges, reasoner: Reasoner) -> None:
-        """Raise ViolatesShapes if what the commit touches violates a shape. `reasoner` has the change."""
-        if self._shapes is None:
-            return
-        touched = touched_terms(commit, derived, reasoner)
+    def begin(self, commit: Commit, reasoner: Reasoner) -> TouchedIndividuals | None:
+        """Prepare to find what a commit touches, before `reasoner` has it. Return None without shapes."""
+        return None if self._shapes is None else TouchedIndividuals(commit, reasoner)
+
+    def require(self, touched: set[Term], reasoner: Reasoner) -> None:
+        """Raise ViolatesShapes if an individual that a commit touches violates a shape."""
         if found := self.find_violations(touched, reasoner):
             raise ViolatesShapes(found, touched)
 
@@ -54,23 +53,3 @@ class ShapeEnforcement:
         """Return the violations of individuals, without warnings. Raises BadFile."""
         found = [] if self._shapes is None else self._shapes.validate(reasoner, touched)
         return [result for result in found if result.severity == _VIOLATION]
-
-
-def touched_terms(commit: Commit, derived: DerivedChanges, reasoner: Reasoner) -> set[Term]:
-    """Return the individuals that a commit may make valid or invalid.
-
-    They are those whose facts change, their values, and what refers to them. A path of more steps may lead
-    to others, which are not validated.
-    """
-    core = {v.iri(entity.iri) for entity in commit.changed}
-    values = set[Term]()
-    for s, p, o in chain(commit.inserted, commit.retracted, *derived):
-        core.add(s)
-        if p != v.RDF_TYPE and not o.startswith('"'):
-            values.add(o)
-    referring = {
-        s
-        for term in core
-        for s, _, _ in chain(reasoner.given(None, None, term), reasoner.inferred(None, None, term))
-    }
-    return core | values | referring

@@ -15,6 +15,12 @@ SHAPES = turtle(
         sh:message "needs a room" ] ;
     sh:property [ sh:path ( dm:isLocatedIn dm:closed ) ; sh:maxCount 0 ; sh:message "its room is closed" ] ;
     sh:property [ sh:path dm:seats ; sh:maxCount 0 ; sh:severity sh:Warning ] .
+:W sh:targetObjectsOf dm:w ; sh:minInclusive 0 .
+:U sh:targetSubjectsOf dm:uses ; sh:property [ sh:path dm:uses ; sh:class dm:Seat ] .
+:F sh:targetSubjectsOf dm:far ; sh:property [ sh:path dm:reaches ; sh:maxCount 1 ] .
+dm:uses2 a owl:ObjectProperty ; rdfs:range dm:Seat .
+dm:uses a owl:ObjectProperty .
+dm:reaches a owl:ObjectProperty ; owl:propertyChainAxiom ( dm:s dm:t dm:u ) .
 """
 )
 CHAIR = ":chair1 a dm:Chair ; dm:isLocatedIn :kitchen1 . :kitchen1 a dm:Kitchen ."
@@ -43,6 +49,47 @@ def test_what_refers_to_a_change_is_validated(enforcing):
     enforcing.commit(transaction(1, turtle(CHAIR)))
     with pytest.raises(errors.Refused, match="chair1: its room is closed"):
         enforcing.commit(transaction(2, turtle(":kitchen1 dm:closed true .")))
+
+
+@pytest.mark.parametrize(
+    ("before", "inserted", "retracted", "text"),
+    [
+        ("", ":a dm:w -3 .", "", "-3: violates sh:minInclusive 0"),
+        (
+            ":z dm:uses :b . :a dm:uses2 :b .",
+            "",
+            ":a dm:uses2 :b .",
+            "z: violates sh:class Seat; uses; b",
+        ),
+        (
+            ":z dm:uses :b . :b owl:sameAs :c . :a dm:uses2 :c .",
+            "",
+            ":a dm:uses2 :c .",
+            "z: violates sh:class Seat; uses; b",
+        ),
+        (
+            ":z dm:uses :b . :b owl:sameAs :c . :a dm:uses2 :c .",
+            "",
+            ":b owl:sameAs :c .",
+            "z: violates sh:class Seat; uses; b",
+        ),
+        (
+            ":z dm:far 1 ; dm:reaches :y ; dm:s :a . :a dm:t :b .",
+            ":b dm:u :c .",
+            "",
+            "z: violates sh:maxCount 1; reaches",
+        ),
+    ],
+)
+def test_individuals_whose_facts_follow_from_a_change_are_validated(
+    enforcing, before, inserted, retracted, text
+):
+    if before:
+        enforcing.commit(transaction(1, turtle(before)))
+    state = enforcing.seq, set(enforcing.abox())
+    with pytest.raises(errors.Refused, match=f"^{text}; {REFUSED}"):
+        enforcing.commit(transaction(2, turtle(inserted), turtle(retracted)))
+    assert (enforcing.seq, set(enforcing.abox())) == state
 
 
 def test_warnings_and_earlier_violations_refuse_nothing(enforcing):
