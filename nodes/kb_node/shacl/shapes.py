@@ -7,7 +7,7 @@ reasoner infers. Targets are found here, so that a commit is validated without a
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any, Final
 
@@ -33,6 +33,8 @@ _LANGUAGES: Final = (None, "en")
 _MESSAGE: Final = to_term(SH.message)
 _LONGEST_TEXT: Final = 500
 """The maximum number of characters of each text in a result. A document has texts of any length."""
+_PROBE: Final = URIRef("urn:semmap:probe")
+"""An individual without facts, to try the constraints of a shape."""
 _AT_ONCE: Final = 100
 """Individuals that are validated together. pySHACL writes a page of text for each violation."""
 
@@ -53,10 +55,21 @@ class Shapes:
     def __len__(self) -> int:
         return sum(1 for shape in self._shapes if any(_target_terms(shape)))
 
-    def validate(self, reasoner: Reasoner, touched: Iterable[Term] | None = None) -> list[Result]:
+    def require_evaluable(self) -> None:
+        """Raise BadFile for shapes that cannot be evaluated, such as those with an invalid sh:pattern."""
+        with self._named_errors():
+            for shape in self._shapes:
+                shape.validate(SHACLExecutor(), Graph(), focus=[_PROBE])
+
+    def validate(
+        self,
+        reasoner: Reasoner,
+        touched: Iterable[Term] | None = None,
+        failed: Callable[[str], None] | None = None,
+    ) -> list[Result]:
         """Return the violations of all individuals, or of the `touched` ones, in the order of their names.
 
-        Raises BadFile for shapes that cannot be evaluated.
+        `failed` receives the error of each shape that cannot be evaluated. Without it, raises BadFile.
         """
         find = representative(reasoner)
         facts, executor = fact_graph(reasoner), SHACLExecutor()
@@ -65,11 +78,17 @@ class Shapes:
         for shape in self._shapes:
             terms = _all_targets(shape, reasoner) if known is None else _targets(shape, reasoner, known)
             focus = sorted(set(map(find, terms)))
-            with self._named_errors():
-                for start in range(0, len(focus), _AT_ONCE):
-                    nodes = [to_node(term) for term in focus[start : start + _AT_ONCE]]
-                    _, reports = shape.validate(executor, facts, focus=nodes)
-                    found.update(dict.fromkeys(self._read(_by_property(parts)) for _, _, parts in reports))
+            try:
+                with self._named_errors():
+                    for start in range(0, len(focus), _AT_ONCE):
+                        nodes = [to_node(term) for term in focus[start : start + _AT_ONCE]]
+                        _, reports = shape.validate(executor, facts, focus=nodes)
+                        results = (self._read(_by_property(parts)) for _, _, parts in reports)
+                        found.update(dict.fromkeys(results))
+            except errors.BadFile as error:
+                if failed is None:
+                    raise
+                failed(error.text)
         return sorted(found, key=lambda one: (one.focus, one.path, one.message, one.value))
 
     @contextmanager

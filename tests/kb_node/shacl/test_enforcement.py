@@ -110,7 +110,32 @@ def test_each_transaction_of_several_is_validated(enforcing):
 def test_another_tbox_brings_other_shapes(enforcing):
     enforcing.replace_tbox(transaction(1), home.TBOX)
     assert enforcing.commit(transaction(2, turtle(":chair2 a dm:Chair ."))).seq == 2
-    broken = turtle(SH + ":S sh:targetClass dm:Chair ; sh:property [ sh:path dm:a , dm:b ] .")
-    with pytest.raises(errors.BadFile, match="the TBox: invalid SHACL shape"):
-        enforcing.replace_tbox(transaction(3), [*home.TBOX, *broken])
-    assert enforcing.seq == 2
+
+
+@pytest.mark.parametrize(
+    ("shapes", "reason"),
+    [
+        (":S sh:targetClass dm:Chair ; sh:property [ sh:path dm:a , dm:b ] .", ""),
+        (":S sh:targetClass dm:Chair ; sh:property [ sh:path dm:a ; sh:pattern '(' ] .", "missing \\)"),
+        (":S sh:targetClass dm:Chair ; sh:node [ sh:property [ sh:path dm:a ; sh:minLength 'x' ] ] .", ""),
+        (":S sh:targetClass dm:Chair ; sh:property [ sh:path ( dm:a ) ; sh:minCount 1 ] .", "A list"),
+        (":S sh:targetClass dm:Chair ; sh:property [ sh:path dm:a ; sh:node :S ] .", "S refers to itself$"),
+        ("[] sh:targetClass dm:Chair ; sh:or ( :S ) . :S sh:not [ sh:and ( :S ) ] .", "S refers to itself$"),
+    ],
+)
+def test_a_tbox_with_shapes_that_cannot_be_evaluated_is_rejected(enforcing, shapes, reason):
+    with pytest.raises(errors.BadFile, match=f"^the TBox: invalid SHACL shape: {reason}"):
+        enforcing.replace_tbox(transaction(3), [*home.TBOX, *turtle(SH + shapes)])
+    assert enforcing.seq == 0
+
+
+def test_a_shape_that_fails_rejects_no_commit(enforcing, caplog):
+    deep = " ".join(f":d{n} sh:property [ sh:path dm:on ; sh:node :d{n + 1} ] ." for n in range(30))
+    shapes = turtle(SH + deep + ":d0 sh:targetClass dm:Chair . :S sh:targetClass dm:Door ; sh:closed true .")
+    enforcing.replace_tbox(transaction(1), [*home.TBOX, *shapes])
+    for n in range(2):
+        enforcing.commit(transaction(f"c{n}", turtle(f":chair{n} a dm:Chair ; dm:on :chair{n} .")))
+    assert enforcing.seq == 3
+    with pytest.raises(errors.Refused, match="door1: violates sh:closed"):
+        enforcing.commit(transaction("d", turtle(":door1 a dm:Door ; dm:on :chair1 .")))
+    assert caplog.text.count("the shape is not enforced") == 1
