@@ -130,6 +130,8 @@ Since = Annotated[int, Meta(ge=0, le=1 << 53)]
 """A commit number: the command is rejected if a later commit changed an entity in `unchanged`."""
 
 
+SHAPES_BYTES: Final = 10 << 20
+"""The maximum size of a document with SHACL shapes [bytes]."""
 _SLOW: Final = frozenset(
     {"load", "clear", "undo", "check", "infer", "export", "compact", "watch", "step", "drive"}
 )
@@ -534,7 +536,7 @@ class Check(Command[Checked], frozen=True, tag="check"):
     """
 
     ROLES: ClassVar[Roles] = ANYBODY
-    LARGEST: ClassVar[int] = DOCUMENT
+    LARGEST: ClassVar[int] = 2 * SHAPES_BYTES  # with base64 in JSON, and the name
 
     engine: Literal["semmap", "owlrl"] = "semmap"
     shapes: bytes = b""

@@ -68,6 +68,8 @@ class Checked(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Whether no SHACL shape is violated."""
     shapes: int = 0
     """The number of SHACL shapes with a target that the facts were compared with."""
+    violation_count: int = 0
+    """The number of violations, of which `violations` has the first 1000."""
     violations: tuple[Violation, ...] = ()
     notes: tuple[str, ...] = ()
     """What of the shapes was not evaluated."""

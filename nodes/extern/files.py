@@ -14,19 +14,23 @@ from semmap.schemas import codec, errors
 from semmap.schemas.packing import LARGEST
 
 
-def read_file(path: Path) -> bytes:
-    """Return the content of a file. Raises BadFile if it cannot be read or is too large."""
+def read_file(path: Path, *, largest: int | None = None) -> bytes:
+    """Return the content of a file of at most `largest` bytes, or `LARGEST`.
+
+    Raises BadFile if it cannot be read or is too large.
+    """
+    largest = LARGEST if largest is None else largest
     try:
         with path.open("rb") as file:
-            content = file.read(LARGEST + 1)
+            content = file.read(largest + 1)
     except FileNotFoundError:
         raise errors.BadFile(f"there is no file {path}") from None
     except IsADirectoryError:
         raise errors.BadFile(f"{path} is a directory, not a file") from None
     except OSError as error:
         raise errors.BadFile(f"{path} cannot be read: {error.strerror}") from None
-    if len(content) > LARGEST:
-        raise errors.BadFile(f"{path} is larger than {LARGEST >> 20} MiB; split it into several files")
+    if len(content) > largest:
+        raise errors.BadFile(f"{path} is larger than {largest >> 20} MiB; split it into several files")
     return content
 
 

@@ -45,6 +45,7 @@ class Applier:
         *,
         strict: bool = False,
         is_new: bool = False,
+        reclassified: Callable[[frozenset[Term]], None] = lambda _: None,
     ) -> Commit:
         """Return the commit, durable and with its effects.
 
@@ -52,7 +53,8 @@ class Applier:
 
         On any error everything is as before. `noted` adds notes when the reasoner has the change already. If
         `strict`, entities with several poses or sizes are rejected. If the commit `is_new`, so are equal
-        individuals with different ones.
+        individuals with different ones. `reclassified` receives the individuals whose classes or equal
+        individuals have changed, and others whose asserted triples have.
         """
         state = self._state
         subjects = preconditions.subjects(commit.retracted, commit.inserted)
@@ -68,12 +70,14 @@ class Applier:
         lenient = restores or not state.derives_at_commits
         change = self.change(delete=commit.retracted, insert=commit.inserted, lenient=lenient)
         try:
+            reclassified(change.others)
             if not lenient:
                 self._require_agreement(commit)
             commit = noted(self._with_effects(commit, owners, change, new, strict=strict, is_new=is_new))
             del owners, subjects, known, new, change  # for a large commit these take a third of the memory
             if state.derives_at_commits:
                 commit = self._with_places(commit)
+                reclassified(state.derived_facts.reclassified)
             if restores and state.derives_at_commits:
                 self._require_no_more_than(contradicted)
             commit = make_durable(commit)

@@ -108,6 +108,11 @@ class DerivedFacts:
 
         return DerivedChanges(those(True, False), those(True, True), those(False, False), those(False, True))
 
+    @property
+    def reclassified(self) -> frozenset[Term]:
+        """Return the individuals whose named classes have changed through computed facts since `begin`."""
+        return frozenset(self._moved)
+
     def all(self) -> DerivedChanges:
         """Return all computed and all suppressed facts."""
         return DerivedChanges(come=tuple(self._reasoner.computed()), aside=tuple(self._reasoner.suppressed()))
@@ -253,7 +258,7 @@ class DerivedFacts:
         if not self.computed.facts.is_complete:  # some of the new facts may be known from before the start
             step = step._replace(come={t for t in step.come if not self._reasoner.is_computed(t)})
         self._carry_out(step, retracted)
-        return frozenset(self._moved)
+        return self.reclassified
 
     def fill(self, entities: Mapping[str, Entity]) -> None:
         """Derive the facts of these entities and of all that is asserted."""

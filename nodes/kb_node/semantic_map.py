@@ -20,6 +20,7 @@ from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.shacl import violations
 from semmap.nodes.kb_node.shacl.enforcement import ShapeEnforcement, ViolatesShapes
+from semmap.nodes.kb_node.shacl.touched_individuals import TouchedIndividuals
 from semmap.nodes.kb_node.storage import closure_cache, conclusions_format
 from semmap.nodes.kb_node.storage.checkpointing import CheckpointSchedule
 from semmap.nodes.kb_node.storage.encoding import commit_encoding
@@ -171,12 +172,15 @@ class SemanticMap(MapState):
         self, transaction: Transaction, enforcement: ShapeEnforcement | None
     ) -> Commit | None:
         plan = planning.make_plan(self, transaction)
-        # edits keep one pose for each entity, but triples from outside may state several
-        apply = partial(self._applier.apply, strict=bool(transaction.insert), is_new=True)
         if plan is None:
             return None
         commit = planning.make_commit(transaction, plan, self.seq + 1)
-        validated = partial(self._write_valid, enforcement=enforcement)
+        # edits keep one pose for each entity, but triples from outside may state several
+        apply = partial(self._applier.apply, strict=bool(transaction.insert), is_new=True)
+        validated: Callable[..., Commit] = self._write
+        if enforcement is not None and (touched := enforcement.begin(commit, self.reasoner)) is not None:
+            validated = partial(self._write_valid, enforcement=enforcement, touched=touched)
+            apply = partial(apply, reclassified=touched.add_reclassified)
         if self._inspect is not None:
             return self._accept(apply(commit, validated, self._with_notes))
         rollback, begun = self.prepare(commit), commit_encoding.begin_body(commit, self.digest)
@@ -218,13 +222,13 @@ class SemanticMap(MapState):
         self,
         commit: Commit,
         *,
-        enforcement: ShapeEnforcement | None,
+        enforcement: ShapeEnforcement,
+        touched: TouchedIndividuals,
         begun: commit_encoding.EarlyBody | None = None,
     ) -> Commit:
         """Write the commit. Raises ViolatesShapes before that."""
-        if enforcement is not None:
-            derived = self._applier.derived_changes.get(commit.seq, UNCHANGED)
-            enforcement.require(commit, derived, self.reasoner)
+        derived = self._applier.derived_changes.get(commit.seq, UNCHANGED)
+        enforcement.require(touched.find(commit, derived), self.reasoner)
         return self._write(commit, begun=begun)
 
     def _write(

@@ -30,6 +30,8 @@ def test_what_has_no_end_is_refused(monkeypatch):
     monkeypatch.setattr(files, "LARGEST", 1 << 20)
     with pytest.raises(errors.BadFile, match=r"^/dev/zero is larger than 1 MiB; split it into several"):
         files.read_file(Path("/dev/zero"))
+    with pytest.raises(errors.BadFile, match=r"^/dev/zero is larger than 2 MiB"):
+        files.read_file(Path("/dev/zero"), largest=2 << 20)
 
 
 def test_a_map_of_labels(tmp_path):

@@ -417,6 +417,7 @@ class QueryHandlers:
 
     def on_check(self, query: Check) -> Future[Checked]:
         """Check the consistency in another thread, and validate the facts in another process."""
+        violations.require_size(query)
         self._map.derive_all()
         held, denied = self._map.reasoner.given_facts(), self._now.find_denied()
         withheld, crowds = tuple(answers.suppressed_facts(self._map)), self._map.places.crowds()

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Collection, Iterable
-from itertools import chain
 from typing import TYPE_CHECKING, Final
 
-from semmap.nodes.kb_node.derived_facts import DerivedChanges
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.shacl.results import Result
-from semmap.nodes.kb_node.shacl.shape_triples import find_shapes
+from semmap.nodes.kb_node.shacl.shape_triples import find_cycle, find_shapes, select_shapes
+from semmap.nodes.kb_node.shacl.touched_individuals import TouchedIndividuals
 from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from semmap.schemas.commits import Commit
 from semmap.schemas.explanations import Term, Triple
 
@@ -18,6 +19,10 @@ if TYPE_CHECKING:  # pySHACL takes half a second to import
     from semmap.nodes.kb_node.shacl.shapes import Shapes
 
 _VIOLATION: Final = "violation"
+_MOST_FAILURES: Final = 100
+"""The maximum number of errors that are logged."""
+
+log = logging.getLogger(__name__)
 
 
 class ViolatesShapes(Exception):
@@ -34,43 +39,40 @@ class ShapeEnforcement:
     """Validates what a commit touches against the shapes of a TBox."""
 
     def __init__(self, tbox: Iterable[Triple]) -> None:
-        """Read the shapes. Raises BadFile for invalid ones."""
+        """Read the shapes. Raises BadFile for those that are invalid or refer to themselves."""
         tbox = list(tbox)
         self._shapes: Shapes | None = None
+        self._failures = set[str]()
+        """The errors that have been logged."""
         if find_shapes(tbox):
             from semmap.nodes.kb_node.shacl.shapes import Shapes
 
             self._shapes = Shapes(tbox, "the TBox")
+            if cycle := find_cycle(select_shapes(tbox)):
+                name = next((v.local_name(term) for term in cycle if term.startswith("<")), "a shape")
+                raise errors.BadFile(f"the TBox: invalid SHACL shape: {name} refers to itself")
+            self._shapes.require_evaluable()
 
-    def require(self, commit: Commit, derived: DerivedChanges, reasoner: Reasoner) -> None:
-        """Raise ViolatesShapes if what the commit touches violates a shape. `reasoner` has the change."""
-        if self._shapes is None:
-            return
-        touched = touched_terms(commit, derived, reasoner)
+    def begin(self, commit: Commit, reasoner: Reasoner) -> TouchedIndividuals | None:
+        """Prepare to find what a commit touches, before `reasoner` has it. Return None without shapes."""
+        return None if self._shapes is None else TouchedIndividuals(commit, reasoner)
+
+    def require(self, touched: set[Term], reasoner: Reasoner) -> None:
+        """Raise ViolatesShapes if an individual that a commit touches violates a shape."""
         if found := self.find_violations(touched, reasoner):
             raise ViolatesShapes(found, touched)
 
     def find_violations(self, touched: Collection[Term], reasoner: Reasoner) -> list[Result]:
-        """Return the violations of individuals, without warnings. Raises BadFile."""
-        found = [] if self._shapes is None else self._shapes.validate(reasoner, touched)
+        """Return the violations of individuals, without warnings.
+
+        A shape that cannot be evaluated, for example because of the depth of the facts, is logged. It must
+        not make the individuals unchangeable.
+        """
+        found = [] if self._shapes is None else self._shapes.validate(reasoner, touched, self._log_failure)
         return [result for result in found if result.severity == _VIOLATION]
 
-
-def touched_terms(commit: Commit, derived: DerivedChanges, reasoner: Reasoner) -> set[Term]:
-    """Return the individuals that a commit may make valid or invalid.
-
-    They are those whose facts change, their values, and what refers to them. A path of more steps may lead
-    to others, which are not validated.
-    """
-    core = {v.iri(entity.iri) for entity in commit.changed}
-    values = set[Term]()
-    for s, p, o in chain(commit.inserted, commit.retracted, *derived):
-        core.add(s)
-        if p != v.RDF_TYPE and not o.startswith('"'):
-            values.add(o)
-    referring = {
-        s
-        for term in core
-        for s, _, _ in chain(reasoner.given(None, None, term), reasoner.inferred(None, None, term))
-    }
-    return core | values | referring
+    def _log_failure(self, text: str) -> None:
+        """Log an error once."""
+        if text not in self._failures and len(self._failures) < _MOST_FAILURES:
+            self._failures.add(text)
+            log.warning("%s; the shape is not enforced", text)

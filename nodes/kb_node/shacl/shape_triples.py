@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from graphlib import CycleError, TopologicalSorter
 from typing import Final
 
 from semmap.ontology import vocabulary as v
@@ -16,6 +17,17 @@ _OF_SHAPES: Final = frozenset(
     for name in ("property", "targetClass", "targetNode", "targetSubjectsOf", "targetObjectsOf")
 )
 """Properties of shapes, which need no type."""
+_REFERENCES: Final = frozenset(
+    (
+        v.RDF_FIRST,
+        v.RDF_REST,
+        *(
+            v.iri(SHACL + name)
+            for name in ("property", "node", "not", "qualifiedValueShape", "and", "or", "xone")
+        ),
+    )
+)
+"""Properties from a shape, or a list of shapes, to another one."""
 _UNSUPPORTED: Final = {
     v.iri(SHACL + name): kind
     for name, kind in (
@@ -44,6 +56,23 @@ def find_unsupported(triples: Iterable[Triple]) -> set[tuple[str, Term]]:
         for s, p, o in triples
         if (kind := _UNSUPPORTED.get(p)) is not None
     }
+
+
+def find_cycle(triples: Iterable[Triple]) -> list[Term]:
+    """Return shapes, and lists of shapes, each of which refers to the next, and the last to the first.
+
+    The recommendation leaves open whether an individual conforms to such a shape.
+    """
+    references: dict[Term, set[Term]] = {}
+    for s, p, o in triples:
+        if p in _REFERENCES:
+            references.setdefault(s, set()).add(o)
+    try:
+        TopologicalSorter(references).prepare()
+    except CycleError as error:
+        found: list[Term] = error.args[1]
+        return found
+    return []
 
 
 def select_shapes(triples: Iterable[Triple]) -> list[Triple]:

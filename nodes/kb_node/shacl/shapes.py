@@ -7,7 +7,7 @@ reasoner infers. Targets are found here, so that a commit is validated without a
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any, Final
 
@@ -30,6 +30,13 @@ from semmap.schemas.explanations import Term, Triple
 _SEVERITIES: Final = {SH.Warning: "warning", SH.Info: "info"}
 _LANGUAGES: Final = (None, "en")
 """The languages of the message that is chosen, the best first."""
+_MESSAGE: Final = to_term(SH.message)
+_LONGEST_TEXT: Final = 500
+"""The maximum number of characters of each text in a result. A document has texts of any length."""
+_PROBE: Final = URIRef("urn:semmap:probe")
+"""An individual without facts, to try the constraints of a shape."""
+_AT_ONCE: Final = 100
+"""Individuals that are validated together. pySHACL writes a page of text for each violation."""
 
 
 class Shapes:
@@ -40,7 +47,7 @@ class Shapes:
         self._name = name
         graph = Graph()
         for s, p, o in select_shapes(triples):
-            graph.add((to_node(s), to_node(p), to_node(o)))
+            graph.add((to_node(s), to_node(p), to_node(_short_message(o) if p == _MESSAGE else o)))
         self._graph = ShapesGraph(graph)
         with self._named_errors():
             self._shapes: list[Shape] = [shape for shape in self._graph.shapes if not shape.deactivated]
@@ -48,10 +55,21 @@ class Shapes:
     def __len__(self) -> int:
         return sum(1 for shape in self._shapes if any(_target_terms(shape)))
 
-    def validate(self, reasoner: Reasoner, touched: Iterable[Term] | None = None) -> list[Result]:
+    def require_evaluable(self) -> None:
+        """Raise BadFile for shapes that cannot be evaluated, such as those with an invalid sh:pattern."""
+        with self._named_errors():
+            for shape in self._shapes:
+                shape.validate(SHACLExecutor(), Graph(), focus=[_PROBE])
+
+    def validate(
+        self,
+        reasoner: Reasoner,
+        touched: Iterable[Term] | None = None,
+        failed: Callable[[str], None] | None = None,
+    ) -> list[Result]:
         """Return the violations of all individuals, or of the `touched` ones, in the order of their names.
 
-        Raises BadFile for shapes that cannot be evaluated.
+        `failed` receives the error of each shape that cannot be evaluated. Without it, raises BadFile.
         """
         find = representative(reasoner)
         facts, executor = fact_graph(reasoner), SHACLExecutor()
@@ -60,11 +78,17 @@ class Shapes:
         for shape in self._shapes:
             terms = _all_targets(shape, reasoner) if known is None else _targets(shape, reasoner, known)
             focus = sorted(set(map(find, terms)))
-            if not focus:
-                continue
-            with self._named_errors():
-                _, reports = shape.validate(executor, facts, focus=[to_node(term) for term in focus])
-                found.update(dict.fromkeys(self._read(_by_property(parts)) for _, _, parts in reports))
+            try:
+                with self._named_errors():
+                    for start in range(0, len(focus), _AT_ONCE):
+                        nodes = [to_node(term) for term in focus[start : start + _AT_ONCE]]
+                        _, reports = shape.validate(executor, facts, focus=nodes)
+                        results = (self._read(_by_property(parts)) for _, _, parts in reports)
+                        found.update(dict.fromkeys(results))
+            except errors.BadFile as error:
+                if failed is None:
+                    raise
+                failed(error.text)
         return sorted(found, key=lambda one: (one.focus, one.path, one.message, one.value))
 
     @contextmanager
@@ -88,12 +112,12 @@ class Shapes:
         path = report.get(SH.resultPath, [None])[0]
         value = report.get(SH.value, [None])[0]
         return Result(
-            focus=to_term(report[SH.focusNode][0]),
-            message=self._message(source, report),
-            path="" if path is None else self._path(path),
-            value="" if value is None else to_term(value),
+            focus=_short_term(report[SH.focusNode][0]),
+            message=errors.shortened(self._message(source, report), _LONGEST_TEXT),
+            path="" if path is None else errors.shortened(self._path(path), _LONGEST_TEXT),
+            value="" if value is None else _short_term(value),
             severity=_SEVERITIES.get(report[SH.resultSeverity][0], "violation"),
-            shape=to_term(source),
+            shape=_short_term(source),
         )
 
     def _message(self, source: Node, report: dict[Node, list[Any]]) -> str:
@@ -126,6 +150,25 @@ def _by_property(parts: Iterable[tuple[Node, Node, Any]]) -> dict[Node, list[Any
     for _, predicate, value in parts:
         found.setdefault(predicate, []).append(value[1] if isinstance(value, tuple) else value)
     return found
+
+
+def _short_message(message: Term) -> Term:
+    """Return a message that is not too long for a result."""
+    if not message.startswith('"'):
+        return message
+    text = errors.shortened(v.lexical(message), _LONGEST_TEXT)
+    return v.literal(text, lang=v.language_of(message))
+
+
+def _short_term(node: Node) -> Term:
+    """Return the term of a node, with a shorter text if it is too long for a result."""
+    term = to_term(node)
+    if len(term) <= _LONGEST_TEXT:
+        return term
+    text = errors.shortened(str(node), _LONGEST_TEXT)
+    if isinstance(node, Literal):
+        return v.literal(text)
+    return v.iri(text) if isinstance(node, URIRef) else f"_:{text}"
 
 
 def _rank(language: str | None) -> int:

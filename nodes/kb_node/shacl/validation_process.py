@@ -15,11 +15,13 @@ from semmap.nodes.kb_node.documents.inert_statements import count_inert, inert_n
 from semmap.nodes.kb_node.reasoner import GivenFacts, Reasoner
 from semmap.nodes.kb_node.shacl.results import Result
 from semmap.nodes.runtime.isolated_process import CPU_S, IsolatedProcess, program, serve
-from semmap.schemas import errors
+from semmap.schemas import errors, wording
 from semmap.schemas.explanations import Triple
 
 _LABEL: Final = "shape"
 """Prefix of the blank nodes of a document, which differ from those of the TBox."""
+MOST_RESULTS: Final = 1000
+"""The maximum number of results in a reply."""
 
 
 class Request(Struct, frozen=True):
@@ -36,6 +38,8 @@ class Validation(Struct, frozen=True):
 
     shapes: int = 0
     results: list[Result] = []
+    count: int = 0
+    """The number of all results; `results` has the first ones."""
     notes: list[str] = []
     error: str = ""
 
@@ -88,7 +92,10 @@ def validate(request: Request) -> Validation:
             notes.append(f"{name}: {unsupported}")
     reasoner = Reasoner.of(GivenFacts(request.asserted, request.computed))
     results = [result for shapes in sets for result in shapes.validate(reasoner)]
-    return Validation(sum(map(len, sets)), results, notes)
+    if len(results) > MOST_RESULTS:
+        total = wording.counted(len(results), "violation")
+        notes.append(f"the first {MOST_RESULTS} of {total} are listed; use fewer shapes to list others")
+    return Validation(sum(map(len, sets)), results[:MOST_RESULTS], len(results), notes)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from semmap.nodes.kb_node.shacl.shape_triples import find_shapes
 from semmap.nodes.kb_node.shacl.validation_process import ShapeValidator
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors, wording
-from semmap.schemas.commands import Check
+from semmap.schemas.commands import SHAPES_BYTES, Check
 from semmap.schemas.explanations import Term
 from semmap.schemas.replies import Checked, Violation
 
@@ -82,6 +82,13 @@ class Names(NamedTuple):
         return self.individuals.get(term) or v.entity_name(term)
 
 
+def require_size(query: Check) -> None:
+    """Raise BadFile for a document with shapes that is too large."""
+    if len(query.shapes) > SHAPES_BYTES:
+        name, most = query.filename or "the file", SHAPES_BYTES >> 20
+        raise errors.BadFile(f"{name} is larger than {most} MiB; split it into several files")
+
+
 def with_validation(
     checked: Checked, validator: ShapeValidator, query: Check, facts: GivenFacts, names: Names
 ) -> Checked:
@@ -97,11 +104,14 @@ def with_validation(
     except errors.BadFile as error:
         if query.shapes:
             raise
-        return structs.replace(checked, notes=(*checked.notes, f"shapes not evaluated: {error.text}"))
+        return structs.replace(
+            checked, notes=(*checked.notes, errors.shortened(f"shapes not evaluated: {error.text}", 1000))
+        )
     return structs.replace(
         checked,
-        conforms=not validation.results,
+        conforms=not validation.count,
         shapes=validation.shapes,
+        violation_count=validation.count,
         violations=tuple(to_violation(one, names.individual, names.terms) for one in validation.results),
         notes=(*checked.notes, *validation.notes),
     )

@@ -15,6 +15,12 @@ SHAPES = turtle(
         sh:message "needs a room" ] ;
     sh:property [ sh:path ( dm:isLocatedIn dm:closed ) ; sh:maxCount 0 ; sh:message "its room is closed" ] ;
     sh:property [ sh:path dm:seats ; sh:maxCount 0 ; sh:severity sh:Warning ] .
+:W sh:targetObjectsOf dm:w ; sh:minInclusive 0 .
+:U sh:targetSubjectsOf dm:uses ; sh:property [ sh:path dm:uses ; sh:class dm:Seat ] .
+:F sh:targetSubjectsOf dm:far ; sh:property [ sh:path dm:reaches ; sh:maxCount 1 ] .
+dm:uses2 a owl:ObjectProperty ; rdfs:range dm:Seat .
+dm:uses a owl:ObjectProperty .
+dm:reaches a owl:ObjectProperty ; owl:propertyChainAxiom ( dm:s dm:t dm:u ) .
 """
 )
 CHAIR = ":chair1 a dm:Chair ; dm:isLocatedIn :kitchen1 . :kitchen1 a dm:Kitchen ."
@@ -45,6 +51,47 @@ def test_what_refers_to_a_change_is_validated(enforcing):
         enforcing.commit(transaction(2, turtle(":kitchen1 dm:closed true .")))
 
 
+@pytest.mark.parametrize(
+    ("before", "inserted", "retracted", "text"),
+    [
+        ("", ":a dm:w -3 .", "", "-3: violates sh:minInclusive 0"),
+        (
+            ":z dm:uses :b . :a dm:uses2 :b .",
+            "",
+            ":a dm:uses2 :b .",
+            "z: violates sh:class Seat; uses; b",
+        ),
+        (
+            ":z dm:uses :b . :b owl:sameAs :c . :a dm:uses2 :c .",
+            "",
+            ":a dm:uses2 :c .",
+            "z: violates sh:class Seat; uses; b",
+        ),
+        (
+            ":z dm:uses :b . :b owl:sameAs :c . :a dm:uses2 :c .",
+            "",
+            ":b owl:sameAs :c .",
+            "z: violates sh:class Seat; uses; b",
+        ),
+        (
+            ":z dm:far 1 ; dm:reaches :y ; dm:s :a . :a dm:t :b .",
+            ":b dm:u :c .",
+            "",
+            "z: violates sh:maxCount 1; reaches",
+        ),
+    ],
+)
+def test_individuals_whose_facts_follow_from_a_change_are_validated(
+    enforcing, before, inserted, retracted, text
+):
+    if before:
+        enforcing.commit(transaction(1, turtle(before)))
+    state = enforcing.seq, set(enforcing.abox())
+    with pytest.raises(errors.Refused, match=f"^{text}; {REFUSED}"):
+        enforcing.commit(transaction(2, turtle(inserted), turtle(retracted)))
+    assert (enforcing.seq, set(enforcing.abox())) == state
+
+
 def test_warnings_and_earlier_violations_refuse_nothing(enforcing):
     enforcement, enforcing.enforcement = enforcing.enforcement, None
     enforcing.commit(transaction(1, turtle(":chair2 a dm:Chair .")))
@@ -63,7 +110,32 @@ def test_each_transaction_of_several_is_validated(enforcing):
 def test_another_tbox_brings_other_shapes(enforcing):
     enforcing.replace_tbox(transaction(1), home.TBOX)
     assert enforcing.commit(transaction(2, turtle(":chair2 a dm:Chair ."))).seq == 2
-    broken = turtle(SH + ":S sh:targetClass dm:Chair ; sh:property [ sh:path dm:a , dm:b ] .")
-    with pytest.raises(errors.BadFile, match="the TBox: invalid SHACL shape"):
-        enforcing.replace_tbox(transaction(3), [*home.TBOX, *broken])
-    assert enforcing.seq == 2
+
+
+@pytest.mark.parametrize(
+    ("shapes", "reason"),
+    [
+        (":S sh:targetClass dm:Chair ; sh:property [ sh:path dm:a , dm:b ] .", ""),
+        (":S sh:targetClass dm:Chair ; sh:property [ sh:path dm:a ; sh:pattern '(' ] .", "missing \\)"),
+        (":S sh:targetClass dm:Chair ; sh:node [ sh:property [ sh:path dm:a ; sh:minLength 'x' ] ] .", ""),
+        (":S sh:targetClass dm:Chair ; sh:property [ sh:path ( dm:a ) ; sh:minCount 1 ] .", "A list"),
+        (":S sh:targetClass dm:Chair ; sh:property [ sh:path dm:a ; sh:node :S ] .", "S refers to itself$"),
+        ("[] sh:targetClass dm:Chair ; sh:or ( :S ) . :S sh:not [ sh:and ( :S ) ] .", "S refers to itself$"),
+    ],
+)
+def test_a_tbox_with_shapes_that_cannot_be_evaluated_is_rejected(enforcing, shapes, reason):
+    with pytest.raises(errors.BadFile, match=f"^the TBox: invalid SHACL shape: {reason}"):
+        enforcing.replace_tbox(transaction(3), [*home.TBOX, *turtle(SH + shapes)])
+    assert enforcing.seq == 0
+
+
+def test_a_shape_that_fails_rejects_no_commit(enforcing, caplog):
+    deep = " ".join(f":d{n} sh:property [ sh:path dm:on ; sh:node :d{n + 1} ] ." for n in range(30))
+    shapes = turtle(SH + deep + ":d0 sh:targetClass dm:Chair . :S sh:targetClass dm:Door ; sh:closed true .")
+    enforcing.replace_tbox(transaction(1), [*home.TBOX, *shapes])
+    for n in range(2):
+        enforcing.commit(transaction(f"c{n}", turtle(f":chair{n} a dm:Chair ; dm:on :chair{n} .")))
+    assert enforcing.seq == 3
+    with pytest.raises(errors.Refused, match="door1: violates sh:closed"):
+        enforcing.commit(transaction("d", turtle(":door1 a dm:Door ; dm:on :chair1 .")))
+    assert caplog.text.count("the shape is not enforced") == 1

@@ -93,6 +93,12 @@ def test_invalid_shapes_are_errors_in_one_line(shapes):
         found(shapes)
 
 
+def test_many_individuals_are_validated_in_parts():
+    facts = " ".join(f":c{n} a dm:Chair ." for n in range(250))
+    texts = found(of_chairs("sh:path dm:isLocatedIn ; sh:minCount 1 ; sh:message 'm'"), facts)
+    assert sorted(texts) == sorted(f"c{n}: m; isLocatedIn" for n in range(250))
+
+
 def test_sparql_is_not_evaluated():
     shape = """[] sh:targetNode :chair1 ; sh:sparql [ sh:message "m" ;
         sh:select "SELECT $this WHERE { SERVICE <http://127.0.0.1:9/> { ?s ?p ?o } }" ] ."""

@@ -1,8 +1,9 @@
 """The validation of shapes of unknown origin, without its process."""
 
 import pytest
-from msgspec import msgpack
+from msgspec import msgpack, structs
 
+from semmap.nodes.kb_node.shacl import validation_process
 from semmap.nodes.kb_node.shacl.validation_process import Request, Validation, answer
 from tests.kb_node import home
 from tests.kb_node.home import PREFIXES, turtle
@@ -38,3 +39,23 @@ def test_an_invalid_document_is_an_error(content, error):
 def test_what_is_not_evaluated_is_noted():
     found = validate(SHAPE + " :s sh:sparql [ sh:select '' ] ; sh:rule [] .")
     assert found.notes == ["s.ttl: stored, but not evaluated: 1 SHACL SPARQL constraint, 1 SHACL rule"]
+
+
+def test_of_many_violations_the_first_are_listed(monkeypatch):
+    monkeypatch.setattr(validation_process, "MOST_RESULTS", 2)
+    found = validate("".join(f"[] sh:targetNode :c{n} ; sh:class dm:Door ." for n in (3, 1, 2)))
+    assert (len(found.results), found.count) == (2, 3)
+    assert found.notes == ["the first 2 of 3 violations are listed; use fewer shapes to list others"]
+    assert validate(SHAPE).count == 1
+
+
+def test_texts_of_any_length_are_short_in_results():
+    long = "x" * 5000
+    found = validate(f"""
+        <urn:{long}> sh:targetNode "{long}" , <urn:i{long}> ; sh:class dm:Door ;
+            sh:message "{long}"@en , "{long}"@it .
+        [] sh:targetNode :a ; sh:property [ sh:path ( <urn:{long}> dm:near ) ; sh:minCount 1 ] ;
+            sh:property [ sh:path dm:near ; sh:hasValue "{long}" ] .
+    """)
+    assert found.count == 4
+    assert all(len(text) < 600 for one in found.results for text in structs.astuple(one))

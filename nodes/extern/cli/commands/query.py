@@ -157,7 +157,9 @@ def check(client: Client, engine: Any, shapes: Path | None) -> None:
     The shapes are those of the TBox, of the map and of FILE. The exit status is 1 if the map is inconsistent
     or violates a shape.
     """
-    content, filename = (b"", "") if shapes is None else (read_file(shapes), shapes.name)
+    content, filename = b"", ""
+    if shapes is not None:
+        content, filename = read_file(shapes, largest=commands.SHAPES_BYTES), shapes.name
     checked = client.check(engine, shapes=content, filename=filename)
     print_result(checked, lines.format_check)
     if not (checked.consistent and checked.conforms):

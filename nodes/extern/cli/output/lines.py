@@ -34,7 +34,8 @@ def format_check(reply: Checked) -> Iterable[str]:
     """Yield the result of a consistency check, the violations of shapes, and contradicted relations."""
     yield f"{reply.text} ({reply.engine}, {reply.triples} triples, {reply.elapsed_s:.3f} s)"
     if reply.shapes:
-        found = wording.counted(len(reply.violations), "violation") if reply.violations else "no violations"
+        count = reply.violation_count
+        found = wording.counted(count, "violation") if count else "no violations"
         yield f"{wording.counted(reply.shapes, 'SHACL shape')}: {found}"
     for violation in reply.violations:
         kind = "" if violation.severity == "violation" else f"{violation.severity}: "

@@ -5,7 +5,7 @@ import pytest
 from semmap.nodes.extern.cli.output import lines
 from semmap.schemas.changes import Change
 from semmap.schemas.relations import Relation
-from semmap.schemas.replies import Changed, LoggedCommit
+from semmap.schemas.replies import Changed, Checked, LoggedCommit, Violation
 
 
 @pytest.mark.parametrize(("count", "shown"), [(0, 0), (1, 1), (20, 20), (21, 19), (700, 19)])
@@ -15,6 +15,26 @@ def test_of_many_consequences_a_few_are_shown_and_the_rest_counted(count, shown)
     assert text == "it would be"
     assert rest[:shown] == [f"  would no longer be inferred: {fact}" for fact in facts[:shown]]
     assert rest[shown:] == [f"  would no longer be inferred: {count - shown} more facts"] * (count > shown)
+
+
+@pytest.mark.parametrize(
+    ("fields", "shown"),
+    [
+        ({}, []),
+        ({"shapes": 2}, ["2 SHACL shapes: no violations"]),
+        (
+            {
+                "shapes": 1,
+                "violation_count": 3,
+                "violations": (Violation(name="a", message="m", text="a: m"),),
+            },
+            ["1 SHACL shape: 3 violations", "  a: m"],
+        ),
+    ],
+)
+def test_a_check_counts_all_violations(fields, shown):
+    checked = Checked(consistent=True, engine="semmap", triples=3, elapsed_s=0.5, text="consistent", **fields)
+    assert list(lines.format_check(checked)) == ["consistent (semmap, 3 triples, 0.500 s)", *shown]
 
 
 def test_what_a_thing_bears_is_one_sentence():
