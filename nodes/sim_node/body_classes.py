@@ -142,13 +142,17 @@ class BodyClasses:
             return not (moves and is_part)
         return around.name != "Robot" and not is_part
 
+    def is_place(self, found: Found) -> bool:
+        """Return whether a body is a place, such as a kitchen with its furniture."""
+        class_ = self._classes.get(found.class_ or "")
+        return class_ is not None and class_.place
+
     def is_group(self, whole: Found, parts: Iterable[Found]) -> bool:
         """Return whether all nested entities have the class of the body around them, or a more special one.
 
         A place and a body with a stated class are never only a group.
         """
-        around = self._classes.get(whole.class_ or "")
-        if whole.is_stated or (around is not None and around.place):
+        if whole.is_stated or self.is_place(whole):
             return False
         return all(
             part.class_ == whole.class_

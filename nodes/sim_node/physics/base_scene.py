@@ -189,7 +189,8 @@ def bodies_of(
     """Return the world's own bodies by the names of their entities, with the classes that `classes` finds.
 
     `find_entities` tells them from their parts. A joint belongs to the body that it moves, or else to its
-    nearest parent body.
+    nearest parent body. The size of a body is that of its own geoms and those of its parts, without nested
+    entities: a book does not make its table higher. A place, or a body without such geoms, includes them.
     """
     model, data = compiled
     ends = JointTexts.of(spec)
@@ -197,15 +198,20 @@ def bodies_of(
     follow = coupled_joints(model, switches)  # a burner coupled to a knob opens nothing
     records: dict[int, BodyRecord] = {}
     taken = {body.name for body in spec.bodies if is_name(body.name)}
-    owner, found = find_entities(model, classes or BodyClasses(), _declared(spec))
+    classes = classes or BodyClasses()
+    owner, found = find_entities(model, classes, _declared(spec))
+    geom_owner = np.asarray(owner)[model.geom_bodyid]
     for number, whose in enumerate(owner):
         if number in found:
             body = model.body(number).name
             name = body if is_name(body) else valid_name(body, taken)
             taken.add(name)
             whole = records.get(owner[model.body_parentid[number]])
+            geoms = np.flatnonzero(geom_owner == number)
+            if not len(geoms) or classes.is_place(found[number]):
+                geoms = np.flatnonzero(_within(model, number)[model.geom_bodyid])
             records[number] = _record(
-                model, data, spec.body(body), name, found[number], whole.name if whole else ""
+                model, data, spec.body(body), geoms, name, found[number], whole.name if whole else ""
             )
         if whose and model.body_jntnum[number]:
             _give_joints(records[whose], model, number, ends, switches, follow)
@@ -334,10 +340,16 @@ def _joint(
 
 
 def _record(
-    model: mujoco.MjModel, data: mujoco.MjData, body: mujoco.MjsBody, name: str, found: Found, part_of: str
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    body: mujoco.MjsBody,
+    geoms: NDArray[np.intp],
+    name: str,
+    found: Found,
+    part_of: str,
 ) -> BodyRecord:
+    """Return the record of a body with the size of the box around `geoms`."""
     number = model.body(body.name).id
-    geoms = np.flatnonzero(_within(model, number)[model.geom_bodyid])
     low, high = _extents(model, data, geoms, number)
     middle = (low + high) / 2.0
     origin = (float(middle[0]), float(middle[1]), float(low[2]))
@@ -366,13 +378,13 @@ def _record(
 
 
 def _within(model: mujoco.MjModel, body: int) -> NDArray[np.bool_]:
-    """Return (nbody,) which bodies are this one or its parts, which have higher numbers."""
+    """Return (nbody,) which bodies are this one or nested in it; these have higher numbers."""
     within = np.zeros(model.nbody, dtype=bool)
     within[body] = True
     for part in range(body + 1, model.nbody):
         within[part] = within[model.body_parentid[part]]
         if not within[part] and model.body_parentid[part] < body:
-            break  # the parts of a body follow it contiguously
+            break  # the bodies nested in one follow it contiguously
     return within
 
 

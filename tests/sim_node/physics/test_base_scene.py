@@ -11,6 +11,7 @@ from semmap.nodes.sim_node.physics import base_scene
 from semmap.nodes.sim_node.physics.build import IMPEDANCE
 from semmap.nodes.sim_node.vision.view import camera_view, look_at
 from semmap.schemas.errors import BadFile
+from tests.household import household_classes
 
 
 def spec(body="", *, more="", option=""):
@@ -19,11 +20,13 @@ def spec(body="", *, more="", option=""):
     )
 
 
-def records(body, *, texts="", more="", classes=()):
+def records(body, *, texts="", more="", classes=(), household=False):
     custom = "".join(f'<text name="{name}" data="{data}"/>' for name, data in dict(texts or {}).items())
     ground = spec(body, more=f"<custom>{custom}</custom>{more}")
     compiled = base_scene.prepare(ground)
-    return base_scene.bodies_of(ground, compiled, BodyClasses(class_map={word: word for word in classes}))
+    known = household_classes() if household else ()
+    class_map = {word: word for word in classes}
+    return base_scene.bodies_of(ground, compiled, BodyClasses(known, class_map))
 
 
 def test_a_bare_floor_is_endless_and_has_a_camera_that_looks_over_it():
@@ -153,6 +156,36 @@ def test_a_body_without_geometry_is_a_centimetre_large_and_what_is_flat_has_some
     found = records('<body name="a"/><body name="b"><geom type="box" size="1 1 1e-6"/></body>')
     assert found["a"].size_m == pytest.approx((0.01, 0.01, 0.01))
     assert found["b"].size_m == pytest.approx((2.0, 2.0, 0.001))
+
+
+@pytest.mark.parametrize(
+    ("name", "size_m", "bottom_m"),
+    [
+        ("coffee_table", (0.8, 0.6, 0.4), 0.0),  # with its drawer, and without the book
+        ("coffee_table_drawer", None, None),
+        ("book", (0.2, 0.14, 0.04), 0.4),
+        ("kitchen", (2.0, 2.0, 2.5), 0.0),  # a place extends over what is in it
+        ("fridge", (1.0, 1.0, 2.0), 0.0),
+        ("board", (0.4, 0.4, 0.2), 1.0),  # without geoms of its own
+    ],
+)
+def test_the_size_of_a_body_is_that_of_its_parts_without_nested_entities(name, size_m, bottom_m):
+    worlds = """<body name="coffee_table"><geom type="box" size=".4 .3 .1" pos="0 0 .3"/>
+      <body name="coffee_table_drawer"><joint type="slide"/><geom type="box" size=".1 .1 .1" pos="0 0 .1"/>
+        <body name="spoon_2" pos="0 0 .9"><geom type="box" size=".1 .1 .1"/></body></body>
+      <body name="book" pos="0 0 .42"><geom type="box" size=".1 .07 .02"/></body></body>
+      <body name="kitchen"><geom type="box" size="1 1 .01" pos="0 0 .01"/>
+        <body name="fridge"><geom type="box" size=".5 .5 1" pos="0 0 1"/>
+          <body name="pot_1" pos="0 0 2.25"><geom type="box" size=".1 .1 .25"/></body></body></body>
+      <body name="board" pos="5 0 1">
+        <body name="cup_1"><geom type="box" size=".1 .1 .1" pos=".1 .1 .1"/></body>
+        <body name="cup_2"><geom type="box" size=".1 .1 .1" pos="-.1 -.1 .1"/></body></body>"""
+    found = records(worlds, household=True)
+    if size_m is None:
+        assert name not in found
+        return
+    assert found[name].size_m == pytest.approx(size_m)
+    assert found[name].ordered.position_m[2] == pytest.approx(bottom_m)
 
 
 def test_what_stands_is_fixed_and_what_a_joint_holds_is_anchored():
