@@ -14,12 +14,14 @@ from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.documents.inert_statements import count_inert, inert_note
 from semmap.nodes.kb_node.reasoner import GivenFacts, Reasoner
 from semmap.nodes.kb_node.shacl.results import Result
-from semmap.nodes.runtime.isolated_process import CPU_S, IsolatedProcess, program, serve
+from semmap.nodes.runtime.isolated_process import IsolatedProcess, program, serve
 from semmap.schemas import errors, wording
 from semmap.schemas.explanations import Triple
 
 _LABEL: Final = "shape"
 """Prefix of the blank nodes of a document, which differ from those of the TBox."""
+LIMIT_S: Final = 60.0
+"""Limit of the CPU time of a validation. Any client may request one, and others wait for it."""
 MOST_RESULTS: Final = 1000
 """The maximum number of results in a reply."""
 
@@ -49,7 +51,7 @@ class ShapeValidator(IsolatedProcess):
 
     remedy = "use fewer or simpler shapes"
 
-    def __init__(self, command: Sequence[str] = program(__name__), *, cpu_s: float = CPU_S) -> None:
+    def __init__(self, command: Sequence[str] = program(__name__), *, cpu_s: float = LIMIT_S) -> None:
         """Create it; `command` is the program of the process."""
         super().__init__(command, cpu_s=cpu_s)
 

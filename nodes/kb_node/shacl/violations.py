@@ -89,6 +89,11 @@ def require_size(query: Check) -> None:
         raise errors.BadFile(f"{name} is larger than {most} MiB; split it into several files")
 
 
+def has_shapes(query: Check, facts: GivenFacts) -> bool:
+    """Return whether a check has shapes to evaluate: those of its document, of the map or of the TBox."""
+    return bool(query.shapes or find_shapes(facts.asserted))
+
+
 def with_validation(
     checked: Checked, validator: ShapeValidator, query: Check, facts: GivenFacts, names: Names
 ) -> Checked:
@@ -97,7 +102,7 @@ def with_validation(
     Raises BadFile for a document of the query that is not valid. If shapes of the map cannot be evaluated,
     a note says so.
     """
-    if not checked.consistent or not (query.shapes or find_shapes(facts.asserted)):
+    if not checked.consistent or not has_shapes(query, facts):
         return checked
     try:
         validation = validator.validate(facts, query.shapes, query.filename)

@@ -1,9 +1,12 @@
 """Handlers of queries, without the wire."""
 
+import threading
+
 import pytest
 
 from semmap.nodes.kb_node.handlers.queries import QueryHandlers
-from semmap.schemas.commands import Rules
+from semmap.nodes.kb_node.shacl.validation_process import Validation
+from semmap.schemas.commands import Check, Export, Rules
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
 
@@ -29,3 +32,27 @@ def test_rules_are_listed_with_their_matches_in_the_map(chairs):
     found = {rule.name: rule for rule in queries.on_rules(Rules())}
     assert (found["seats"].text, found["seats"].holds) == ("if x is a chair, then x is a Seat", 2)
     assert (found["off"].text, found["off"].unsupported) == ("", "empty")
+
+
+def test_slow_checks_with_shapes_delay_no_other_query(chairs):
+    queries = QueryHandlers(chairs, chairs._journal, sparql=None, location_queries=None)
+    goes_on = threading.Event()
+
+    class Slow:
+        def validate(self, *_):
+            assert goes_on.wait(60.0)
+            return Validation(shapes=1)
+
+        def close(self):
+            goes_on.set()
+
+    queries._validator = Slow()
+    try:
+        checks = [queries.on_check(Check(shapes=b"shapes")) for _ in range(3)]
+        assert queries.on_export(Export()).result(60.0).content
+        assert queries.on_check(Check()).result(60.0).consistent
+        assert not any(check.done() for check in checks)
+        goes_on.set()
+        assert [check.result(60.0).shapes for check in checks] == [1, 1, 1]
+    finally:
+        queries.close()
