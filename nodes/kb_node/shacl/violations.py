@@ -12,7 +12,7 @@ from semmap.nodes.kb_node.map_state import MapState
 from semmap.nodes.kb_node.reasoner import GivenFacts
 from semmap.nodes.kb_node.shacl.results import Result
 from semmap.nodes.kb_node.shacl.shape_triples import find_shapes
-from semmap.nodes.kb_node.shacl.validation_process import ShapeValidator
+from semmap.nodes.kb_node.shacl.validation_process import ShapeValidator, not_evaluated
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors, wording
 from semmap.schemas.commands import SHAPES_BYTES, Check
@@ -99,24 +99,28 @@ def with_validation(
 ) -> Checked:
     """Return the result of a check with the violations of SHACL shapes.
 
-    Raises BadFile for a document of the query that is not valid. If shapes of the map cannot be evaluated,
-    a note says so.
+    Raises BadFile for a document of the query that is not valid, and Refused if it cannot be validated now.
+    Without a document, a note says why shapes of the map were not evaluated.
     """
-    if not checked.consistent or not has_shapes(query, facts):
+    if not has_shapes(query, facts):
         return checked
+    if not checked.consistent:
+        return _without_validation(checked, "the map is inconsistent")
     try:
         validation = validator.validate(facts, query.shapes, query.filename)
-    except errors.BadFile as error:
+    except (errors.BadFile, errors.Refused) as error:
         if query.shapes:
             raise
-        return structs.replace(
-            checked, notes=(*checked.notes, errors.shortened(f"shapes not evaluated: {error.text}", 1000))
-        )
+        return _without_validation(checked, error.text)
     return structs.replace(
         checked,
-        conforms=not validation.count,
+        conforms=False if validation.count else validation.is_complete or None,
         shapes=validation.shapes,
         violation_count=validation.count,
         violations=tuple(to_violation(one, names.individual, names.terms) for one in validation.results),
         notes=(*checked.notes, *validation.notes),
     )
+
+
+def _without_validation(checked: Checked, reason: str) -> Checked:
+    return structs.replace(checked, conforms=None, notes=(*checked.notes, not_evaluated(reason)))
