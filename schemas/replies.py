@@ -64,8 +64,9 @@ class Checked(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Computed spatial relations that are suppressed as they would contradict the map, with the reason."""
     crowds: tuple[str, ...] = ()
     """Spots with so many things that not all are considered as supports, one sentence each."""
-    conforms: bool = True
-    """Whether no SHACL shape is violated."""
+    conforms: bool | None = True
+    """Whether no SHACL shape is violated; None if shapes were not evaluated and the others are not violated.
+    """
     shapes: int = 0
     """The number of SHACL shapes with a target that the facts were compared with."""
     violation_count: int = 0

@@ -47,7 +47,9 @@ def test_two_tabs_show_a_change_by_another_client(open_tab, web, system):
 def test_keys_undo_and_show_the_shortcuts(tab, system):
     name = fresh("cup")
     with system.client() as client:
-        done = client.send(Add(class_="Cup", name=name, at=(2.0, 3.0, 0.0), wait=True))
+        done = client.send(
+            Add(class_="Cup", name=name, at=(22.0, 3.0, 0.0), wait=True)
+        )  # where no other test puts one
         has_commit(tab, done.commit)
         tab.get_by_label("Filter entities by text").fill(name)
         tab.locator(f'.entity-table .ag-center-cols-container [row-id="{name}"]').click()
@@ -55,9 +57,9 @@ def test_keys_undo_and_show_the_shortcuts(tab, system):
         tab.evaluate("document.activeElement.blur()")  # the table has its own arrow keys
         tab.evaluate(_PRESS_TWO_ARROWS)  # in one go, however busy the machine is
         settle(tab)
-        assert client.get(name).pose.position_m == pytest.approx((2.1, 3.01, 0.0), abs=1e-3)
+        assert client.get(name).pose.position_m == pytest.approx((22.1, 3.01, 0.0), abs=1e-3)
         tab.keyboard.press("u")
-        until(lambda: client.get(name).pose.position_m[0] < 2.05, "both steps are undone at once")
+        until(lambda: client.get(name).pose.position_m[0] < 22.05, "both steps are undone at once")
         tab.keyboard.press("u")
         until(lambda: name not in {e.name for e in client.list()}, "it is undone")
     tab.keyboard.press("?")

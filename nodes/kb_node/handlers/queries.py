@@ -136,6 +136,8 @@ class QueryHandlers:
         self._routes = RoutePlanning(semantic_map, self._past, self._aside.submit)
         self._second_opinions = FairPool(1, asker)
         """For checks with owlrl, which take seconds to minutes, so that no other work waits behind them."""
+        self._validations = FairPool(1, asker)
+        """For checks with shapes, which clients may send and which may take a minute."""
         self._validator = ShapeValidator()
         self._is_over = threading.Event()
 
@@ -428,7 +430,10 @@ class QueryHandlers:
             checked = structs.replace(checked, denied=denied, withheld=withheld, crowds=crowds)
             return violations.with_validation(checked, self._validator, query, held, names)
 
-        return (self._second_opinions if query.engine == "owlrl" else self._aside).submit(check)
+        if query.engine == "owlrl":
+            return self._second_opinions.submit(check)
+        has_shapes = violations.has_shapes(query, held)
+        return (self._validations if has_shapes else self._aside).submit(check)
 
     def on_sparql(self, query: Sparql) -> Future[SparqlResult]:
         """Evaluate a query in another process."""
@@ -461,4 +466,5 @@ class QueryHandlers:
         self._is_over.set()
         self._validator.close()
         self._second_opinions.close()
+        self._validations.close()
         self._aside.close()

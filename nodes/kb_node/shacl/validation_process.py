@@ -14,12 +14,17 @@ from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.documents.inert_statements import count_inert, inert_note
 from semmap.nodes.kb_node.reasoner import GivenFacts, Reasoner
 from semmap.nodes.kb_node.shacl.results import Result
-from semmap.nodes.runtime.isolated_process import CPU_S, IsolatedProcess, program, serve
+from semmap.nodes.runtime.isolated_process import IsolatedProcess, program, serve
 from semmap.schemas import errors, wording
 from semmap.schemas.explanations import Triple
 
 _LABEL: Final = "shape"
 """Prefix of the blank nodes of a document, which differ from those of the TBox."""
+_MOST_FAILURES: Final = 5
+"""The maximum number of notes on shapes that were not evaluated."""
+_LONGEST_NOTE: Final = 1000
+LIMIT_S: Final = 60.0
+"""Limit of the CPU time of a validation. Any client may request one, and others wait for it."""
 MOST_RESULTS: Final = 1000
 """The maximum number of results in a reply."""
 
@@ -41,6 +46,8 @@ class Validation(Struct, frozen=True):
     count: int = 0
     """The number of all results; `results` has the first ones."""
     notes: list[str] = []
+    is_complete: bool = True
+    """Whether all shapes of the map and its TBox were evaluated. `notes` has the reasons if not."""
     error: str = ""
 
 
@@ -49,7 +56,7 @@ class ShapeValidator(IsolatedProcess):
 
     remedy = "use fewer or simpler shapes"
 
-    def __init__(self, command: Sequence[str] = program(__name__), *, cpu_s: float = CPU_S) -> None:
+    def __init__(self, command: Sequence[str] = program(__name__), *, cpu_s: float = LIMIT_S) -> None:
         """Create it; `command` is the program of the process."""
         super().__init__(command, cpu_s=cpu_s)
 
@@ -76,26 +83,48 @@ def answer(content: bytes) -> bytes:
 
 
 def validate(request: Request) -> Validation:
-    """Return the violations of the shapes of a request. Raises BadFile."""
+    """Return the violations of the shapes of a request. Raises BadFile for a document that is not valid."""
     from semmap.nodes.kb_node.shacl.shapes import Shapes  # pySHACL takes half a second to import
 
-    sets, notes = [Shapes(request.asserted, "the map")], list[str]()
+    reasoner = Reasoner.of(GivenFacts(request.asserted, request.computed))
+    results, notes, failures = list[Result](), list[str](), list[str]()
+    count = 0
+    try:
+        own = Shapes(request.asserted, "the map")
+        results += own.validate(reasoner, failed=failures.append)
+        count += len(own) - len(failures)
+    except errors.BadFile as error:
+        failures.append(error.text)
     if request.content:
         name = request.filename or "the file"
         triples = rdf.read(request.content, request.filename, label_prefix=_LABEL).triples
-        sets.append(Shapes(triples, name))
-        if not len(sets[-1]):
+        shapes = Shapes(triples, name)
+        if not len(shapes):
             raise errors.BadFile(
                 f"{name}: no SHACL shapes with a target; add sh:targetClass or another target"
             )
+        results += shapes.validate(reasoner)
+        count += len(shapes)
         if unsupported := inert_note(count_inert(triples)):
             notes.append(f"{name}: {unsupported}")
-    reasoner = Reasoner.of(GivenFacts(request.asserted, request.computed))
-    results = [result for shapes in sets for result in shapes.validate(reasoner)]
+    notes += [not_evaluated(text) for text in failures[:_MOST_FAILURES]]
+    if (more := len(failures) - _MOST_FAILURES) > 0:
+        notes.append(not_evaluated(f"{more} more"))
     if len(results) > MOST_RESULTS:
         total = wording.counted(len(results), "violation")
         notes.append(f"the first {MOST_RESULTS} of {total} are listed; use fewer shapes to list others")
-    return Validation(sum(map(len, sets)), results[:MOST_RESULTS], len(results), notes)
+    return Validation(
+        shapes=count,
+        results=results[:MOST_RESULTS],
+        count=len(results),
+        notes=notes,
+        is_complete=not failures,
+    )
+
+
+def not_evaluated(reason: str) -> str:
+    """Return a note on shapes that were not evaluated."""
+    return errors.shortened(f"shapes not evaluated: {reason}", _LONGEST_NOTE)
 
 
 if __name__ == "__main__":

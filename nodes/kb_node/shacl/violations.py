@@ -12,7 +12,7 @@ from semmap.nodes.kb_node.map_state import MapState
 from semmap.nodes.kb_node.reasoner import GivenFacts
 from semmap.nodes.kb_node.shacl.results import Result
 from semmap.nodes.kb_node.shacl.shape_triples import find_shapes
-from semmap.nodes.kb_node.shacl.validation_process import ShapeValidator
+from semmap.nodes.kb_node.shacl.validation_process import ShapeValidator, not_evaluated
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors, wording
 from semmap.schemas.commands import SHAPES_BYTES, Check
@@ -89,29 +89,38 @@ def require_size(query: Check) -> None:
         raise errors.BadFile(f"{name} is larger than {most} MiB; split it into several files")
 
 
+def has_shapes(query: Check, facts: GivenFacts) -> bool:
+    """Return whether a check has shapes to evaluate: those of its document, of the map or of the TBox."""
+    return bool(query.shapes or find_shapes(facts.asserted))
+
+
 def with_validation(
     checked: Checked, validator: ShapeValidator, query: Check, facts: GivenFacts, names: Names
 ) -> Checked:
     """Return the result of a check with the violations of SHACL shapes.
 
-    Raises BadFile for a document of the query that is not valid. If shapes of the map cannot be evaluated,
-    a note says so.
+    Raises BadFile for a document of the query that is not valid, and Refused if it cannot be validated now.
+    Without a document, a note says why shapes of the map were not evaluated.
     """
-    if not checked.consistent or not (query.shapes or find_shapes(facts.asserted)):
+    if not has_shapes(query, facts):
         return checked
+    if not checked.consistent:
+        return _without_validation(checked, "the map is inconsistent")
     try:
         validation = validator.validate(facts, query.shapes, query.filename)
-    except errors.BadFile as error:
+    except (errors.BadFile, errors.Refused) as error:
         if query.shapes:
             raise
-        return structs.replace(
-            checked, notes=(*checked.notes, errors.shortened(f"shapes not evaluated: {error.text}", 1000))
-        )
+        return _without_validation(checked, error.text)
     return structs.replace(
         checked,
-        conforms=not validation.count,
+        conforms=False if validation.count else validation.is_complete or None,
         shapes=validation.shapes,
         violation_count=validation.count,
         violations=tuple(to_violation(one, names.individual, names.terms) for one in validation.results),
         notes=(*checked.notes, *validation.notes),
     )
+
+
+def _without_validation(checked: Checked, reason: str) -> Checked:
+    return structs.replace(checked, conforms=None, notes=(*checked.notes, not_evaluated(reason)))

@@ -1,15 +1,24 @@
 """Handlers of queries, without the wire."""
 
+<<<<<<< HEAD
 import re
+=======
+import threading
+>>>>>>> shacl
 
 import pytest
 
 from semmap.nodes.kb_node.handlers.queries import QueryHandlers
+<<<<<<< HEAD
 from semmap.nodes.kb_node.storage import trail_file
 from semmap.schemas.commands import LastSeen, Rules
 from semmap.schemas.commits import Edit
 from semmap.schemas.entities import Live, Pose, orientation_from_yaw
 from semmap.schemas.live import LivePoses
+=======
+from semmap.nodes.kb_node.shacl.validation_process import Validation
+from semmap.schemas.commands import Check, Export, Rules
+>>>>>>> shacl
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
 
@@ -37,6 +46,7 @@ def test_rules_are_listed_with_their_matches_in_the_map(chairs):
     assert (found["off"].text, found["off"].unsupported) == ("", "empty")
 
 
+<<<<<<< HEAD
 @pytest.fixture
 def queries(chairs):
     chairs.commit(transaction(2, edit=(Edit(name="chair1", tracked="stream"),)))
@@ -73,3 +83,27 @@ def test_closing_writes_the_end_of_live_poses(queries, chairs):
     queries.close()
     kinds = [line.kind for line in trail_file.read_lines(chairs._journal.path.parent)]
     assert kinds == ["start", "at", "end"]
+=======
+def test_slow_checks_with_shapes_delay_no_other_query(chairs):
+    queries = QueryHandlers(chairs, chairs._journal, sparql=None, location_queries=None)
+    goes_on = threading.Event()
+
+    class Slow:
+        def validate(self, *_):
+            assert goes_on.wait(60.0)
+            return Validation(shapes=1)
+
+        def close(self):
+            goes_on.set()
+
+    queries._validator = Slow()
+    try:
+        checks = [queries.on_check(Check(shapes=b"shapes")) for _ in range(3)]
+        assert queries.on_export(Export()).result(60.0).content
+        assert queries.on_check(Check()).result(60.0).consistent
+        assert not any(check.done() for check in checks)
+        goes_on.set()
+        assert [check.result(60.0).shapes for check in checks] == [1, 1, 1]
+    finally:
+        queries.close()
+>>>>>>> shacl

@@ -36,6 +36,16 @@ def test_an_invalid_document_is_an_error(content, error):
     assert validate(content).error.startswith(error)
 
 
+def test_a_shape_of_the_map_that_fails_hides_no_violations():
+    found = validate(SHAPE, SHAPE + ":s sh:targetNode :chair1 ; sh:pattern '(' .")
+    assert (found.error, found.shapes, found.count, found.is_complete) == ("", 2, 2, False)
+    (note,) = found.notes
+    assert note.startswith("shapes not evaluated: the map: invalid SHACL shape: missing )")
+    found = validate("", SHAPE + ":s sh:targetNode :a ; sh:property [ sh:path dm:a , dm:b ] .")
+    assert (found.shapes, found.count, found.is_complete, len(found.notes)) == (0, 0, False, 1)
+    assert validate(SHAPE).is_complete
+
+
 def test_what_is_not_evaluated_is_noted():
     found = validate(SHAPE + " :s sh:sparql [ sh:select '' ] ; sh:rule [] .")
     assert found.notes == ["s.ttl: stored, but not evaluated: 1 SHACL SPARQL constraint, 1 SHACL rule"]

@@ -2,12 +2,64 @@
 
 import pytest
 
+from semmap.nodes.kb_node.reasoner import GivenFacts
 from semmap.nodes.kb_node.shacl import violations
+from semmap.nodes.kb_node.shacl.results import Result
+from semmap.nodes.kb_node.shacl.validation_process import Validation
 from semmap.schemas import errors
 from semmap.schemas.commands import SHAPES_BYTES, Check
+from semmap.schemas.replies import Checked
+from tests.kb_node.home import turtle
+from tests.kb_node.shacl.test_shapes import SH
+
+PLAIN = Check()
+RESULT = Result("<urn:a>", "m", "", "", "violation", "<urn:s>")
 
 
 def test_a_large_document_is_rejected():
     violations.require_size(Check(shapes=b"x" * SHAPES_BYTES))
     with pytest.raises(errors.BadFile, match=r"^s\.ttl is larger than 10 MiB; split it into several files$"):
         violations.require_size(Check(shapes=b"x" * (SHAPES_BYTES + 1), filename="s.ttl"))
+
+
+class Validator:
+    def __init__(self, outcome):
+        self._outcome = outcome
+
+    def validate(self, *_):
+        if isinstance(self._outcome, Exception):
+            raise self._outcome
+        return self._outcome
+
+
+def check(outcome, query=PLAIN, *, shapes=":s sh:targetNode :a .", consistent=True):
+    checked = Checked(consistent=consistent, engine="semmap", triples=1, elapsed_s=0.0, text="")
+    facts = GivenFacts(list(turtle(SH + shapes)), [])
+    names = violations.Names({}, {})
+    return violations.with_validation(checked, Validator(outcome), query, facts, names)
+
+
+@pytest.mark.parametrize(
+    ("outcome", "conforms"),
+    [
+        (Validation(shapes=1), True),
+        (Validation(shapes=1, results=[RESULT], count=1), False),
+        (Validation(shapes=1, results=[RESULT], count=1, is_complete=False), False),
+        (Validation(is_complete=False), None),
+        (errors.BadFile("it takes too long"), None),
+        (errors.Refused("the parser does not start"), None),
+    ],
+)
+def test_shapes_that_were_not_evaluated_do_not_conform(outcome, conforms):
+    found = check(outcome)
+    assert found.conforms is conforms
+    if isinstance(outcome, Exception):
+        assert found.notes == (f"shapes not evaluated: {outcome.text}",)
+        with pytest.raises(type(outcome)):
+            check(outcome, Check(shapes=b"shapes"))
+
+
+def test_without_shapes_or_consistency_nothing_is_evaluated():
+    assert check(AssertionError(), shapes="").conforms is True
+    found = check(AssertionError(), consistent=False)
+    assert (found.conforms, found.notes) == (None, ("shapes not evaluated: the map is inconsistent",))

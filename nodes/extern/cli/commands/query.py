@@ -155,7 +155,7 @@ def check(client: Client, engine: Any, shapes: Path | None) -> None:
     """Check consistency and SHACL shapes; explain violations.
 
     The shapes are those of the TBox, of the map and of FILE. The exit status is 1 if the map is inconsistent
-    or violates a shape.
+    or violates a shape, and if shapes were not evaluated.
     """
     content, filename = b"", ""
     if shapes is not None:
