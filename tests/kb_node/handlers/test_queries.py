@@ -1,24 +1,17 @@
 """Handlers of queries, without the wire."""
 
-<<<<<<< HEAD
 import re
-=======
 import threading
->>>>>>> shacl
 
 import pytest
 
 from semmap.nodes.kb_node.handlers.queries import QueryHandlers
-<<<<<<< HEAD
+from semmap.nodes.kb_node.shacl.validation_process import Validation
 from semmap.nodes.kb_node.storage import trail_file
-from semmap.schemas.commands import LastSeen, Rules
+from semmap.schemas.commands import Check, Export, LastSeen, Rules
 from semmap.schemas.commits import Edit
 from semmap.schemas.entities import Live, Pose, orientation_from_yaw
 from semmap.schemas.live import LivePoses
-=======
-from semmap.nodes.kb_node.shacl.validation_process import Validation
-from semmap.schemas.commands import Check, Export, Rules
->>>>>>> shacl
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
 
@@ -46,7 +39,6 @@ def test_rules_are_listed_with_their_matches_in_the_map(chairs):
     assert (found["off"].text, found["off"].unsupported) == ("", "empty")
 
 
-<<<<<<< HEAD
 @pytest.fixture
 def queries(chairs):
     chairs.commit(transaction(2, edit=(Edit(name="chair1", tracked="stream"),)))
@@ -83,7 +75,8 @@ def test_closing_writes_the_end_of_live_poses(queries, chairs):
     queries.close()
     kinds = [line.kind for line in trail_file.read_lines(chairs._journal.path.parent)]
     assert kinds == ["start", "at", "end"]
-=======
+
+
 def test_slow_checks_with_shapes_delay_no_other_query(chairs):
     queries = QueryHandlers(chairs, chairs._journal, sparql=None, location_queries=None)
     goes_on = threading.Event()
@@ -106,4 +99,3 @@ def test_slow_checks_with_shapes_delay_no_other_query(chairs):
         assert [check.result(60.0).shapes for check in checks] == [1, 1, 1]
     finally:
         queries.close()
->>>>>>> shacl
