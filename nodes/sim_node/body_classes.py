@@ -246,6 +246,16 @@ class BodyClasses:
             (self._meaning(end) for start, end in halves if self._meaning(start) and self._meaning(end)), None
         )
 
+    def _names_place(self, before: Iterable[_Item], head: _Item) -> bool:
+        """Return whether a head is only where the things before it are: `outlet_counter`, `clock_wall`."""
+        surfaces, mounted = self._words["surfaces"], self._words["mounted"]
+        return any(
+            item.text in mounted
+            or (item.kind == "class" and head.class_ in surfaces and item.class_ not in surfaces)
+            for item in before
+            if not self._is_quality(item.text)
+        )
+
     def _head(self, items: Sequence[_Item]) -> int | None:
         """Return the index of the expression that determines the class, or None if none does for certain."""
         kinds = [item.kind for item in items]
@@ -260,6 +270,8 @@ class BodyClasses:
         is_first = all(items[row].is_italian for row in classes)
         head = classes[0] if is_first else classes[-1]
         if "unknown" in (kinds[:head] if is_first else kinds[head + 1 : end]):
+            return None
+        if not is_first and self._names_place(items[:head], items[head]):
             return None
         is_ambiguous = lemma(items[head].text, self._lexicon) in self._words["ambiguous"]
         others = {kind for row, kind in enumerate(kinds) if row != head}
