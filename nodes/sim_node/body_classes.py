@@ -63,10 +63,10 @@ class BodyClasses:
         self._synonyms: dict[str, str] = {}
         self._italian: set[str] = set()
         """The expressions that are only Italian."""
-        if not self._classes:
-            return
         table = tomllib.loads((resources.files(__package__) / "body_words.toml").read_text("utf-8"))
         self._words = {kind: frozenset(words) for kind, words in table.items() if kind != "synonyms"}
+        if not self._classes:
+            return
         self._other_meanings = frozenset(map(fold, table["other_meanings"]))
         self._lexicon = lexicon.load("english")
         self._index(table["synonyms"])
@@ -141,6 +141,19 @@ class BodyClasses:
         if around is None:
             return not (moves and is_part)
         return around.name != "Robot" and not is_part
+
+    def is_variant(self, name: str, whole_name: str) -> bool:
+        """Return whether a name is another one and a number, letter, colour or size: `cup_2`, `cup_red`."""
+        rest = name.removeprefix(whole_name)
+        words = [word.lower() for word in _WORD.findall(rest)]
+        if rest == name or not words or rest[0].islower():
+            return False
+        return all(
+            word.isdigit() or (word not in self._words["sides"] and self._is_quality(word)) for word in words
+        )
+
+    def _is_quality(self, word: str) -> bool:
+        return len(word) == 1 or word in self._words["qualities"] or word in self._words["sides"]
 
     def is_place(self, found: Found) -> bool:
         """Return whether a body is a place, such as a kitchen with its furniture."""
@@ -217,7 +230,7 @@ class BodyClasses:
             return _Item(text, "unknown")
         singular = " ".join((*words[:-1], lemma(words[-1], self._lexicon)))
         found = self._meaning(text) or self._meaning(singular) or (self._compound(text) if is_word else None)
-        is_quality = is_word and (text in self._words["qualities"] or len(text) == 1)
+        is_quality = is_word and self._is_quality(text)
         if found is not None and not (is_quality and found.is_italian):
             return found._replace(text=text)
         if is_word and text in self._words["after_head"]:
@@ -231,6 +244,16 @@ class BodyClasses:
         halves = ((word[:at], word[at:]) for at in range(3, len(word) - 2))
         return next(
             (self._meaning(end) for start, end in halves if self._meaning(start) and self._meaning(end)), None
+        )
+
+    def _names_place(self, before: Iterable[_Item], head: _Item) -> bool:
+        """Return whether a head is only where the things before it are: `outlet_counter`, `clock_wall`."""
+        surfaces, mounted = self._words["surfaces"], self._words["mounted"]
+        return any(
+            item.text in mounted
+            or (item.kind == "class" and head.class_ in surfaces and item.class_ not in surfaces)
+            for item in before
+            if not self._is_quality(item.text)
         )
 
     def _head(self, items: Sequence[_Item]) -> int | None:
@@ -247,6 +270,8 @@ class BodyClasses:
         is_first = all(items[row].is_italian for row in classes)
         head = classes[0] if is_first else classes[-1]
         if "unknown" in (kinds[:head] if is_first else kinds[head + 1 : end]):
+            return None
+        if not is_first and self._names_place(items[:head], items[head]):
             return None
         is_ambiguous = lemma(items[head].text, self._lexicon) in self._words["ambiguous"]
         others = {kind for row, kind in enumerate(kinds) if row != head}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
@@ -28,7 +27,7 @@ def find_entities(
         stated = declared.get(name)
         of.append(Found(stated, is_sure=True, is_stated=True) if stated else classes.find(name))
     frames = _find_frames(model, of)
-    numbered = _find_numbered(model, of)
+    variants = _find_variants(model, classes, names, of)
     owner, found = [_GROUND] * model.nbody, dict[int, Found]()
     for number in range(1, model.nbody):  # parents have lower numbers than their parts
         parent = int(model.body_parentid[number])
@@ -36,7 +35,7 @@ def find_entities(
         moves = whole in frames and model.body_weldid[number] != model.body_weldid[whole]
         if names[number] and (
             parent == _GROUND
-            or number in numbered
+            or number in variants
             or classes.is_separate(names[number], of[number], names[whole], of[whole], moves=moves)
         ):
             owner[number], found[number] = number, of[number]
@@ -44,18 +43,26 @@ def find_entities(
     return owner, found
 
 
-def _find_numbered(model: mujoco.MjModel, of: Sequence[Found]) -> set[int]:
-    """Return the bodies `chair_1`, `chair_2` and so on in a body `chair` without geoms and joints."""
-    rows = defaultdict[int, list[int]](list)
+def _find_variants(
+    model: mujoco.MjModel, classes: BodyClasses, names: Sequence[str], of: Sequence[Found]
+) -> set[int]:
+    """Return the bodies `cup_1`, `cup_2` or `cup_red`, `cup_blue` in a body `cup` without geoms and joints.
+
+    They are parts beside another part of the cup, such as `cup_base`.
+    """
+    variants, others = defaultdict[int, list[int]](list), set[int]()
     for number in range(1, model.nbody):
         parent = int(model.body_parentid[number])
         has_own = model.body_geomnum[parent] or model.body_jntnum[parent]
-        if parent == _GROUND or has_own or of[number].class_ != of[parent].class_:
+        if parent == _GROUND or has_own:
             continue
-        name, whole = model.body(number).name, model.body(parent).name
-        if whole and re.fullmatch(rf"{re.escape(whole)}[\W_]*\d+", name) and of[number].is_sure:
-            rows[parent].append(number)
-    return {number for row in rows.values() if len(row) > 1 for number in row}
+        is_alike = of[number].class_ == of[parent].class_
+        if is_alike and of[number].is_sure and classes.is_variant(names[number], names[parent]):
+            variants[parent].append(number)
+        elif model.body_geomnum[number] and (is_alike or not of[number].is_sure):
+            others.add(parent)
+    rows = [row for parent, row in variants.items() if len(row) > 1 and parent not in others]
+    return {number for row in rows for number in row}
 
 
 def _drop_groups(

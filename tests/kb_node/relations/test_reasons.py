@@ -2,6 +2,7 @@
 
 import pytest
 
+from semmap.nodes.kb_node.relations.measuring.relation_table import PAIR_RELATIONS
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.relation_reports import explain_relation, list_relations
 from semmap.schemas import errors
@@ -59,6 +60,7 @@ def told(name, relation, other):
         ("cup1", "isAttachedTo", "table1", "it is on tray1, so it is not attached to a side"),
         ("cup1", "touches", "cup2", "apart (touches allows up to 1.5 mm)"),
         ("cup1", "isUnder", "table1", "no part of table1 is above the top of cup1"),
+        ("egg1", "isUnder", "can1", "each part of can1 starts below the top of egg1"),
         ("cup1", "isUnder", "shelf1", "seen from above, they are"),
         ("table1", "isAbove", "cup1", "no part of table1 is above the top of cup1"),
         ("cup2", "isUnder", "table1", "it is on table1"),
@@ -75,6 +77,43 @@ def test_explanations_of_absent_relations(name, relation, other, reason):
     assert not found.holds
     assert reason in found.text
     assert found.text.startswith(f"{name} ")
+
+
+@pytest.mark.parametrize(
+    ("height_m", "reason", "inverse_reason"),
+    [
+        (
+            0.75,
+            "its top is level with the underside of high1, {}",
+            "its underside is level with the top of low1, {}",
+        ),
+        (
+            0.745,
+            "its top is 5.0 mm above the underside of high1, {}; they overlap",
+            "its underside is 5.0 mm below the top of low1, {}; they overlap",
+        ),
+        (0.85, "its top is 10.0 cm below high1, {}", "its underside is 10.0 cm above low1, {}"),
+    ],
+)
+@pytest.mark.parametrize(
+    ("widths_m", "over", "under"),
+    [
+        ((0.4, 0.8), "which is over 50% of it", "50% of which is under it"),
+        ((0.8, 0.4), "50% of which is over it", "which is under 50% of it"),
+    ],
+)
+def test_what_is_above_covers_a_share_of_the_smaller_one(
+    height_m, reason, inverse_reason, widths_m, over, under
+):
+    low = thing("low1", (0.0, 0.0, 0.0), "", size=(widths_m[0], widths_m[0], 0.75))
+    high = thing("high1", (0.4, 0.0, height_m), "", size=(widths_m[1], widths_m[1], 0.1))
+    space = Space([low, high])
+    one, other = space.solids["low1"], space.solids["high1"]
+    is_under, is_above = PAIR_RELATIONS["isUnder"], PAIR_RELATIONS["isAbove"]
+    assert is_under.explain(space, one, other, is_under.measure(space, one, other)) == reason.format(over)
+    assert is_above.explain(space, other, one, is_above.measure(space, other, one)) == inverse_reason.format(
+        under
+    )
 
 
 @pytest.mark.parametrize("relation", PHRASES)

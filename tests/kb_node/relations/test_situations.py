@@ -1,5 +1,7 @@
 """Situations written by hand, whose relations match human judgement."""
 
+from pathlib import Path
+
 import pytest
 
 from benchmarks.relations.situations import SITUATIONS, TABLE, TOP, about_y, on_table
@@ -8,9 +10,12 @@ from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.relation_reports import list_relations
 from semmap.schemas.commands import Relations
 
+DOCS = Path(__file__).parents[3] / "docs/relations.md"
 
-def test_their_titles_are_unique():
+
+def test_their_titles_are_unique_and_the_docs_count_them():
     assert len({situation.title for situation in SITUATIONS}) == len(SITUATIONS) >= 100
+    assert f"Each of the {len(SITUATIONS)} situations is a test" in DOCS.read_text("utf-8")
 
 
 @pytest.mark.parametrize("situation", SITUATIONS, ids=lambda situation: situation.title)

@@ -51,7 +51,10 @@ def _measure_under(space: Space, one: Solid, other: Solid) -> Measure | None:
 def _explain_under(space: Space, one: Solid, other: Solid, made: Measure | None) -> str:
     if made is None or not made.holds:
         return _explain_not_beneath(space, one, other, made)
-    part = f"{other.name}, which is over {made.share:.0%} of it"
+    # the share is that of the smaller footprint
+    is_smaller = one.footprint < other.footprint
+    over = f"which is over {made.share:.0%} of it" if is_smaller else f"{made.share:.0%} of which is over it"
+    part = f"{other.name}, {over}"
     if abs(made.gap_m) <= _LEVEL_M:
         return f"its top is level with the underside of {part}"
     if made.gap_m < 0.0:
@@ -66,13 +69,16 @@ def _measure_above(space: Space, one: Solid, other: Solid) -> Measure | None:
 def _explain_above(space: Space, one: Solid, other: Solid, made: Measure | None) -> str:
     if made is None or not made.holds:
         return _explain_not_beneath(space, other, one, made)
-    over = f"over {made.share:.0%} of that"
+    is_smaller = other.footprint < one.footprint
+    under = (
+        f"{made.share:.0%} of which is under it" if is_smaller else f"which is under {made.share:.0%} of it"
+    )
+    part = f"{other.name}, {under}"
     if abs(made.gap_m) <= _LEVEL_M:
-        return f"its underside is level with the top of {other.name}, and it is {over}"
+        return f"its underside is level with the top of {part}"
     if made.gap_m < 0.0:
-        below = format_length(-made.gap_m)
-        return f"its underside is {below} below the top of {other.name}, and it is {over}; they overlap"
-    return f"it is {format_length(made.gap_m)} above {other.name}, and {over}"
+        return f"its underside is {format_length(-made.gap_m)} below the top of {part}; they overlap"
+    return f"its underside is {format_length(made.gap_m)} above {part}"
 
 
 def _explain_not_beneath(space: Space, lower: Solid, upper: Solid, made: Measure | None) -> str:
@@ -84,6 +90,10 @@ def _explain_not_beneath(space: Space, lower: Solid, upper: Solid, made: Measure
     apart = distance(lower.outline, upper.outline)
     if apart > 0.0:
         return f"seen from above, they are {format_length(apart)} apart"
+    if upper.top > lower.top:  # such as a chair, whose backrest is beside the table
+        return (
+            f"where their footprints overlap, each part of {upper.name} starts below the top of {lower.name}"
+        )
     return f"no part of {upper.name} is above the top of {lower.name}, at {format_length(lower.top)}"
 
 
