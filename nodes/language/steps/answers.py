@@ -63,7 +63,9 @@ def answer_states(phrase: NounPhrase, verdicts: Mapping[str, Verdicts], world: W
     asked = phrase.asked
     text = (" or " if phrase.asks_any else " and ").join(asked)
     decisive = phrase.asks_any  # one that holds is enough; else one that does not
-    holding, denied, unknown = [], [], []
+    holding: list[tuple[str, str]] = []
+    denied: list[tuple[str, str]] = []
+    unknown: list[str] = []
     for name, each in verdicts.items():
         if decisive in each:
             found = asked[each.index(decisive)]

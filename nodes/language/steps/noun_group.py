@@ -70,7 +70,7 @@ class NounGroupReader:
         self.takes_with = False
         """Whether *with* after a thing belongs to the verb: fill the glass WITH water."""
         self.takes_predicate = False
-        """Whether a word that is no noun after the noun is what a question asks of it: is the fridge OPEN."""
+        """Whether a further word after the noun is what a question asks of it: is the fridge OPEN."""
         self._t, self._g, self._nouns, self._starts_clause = text, grammar, nouns, starts_clause
         self._above = above
         self._words = text.words

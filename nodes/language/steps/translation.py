@@ -100,8 +100,8 @@ def _with_predicates(tokens: list[Token], text: str) -> list[Token]:
     found = list(tokens)
     for i, token in enumerate(found[:-1]):
         following = found[i + 1]
-        end = next((one.word for one in found[i:] if one.word in ".;!?"), "")
-        if token.word == "not" and following.word in ("is", "are") and end == "?":
+        mark = next((one.word for one in found[i:] if one.word in ".;!?"), "")
+        if token.word == "not" and following.word in ("is", "are") and mark == "?":
             found[i : i + 2] = [following, token]
     tokens = list(found)
     for i, token in enumerate(tokens[:-2]):
