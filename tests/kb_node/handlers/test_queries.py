@@ -3,7 +3,7 @@
 import pytest
 
 from semmap.nodes.kb_node.handlers.queries import QueryHandlers
-from semmap.schemas.commands import Rules
+from semmap.schemas.commands import Find, Rules
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
 
@@ -29,3 +29,12 @@ def test_rules_are_listed_with_their_matches_in_the_map(chairs):
     found = {rule.name: rule for rule in queries.on_rules(Rules())}
     assert (found["seats"].text, found["seats"].holds) == ("if x is a chair, then x is a Seat", 2)
     assert (found["off"].text, found["off"].unsupported) == ("", "empty")
+
+
+def test_find_searches_the_map_now_or_after_a_commit(chairs):
+    chairs.commit(transaction(2, chair("chair3", at=(5.0, 5.0, 0.0))))
+    queries = QueryHandlers(chairs, chairs._journal, sparql=None, location_queries=None)
+    found = queries.on_find(Find(text="the chairs"))
+    before = queries.on_find(Find(text="the chairs", as_of=found.seq - 1)).result(timeout=30)
+    assert [len(found.candidates), len(before.candidates)] == [3, 2]
+    assert before.seq == found.seq - 1
