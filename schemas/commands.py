@@ -652,6 +652,7 @@ class Find(Command[Found], frozen=True, tag="find"):
 
     `viewer` (a name, or a label or class of only one entity) or `viewpoint` defines left, right and behind.
     "My" refers to `asker`. `answer` answers the clarification question about `text`: "the one on the desk".
+    With `as_of`, the entities are those of the map at that time.
     """
 
     ROLES: ClassVar[Roles] = ANYBODY
@@ -661,6 +662,7 @@ class Find(Command[Found], frozen=True, tag="find"):
     viewpoint: ViewPoint | None = None
     asker: Word | None = None
     answer: Text | None = None
+    as_of: When | None = None
 
 
 class PlanFloor(Command[Plan], frozen=True, tag="floorplan"):

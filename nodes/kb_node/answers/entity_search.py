@@ -13,11 +13,12 @@ from msgspec import structs
 from semmap.nodes.kb_node.answers.past.differences import find_spells
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.relations.measuring.viewing import View
 from semmap.nodes.kb_node.relations.relation_cache import RelationCache
-from semmap.nodes.kb_node.relations.selection import is_in, is_on
+from semmap.nodes.kb_node.relations.selection import is_in, is_on, resolve_single
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
@@ -65,14 +66,13 @@ class EntitySearch:
     def find(self, query: Find) -> SearchResult:
         """Return the described entities. Raises BadRequest; UnknownName for an unknown asker or viewer."""
         space = self._map.places.space()
-        asker = None if query.asker is None else self._named(query.asker)
-        around = RelationCache(
-            space, self._view(query, space), self._map.derived_facts.suppressed_measurements
-        )
-        with space.caching():
-            answer = find(query.text, self.known(), around, asker, query.answer)
-            found = explanation.explain(answer)
-        return SearchResult(structs.replace(found, seq=self._map.seq), missing(answer))
+        left_out = self._map.derived_facts.suppressed_measurements
+        found, gone = search(query, space, self.known(), self._named, left_out)
+        return SearchResult(structs.replace(found, seq=self._map.seq), gone)
+
+    def terms(self) -> Terms:
+        """Return the labels of the TBox."""
+        return terms(self._map.reasoner, self._map.classes)
 
     def described(self, text: str) -> tuple[str, ...]:
         """Return the names of the entities that a text describes, or none if it cannot be read."""
@@ -124,7 +124,7 @@ class EntitySearch:
         """Return the search items after the last commit; unchanged entities are not read again."""
         if self._known is None or self._classes is not self._map.classes:
             self._classes, self._seq, self._read = self._map.classes, -1, {}
-            self._known = MapIndex(terms(self._map.reasoner, self._map.classes))
+            self._known = MapIndex(self.terms())
         if self._seq != self._map.seq:
             there = {entity.name: entity for entity in self._map.entities()}
             changed = [entity for name, entity in there.items() if self._read.get(name) is not entity]
@@ -132,18 +132,49 @@ class EntitySearch:
             self._read, self._seq = there, self._map.seq
         return self._known
 
-    def _view(self, query: Find, space: Space) -> View | None:
-        if query.viewpoint is not None:
-            return View.at(*query.viewpoint)
-        if query.viewer is None:
-            return None
-        viewer = space.solids.get(name := self._named(query.viewer))
-        if viewer is None:
-            raise errors.Refused(f"{name} has no position, so it cannot be the viewer")
-        return View.of(viewer)
-
     def _named(self, word: str) -> str:
         return self._map.resolve(word).name
+
+
+def search(
+    query: Find, space: Space, known: MapIndex, named: Callable[[str], str], left_out: Set[Fact] = frozenset()
+) -> SearchResult:
+    """Return the described entities of one state of the map.
+
+    `named` returns the name of the entity that a word refers to. The relations `left_out` are suppressed.
+    Raises BadRequest; UnknownName for an unknown asker or viewer.
+    """
+    asker = None if query.asker is None else named(query.asker)
+    around = RelationCache(space, _view(query, space, named), left_out)
+    with space.caching():
+        answer = find(query.text, known, around, asker, query.answer)
+        return SearchResult(explanation.explain(answer), missing(answer))
+
+
+def _view(query: Find, space: Space, named: Callable[[str], str]) -> View | None:
+    if query.viewpoint is not None:
+        return View.at(*query.viewpoint)
+    if query.viewer is None:
+        return None
+    viewer = space.solids.get(name := named(query.viewer))
+    if viewer is None:
+        raise errors.Refused(f"{name} has no position, so it cannot be the viewer")
+    return View.of(viewer)
+
+
+def find_past(query: Find, past: HistoryReader, labels: Terms, limits: Thresholds) -> Found:
+    """Return the described entities of the map as of `query.as_of`, by the present labels of the TBox.
+
+    For any thread. Raises the errors of `search`, and Refused if there was no map.
+    """
+    if query.as_of is None:
+        raise errors.InternalError("the query has no time")
+    seq = past.commit_at(query.as_of)
+    entities = past.entities(seq)
+    known = MapIndex(labels)
+    known.update(map(item, entities), ())
+    found = search(query, Space(entities, limits), known, lambda word: resolve_single(entities, word)).found
+    return structs.replace(found, seq=seq)
 
 
 def item(entity: Entity) -> Item:

@@ -15,7 +15,7 @@ from msgspec import structs
 from semmap.nodes.kb_node.answers import answers, entity_queries, questions
 from semmap.nodes.kb_node.answers.command_parser import CommandParser
 from semmap.nodes.kb_node.answers.descriptions import Descriptions
-from semmap.nodes.kb_node.answers.entity_search import EntitySearch, describe_missing
+from semmap.nodes.kb_node.answers.entity_search import EntitySearch, describe_missing, find_past
 from semmap.nodes.kb_node.answers.live_poses import LiveEntities
 from semmap.nodes.kb_node.answers.location_queries import LocationQueries
 from semmap.nodes.kb_node.answers.pages import Pages
@@ -404,13 +404,17 @@ class QueryHandlers:
     def on_find(self, query: Find) -> Found | Future[Found]:
         """Return the entities that a description means.
 
-        If there are none, also say when they were last there.
+        If there are none, also say when they were last there, unless the question is about the past.
         """
+        if query.as_of is not None:
+            labels, limits = self._search.terms(), self._map.classes.limits
+            return self._aside.submit(find_past, query, self._past, labels, limits)
         with self.live.applied():
             sought = self._search.find(query)
         if sought.missing is None:
             return sought.found
-        missing, there, limits = sought.missing, frozenset(self._map.names), self._map.classes.limits
+        missing, there = sought.missing, frozenset(self._map.names)
+        limits = self._map.classes.limits
         return self._aside.submit(
             lambda: sought.with_last_times(
                 describe_missing(self._journal, self._past, missing, there, limits)

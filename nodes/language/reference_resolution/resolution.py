@@ -75,7 +75,7 @@ def _read(text: str, known: MapIndex) -> Reading:
             phrase = " ".join(best.words[i : i + senses["past"][0]])
             raise errors.BadRequest(
                 f"'{phrase}' asks about the past, but find searches the current map;"
-                " for the past use: semmap when, semmap last-seen, semmap list --as-of"
+                " for the past use: semmap when, semmap last-seen, semmap find --as-of"
             )
     return best
 

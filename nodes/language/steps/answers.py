@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
-from semmap.nodes.language.steps.entity_tests import Meaning, World, number_of
+from semmap.nodes.language.steps.entity_tests import Meaning, Verdicts, World, number_of
+from semmap.nodes.language.steps.phrase import NounPhrase
 
 _MOST: Final = 5
 """Names in one answer."""
@@ -21,7 +22,7 @@ _PROPERTIES: Final = {
 """Nouns of properties -> what the map has of them."""
 
 
-def answer(message: str, head: str, topic: str, meaning: Meaning, world: World) -> str:
+def answer(message: str, head: str, topic: str, phrase: NounPhrase, meaning: Meaning, world: World) -> str:
     """Return the answer to a question about the `topic` of a command, or that one has to look.
 
     `message` states what is asked in lower case (*how many*, *where is*, *the color*) and `head` is its head.
@@ -37,6 +38,12 @@ def answer(message: str, head: str, topic: str, meaning: Meaning, world: World) 
     words = message.replace("'s", " is").replace("'re", " are").split()
     wanted = _PROPERTIES.get(head)
     if words[:1] in (["is"], ["are"]):
+        if meaning.verdicts:
+            return answer_states(phrase, meaning.verdicts, world)
+        if not names and meaning.unknown:
+            return _unknown(meaning.unknown, " and ".join(phrase.attributes))
+        if not names and phrase.asked and not phrase.places:
+            return _none(topic)
         return _yes_or_no(topic, meaning, world)
     if words[:2] in (["how", "many"], ["how", "much"]) or wanted == "number":
         return _with_evidence(str(len(names)), names, world) if names else f"0: {_none(topic)}"
@@ -49,6 +56,42 @@ def answer(message: str, head: str, topic: str, meaning: Meaning, world: World) 
     if wanted is None:
         return f"'{topic}': the map does not have {message}; look there"
     return " ".join(filter(None, (_property(name, wanted, head, world) for name in names[:_MOST])))
+
+
+def answer_states(phrase: NounPhrase, verdicts: Mapping[str, Verdicts], world: World) -> str:
+    """Return whether it is so what a question asks of each entity, or that it is not known."""
+    asked = phrase.asked
+    text = (" or " if phrase.asks_any else " and ").join(asked)
+    decisive = phrase.asks_any  # one that holds is enough; else one that does not
+    holding: list[tuple[str, str]] = []
+    denied: list[tuple[str, str]] = []
+    unknown: list[str] = []
+    for name, each in verdicts.items():
+        if decisive in each:
+            found = asked[each.index(decisive)]
+            (holding if decisive else denied).append((name, found if decisive else _denied(found)))
+        elif None in each:
+            unknown.append(name)
+        else:
+            (denied if decisive else holding).append((name, f"not {text}" if decisive else text))
+    open_still = [_unknown(unknown, text)] if unknown else []
+    said = [f"{name} is {state}" for name, state in (*denied, *(holding if phrase.asks_any else ()))]
+    is_each = phrase.asks_any or (len(verdicts) > 1 and not (phrase.is_plural or phrase.all_of))
+    if is_each:
+        others = [] if phrase.asks_any else [f"{name} is {state}" for name, state in holding]
+        return "; ".join(filter(None, (_listed([*others, *said]), *open_still)))
+    if said:
+        return f"no: {_listed(said)}"
+    return open_still[0] if open_still else _with_evidence("yes", [name for name, _ in holding], world)
+
+
+def _unknown(names: Sequence[str], state: str) -> str:
+    be = "is" if len(names) == 1 else "are"
+    return f"it is not known whether {_listed(names)} {be} {state}; look there"
+
+
+def _denied(state: str) -> str:
+    return state.removeprefix("not ") if state.startswith("not ") else f"not {state}"
 
 
 def _is_open(meaning: Meaning) -> bool:

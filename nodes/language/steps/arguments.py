@@ -383,7 +383,8 @@ class ArgumentReader(CorrectionReader):
             clause.roles.insert(0, Role(role, i, phrase.end, phrase.head, [phrase]))
             return phrase.end
         object_role = clause.role(roles.get("object", "")) if "object" in roles else None
-        if phrase.excluded and object_role is not None and object_role.phrases:
+        is_own = phrase.all_of or self._is_person(phrase)  # take a cup to everyone except Nora
+        if phrase.excluded and not is_own and object_role is not None and object_role.phrases:
             object_role.phrases[-1].excluded += phrase.excluded  # any drink from the table but not the milk
             phrase.excluded = []
         if role is None:

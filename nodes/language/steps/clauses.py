@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from semmap.nodes.language.steps import quantities
 from semmap.nodes.language.steps.clause import Clause, Parsed, Role
 from semmap.nodes.language.steps.messages import MessageReader
 from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
@@ -257,6 +258,8 @@ class ClauseReader(MessageReader):
 
     def _clause(self, i: int) -> int:
         length, frame = self._g.verb(self._words, i)
+        if quantities.read_bound(self._g, self._words, i + length - 1):  # pick UP TO three cups
+            length, frame = self._g.verb(self._words[: i + length - 1], i)
         if knows := self._lets_know(i):
             length, frame = 1, "Telling"
             self.found.structural.append(knows)

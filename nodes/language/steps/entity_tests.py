@@ -26,6 +26,8 @@ from semmap.schemas.language import PlaceRelation, ThingDescription
 from semmap.schemas.relations import RelationName
 
 Names = tuple[str, ...]
+Verdicts = tuple[bool | None, ...]
+"""For each thing that is asked whether it is so, or None if the map cannot tell."""
 _FROM_VIEWER: Final = ("isLeftOf", "isRightOf", "isInFrontOf", "isBehind")
 _BY_MASS: Final = {"heaviest": -1, "lightest": 1}
 _BY_THICKNESS: Final = {"thickest": -1, "thinnest": 1}
@@ -59,6 +61,10 @@ class Meaning:
     is_unordered: bool = False
     """Whether the map cannot tell which of the entities is the superlative one."""
     doubts: list[str] = field(default_factory=list)
+    verdicts: Mapping[str, Verdicts] = field(default_factory=dict)
+    """For each entity, whether it is so what a question asks of it: is the fridge open."""
+    unknown: Names = ()
+    """Entities that may fit the phrase: the map does not have the property of an attribute."""
 
 
 class EntityTests:
@@ -158,6 +164,35 @@ class EntityTests:
             return Of(attribute, Description(attribute, "noun", key, attribute, is_definite=False))
         return None
 
+    def verdicts(self, phrase: NounPhrase, names: Names) -> dict[str, Verdicts]:
+        """Return for each entity and each thing that a question asks of it whether it is so."""
+        return {name: tuple(self._verdict(name, asked, phrase) for asked in phrase.asked) for name in names}
+
+    def _verdict(self, name: str, asked: str, phrase: NounPhrase) -> bool | None:
+        """Return whether an entity has a quality or state, or *not* has it; None if the map cannot tell."""
+        negated = asked.startswith("not ")
+        restriction = self._restriction(asked.removeprefix("not "))
+        described = Description(phrase.noun, "noun", phrase.key, phrase.noun)
+        kind = self._index.items[name].class_name
+        alike = tuple(sorted(self._index.members.get(kind, {}))) or (name,)
+        if restriction is None or (isinstance(restriction, Sized) and len(alike) == 1):
+            return None
+        if self._resolver.fits(name, restriction, described, alike, Scope()):
+            return not negated
+        return None if self._is_open(name, restriction) else negated
+
+    def _is_open(self, name: str, restriction: Restriction) -> bool:
+        """Return whether the map does not have the property that a quality or state is a value of."""
+        values = self._index.items[name].values
+        match restriction:
+            case State(_, "within"):
+                return True  # what is not in the fridge may be cold as well
+            case State(_, property_name, bool()) if property_name != "holding":
+                return not values.get(property_name)
+            case Quality(_, meant):
+                return not any(_is_alike(value, meant) for found in values.values() for value in found)
+        return False
+
     def _fitting(
         self, names: list[str], restriction: Restriction, attribute: str, phrase: NounPhrase, meaning: Meaning
     ) -> list[str]:
@@ -240,6 +275,12 @@ class EntityTests:
             "length": lambda s: max(s[:2]),
         }
         return sense[1], {name: measured[sense[0]](s) for name, s in sizes.items()}
+
+
+def _is_alike(value: object, others: frozenset[str]) -> bool:
+    """Return whether a value is an individual of the same kind as others by its name: *color_red*."""
+    kind, underscore, _ = str(value).partition("_")
+    return bool(underscore) and any(other.startswith(f"{kind}_") for other in others)
 
 
 def number_of(values: frozenset[object]) -> float | None:

@@ -152,7 +152,8 @@ class Meanings(EntityTests):
             elif restriction is None or is_negated:
                 is_open = True
             elif names:
-                names = self._fitting(names, restriction, attribute, phrase, meaning)
+                kind, names = names, self._fitting(names, restriction, attribute, phrase, meaning)
+                meaning.unknown = () if names else tuple(n for n in kind if self._is_open(n, restriction))
         if phrase.of is not None and names:
             names = self._of(names, phrase, meaning)
         names = self._owned(names, phrase, owner, meaning)
@@ -213,6 +214,8 @@ class Meanings(EntityTests):
         ) or (is_any and wants_one and len(meaning.names) > 1):
             meaning.names = ()
         meaning.description = self._description(phrase, names or meaning.alike, relations, is_any)
+        if phrase.asked:
+            meaning.verdicts = self.verdicts(phrase, meaning.names)
         return meaning
 
     def _alike(self, phrase: NounPhrase, is_any: bool) -> list[str]:
@@ -319,7 +322,7 @@ class Meanings(EntityTests):
         return ThingDescription(
             class_name,
             called="" if classes or is_any else phrase.noun,
-            attributes=tuple(phrase.attributes),
+            attributes=(*phrase.attributes, *phrase.asked),
             relation=tuple(
                 self._relation(place, others) for place, others in relations[: len(phrase.places)]
             ),

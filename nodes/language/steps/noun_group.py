@@ -69,6 +69,8 @@ class NounGroupReader:
         """Whether *that* may begin a message in the clause that is read, and not a relative clause."""
         self.takes_with = False
         """Whether *with* after a thing belongs to the verb: fill the glass WITH water."""
+        self.takes_predicate = False
+        """Whether a further word after the noun is what a question asks of it: is the fridge OPEN."""
         self._t, self._g, self._nouns, self._starts_clause = text, grammar, nouns, starts_clause
         self._above = above
         self._words = text.words
@@ -93,6 +95,10 @@ class NounGroupReader:
                 i, bounded = bound
                 phrase.quantity, phrase.amount = bounded.quantity, bounded.amount
                 phrase.is_plural = bounded.is_plural
+                continue
+            if (dozens := quantities.read_number(g, words, i))[1] > 1 and phrase.quantity is None:
+                phrase.quantity, phrase.is_plural = dozens[0], True
+                i = self._after_of(i + dozens[1])
                 continue
             if length := quantities.read_amount(g, words, i, phrase, self.is_known(i + 1, i + 2)):
                 i += length
@@ -132,10 +138,19 @@ class NounGroupReader:
         return i
 
     def read_bound(self, i: int) -> tuple[int, NounPhrase] | None:
-        """Return the index of the noun after a number with a bound at `i`, and its quantity; or None."""
+        """Return the index after a number with a bound at `i`, and its quantity; or None.
+
+        A noun follows it, or the clause ends there: take AT MOST THREE.
+        """
         found = quantities.read_bound(self._g, self._words, i)
         j = self._after_of(found[0]) if found is not None else i
-        return None if found is None or self._group_end(j) == j else (j, found[1])
+        if found is None or (self._group_end(j) == j and not (self._t.is_mark(j) and self._is_limit(i))):
+            return None
+        return j, found[1]
+
+    def _is_limit(self, i: int) -> bool:
+        """Return whether an expression that only limits a number is at `i`: at most, up to, at least."""
+        return any(self._g.match(kind, self._words, i) for kind in ("at_most", "at_least"))
 
     def _after_of(self, i: int) -> int:
         """Return the index after *of the* at `i`, or `i`."""
@@ -183,6 +198,8 @@ class NounGroupReader:
                 break
             if seen and g.is_a(word, "stative"):
                 break
+            if seen and self.takes_predicate and not self._names_entity(i):
+                break
             if i > start and self._is_bare_name(start) and not self._t.tokens[i].is_capital:
                 break  # let ANNA know
             if seen and word.endswith("s") and (word[:-1],) in g.verbs:
@@ -195,6 +212,12 @@ class NounGroupReader:
             seen = seen or g.is_a(self._bases[i], "anything") or self._t.tokens[i].is_capital
             i += 1
         return i
+
+    def _names_entity(self, i: int) -> bool:
+        """Return whether the word at `i` may be the noun of a phrase: a known noun, a person or a name."""
+        is_person = self._g.is_a(self._bases[i], "person") or self._is_kind(i)
+        is_known = self.is_known(i, i + 1) or self._g.is_a(self._bases[i], "anything")
+        return is_person or is_known or self._t.tokens[i].is_capital
 
     def is_participle(self, i: int) -> bool:
         """Return whether the word at `i` may begin what a person or thing does: waving, playing, stacked."""

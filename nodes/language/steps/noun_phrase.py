@@ -67,6 +67,10 @@ class NounPhraseReader(PronounReader):
         other = self.read(j + length) if length else None
         if other is None:
             return None
+        if not other.determiner and self._t.tokens[other.head].is_capital:  # all except Nora
+            return NounPhrase(
+                i, other.end, i, "person", "everyone", is_plural=True, all_of=True, excluded=[other]
+            )
         phrase = NounPhrase(
             i, other.end, other.head, noun=other.noun, key=other.key, is_plural=True, all_of=True
         )
@@ -113,7 +117,11 @@ class NounPhraseReader(PronounReader):
         """
         found: list[NounPhrase] = []
         while (other := self.read(i, with_places=False)) is not None:
-            if other.noun in ("one", "ones") and not (
+            is_that = other.kind == "pronoun" and other.noun in ("that", "this", "those", "these")
+            if is_that and (self._place(other.end) or self._words[other.end : other.end + 1] == ("that",)):
+                other.kind, other.noun, other.determiner = "thing", "one", "the"  # quella sulla scrivania
+                self._after_the_noun(other, True)
+            elif other.noun in ("one", "ones") and not (
                 other.attributes or other.superlative or other.quantity
             ):
                 other = self.read(i) or other
@@ -151,7 +159,13 @@ class NounPhraseReader(PronounReader):
 
     def _is_last_particle(self, i: int) -> bool:
         """Return whether a particle ends the clause at `i`: is the oven ON."""
-        return not self._t.is_mark(i) and self._g.is_a(self._words[i], "particle") and self._t.is_mark(i + 1)
+        if self._t.is_mark(i) or not self._g.is_a(self._words[i], "particle"):
+            return False
+        return self._t.is_mark(i + 1) or self._g.is_a(self._words[i + 1], "and")
+
+    def is_state(self, i: int) -> bool:
+        """Return whether a state or quality is at `i`: open, red, ON at the end of a clause."""
+        return not self._t.is_mark(i) and (self._is_modifier(i) or self._is_last_particle(i))
 
     def _after_the_noun(self, phrase: NounPhrase, with_places: bool) -> None:
         """Read what follows the noun: places, relative clauses, participles, purposes, exceptions."""
@@ -159,7 +173,13 @@ class NounPhraseReader(PronounReader):
         while (i := phrase.end) < len(words):
             if length := quantities.limit_after(g, words, phrase):
                 phrase.end = i + length
-            elif (length := self.exclusion(i)) and not self._is_verb(i + length):
+            elif end := self._limited(phrase, i):
+                phrase.end = end
+            elif (
+                (length := self.exclusion(i))
+                and not self._is_verb(i + length)
+                and not (self.takes_predicate and words[i] == "not")  # is the red cup NOT RED
+            ):
                 excluded = self.read_excluded(i + length)
                 if not excluded:
                     return
@@ -199,7 +219,7 @@ class NounPhraseReader(PronounReader):
             elif with_places and (length := g.match("contact", words, i)) and self._place(i + length):
                 phrase.end = i + length  # the books WE HAVE on the shelf
             elif (
-                self.is_participle(i)
+                (self.is_participle(i) and not (self.takes_predicate and phrase.kind == "thing"))
                 or (words[i] == "with" and (phrase.kind == "person" or self._is_with(i)))
                 or (words[i] in ("in", "dressed") and phrase.kind == "person" and self._is_clothing(i + 1))
             ):
@@ -210,13 +230,37 @@ class NounPhraseReader(PronounReader):
                     return
                 self._add_whole(phrase, other)
             elif with_places and (place := self._place(i)) is not None:
-                phrase.places.append(place)
-                phrase.end = place.end
-                if not place.other.all_of and place.other.determiner != "any":
-                    phrase.excluded += place.other.excluded  # everything on the desk except the lamp
-                    place.other.excluded = []
+                self._add_place(phrase, place)
             else:
                 return
+
+    def _add_place(self, phrase: NounPhrase, place: PlacePhrase) -> None:
+        """Add where a thing is; an exception after that is one of the thing."""
+        phrase.places.append(place)
+        phrase.end = place.end
+        if not place.other.all_of and place.other.determiner != "any":
+            phrase.excluded += place.other.excluded  # everything on the desk except the lamp
+            place.other.excluded = []
+
+    def _limited(self, phrase: NounPhrase, i: int) -> int:
+        """Read a limit of a plural after a comma (the cups, AT MOST THREE OF THEM); return its end, or 0."""
+        words = self._words
+        if not phrase.is_plural or phrase.quantity is not None or words[i] != ",":
+            return 0
+        number, taken = quantities.read_number(self._g, words, i + 1)
+        found = quantities.read_bound(self._g, words, i + 1) if self._is_limit(i + 1) else None
+        if found is not None:
+            end, bounded = found
+        elif taken:  # two at most
+            bounded = NounPhrase(i, i + 1 + taken, quantity=number)
+            end = bounded.end + quantities.limit_after(self._g, words, bounded)
+        if found is None and (not taken or end == bounded.end):
+            return 0
+        end += 2 * (words[end : end + 1] == ("of",) and words[end + 1 : end + 2] in (("them",), ("these",)))
+        if not self._t.is_mark(end) and not self._starts_clause(end):
+            return 0
+        phrase.quantity, phrase.amount = bounded.quantity, bounded.amount
+        return end
 
     def _whose(self, i: int) -> int:
         """Return the end of a relative clause with *whose* at `i`: whose arm is raised; or `i`."""
@@ -306,8 +350,7 @@ class NounPhraseReader(PronounReader):
         if has_be and (place := self._place(j, negated)) is not None:
             if not with_places and not negated:
                 return False
-            phrase.places.append(place)
-            phrase.end = place.end
+            self._add_place(phrase, place)
             return True
         if has_be and words[j] in ("called", "named"):
             end = self._group_end(j + 1)
@@ -353,8 +396,7 @@ class NounPhraseReader(PronounReader):
         """Read an attribute of several words at `i`: raising their left arm, pointing to the right."""
         g, words = self._g, self._words
         if phrase.kind == "thing" and (place := self._place(i + 1, negated)) is not None:
-            phrase.places.append(place)  # the book lying on the desk
-            phrase.end = place.end
+            self._add_place(phrase, place)  # the book lying on the desk
             return
         j, may_go_to = i + 1, True
         takes_place = g.is_a(words[i], "posture_at")

@@ -71,6 +71,10 @@ class NounPhrase:
     excluded: list[NounPhrase] = field(default_factory=list)
     alternatives: list[NounPhrase] = field(default_factory=list)
     """The other things after *or*, any of which will do as well."""
+    asked: list[str] = field(default_factory=list)
+    """What a question asks whether it is so of the things, in English: open, not red."""
+    asks_any: bool = False
+    """Whether a question asks which of the alternatives is so: is it open or closed."""
 
     def exclude(self, others: list[NounPhrase]) -> None:
         """Add an exception: the red one, or two of them."""

@@ -74,4 +74,5 @@ class PronounReader(NounGroupReader):
         """Return the number of words before an exception at `i` (except, but not), or 0."""
         length = self._g.match("exclude", self._words, i)
         is_clause = self._words[i + length : i + length + 1] == ("that",)
+        is_clause = is_clause and not (self._t.is_translated and self._t.word(i + length) != "che")  # quella
         return 0 if is_clause and not self._is_determiner(i + length, 1) else length  # except that it is red

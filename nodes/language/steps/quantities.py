@@ -15,6 +15,7 @@ from semmap.schemas.language import ThingDescription
 _BOUNDS: Final = ("at_least", "at_most", "more_than", "fewer_than", "exactly", "roughly")
 _AFTER: Final = ("at_least_after", "at_most_after")
 _OTHERS: Final = frozenset(("other", "more", "further", "additional", "remaining"))
+_GROUPS: Final = {"dozen": 12, "dozens": 12, "couple": 2, "pair": 2}
 _RANGE: Final = {"between": "and", "from": "to"}
 
 
@@ -28,18 +29,18 @@ def read_bound(g: Grammar, words: Sequence[str], i: int) -> tuple[int, NounPhras
     j = i + length
     opening = "" if length else words[i] if words[i] in _RANGE else ""
     j += bool(opening)
-    number = _number(g, words, j)
-    if number is None:
+    number, taken = read_number(g, words, j)
+    if not taken:
         return None
     found = NounPhrase(i, quantity=number, is_plural=number > 1)
-    j += 1 + (
-        g.is_a(words[j], "determiner") and g.number(words[j]) is None and words[j + 1 : j + 2] == ("dozen",)
-    )
-    second = _number(g, words, j + 1)
-    if second is not None and words[j] in ("or", "to", "and") and (words[j] != "and" or opening):
+    j += taken
+    before, (second, taken) = taken, read_number(g, words, j + 1)
+    if taken and words[j] in ("or", "to", "and") and (words[j] != "and" or opening):
+        if taken > 1 and before == 1:  # two or three dozen
+            number *= _GROUPS.get(words[j + 2], 1)
         first, last = sorted((number, second))
         found.quantity, found.is_plural, found.amount = first, True, Amount(at_least=first, at_most=last)
-        return j + 2, found
+        return j + 1 + taken, found
     if opening:
         return None
     after = next((kind for kind in _AFTER if words[j : j + 1] == ("or",) and g.match(kind, words, j)), "")
@@ -51,6 +52,26 @@ def read_bound(g: Grammar, words: Sequence[str], i: int) -> tuple[int, NounPhras
         return None
     limit(found, kind)
     return j, found
+
+
+def read_number(g: Grammar, words: Sequence[str], i: int) -> tuple[int, int]:
+    """Return the number at `i` (three, a dozen, a couple of) and how many words it has, or (0, 0)."""
+    if length := g.match("half_dozen", words, i):
+        return 6, length + _of(g, words, i + length)
+    word = words[i] if i < len(words) else ""
+    number = 1 if word in ("a", "an") else g.number(word)
+    if number is None:
+        return 0, 0
+    unit = _GROUPS.get(words[i + 1]) if i + 1 < len(words) else None
+    if unit is None:
+        return number, 1 + (_of(g, words, i + 1) if word == "dozen" else 0)
+    return number * unit, 2 + _of(g, words, i + 2)
+
+
+def _of(g: Grammar, words: Sequence[str], i: int) -> int:
+    """Return 1 for *of* at `i` that only joins a number to its noun (a couple OF cups), else 0."""
+    is_part = any(g.match(kind, words, i + 1) for kind in ("determiner", "possessive", "all", "pronoun"))
+    return int(words[i : i + 1] == ("of",) and i + 1 < len(words) and not is_part)
 
 
 def limit(phrase: NounPhrase, kind: str) -> None:
@@ -119,12 +140,6 @@ def read_amount(g: Grammar, words: Sequence[str], i: int, phrase: NounPhrase, is
 def is_other(word: str) -> bool:
     """Return whether a word before a noun excludes what was mentioned: the OTHER cup, one MORE cup."""
     return word in _OTHERS
-
-
-def _number(g: Grammar, words: Sequence[str], i: int) -> int | None:
-    if i >= len(words):
-        return None
-    return 1 if words[i] in ("a", "an") else g.number(words[i])
 
 
 def count(phrase: NounPhrase, known: int | None, text: str) -> str:

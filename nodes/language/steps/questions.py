@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import Final
 
-from semmap.nodes.language.steps.arguments import ArgumentReader
 from semmap.nodes.language.steps.clause import Clause, Role
 from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.times import starts_time
+from semmap.nodes.language.steps.yes_no_questions import YesNoReader
 
 _REASONS: Final = ("because", "since", "so", "instead", "without", "although", "though", "wherever")
 """First words of subordinate clauses that belong to a message."""
 
 
-class QuestionReader(ArgumentReader):
+class QuestionReader(YesNoReader):
     """Reads questions, their topics and the recipient of the answer."""
 
     def _question(self, clause: Clause, i: int) -> int:
@@ -164,61 +164,6 @@ class QuestionReader(ArgumentReader):
         clause.roles.append(Role("Message", i, max(end, i + 1), min(i + length - 1, end) if end > i else i))
         return self._addressed(clause, max(end, i + 1))
 
-    def _yes_no(self, clause: Clause, i: int) -> int:
-        """Read *is the milk on the desk*; of a translation also *is on the desk the milk*."""
-        j = i + 1 + (self._words[i + 1 : i + 2] == ("there",))
-        clause.roles.append(Role("Message", i, j, i))
-        place = self._np.read_place(j)
-        phrase = self._np.read(j if place is None else place.end)
-        if phrase is None:
-            return self._unread(j)
-        if place is not None:
-            phrase.places.append(place)
-            phrase.first = place.first
-        self._read_state(phrase)
-        clause.roles.append(Role("Topic", phrase.first, phrase.end, phrase.head, [phrase]))
-        return self._addressed(clause, phrase.end)
-
-    def _read_state(self, phrase: NounPhrase) -> None:
-        """Add to a phrase what a question with *is* states of it: (is the milk) not on the desk."""
-        length = self._g.match("negation", self._words, phrase.end)
-        place = self._np.read_place(phrase.end + length) if length else None
-        if place is None:
-            self._np.continue_phrase(phrase, after_be=True)
-            return
-        place.negated = True
-        phrase.places.append(place)
-        phrase.end = place.end
-
-    def _declares(self, i: int) -> int:
-        """Return the index of *is* in a question with the words of a statement at `i`, or 0.
-
-        The milk is in the fridge? There is milk?
-        """
-        words = self._words
-        is_first = i == 0 or self._t.is_mark(i - 1)
-        end = next((j for j in range(i, len(words)) if self._t.ends_sentence(j)), len(words))
-        if words[end : end + 1] != ("?",) or not is_first or self._clause_end(i + 1) < end:
-            return 0
-        phrase = None if self._g.match("question", words, i) else self._np.read(i)
-        if phrase is None or phrase.kind == "speaker" or phrase.end + 1 >= end:
-            return 0
-        is_state = words[phrase.end] in ("is", "are", "'s", "'re")
-        return phrase.end if is_state and not self._g.match("question", words, phrase.end + 1) else 0
-
-    def _declared(self, clause: Clause, i: int, be: int) -> int:
-        """Read *the milk is on the desk?*."""
-        clause.roles.append(Role("Message", be, be + 1, be))
-        phrase = self._np.read(i)
-        if phrase is not None and phrase.kind == "here":  # there is milk
-            phrase = self._np.read(be + 1)
-        if phrase is None:
-            return self._unread(be)
-        phrase.end = max(phrase.end, be + 1)
-        self._read_state(phrase)
-        clause.roles.append(Role("Topic", phrase.first, phrase.end, phrase.head, [phrase]))
-        return self._addressed(clause, phrase.end)
-
     def _predicate(self, phrase: NounPhrase) -> NounPhrase:
         """Add the predicate of the counted things: people in the office ARE pointing to the right."""
         g, words = self._g, self._words
@@ -312,8 +257,12 @@ class QuestionReader(ArgumentReader):
                 if not self._g.is_a(words[i], "and"):
                     self.found.unused.append(self._t.between(i, end))
                 elif (
-                    (phrase := self._np.read(i + 1)) is not None and clause.roles and clause.roles[-1].phrases
+                    (phrase := self._other_topic(clause, i + 1)) is not None
+                    and clause.roles
+                    and clause.roles[-1].phrases
                 ):
+                    if clause.roles[-1].phrases[-1].asked:  # is the fridge open and the oven off
+                        self._read_state(phrase)
                     clause.roles[-1].phrases.append(phrase)
                     clause.roles[-1].end = end = phrase.end
                 else:

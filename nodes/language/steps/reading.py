@@ -10,7 +10,7 @@ from msgspec import structs
 
 from semmap.nodes.language.lexicon import commands
 from semmap.nodes.language.steps import quantities, tokens
-from semmap.nodes.language.steps.answers import answer
+from semmap.nodes.language.steps.answers import answer, answer_states
 from semmap.nodes.language.steps.clause import Clause, Role
 from semmap.nodes.language.steps.clauses import ClauseReader
 from semmap.nodes.language.steps.coverage import find_unused
@@ -193,6 +193,9 @@ class _StepReader:
                 continue
             if phrase.kind == "pronoun":
                 filler = self._pronoun(phrase, text, head, clause, role, number, mentions)
+                if phrase.asked and filler.entities:  # is it open
+                    verdicts = self._meanings.verdicts(phrase, filler.entities)
+                    self._found.answers.append(answer_states(phrase, verdicts, self._world))
                 yield self._part(phrase, filler, clause, mentions)
                 continue
             self._complete(phrase, mentions)
@@ -224,7 +227,7 @@ class _StepReader:
             if role.role == "Topic" and (message := clause.role("Message")) is not None:
                 asked = " ".join(self._t.words[message.first : message.end])
                 asked_of = self._t.words[message.head]
-                self._found.answers.append(answer(asked, asked_of, text, meaning, self._world))
+                self._found.answers.append(answer(asked, asked_of, text, phrase, meaning, self._world))
             mentions.append(
                 Mention(
                     number,

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from semmap.nodes.language.lexicon import commands
 from semmap.nodes.language.words import without_markup
 
 _TOKEN: Final = re.compile(
@@ -15,6 +16,13 @@ _TOKEN: Final = re.compile(
 )
 _HESITATION: Final = frozenset(("um", "uh", "uhm", "er", "erm", "hm", "hmm", "ehm", "oh", "ah", "eh"))
 _PUNCTUATION: Final = frozenset(",.;:!?")
+_GOING_ON: Final = (
+    *("determiner", "all", "possessive", "to", "from", "place", "for", "about", "with", "of", "and", "then"),
+    *("polite", "negation", "condition", "modal", "be", "wish", "phase", "exclude", "question"),
+)
+"""Classes of expressions that a clause does not end with."""
+_BEHIND_VERBS: Final = ("determiner", "all", "possessive", "pronoun", "speaker", "to", "from", "place", "for")
+"""Classes of expressions that show that the word before them is a verb and not a noun."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,12 +64,44 @@ class Text:
 
 
 def _without_hesitation(tokens: list[Token]) -> Iterator[Token]:
-    """Yield tokens without sounds such as *uh*, and without the commas around one."""
-    sounds = [token.word in _HESITATION for token in tokens]
-    for i, token in enumerate(tokens):
-        is_beside = (i > 0 and sounds[i - 1]) or (i + 1 < len(tokens) and sounds[i + 1])
-        if not sounds[i] and not (token.word == "," and is_beside):
-            yield token
+    """Yield tokens without sounds such as *uh*, and without the commas around one.
+
+    Before a verb one comma is left, since it may be all that separates two clauses: go there, um, close it.
+    """
+    words = [token.word for token in tokens]
+    start = 0
+    while start < len(tokens):
+        end = start
+        while end < len(tokens) and (words[end] in _HESITATION or words[end] == ","):
+            end += 1
+        pause = tokens[start:end]
+        if not any(token.word in _HESITATION for token in pause):
+            end = max(end, start + 1)
+            yield from tokens[start:end]
+        elif start and _ends_clause(words[:start]) and _begins_with_verb(tokens[end:]):
+            comma = next((token for token in pause if token.word == ","), pause[0])
+            yield Token(",", comma.first, comma.end)
+        start = end
+
+
+def _ends_clause(words: list[str]) -> bool:
+    """Return whether a clause may end after these words: not after an article or a preposition."""
+    g = commands.load()
+    return not any(
+        tuple(words[-length:]) in g.kinds[kind]
+        for kind in _GOING_ON
+        for length in range(1, g.longest[kind] + 1)
+    )
+
+
+def _begins_with_verb(tokens: list[Token]) -> bool:
+    """Return whether a command begins with these tokens: a verb and its object or place."""
+    g, words = commands.load(), [token.word for token in tokens]
+    length, _ = g.verb(words, 0)
+    if not length or length == len(words):
+        return length > 1 or bool(words and g.is_a(words[0], "untaught"))
+    is_name = tokens[length].is_capital
+    return length > 1 or is_name or any(g.match(kind, words, length) for kind in _BEHIND_VERBS)
 
 
 def read(text: str) -> Text:

@@ -16,6 +16,11 @@ from semmap.nodes.language.words import without_markup
 
 _ADJECTIVES: Final = frozenset(lexicon().adjectives.values())
 _ARTICLES: Final = frozenset(("the", "these", "a", "this", "that", "and", "from", "on", "in", ",", "."))
+_SOUND: Final = r"(?:ehm|uhm|um|mmm?|eh|ah|oh|beh|boh)"
+_HESITATION: Final = re.compile(
+    rf"(?:,\s*)?(?<!\w){_SOUND}(?!\w)(?:\s*,?\s*{_SOUND}(?!\w))*(?:\s*,)?", re.IGNORECASE
+)
+_WORD: Final = re.compile(r"\s*(\w+)")
 _MARK: Final = re.compile(r"(?<!\d)[.,:]|[.,:](?!\d)|[;!?]")
 
 
@@ -26,15 +31,31 @@ def translate(text: str, scene: Scene) -> Text:
     that it stands for.
     """
     plain = italian.normalise(without_markup(text))
+    fluent = _without_hesitation(plain)
     tokens: list[Token] = []
     start = 0
-    for mark in _MARK.finditer(plain):
-        tokens += _translated(plain, start, mark.start(), scene)
+    for mark in _MARK.finditer(fluent):
+        tokens += _translated(fluent, start, mark.start(), scene)
         tokens.append(Token(mark[0], mark.start(), mark.end()))
         start = mark.end()
-    tokens += _translated(plain, start, len(plain), scene)
-    tokens = _with_superlatives(_with_times(tokens))
+    tokens += _translated(fluent, start, len(fluent), scene)
+    tokens = _with_predicates(_with_superlatives(_with_times(tokens)), plain)
     return Text(plain, tokens, tuple(token.word for token in tokens), is_translated=True)
+
+
+def _without_hesitation(text: str) -> str:
+    """Return a text of the same length with spaces for sounds such as *ehm* and the commas around one.
+
+    Before a verb one comma is left, since it may be all that separates two clauses.
+    """
+
+    def blank(found: re.Match[str]) -> str:
+        following = _WORD.match(text, found.end())
+        words = italian.split(following[1]) if following is not None else []
+        is_verb = bool(words) and found.start() > 0 and words[0] in lexicon().verbs
+        return ("," if is_verb and "," in found[0] else " ").ljust(len(found[0]))
+
+    return _HESITATION.sub(blank, text)
 
 
 def _with_times(tokens: list[Token]) -> list[Token]:
@@ -68,6 +89,33 @@ def _with_superlatives(tokens: list[Token]) -> list[Token]:
             is_end = tokens[i].word == "most" and any(token.word == "not" for token in found)
             found.append(replace(tokens[i], word="anymore") if is_end else tokens[i])  # non seguirmi più
             i += 1
+    return found
+
+
+def _with_predicates(tokens: list[Token], text: str) -> list[Token]:
+    """Move the adjective of a question behind its subject: *è aperto il frigo* is *is the fridge open*.
+
+    *Non è* in a question is *is not*.
+    """
+    found = list(tokens)
+    for i, token in enumerate(found[:-1]):
+        following = found[i + 1]
+        mark = next((one.word for one in found[i:] if one.word in ".;!?"), "")
+        if token.word == "not" and following.word in ("is", "are") and mark == "?":
+            found[i : i + 2] = [following, token]
+    tokens = list(found)
+    for i, token in enumerate(tokens[:-2]):
+        adjective, article = tokens[i + 1], tokens[i + 2]
+        said = text[adjective.first : adjective.end].lower()
+        is_first = i == 0 or tokens[i - 1].word in ",.;:!?"
+        if (
+            is_first
+            and token.word in ("is", "are")
+            and lexicon().adjectives.get(said) == adjective.word
+            and grammar().match("determiner", [article.word], 0)
+        ):
+            end = next((k for k in range(i + 2, len(tokens)) if tokens[k].word in ",.;:!?"), len(tokens))
+            found[i + 1 : end] = [*tokens[i + 2 : end], adjective]
     return found
 
 

@@ -5,7 +5,7 @@ import math
 import pytest
 from msgspec import structs
 
-from semmap.nodes.kb_node.answers.entity_search import EntitySearch, describe_missing, item, terms
+from semmap.nodes.kb_node.answers.entity_search import EntitySearch, describe_missing, find_past, item, terms
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.semantic_map import SemanticMap
@@ -365,6 +365,41 @@ def test_a_removed_entity_is_reported_with_its_time(flat):
     assert (
         describe_missing(flat._journal, past, other.missing, frozenset(flat.names), flat.classes.limits) == ()
     )
+
+
+@pytest.mark.parametrize(
+    ("as_of", "fields", "outcome"),
+    [
+        (2, {"text": "the spoon"}, ("one", {"spoon1"}, 2)),
+        (2, {"text": "the spoon", "viewer": "spoon1"}, ("one", {"spoon1"}, 2)),
+        (1, {"text": "the spoon"}, ("none", set(), 1)),
+        (3, {"text": "the spoon"}, ("none", set(), 3)),
+        (3, {"text": "the apple in the bowl"}, ("one", {"apple1"}, 3)),
+    ],
+)
+def test_a_search_in_the_past_finds_what_was_there(flat, as_of, fields, outcome):
+    spoon = entity_triples.describe(
+        "spoon1", v.dm("Spoon"), pose=Pose(position_m=(2.0, 2.0, 0.0)), size_m=[0.2, 0.05, 0.02]
+    )
+    flat.commit(Transaction(id="1", source="operator", insert=tuple(spoon)))
+    flat.commit(Transaction(id="2", source="operator", retract=tuple(spoon)))
+    past, labels = HistoryReader(flat._journal), EntitySearch(flat).terms()
+    found = find_past(Find(as_of=as_of, **fields), past, labels, flat.classes.limits)
+    assert (found.outcome, names(found), found.seq) == outcome
+
+
+@pytest.mark.parametrize(
+    ("as_of", "fields", "error"),
+    [
+        (2, {"text": "the bowl"}, errors.Refused),
+        (1, {"text": "the bowl", "viewer": "spoon1"}, errors.UnknownName),
+        ("yesterdayish", {"text": "the bowl"}, errors.BadRequest),
+    ],
+)
+def test_a_search_in_the_past_without_a_map_or_viewer_is_refused(flat, as_of, fields, error):
+    past, labels = HistoryReader(flat._journal), EntitySearch(flat).terms()
+    with pytest.raises(error):
+        find_past(Find(as_of=as_of, **fields), past, labels, flat.classes.limits)
 
 
 def test_a_moved_entity_is_reported_with_its_time(flat):

@@ -8,7 +8,7 @@ import pytest
 from semmap.nodes.kb_node.handlers.queries import QueryHandlers
 from semmap.nodes.kb_node.shacl.validation_process import Validation
 from semmap.nodes.kb_node.storage import trail_file
-from semmap.schemas.commands import Check, Export, LastSeen, Rules
+from semmap.schemas.commands import Check, Export, Find, LastSeen, Rules
 from semmap.schemas.commits import Edit
 from semmap.schemas.entities import Live, Pose, orientation_from_yaw
 from semmap.schemas.live import LivePoses
@@ -99,3 +99,12 @@ def test_slow_checks_with_shapes_delay_no_other_query(chairs):
         assert [check.result(60.0).shapes for check in checks] == [1, 1, 1]
     finally:
         queries.close()
+
+
+def test_find_searches_the_map_now_or_after_a_commit(chairs):
+    chairs.commit(transaction(2, chair("chair3", at=(5.0, 5.0, 0.0))))
+    queries = QueryHandlers(chairs, chairs._journal, sparql=None, location_queries=None)
+    found = queries.on_find(Find(text="the chairs"))
+    before = queries.on_find(Find(text="the chairs", as_of=found.seq - 1)).result(timeout=30)
+    assert [len(found.candidates), len(before.candidates)] == [3, 2]
+    assert before.seq == found.seq - 1

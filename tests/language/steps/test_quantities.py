@@ -16,6 +16,20 @@ def texts(understood):
             'Bringing(Beneficiary="me", Theme=at least 2 of bluecup|cup1|redcup)',
         ),
         ("bring me up to two cups", 'Bringing(Beneficiary="me", Theme=at most 2 of bluecup|cup1|redcup)'),
+        (
+            "bring me up to a dozen cups",
+            'Bringing(Beneficiary="me", Theme=at most 12 of bluecup|cup1|redcup)',
+        ),
+        ("take at most half a dozen cups", "Taking(Theme=at most 6 of bluecup|cup1|redcup)"),
+        ("take at most two dozen cups", "Taking(Theme=at most 24 of bluecup|cup1|redcup)"),
+        ("take at most a couple of cups", "Taking(Theme=at most 2 of bluecup|cup1|redcup)"),
+        ("take the cups, at most two of them", "Taking(Theme=at most 2 of bluecup|cup1|redcup)"),
+        ("take the cups, up to a dozen", "Taking(Theme=at most 12 of bluecup|cup1|redcup)"),
+        ("take the cups, two at most", "Taking(Theme=at most 2 of bluecup|cup1|redcup)"),
+        ("pick up to two cups", "Taking(Theme=at most 2 of bluecup|cup1|redcup)"),
+        ("count up to two cups", "Counting(Theme=at most 2 of bluecup|cup1|redcup)"),
+        ("prendi fino a una dozzina di tazze", "Taking(Theme=at most 12 of bluecup|cup1|redcup)"),
+        ("prendi un paio di tazze", "Taking(Theme=2 of bluecup|cup1|redcup)"),
         ("take more than two cups", "Taking(Theme=at least 3 of bluecup|cup1|redcup)"),
         ("take fewer than three cups", "Taking(Theme=at most 2 of bluecup|cup1|redcup)"),
         ("take two cups at most", "Taking(Theme=at most 2 of bluecup|cup1|redcup)"),
@@ -60,6 +74,10 @@ def test_the_bounds_of_a_number_are_in_the_description(read):
         ("take the two cups", "'the two cups': there are 3"),
         ("prendi entrambe le tazze", "'entrambe le tazze': there are 3"),
         ("take at least four cups", "'at least four cups': there are only 3"),
+        ("take two dozen cups", "'two dozen cups': there are only 3"),
+        ("take two or three dozen cups", "'two or three dozen cups': there are only 3"),
+        ("bring at most three", "'three' refers to nothing that was mentioned"),
+        ("bring me up to a dozen", "'dozen' refers to nothing that was mentioned"),
         ("take half of the cups", "'half of the cups': there are 3"),
         ("take every second cup", "'every second cup': how many are meant is not clear"),
         ("take about two cups", "'about two cups': how many are meant is not clear"),
@@ -87,6 +105,18 @@ def test_what_is_not_clear_is_a_doubt(read, text, doubt):
         ("take any cup but the red one", ["Taking(Theme=bluecup|cup1)"]),
         ("put the cups except the red one on the desk", ["Placing(Theme=bluecup|cup1, Goal=desk1)"]),
         ("porta tutte le tazze a parte quella blu", ["Bringing(Theme=cup1|redcup)"]),
+        ("prendi tutte le tazze tranne quella sulla scrivania", ["Taking(Theme=bluecup|redcup)"]),
+        ("prendi tutte le tazze tranne quella che è sulla scrivania", ["Taking(Theme=bluecup|redcup)"]),
+        ("prendi tutte le tazze tranne che la rossa", ["Taking(Theme=bluecup|cup1)"]),
+        ("prendi tutte le tazze ad esclusione di quella rossa", ["Taking(Theme=bluecup|cup1)"]),
+        (
+            "prendi tutto quello che è sul tavolo tranne la tazza blu",
+            ["Taking(Theme=apple1|bowl1|glass1|plate1|plate2|redcup|water1)"],
+        ),
+        (
+            "take everything that is on the table except the blue cup",
+            ["Taking(Theme=apple1|bowl1|glass1|plate1|plate2|redcup|water1)"],
+        ),
         ("take the red cup and the other cups", ["Taking(Theme=redcup, Theme=bluecup|cup1)"]),
         (
             "take the red cup and bring another",
@@ -109,6 +139,16 @@ def test_what_is_not_clear_is_a_doubt(read, text, doubt):
 def test_what_is_excluded_is_not_acted_on(read, text, steps):
     understood = read(text)
     assert (texts(understood), understood.doubts) == (steps, ())
+
+
+@pytest.mark.parametrize(
+    "text", ["porta la tazza rossa a tutti tranne Nora", "take the red cup to everyone except Nora"]
+)
+def test_an_exception_of_persons_is_not_one_of_the_things(read, text):
+    (step,) = read(text).steps
+    (theme,), (receiver,) = step.roles["Theme"], step.roles["Beneficiary"]
+    assert (theme.entities, theme.description.excluded) == (("redcup",), ())
+    assert (receiver.entities, receiver.description.excluded) == ((), ("Nora",))
 
 
 @pytest.mark.parametrize(

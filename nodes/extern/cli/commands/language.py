@@ -11,7 +11,7 @@ import click
 
 from semmap.nodes.extern.cli.angles import from_pose
 from semmap.nodes.extern.cli.command import command
-from semmap.nodes.extern.cli.common import print_json, print_lines, with_client
+from semmap.nodes.extern.cli.common import TIME, print_json, print_lines, with_client
 from semmap.nodes.extern.cli.output import lines, lu4r
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.shell_completion import entity_names
@@ -61,6 +61,7 @@ def tell(client: Client, name: str | None, words: int, format: str) -> None:
 @from_pose
 @click.option("--for", "asker", metavar="NAME", help="Speaker: the person that 'my' refers to.")
 @click.option("--answer", metavar="TEXT", help="Answer to the clarification question: 'the one on the desk'.")
+@click.option("--as-of", metavar="COMMIT|TIME", help=f"The map after a commit or at a time. {TIME}")
 @click.option("--format", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @with_client
 def find(client: Client, text: str, format: str, **fields: Any) -> None:
