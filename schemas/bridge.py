@@ -263,11 +263,13 @@ class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=Tr
 class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Request the entities of a class, by its exact name (or all); with `as_of`, at that time.
 
-    `where` restricts them by position; the nearest ones are sorted by distance.
+    `where` restricts them by position; the nearest ones are sorted by distance. With `all`, the individuals
+    that are not in space follow; this is for the present only, and without `where`.
     """
 
     VERB: ClassVar[str] = "list"
     class_: str | None = field(name="class", default=None)
+    all: bool = False
     as_of: When | None = None
     where: Where | None = None
 

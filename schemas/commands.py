@@ -260,8 +260,9 @@ class Set(Command[Changed], frozen=True, tag="set"):
 
     The property's range determines the type of the values: true or false, numbers, texts (`rosso@it` has a
     language), individuals by name. A functional property's value is replaced; other properties get an
-    additional value. The command is rejected with PreconditionFailed unless `if_is` is a current value, or
-    with `if_unset` unless the property has none.
+    additional value. An individual that is not in space is given by its name or IRI. The command is rejected
+    with PreconditionFailed unless `if_is` is a current value, or with `if_unset` unless the property has
+    none.
     """
 
     ROLES: ClassVar[Roles] = OBSERVERS
@@ -278,7 +279,7 @@ class Set(Command[Changed], frozen=True, tag="set"):
 
 
 class Unset(Command[Changed], frozen=True, tag="unset"):
-    """Remove one value of an entity's property, or all of them; `if_is` as for `set`."""
+    """Remove one value of an entity's property, or all of them; `name` and `if_is` as for `set`."""
 
     ROLES: ClassVar[Roles] = OBSERVERS
 
@@ -389,7 +390,10 @@ class Batch(Command[Changed], frozen=True, tag="batch"):
 
 
 class Remove(Command[Changed], frozen=True, tag="remove"):
-    """Remove entities from the map and the scene: all of them or, if a name is unknown, none."""
+    """Remove entities from the map and the scene: all of them or, if a name is unknown, none.
+
+    Individuals that are not in space are given by their names or IRIs.
+    """
 
     ROLES: ClassVar[Roles] = OBSERVERS
     LARGEST: ClassVar[int] = MANY
@@ -459,6 +463,9 @@ class List(Command[tuple[Entity, ...] | dict[str, Any]], frozen=True, tag="list"
     `near` (with `within`) and `to` can also be positions, written `2.5,1,0.8` [m]. With a `frame`, these
     positions and the poses in the reply are in that frame. The reply contains the entities, or a document if
     the format is not `json`.
+
+    With `all`, the individuals that are not in space follow the entities: those that the map describes, not
+    those of its TBox. Their `in_space` is false. `class` can then be a class that only the map uses.
     """
 
     ROLES: ClassVar[Roles] = ANYBODY
@@ -473,6 +480,7 @@ class List(Command[tuple[Entity, ...] | dict[str, Any]], frozen=True, tag="list"
     nearest: Annotated[int, Meta(ge=1, le=10_000)] | None = None
     to: Text | None = None
     frame: FrameName | None = None
+    all: bool = False
 
     @property
     def where(self) -> Where | None:
@@ -504,6 +512,9 @@ class Get(Command[Described], frozen=True, tag="get"):
 
     With `where`, the reply also contains what it is on, inside and in, and asserted relations that do not
     hold (only for the current map). With a `frame`, its current pose is given in that frame.
+
+    An individual that is not in space, such as a person of an address book, is given by its name or IRI. The
+    reply then contains what refers to it (only for the current map).
     """
 
     ROLES: ClassVar[Roles] = ANYBODY

@@ -10,6 +10,7 @@ import pytest
 from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
 from semmap.nodes.kb_node.answers import answers as kb_answers
 from semmap.nodes.kb_node.answers import dry_runs
+from semmap.nodes.kb_node.answers.entity_queries import CurrentState
 from semmap.nodes.kb_node.answers.pages import Pages
 from semmap.nodes.kb_node.handlers.changes import effects
 from semmap.nodes.kb_node.relations.free_room import find_room
@@ -73,6 +74,7 @@ def dispatcher(semantic_map):
         "find-room": lambda query: find_room(
             semantic_map.places.space(), query, semantic_map.find(query.name)
         ),
+        "get": CurrentState(semantic_map).entity,
         "infer": lambda query: kb_answers.infer(semantic_map, query.name),
         "properties": lambda _: tuple(semantic_map.classes.property_table.rows()),
         "made-by": lambda query: tuple(effects(semantic_map._journal.commit_of(i)) for i in query.ids),
