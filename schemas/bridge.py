@@ -233,6 +233,7 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
     urdf: bytes = b""
     strict: bool = False
     parts: bool = False
+    tbox_from_abox: bool = False
     dry_run: bool = False
     told: bool = False
     """Sent by the coordinator, which takes the commit from the reply; see `Transaction.told`."""

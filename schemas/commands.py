@@ -429,6 +429,9 @@ class Load(Command[Changed], frozen=True, tag="load"):
     present one, unless the map is invalid under it; with `extend`, its statements are added to the present
     TBox. `spatial_root` are the classes whose instances are physical things, if the TBox does not show it.
 
+    With `tbox_from_abox`, the classes, properties and axioms that a map's file declares are added to the TBox
+    in the same commit. Otherwise they are statements of the map.
+
     A file is loaded in one commit, or with `parts` in several commits, which bounds the memory. If a part is
     rejected, the earlier parts stay, and the error reports them.
     """
@@ -449,6 +452,7 @@ class Load(Command[Changed], frozen=True, tag="load"):
     extend: bool = False
     graph: Annotated[str, Meta(max_length=5000)] = ""
     urdf: bytes = b""
+    tbox_from_abox: bool = False
 
 
 # Queries

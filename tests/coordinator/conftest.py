@@ -63,7 +63,8 @@ def dispatcher(semantic_map):
         "commit": lambda transaction: _changed(
             semantic_map, lambda: semantic_map.commit(transaction), transaction.dry_run
         ),
-        "load": loading(semantic_map, []).on_load,
+        "load": lambda load: _result(loading(semantic_map, []).on_load(load)),
+        "classes": lambda _: tuple(semantic_map.class_table()),
         "snapshot": Pages(semantic_map).snapshot,
         "commits": lambda several: tuple(
             Outcome(error=errors.to_message(result))
@@ -97,6 +98,10 @@ def immediate(dispatcher):
         return future
 
     return change
+
+
+def _result(loaded):
+    return loaded.result(60) if isinstance(loaded, Future) else loaded
 
 
 def _changed(semantic_map, change, dry_run):

@@ -11,6 +11,7 @@ from msgspec import structs
 from semmap.nodes.kb_node.answers import answers, questions
 from semmap.nodes.kb_node.answers.past.fact_intervals import FactStarts
 from semmap.nodes.kb_node.entities.equal_individuals import about_entity
+from semmap.nodes.kb_node.entities.individual_reading import find_own_classes
 from semmap.nodes.kb_node.relations.facts.contradictions import (
     PROPERTIES,
     fact_of,
@@ -104,9 +105,9 @@ class CurrentState:
     def entity(self, query: Get) -> Described:
         """Return one entity, with its location and wrong assertions about it if `where`.
 
-        Its properties include those that the TBox does not declare, and the equal individuals. An individual
-        that is not in space is returned with what refers to it. Raises UnknownName; BadRequest for an
-        ambiguous word.
+        Its properties and types include those that the TBox does not declare, and the equal individuals. An
+        individual that is not in space is returned with what refers to it. Raises UnknownName; BadRequest for
+        an ambiguous word.
         """
         entity = self._resolve(query.name)
         if not entity.in_space:
@@ -131,7 +132,11 @@ class CurrentState:
         about = about_entity(self._map.reasoner, iri)
         others = self._map.classes.property_table.read_others(about, iri)
         others.pop(SAME_AS, None)
-        return structs.replace(found, properties={**found.properties, **others}) if others else found
+        own = find_own_classes(self._map.classes, about(iri).get(v.RDF_TYPE, ()))
+        if not others and not own:
+            return found
+        types = (*found.types, *own)
+        return structs.replace(found, types=types, properties={**found.properties, **others})
 
     def describe(self, name: str) -> Described | None:
         """Return the entity of that name with its location, or None."""

@@ -5,7 +5,7 @@ They are read as entities without a pose, a size and a body, so that the same co
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Final
 
 from semmap.nodes.kb_node.entities import aligned_values, entity_reading, equal_individuals
@@ -72,7 +72,7 @@ def read_individual(reasoner: Reasoner, classes: ClassTable, iri: Term) -> Entit
     asserted = about(iri)
     stated = frozenset(asserted.get(v.RDF_TYPE, ()))
     known = classes.most_specific_first(reasoner.types(iri))
-    foreign = sorted(v.local_name(o) for o in stated - classes.names.keys() - _NO_KIND if o.startswith("<"))
+    foreign = find_own_classes(classes, stated)
     types = (*(classes.names[t] for t in known if t in stated), *foreign)
     inferred = tuple(classes.names[t] for t in known if t not in stated)
     labels = [
@@ -103,6 +103,12 @@ def read_individual(reasoner: Reasoner, classes: ClassTable, iri: Term) -> Entit
         shape_provenance=_UNKNOWN,
         reference_provenance=_UNKNOWN,
     )
+
+
+def find_own_classes(classes: ClassTable, stated: Iterable[Term]) -> list[str]:
+    """Return the names of those of the asserted classes that the map uses and its TBox does not declare."""
+    own = (o for o in stated if o not in classes.names and o not in _NO_KIND and o.startswith("<"))
+    return sorted(map(v.local_name, own))
 
 
 def find_referring(reasoner: Reasoner, iri: Term) -> dict[str, tuple[str, ...]]:

@@ -228,6 +228,9 @@ def clear(client: Client, dry_run: bool) -> None:
     "--tbox", is_flag=True, help="FILE (or folder, or household) is a TBox that replaces the current one."
 )
 @click.option("--extend", is_flag=True, help="With --tbox: add FILE to the current TBox.")
+@click.option(
+    "--tbox-from-abox", is_flag=True, help="Add classes and properties of a map's file to the TBox."
+)
 @click.option("--parts", is_flag=True, help="Load in several commits, for files of any size.")
 @click.option("--urdf", type=click.Path(), help="URDF file with poses of individuals named like its links.")
 @click.option("--graph", metavar="NAME", default="", help="Load this named graph, not the default graph.")
