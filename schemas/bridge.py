@@ -233,6 +233,7 @@ class LoadDocument(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_field
     urdf: bytes = b""
     strict: bool = False
     parts: bool = False
+    tbox_from_abox: bool = False
     dry_run: bool = False
     told: bool = False
     """Sent by the coordinator, which takes the commit from the reply; see `Transaction.told`."""
@@ -263,11 +264,13 @@ class LoadTBox(Call[Loaded], frozen=True, kw_only=True, forbid_unknown_fields=Tr
 class Entities(Call[tuple[Entity, ...]], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Request the entities of a class, by its exact name (or all); with `as_of`, at that time.
 
-    `where` restricts them by position; the nearest ones are sorted by distance.
+    `where` restricts them by position; the nearest ones are sorted by distance. With `all`, the individuals
+    that are not in space follow; this is for the present only, and without `where`.
     """
 
     VERB: ClassVar[str] = "list"
     class_: str | None = field(name="class", default=None)
+    all: bool = False
     as_of: When | None = None
     where: Where | None = None
 

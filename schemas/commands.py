@@ -262,8 +262,9 @@ class Set(Command[Changed], frozen=True, tag="set"):
 
     The property's range determines the type of the values: true or false, numbers, texts (`rosso@it` has a
     language), individuals by name. A functional property's value is replaced; other properties get an
-    additional value. The command is rejected with PreconditionFailed unless `if_is` is a current value, or
-    with `if_unset` unless the property has none.
+    additional value. An individual that is not in space is given by its name or IRI. The command is rejected
+    with PreconditionFailed unless `if_is` is a current value, or with `if_unset` unless the property has
+    none.
     """
 
     ROLES: ClassVar[Roles] = OBSERVERS
@@ -280,7 +281,7 @@ class Set(Command[Changed], frozen=True, tag="set"):
 
 
 class Unset(Command[Changed], frozen=True, tag="unset"):
-    """Remove one value of an entity's property, or all of them; `if_is` as for `set`."""
+    """Remove one value of an entity's property, or all of them; `name` and `if_is` as for `set`."""
 
     ROLES: ClassVar[Roles] = OBSERVERS
 
@@ -391,7 +392,10 @@ class Batch(Command[Changed], frozen=True, tag="batch"):
 
 
 class Remove(Command[Changed], frozen=True, tag="remove"):
-    """Remove entities from the map and the scene: all of them or, if a name is unknown, none."""
+    """Remove entities from the map and the scene: all of them or, if a name is unknown, none.
+
+    Individuals that are not in space are given by their names or IRIs.
+    """
 
     ROLES: ClassVar[Roles] = OBSERVERS
     LARGEST: ClassVar[int] = MANY
@@ -427,6 +431,9 @@ class Load(Command[Changed], frozen=True, tag="load"):
     present one, unless the map is invalid under it; with `extend`, its statements are added to the present
     TBox. `spatial_root` are the classes whose instances are physical things, if the TBox does not show it.
 
+    With `tbox_from_abox`, the classes, properties and axioms that a map's file declares are added to the TBox
+    in the same commit. Otherwise they are statements of the map.
+
     A file is loaded in one commit, or with `parts` in several commits, which bounds the memory. If a part is
     rejected, the earlier parts stay, and the error reports them.
     """
@@ -447,6 +454,7 @@ class Load(Command[Changed], frozen=True, tag="load"):
     extend: bool = False
     graph: Annotated[str, Meta(max_length=5000)] = ""
     urdf: bytes = b""
+    tbox_from_abox: bool = False
 
 
 # Queries
@@ -461,6 +469,9 @@ class List(Command[tuple[Entity, ...] | dict[str, Any]], frozen=True, tag="list"
     `near` (with `within`) and `to` can also be positions, written `2.5,1,0.8` [m]. With a `frame`, these
     positions and the poses in the reply are in that frame. The reply contains the entities, or a document if
     the format is not `json`.
+
+    With `all`, the individuals that are not in space follow the entities: those that the map describes, not
+    those of its TBox. Their `in_space` is false. `class` can then be a class that only the map uses.
     """
 
     ROLES: ClassVar[Roles] = ANYBODY
@@ -475,6 +486,7 @@ class List(Command[tuple[Entity, ...] | dict[str, Any]], frozen=True, tag="list"
     nearest: Annotated[int, Meta(ge=1, le=10_000)] | None = None
     to: Text | None = None
     frame: FrameName | None = None
+    all: bool = False
 
     @property
     def where(self) -> Where | None:
@@ -506,6 +518,9 @@ class Get(Command[Described], frozen=True, tag="get"):
 
     With `where`, the reply also contains what it is on, inside and in, and asserted relations that do not
     hold (only for the current map). With a `frame`, its current pose is given in that frame.
+
+    An individual that is not in space, such as a person of an address book, is given by its name or IRI. The
+    reply then contains what refers to it (only for the current map).
     """
 
     ROLES: ClassVar[Roles] = ANYBODY

@@ -383,6 +383,9 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
     (`reference_provenance`). `joint_provenance` is for openness and joint positions, `switch_provenance` for
     switches, and `grip_provenance` for the attachment; these are None if never set. `properties` are the
     asserted data and object properties.
+
+    Individuals that are not in space (`in_space` is false) are only in the replies of `get` and `list`. Their
+    provenance has commit 0, because commits are dated by entity.
     """
 
     name: str
@@ -400,6 +403,8 @@ class Entity(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=
 
     `sameAs` has the names of the individuals that are the same, by assertion or inference.
     """
+    in_space: bool = True
+    """False for other individuals, such as persons of an address book: these have neither pose nor body."""
     place: bool = False
     fixed: bool = False
     model: str = ""

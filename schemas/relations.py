@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Annotated, Final, Literal, NamedTuple
 
-from msgspec import Meta, Struct
+from msgspec import Meta, Struct, field
 
 from semmap.schemas.entities import REACH_M, Entity, Metres, Text, Vector
 from semmap.schemas.errors import BadRequest
@@ -182,6 +182,8 @@ class Described(Entity, frozen=True, kw_only=True, forbid_unknown_fields=True):
     withheld: tuple[str, ...] = ()
     on_nothing: str = ""
     frame: str = ""
+    referred_by: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    """What refers to an individual that is not in space: names by property. Empty for other entities."""
     shape: Literal["", "world", "model", "box"] = ""
     """Whence its shape is: its body in the world file, its model, or only its size. "" if not requested."""
 

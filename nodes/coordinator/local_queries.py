@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from concurrent.futures import Future
+from contextlib import suppress
 from typing import Any, TypeVar
 
 from msgspec import structs
@@ -60,6 +61,8 @@ class LocalQueries:
 
     def list(self, query: c.List) -> Listed | Future[Listed]:
         """Return the entities of a class, with the state of their bodies."""
+        if query.all:
+            return self._list_all(query)
         class_ = None if query.class_ is None else self._class_name(query.class_, query.as_of)
         if query.as_of is not None or query.where is not None:
             asked = bridge.Entities(class_=class_, as_of=query.as_of, where=query.where)
@@ -71,11 +74,25 @@ class LocalQueries:
             entities = tuple(map(self._with_body, entities))
         return self._formatted(entities, query.format)
 
+    def _list_all(self, query: c.List) -> Future[Listed]:
+        """Return the entities and the individuals that are not in space. Raises BadRequest."""
+        if query.as_of is not None or query.where is not None or query.format != "json":
+            raise errors.BadRequest(
+                "--all lists individuals that are not in space, which have no location and are not listed for"
+                " the past or in the formats lu4r and legacy; remove --all or the other option"
+            )
+        class_ = query.class_
+        if class_ is not None:
+            with suppress(errors.UnknownClass):  # it may be a class that only the map uses
+                class_ = self._dispatcher.map.classes.find(class_).name
+        found = self._kb.ask_later(bridge.Entities(class_=class_, all=True), patience_s=bus.RESTART_S)
+        return then(found, lambda there: tuple(map(self._with_body, there)))
+
     def get(self, query: c.Get) -> Described | Future[Described]:
-        """Return one entity, with the state of its body."""
+        """Return one entity, with the state of its body; or an individual that is not in space."""
         if query.as_of is not None:
             return then(self._kb.ask_later(query, patience_s=bus.RESTART_S), with_size)
-        if query.where:
+        if query.where or query.name not in self._dispatcher.map.entities:
             return then(self._kb.ask_later(query, patience_s=bus.RESTART_S), self._with_body)
         return Described.of(self._with_body(self._dispatcher.map.entity(query.name)))
 
@@ -118,6 +135,8 @@ class LocalQueries:
 
     def _with_body(self, entity: E) -> E:
         """Return the entity with its body state, and with its current pose if it is tracked or attached."""
+        if not entity.in_space:
+            return entity
         if entity.tracked or holder_of(entity):
             entity = structs.replace(entity, live=self._live.live_pose(entity))
         state, body = self._reconciler.body_state(entity), self._reconciler.scene.bodies.get(entity.name)

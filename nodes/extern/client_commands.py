@@ -207,6 +207,7 @@ def _load(
     spatial_root: Sequence[str] = (),
     graph: str = "",
     urdf: str | Path | None = None,
+    tbox_from_abox: bool = False,
     dry_run: bool = False,
     id: str = "",
     reason: str = "",
@@ -221,7 +222,8 @@ def _load(
     `strict` rejects a file that refers to undescribed entities. `parts` loads the file in several commits,
     for files of any size. `graph` is the named graph of a TriG, N-Quads or JSON-LD file to load in place of
     its default graph: an IRI, or its last part. `urdf` is a URDF file whose links give poses and sizes to the
-    individuals that are called like them.
+    individuals that are called like them. `tbox_from_abox` adds the classes and properties that the file of a
+    map declares to the TBox, in the same commit.
 
     With `tbox`, the file (or folder) is a TBox that replaces the current one, including its imports. These
     are found by `imports` (a file for each IRI), by a catalogue, or in the same folder. `spatial_root` are
@@ -251,6 +253,7 @@ def _load(
         graph=graph,
         urdf=b"" if urdf is None else packed(read_file(Path(urdf))),
         parts=parts,
+        tbox_from_abox=tbox_from_abox,
         dry_run=dry_run,
         id=id,
         reason=reason,

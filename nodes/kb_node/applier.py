@@ -92,12 +92,17 @@ class Applier:
         tbox: frozenset[Triple],
         make_durable: Callable[[Commit], Commit],
         closed: Facts | None = None,
+        *,
+        strict: bool = False,
     ) -> Commit:
         """Apply a commit that replaces the TBox: everything is computed again in a new reasoner.
 
-        `closed` is the closure of the TBox, if it is known.
+        `closed` is the closure of the TBox, if it is known. If `strict`, entities with several poses or sizes
+        are rejected.
         """
         state = self._state
+        facts = [t for t in (*commit.retracted, *commit.inserted) if t not in state.tbox and t not in tbox]
+        owners = self._find_owners(facts)
         before = state.tbox, state.reasoner, state.classes, state.derived_facts
         abox = {*state.abox(), *commit.inserted}.difference(commit.retracted, tbox)
         try:
@@ -105,7 +110,10 @@ class Applier:
             self.change(insert=abox, lenient=True)
             concerned = {v.iri(entity.iri) for entity in state.by_name.values()}
             concerned.update(i for c in state.classes.spatial for i in state.reasoner.instances(c))
-            commit = self._with_effects(commit, set(), Change(frozenset(concerned)), set())
+            owners |= self._find_owners(facts)
+            commit = self._with_effects(
+                commit, owners, Change(frozenset(concerned)), set(), strict=strict, is_new=strict
+            )
             if state.derives_at_commits:
                 commit = self._with_all_places(commit, before[-1].suppressed.keys())
             commit = make_durable(commit)
@@ -113,6 +121,13 @@ class Applier:
             state.tbox, state.reasoner, state.classes, state.derived_facts = before
             raise
         return commit
+
+    def _find_owners(self, triples: Collection[Triple]) -> set[Term]:
+        """Return the individuals that the triples describe now, directly or by their parts."""
+        state = self._state
+        subjects = preconditions.subjects(triples)
+        about = (entity_reading.find_owners(state.reasoner, state.classes, s) for s in subjects)
+        return subjects.union(*about)
 
     def reverse(self, commit: Commit, before: Mapping[str, Entity | None]) -> None:
         """Revert the reasoner to before the last commit; `before` holds the entities of that state."""

@@ -12,6 +12,7 @@ from msgspec import structs
 from semmap.nodes.kb_node.derived_facts import DerivedChanges, DerivedFacts
 from semmap.nodes.kb_node.entities import entity_changes, entity_reading, equal_individuals, new_entities
 from semmap.nodes.kb_node.entities.class_table import ClassTable
+from semmap.nodes.kb_node.individuals import Individuals
 from semmap.nodes.kb_node.places import Places
 from semmap.nodes.kb_node.progress import split_batches, with_progress
 from semmap.nodes.kb_node.reasoner import Reasoner
@@ -45,6 +46,8 @@ class MapState:
         `progress` is called between the steps of long work.
         """
         self.progress = progress
+        self.individuals = Individuals(self)
+        """The individuals that are not in space."""
         self.exchange_tbox(tbox, reasoner)
         self._derivation: Iterator[None] | None = None
         self.derives_at_commits = False
@@ -87,6 +90,17 @@ class MapState:
         if word in self.by_name:
             return self.by_name[word]
         return self.by_name[resolve_single(tuple(self.entities()), word)]
+
+    def described(self, word: str) -> Entity:
+        """Return the entity, or the individual that is not in space, with this name or IRI.
+
+        Raises UnknownName; BadRequest for a name of several individuals.
+        """
+        if word in self.by_name:
+            return self.by_name[word]
+        iri = self.individuals.parse_iri(word)
+        entity = None if iri is None else self.find_by_individual(iri)
+        return entity or self.individuals.find(word) or self.entity(word)
 
     def find(self, name: str) -> Entity | None:
         """Return the entity of that name, or None."""
@@ -292,6 +306,7 @@ class MapState:
     def apply_commit(self, commit: Commit) -> None:
         """Update the entities for a commit that the reasoner has already applied."""
         self.seq, self.digest = commit.seq, commit.digest
+        self.individuals.note(commit)
         self.places.update(commit.names, commit.retracted, commit.inserted)
         for removed in commit.removed:
             del self.by_name[removed.name]
@@ -303,6 +318,7 @@ class MapState:
         `digest` is the digest of the commit before.
         """
         self.seq, self.digest = commit.seq - 1, digest
+        self.individuals.note(commit)
         self.places.update(commit.names, commit.inserted, commit.retracted)
         for name, entity in before.items():
             if entity is None:

@@ -7,20 +7,17 @@ from collections.abc import Collection
 from typing import Final, NamedTuple
 
 import numpy as np
+from msgspec import structs
 
 from semmap.nodes.kb_node import preconditions
 from semmap.nodes.kb_node.entities import entity_writing
 from semmap.nodes.kb_node.map_state import MapState
 from semmap.ontology import vocabulary as v
 from semmap.schemas import agents, errors, wording
-from semmap.schemas.commits import Commit, Transaction
+from semmap.schemas.commits import Commit, Edit, Transaction
+from semmap.schemas.entities import Entity
 from semmap.schemas.explanations import Triple
 
-_DESCRIBING: Final = frozenset(
-    (v.COORDINATES, v.THREE_DIM_SIZE, v.PREFERRED_REFERENCE, v.ALTERNATIVE_REFERENCE)
-)
-"""The classes of individuals that hold the pose, the size and the labels of an entity."""
-_VOCABULARY: Final = tuple(f"<{namespace}" for namespace in (v.OWL, v.RDF, v.RDFS))
 _VERY_MANY: Final = 100_000
 """Number of triples."""
 
@@ -112,13 +109,7 @@ def _find_others(state: MapState) -> tuple[list[Triple], int]:
     Individuals that only describe an entity are not counted.
     """
     triples = [t for t in state.abox() if t[0] != v.ABOX_ONTOLOGY]
-    individuals = {
-        s
-        for s, p, o in triples
-        if p == v.RDF_TYPE and s.startswith("<") and o not in _DESCRIBING and not o.startswith(_VOCABULARY)
-    }
-    spatial = state.classes.spatial
-    return triples, sum(state.reasoner.types(individual).isdisjoint(spatial) for individual in individuals)
+    return triples, len(state.individuals.terms()) if triples else 0
 
 
 def _expand_intents(
@@ -128,13 +119,19 @@ def _expand_intents(
     remove, edit, add = transaction.remove, transaction.edit, transaction.add
     if not (remove or edit or add):
         return transaction.retract, transaction.insert, []
-    draft = entity_writing.Draft(state.reasoner, state.classes, state.tbox, state.by_name)
+    draft = entity_writing.Draft(
+        state.reasoner, state.classes, state.tbox, state.by_name, state.individuals.find_term
+    )
     notes: list[str] = []
     if remove:
-        draft.remove([state.entity(name) for name in state.with_progress(remove)])
-        notes += state.places.describe_left_behind(remove)
+        leaving = [state.described(name) for name in state.with_progress(remove)]
+        draft.remove(leaving)
+        notes += state.places.describe_left_behind([entity.name for entity in leaving if entity.in_space])
     for one in state.with_progress(edit):
-        draft.edit(state.entity(one.name), one)
+        entity = state.described(one.name)
+        if not entity.in_space:
+            _require_only_properties(entity, one)
+        draft.edit(entity, one)
         if one.carry:
             load = state.places.load_edits(one, edit)
             for other in load:
@@ -146,3 +143,12 @@ def _expand_intents(
     if not (transaction.retract or transaction.insert):
         return draft.retract, draft.insert, notes
     return [*transaction.retract, *draft.retract], [*transaction.insert, *draft.insert], notes
+
+
+def _require_only_properties(individual: Entity, edit: Edit) -> None:
+    """Raise Refused if an edit changes more than properties of an individual that is not in space."""
+    if structs.replace(edit, set=(), unset=(), only_if=()) != Edit(name=edit.name):
+        raise errors.Refused(
+            f"{individual.name} is not in space, so only its properties can be changed;"
+            f" see: semmap set {individual.name} PROPERTY VALUE"
+        )

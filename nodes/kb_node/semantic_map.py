@@ -243,11 +243,17 @@ class SemanticMap(MapState):
         return structs.replace(commit, digest=self._journal.append(commit, tbox, begun=begun).hex())
 
     def replace_tbox(
-        self, transaction: Transaction, tbox: Iterable[Triple], *, closed: Facts | None = None
+        self,
+        transaction: Transaction,
+        tbox: Iterable[Triple],
+        *,
+        closed: Facts | None = None,
+        strict: bool = False,
     ) -> Commit:
         """Replace the TBox and apply the ABox changes of the transaction, in one commit.
 
-        `closed` is the closure of the TBox, if it is known.
+        `closed` is the closure of the TBox, if it is known. If `strict`, entities with several poses or sizes
+        are rejected.
 
         Raises Inconsistent, BadFile if `tbox` is not a TBox, and Refused if the map does not fit it or the
         disk is full. Then everything is as before.
@@ -269,7 +275,8 @@ class SemanticMap(MapState):
             tbox_validation.require_fit(self.abox(), before, self.classes)
             return self._write(commit, rdf.serialise(new, "ntriples"))
 
-        made = self._run_change(lambda: self._accept(self._applier.switch(commit, new, make_durable, closed)))
+        switch = partial(self._applier.switch, commit, new, make_durable, closed, strict=strict)
+        made = self._run_change(lambda: self._accept(switch()))
         self.enforcement = enforcement
         return made
 

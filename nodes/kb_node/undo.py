@@ -68,15 +68,26 @@ def _reverse(semantic_map: SemanticMap, journal: Journal, command: TakeBack, tar
 
 
 def _reverse_tbox(semantic_map: SemanticMap, journal: Journal, command: TakeBack, target: Commit) -> Commit:
-    """Restore the previous TBox."""
+    """Restore the previous TBox, and the facts that the commit changed, with their settling."""
     later = [journal.commit(seq) for seq in journal.tbox_changes(after=target.seq)]
     _require_in_force(target, later)
     if again := [commit for commit in _in_force(later) if not commit.undoes]:
         raise errors.Refused(_dependency_error(target, again))
     before, after = (semantic_map.tbox_at(seq) for seq in (target.seq - 1, target.seq))
-    retract = tuple(t for t in target.inserted if t not in after and semantic_map.is_asserted(t))
-    insert = tuple(t for t in target.retracted if t not in before and not semantic_map.is_asserted(t))
-    return semantic_map.replace_tbox(_transaction(command, [target], retract, insert), before)
+    undone = [target]
+    if any(t not in after and t[1] != v.OWL_IMPORTS for t in target.inserted):  # it also loaded a map
+        undone += [c for c in _in_force(_later_commits(journal, target)) if _is_settling(c)][::-1]
+    inserted, retracted = _net(undone)
+    retract = tuple(t for t in inserted if t not in after)
+    insert = tuple(t for t in retracted if t not in before and not semantic_map.is_asserted(t))
+    gone = {t for t in retract if not semantic_map.is_asserted(t)}
+    if changed := next((t for t in retract if t in gone and t[1] != v.OWL_IMPORTS), None):
+        raise errors.Refused(
+            f"commit {target.seq} cannot be undone: its facts were changed later, such as"
+            f" {v.to_words(changed)}; undo the later commits first"
+        )
+    retract = tuple(t for t in retract if t not in gone)
+    return semantic_map.replace_tbox(_transaction(command, undone, retract, insert), before)
 
 
 def _transaction(

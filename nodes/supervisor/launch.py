@@ -81,6 +81,7 @@ def seed(settings: Settings) -> None:
         imports=imports,
         spatial_root=settings.spatial_root,
         skip_unknown=settings.skip_unknown,
+        tbox_from_abox=settings.tbox_from_abox,
         fresh=settings.fresh,
     )
     print(summary)

@@ -57,6 +57,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """None for an empty map."""
     skip_unknown: bool = False
     """Whether individuals of the ABox file whose classes are unknown are left out."""
+    tbox_from_abox: bool = False
+    """Whether the classes and properties that the ABox file declares become part of the TBox."""
     enforce_shapes: bool = False
     """Whether commits that violate a SHACL shape of the TBox are rejected."""
     world: str

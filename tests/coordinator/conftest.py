@@ -10,6 +10,7 @@ import pytest
 from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
 from semmap.nodes.kb_node.answers import answers as kb_answers
 from semmap.nodes.kb_node.answers import dry_runs
+from semmap.nodes.kb_node.answers.entity_queries import CurrentState
 from semmap.nodes.kb_node.answers.pages import Pages
 from semmap.nodes.kb_node.handlers.changes import effects
 from semmap.nodes.kb_node.relations.free_room import find_room
@@ -62,7 +63,8 @@ def dispatcher(semantic_map):
         "commit": lambda transaction: _changed(
             semantic_map, lambda: semantic_map.commit(transaction), transaction.dry_run
         ),
-        "load": loading(semantic_map, []).on_load,
+        "load": lambda load: _result(loading(semantic_map, []).on_load(load)),
+        "classes": lambda _: tuple(semantic_map.class_table()),
         "snapshot": Pages(semantic_map).snapshot,
         "commits": lambda several: tuple(
             Outcome(error=errors.to_message(result))
@@ -73,6 +75,7 @@ def dispatcher(semantic_map):
         "find-room": lambda query: find_room(
             semantic_map.places.space(), query, semantic_map.find(query.name)
         ),
+        "get": CurrentState(semantic_map).entity,
         "infer": lambda query: kb_answers.infer(semantic_map, query.name),
         "properties": lambda _: tuple(semantic_map.classes.property_table.rows()),
         "made-by": lambda query: tuple(effects(semantic_map._journal.commit_of(i)) for i in query.ids),
@@ -95,6 +98,10 @@ def immediate(dispatcher):
         return future
 
     return change
+
+
+def _result(loaded):
+    return loaded.result(60) if isinstance(loaded, Future) else loaded
 
 
 def _changed(semantic_map, change, dry_run):

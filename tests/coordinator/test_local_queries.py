@@ -97,6 +97,25 @@ def test_the_past_is_listed_by_the_knowledge_base_without_bodies():
     assert here.asked == [bridge.Entities(as_of=4), bridge.Entities(class_="mug", as_of=4)]
 
 
+def test_all_individuals_are_listed_by_the_knowledge_base():
+    here = Here()
+    assert here.listed(all=True) == [("cup3", "present", True)]
+    here.listed(all=True, class_="cup")
+    here.listed(all=True, class_="person")  # a class that only the map may use
+    assert here.asked == [bridge.Entities(class_=name, all=True) for name in (None, "Cup", "person")]
+    for fields in ({"as_of": 4}, {"on": "table1"}, {"format": "lu4r"}):
+        with pytest.raises(errors.BadRequest, match="remove --all or the other option"):
+            here.listed(all=True, **fields)
+
+
+def test_what_is_not_in_space_has_no_body_and_is_returned_by_the_knowledge_base():
+    here = Here()
+    person = structs.replace(thing("anna", (0.0, 0.0, 0.0)), in_space=False, size_m=None)
+    assert here.queries._with_body(person) is person
+    here.queries.get(c.Get(name="anna"))
+    assert [query.name for query in here.asked] == ["anna"]
+
+
 def test_an_unknown_class_is_an_error_of_the_present():
     with pytest.raises(errors.UnknownClass, match="no class is named 'mug'"):
         Here().listed(class_="mug")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from semmap.nodes.coordinator.access.authority import is_placing, require_authority
-from semmap.nodes.coordinator.commands import attachment_rules, transactions
+from semmap.nodes.coordinator.commands import attachment_rules, individuals, transactions
 from semmap.nodes.coordinator.commands.commit import commit, make_reply, new_id, reload_map
 from semmap.nodes.coordinator.commands.joint_state import require_openable
 from semmap.nodes.coordinator.commands.map_view import MapView
@@ -128,7 +128,7 @@ def notes_for(
 
 @handles(Set)
 def set_(view: MapView, command: Set) -> KbCoroutine[Changed]:
-    """Set a property of an entity."""
+    """Set a property of an entity, or of an individual that is not in space."""
     require_openable(view, command)
     return (yield from _change_property(view, command, transactions.set_property(command)))
 
@@ -140,7 +140,12 @@ def unset(view: MapView, command: Unset) -> KbCoroutine[Changed]:
 
 
 def _change_property(view: MapView, command: Set | Unset, transaction: Transaction) -> KbCoroutine[Changed]:
-    entity = view.entity(command.name)
+    entity = view.entities.get(command.name)
+    if entity is None:
+        entity = yield from individuals.find_individual(view, command.name)
+        if not entity.in_space:
+            return (yield from individuals.change_individual(view, entity, transaction))
+        transaction = transactions.for_name(transaction, entity.name)
     made = yield from commit(view, transaction)
     text = (
         _describe(entity, made) if made else f"{entity.name}: {(yield from _describe_value(entity, command))}"
@@ -246,9 +251,12 @@ def remove(view: MapView, command: Remove) -> KbCoroutine[Changed]:
     """Remove entities: all of them, or none if one is unknown."""
     if not command.names:
         raise errors.BadRequest("name at least one entity to remove")
-    leaving = [view.entity(name) for name in dict.fromkeys(command.names)]
+    leaving = list[Entity]()
+    for name in dict.fromkeys(command.names):
+        found = view.entities.get(name)
+        leaving.append(found or (yield from individuals.find_individual(view, name)))
     require_authority(command, leaving)
-    attachment_rules.require_no_attachments(command.names, view.held)
+    attachment_rules.require_no_attachments([e.name for e in leaving if e.in_space], view.held)
     return (yield from _remove(view, command, f"remove {' '.join(e.name for e in leaving)}", leaving))
 
 
@@ -306,7 +314,8 @@ def _describe_joints(view: MapView, observed: ObservedState) -> str:
 
 def _remove(view: MapView, command: Command, reason: str, leaving: list[Entity]) -> KbCoroutine[Changed]:
     names = tuple(entity.name for entity in leaving)
-    made = yield from commit(view, transactions.remove(command, reason, names))
+    given = [entity.name if entity.in_space else f"<{entity.iri}>" for entity in leaving]
+    made = yield from commit(view, transactions.remove(command, reason, given))
     return make_reply(made, f"removed {len(names)}: {wording.few(names)}", names=names)
 
 

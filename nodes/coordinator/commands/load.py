@@ -52,6 +52,8 @@ def load(view: MapView, command: Load) -> KbCoroutine[Changed]:
     if command.parts and (command.replace or command.tbox):
         how = "--tbox" if command.tbox else "--replace"
         raise errors.BadRequest(f"{how} makes one commit; load it without --parts")
+    if command.tbox_from_abox:
+        _require_declarations(command)
     if command.parts and command.dry_run:
         raise errors.BadRequest("a dry run covers one commit; try it without --parts")
     if command.tbox:
@@ -69,6 +71,8 @@ def load(view: MapView, command: Load) -> KbCoroutine[Changed]:
         return (yield from _load_document(view, command))
     if command.urdf:
         raise errors.BadRequest("--urdf applies to maps in RDF or OWL only")
+    if command.tbox_from_abox:
+        raise errors.BadRequest("--tbox-from-abox applies to maps in RDF or OWL only")
     if command.graph:
         raise errors.BadRequest("--graph applies to TriG, N-Quads and JSON-LD files only")
     content = unpacked(command.content, command.filename)
@@ -167,15 +171,27 @@ def _load_document(view: MapView, command: Load) -> KbCoroutine[Changed]:
         skip_unknown=command.skip_unknown,
         strict=command.strict,
         parts=command.parts,
+        tbox_from_abox=command.tbox_from_abox,
         dry_run=command.dry_run,
         told=not command.parts,
     )
     loaded = yield from ask(document)
-    if loaded.parts == 1:
+    if loaded.commit is not None and loaded.commit.tbox:
+        yield from apply_with_classes(view, loaded.commit)
+    elif loaded.parts == 1:
         yield from apply(view, loaded.commit)
     elif loaded.commit is not None:
         yield from reload_map(view)
     return _loaded(command, loaded.commit, loaded.names, loaded.skipped, loaded.notes, loaded.counts)
+
+
+def _require_declarations(command: Load) -> None:
+    """Raise BadRequest or Refused if a load cannot add the declarations of a map to the TBox."""
+    if command.tbox:
+        raise errors.BadRequest("--tbox-from-abox applies to maps only; to add a file to the TBox: --extend")
+    if command.parts:
+        raise errors.BadRequest("--tbox-from-abox makes one commit; load it without --parts")
+    require_operator(command, "extend the TBox")
 
 
 def _load_tbox(view: MapView, command: Load) -> KbCoroutine[Changed]:

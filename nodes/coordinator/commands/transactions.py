@@ -128,6 +128,12 @@ def unset_property(command: Unset) -> Transaction:
     return build(command, f"unset {command.name} {command.property}{text}", edit=[edit])
 
 
+def for_name(transaction: Transaction, name: str) -> Transaction:
+    """Return a transaction with one edit as one of the entity `name`."""
+    (edit,) = transaction.edit
+    return structs.replace(transaction, edit=(structs.replace(edit, name=name),))
+
+
 def combine(command: Batch, changes: Sequence[Transaction]) -> Transaction:
     """Combine the transactions of a batch into one."""
     reasons = [change.reason for change in changes]

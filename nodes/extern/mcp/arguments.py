@@ -106,6 +106,7 @@ class List(Paged, frozen=True, kw_only=True):
     ) = None
     nearest: Annotated[int, Meta(ge=1, le=10_000, description="With to: number of entities.")] | None = None
     to: Annotated[Text, Meta(description="With nearest: reference entity.")] | None = None
+    all: Annotated[bool, Meta(description="Also individuals that are not in space.")] = False
     as_of: Moment | None = None
 
 

@@ -112,6 +112,11 @@ def list_(client: Client, arguments: a.List) -> Answer:
     start = read_cursor(arguments.cursor)[1] if arguments.cursor else 0
 
     def read(as_of: When | None) -> Found:
+        if arguments.all and as_of is not None:
+            raise errors.Refused(
+                "individuals that are not in space are listed for the current map only; call list without"
+                " as_of and cursor, or without all"
+            )
         found = client.list(
             arguments.class_,
             as_of=as_of,
@@ -121,6 +126,7 @@ def list_(client: Client, arguments: a.List) -> Answer:
             within=arguments.within,
             nearest=arguments.nearest,
             to=arguments.to,
+            all=arguments.all,
         )
         page = found[start : start + _ON_A_PAGE]
         where = placed(client, page) if as_of is None else {}

@@ -44,6 +44,7 @@ def entity(found: Entity, where: Mapping[str, list[str]]) -> dict[str, Any]:
         **pose_fields(found.pose),
         **where,
         **called(found),
+        **({} if found.in_space else {"in_space": False}),
     }
 
 
@@ -62,6 +63,8 @@ def described(found: Described) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     if found.body is not None and found.body.status not in ("present", "none", "unknown"):
         head["body"] = found.body.status
     head |= {kind: True for kind in ("place", "fixed") if getattr(found, kind)}
+    if not found.in_space:
+        return head | {"in_space": False}, list(_facts(found))
     head["changed"] = {
         "commit": found.provenance.commit,
         "by": format_author(found.provenance.source, found.provenance.agent),
@@ -88,6 +91,8 @@ def _facts(found: Described) -> Iterator[dict[str, Any]]:
     for name, stated in found.properties.items():
         values = stated if isinstance(stated, tuple) else (stated,)
         yield {"property": name, "said": [changes.value_in_words(value) for value in values]}
+    for name, referring in found.referred_by.items():
+        yield from ({"referred_by": names, "property": name} for names in _by_tens(referring))
     if found.conflict:
         yield {"conflict": attribute_text(found.conflict, "perception")}
 

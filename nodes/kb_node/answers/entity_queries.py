@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Sequence
+from contextlib import suppress
 from typing import Final, NamedTuple
 
 from msgspec import structs
@@ -10,6 +11,7 @@ from msgspec import structs
 from semmap.nodes.kb_node.answers import answers, questions
 from semmap.nodes.kb_node.answers.past.fact_intervals import FactStarts
 from semmap.nodes.kb_node.entities.equal_individuals import about_entity
+from semmap.nodes.kb_node.entities.individual_reading import find_own_classes
 from semmap.nodes.kb_node.relations.facts.contradictions import (
     PROPERTIES,
     fact_of,
@@ -69,7 +71,12 @@ class CurrentState:
         self._map = semantic_map
 
     def entities(self, query: Entities) -> tuple[Entity, ...]:
-        """Return the entities of a class, or those that match `where`. Raises UnknownClass, UnknownName."""
+        """Return the entities of a class, or those that match `where`. Raises UnknownClass, UnknownName.
+
+        With `all`, individuals that are not in space follow.
+        """
+        if query.all:
+            return self._with_individuals(query)
         found = answers.find_entities(self._map, query.class_)
         if query.where is None:
             return found
@@ -83,24 +90,53 @@ class CurrentState:
             )
         )
 
+    def _with_individuals(self, query: Entities) -> tuple[Entity, ...]:
+        """Return the entities of a class (or all), then the individuals of that class not in space."""
+        individuals, entities = self._map.individuals.list(), tuple[Entity, ...]()
+        if query.class_ is not None:
+            individuals = tuple(one for one in individuals if query.class_ in one.types)
+        try:
+            entities = answers.find_entities(self._map, query.class_)
+        except errors.UnknownClass:  # it may be a class that only the map uses
+            if not individuals:
+                raise
+        return (*entities, *individuals)
+
     def entity(self, query: Get) -> Described:
         """Return one entity, with its location and wrong assertions about it if `where`.
 
-        Its properties include those that the TBox does not declare, and the equal individuals. Raises
-        UnknownName; BadRequest for an ambiguous word.
+        Its properties and types include those that the TBox does not declare, and the equal individuals. An
+        individual that is not in space is returned with what refers to it. Raises UnknownName; BadRequest for
+        an ambiguous word.
         """
-        entity = self._map.resolve(query.name)
+        entity = self._resolve(query.name)
+        if not entity.in_space:
+            referring = self._map.individuals.find_referring(entity)
+            return structs.replace(Described.of(entity), referred_by=referring)
         if not query.where:
             return self._with_all_properties(Described.of(entity))
         found = self._with_all_properties(self._with_where(entity))
         return structs.replace(found, on_nothing=_on_nothing(self._map.places.space(), entity))
+
+    def _resolve(self, word: str) -> Entity:
+        """Return the entity of this name, label or class, or else the individual of this name or IRI."""
+        try:
+            return self._map.resolve(word)
+        except errors.UnknownName:
+            with suppress(errors.UnknownName):
+                return self._map.described(word)
+            raise
 
     def _with_all_properties(self, found: Described) -> Described:
         iri = v.iri(found.iri)
         about = about_entity(self._map.reasoner, iri)
         others = self._map.classes.property_table.read_others(about, iri)
         others.pop(SAME_AS, None)
-        return structs.replace(found, properties={**found.properties, **others}) if others else found
+        own = find_own_classes(self._map.classes, about(iri).get(v.RDF_TYPE, ()))
+        if not others and not own:
+            return found
+        types = (*found.types, *own)
+        return structs.replace(found, types=types, properties={**found.properties, **others})
 
     def describe(self, name: str) -> Described | None:
         """Return the entity of that name with its location, or None."""

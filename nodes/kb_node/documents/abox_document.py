@@ -312,8 +312,8 @@ def _own_classes(declared: set[Term], classes: ClassTable) -> list[str]:
         return []
     few = ", ".join(names[:_FEW]) + (" and others" if len(names) > _FEW else "")
     return [
-        f"only the map declares {few}: nothing can be added or listed by such classes; to load classes use"
-        " --tbox"
+        f"only the map declares {few}: nothing can be added by such classes; to add them to the TBox, load"
+        " the map with --tbox-from-abox"
     ]
 
 

@@ -14,6 +14,7 @@ from semmap.nodes.kb_node.documents import abox_document, rdf
 from semmap.nodes.kb_node.documents.replacement import Replacement, find_replacement
 from semmap.nodes.kb_node.documents.tbox import tbox_declarations, tbox_validation
 from semmap.nodes.kb_node.entities.aligned_values import shift_along_z
+from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.shacl.shape_triples import find_shapes
@@ -31,17 +32,22 @@ def make_document_transaction(
     load: LoadDocument,
     triples: Iterable[Triple],
     prefixes: Prefixes = MappingProxyType({}),
+    *,
+    coming: ClassTable | None = None,
+    tbox: frozenset[Triple] | None = None,
 ) -> tuple[Transaction, abox_document.FilteredDocument, Replacement]:
     """Return the transaction of an ABox document, what was filtered from it, and what it replaces.
 
-    `prefixes` are those in the document.
+    `prefixes` are those in the document. `tbox` with the classes `coming` replaces the TBox in the same
+    commit.
 
     Raises UnknownClass, BadFile for a TBox, UnknownName for undescribed individuals if the load is strict,
     and NameTaken if it may only add and the document has other values for what is in the map.
     """
+    classes, tbox = coming or semantic_map.classes, semantic_map.tbox if tbox is None else tbox
     filtered = abox_document.filter_document(
         triples,
-        semantic_map.classes,
+        classes,
         skip_unknown=load.skip_unknown,
         of_file=abox_document.DocumentOrigin(
             Path(load.filename).name,
@@ -50,7 +56,7 @@ def make_document_transaction(
         ),
         find_frame=lambda iri: None if load.replace else _find_frame(semantic_map, iri),
     )
-    stays = semantic_map.tbox.__contains__ if load.replace else lambda _: True
+    stays = tbox.__contains__ if load.replace else lambda _: True
     if found := abox_document.find_undescribed(filtered.triples, semantic_map.reasoner, stays):
         note = abox_document.undescribed_note(found)
         if load.strict:
@@ -58,9 +64,7 @@ def make_document_transaction(
         filtered.notes.append(f"{note}; --strict rejects such files")
     replaced = Replacement({}, filtered.triples)
     if not load.replace:
-        replaced = find_replacement(
-            filtered.triples, semantic_map.reasoner, semantic_map.classes, semantic_map.tbox
-        )
+        replaced = find_replacement(filtered.triples, semantic_map.reasoner, classes, tbox)
     if replaced.retract and load.add_only:
         names = sorted(v.entity_name(owner) for owner in replaced.retract)
         raise errors.NameTaken(
@@ -70,7 +74,7 @@ def make_document_transaction(
     transaction = _transaction(
         load,
         retract=semantic_map.abox() if load.replace else chain.from_iterable(replaced.retract.values()),
-        insert=_outside(replaced.insert, semantic_map.tbox),
+        insert=_outside(replaced.insert, tbox),
     )
     return transaction, filtered, replaced
 
@@ -132,7 +136,7 @@ def _require_schema(semantic_map: SemanticMap, load: LoadTBox, triples: Collecti
         )
 
 
-def require_no_map(semantic_map: SemanticMap, load: LoadTBox, tbox: Iterable[Triple]) -> None:
+def require_no_map(semantic_map: SemanticMap, load: LoadDocument | LoadTBox, tbox: Iterable[Triple]) -> None:
     """Raise BadFile for a TBox that describes entities of the map, which could not be changed any more."""
     there = set(tbox_validation.described_by(semantic_map.tbox, semantic_map.classes))
     described = tbox_validation.described_by(tbox, semantic_map.classes)
@@ -141,6 +145,19 @@ def require_no_map(semantic_map: SemanticMap, load: LoadTBox, tbox: Iterable[Tri
             f"{load.filename or 'the file'} cannot be the TBox: it describes {wording.entities(len(again))}"
             f" of the map ({wording.few(again, 4)}); load a map without --tbox"
         )
+
+
+def without_repetition(
+    semantic_map: SemanticMap, transaction: Transaction, tbox: frozenset[Triple]
+) -> Transaction:
+    """Return a transaction that replaces the TBox by `tbox` without triples that it would not change."""
+    insert = dict.fromkeys(transaction.insert)
+    retract = dict.fromkeys(t for t in transaction.retract if t not in insert and t not in tbox)
+    return structs.replace(
+        transaction,
+        insert=tuple(t for t in insert if not semantic_map.is_asserted(t)),
+        retract=tuple(t for t in retract if semantic_map.is_asserted(t)),
+    )
 
 
 def make_tbox_transaction(

@@ -88,8 +88,8 @@ def read_entity(
         provenance,
         pose=pose,
         size_m=size_m,
-        preferred=_references(about, asserted.get(v.HAS_PREFERRED_REFERENCE, ())),
-        alternatives=_references(about, asserted.get(v.HAS_ALTERNATIVE_REFERENCE, ())),
+        preferred=read_references(about, asserted.get(v.HAS_PREFERRED_REFERENCE, ())),
+        alternatives=read_references(about, asserted.get(v.HAS_ALTERNATIVE_REFERENCE, ())),
         labels=aligned_values.labels(classes.alignments, asserted),
         aliases=aligned_values.aliases(asserted),
         conflict="; ".join(sorted(map(_text, asserted.get(v.CONFLICTING_OBSERVATION, ())))),
@@ -378,7 +378,7 @@ def find_entity_triples(
     for node in sorted(nodes):
         if all(user in leaving for user in find_users(reasoner, node)):
             own += [t for t in reasoner.asserted(node) if t not in tbox]
-    if classes.alignments:
+    if classes.alignments or any(o.startswith("_:") for _, _, o in own):
         for node in sorted(_find_describing_nodes(reasoner, classes, iri, leaving) - nodes):
             own += [t for t in reasoner.asserted(node) if t not in tbox]
     return own, [t for t in reasoner.asserted(None, None, iri) if t[0] != iri]
@@ -484,7 +484,8 @@ def _text(term: Term) -> str:
     return v.lexical(term) if term[0] == '"' else v.local_name(term)
 
 
-def _references(about: About, nodes: Sequence[Term]) -> list[str]:
+def read_references(about: About, nodes: Sequence[Term]) -> list[str]:
+    """Return the texts of the individuals that hold labels."""
     found: list[str] = []
     for node in sorted(nodes):
         texts = sorted(about(node).get(v.LEXICAL_REFERENCE, ()))

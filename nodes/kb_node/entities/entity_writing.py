@@ -42,14 +42,19 @@ class Draft:
         classes: ClassTable,
         tbox: frozenset[Triple],
         entities: Mapping[str, Entity],
+        find_other: Callable[[str], Term | None] = lambda word: None,
     ) -> None:
-        """Create an empty draft. `entities` are those of the map by name."""
+        """Create an empty draft. `entities` are those of the map by name.
+
+        `find_other(word)` finds individuals that are not in space by their name or IRI.
+        """
         self.retract: dict[Triple, None] = {}
         self.insert: list[Triple] = []
         self._reasoner = reasoner
         self._classes = classes
         self._tbox = tbox
         self._entities = entities
+        self._find_other = find_other
         self._new: set[Term] = set()
         self._known_classes: dict[str, Term] = {}
         self._equals: Set[Term] = frozenset()
@@ -279,7 +284,10 @@ class Draft:
             prop = table.find(statement.property, name)
             yield (
                 prop,
-                [table.term(prop, text, self._individual, self._entities) for text in statement.values],
+                [
+                    table.term(prop, text, self._individual, self._entities, self._find_other)
+                    for text in statement.values
+                ],
             )
 
     def _individual(self, name: str) -> Term | None:

@@ -141,9 +141,16 @@ class PropertyTable:
         raise errors.BadRequest(f"unknown property '{word}'{hint}")
 
     def term(
-        self, prop: Property, text: str, named: Callable[[str], Term | None], names: Collection[str]
+        self,
+        prop: Property,
+        text: str,
+        named: Callable[[str], Term | None],
+        names: Collection[str],
+        find_other: Callable[[str], Term | None] = lambda word: None,
     ) -> Term:
         """Return the value that `text` denotes; `named` finds individuals of the map, among `names`.
+
+        If neither that nor the TBox has one, `find_other` finds individuals that are not in space.
 
         Raises BadRequest for a literal outside the range or an unknown model, and UnknownName for an
         individual that does not exist.
@@ -158,6 +165,8 @@ class PropertyTable:
                 return term
         elif (found := named(text) or self._individual(prop, text)) is not None:
             return found
+        if (other := find_other(text)) is not None:
+            return other
         allowed = sorted(v.entity_name(i) for i in self._allowed(prop))
         hint = errors.did_you_mean(text, (*allowed, *names))
         if not hint and 0 < len(allowed) <= _FEW:

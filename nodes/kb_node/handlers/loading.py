@@ -20,8 +20,10 @@ from semmap.nodes.kb_node.documents import (
     urdf_poses,
 )
 from semmap.nodes.kb_node.documents.isolated_parser import IsolatedParser
-from semmap.nodes.kb_node.documents.tbox import tbox_validation
+from semmap.nodes.kb_node.documents.replacement import Replacement
+from semmap.nodes.kb_node.documents.tbox import map_declarations, tbox_declarations, tbox_validation
 from semmap.nodes.kb_node.documents.urdf import Link
+from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.handlers.changes import ChangeHandlers, ReportProgress, effects
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
@@ -91,16 +93,29 @@ class LoadHandlers:
     def on_load(self, load: LoadDocument) -> Loaded | Future[Loaded]:
         """Load an RDF document in one commit or in parts."""
         content = unpacked(load.content, load.filename)
+        if load.tbox_from_abox and self._map.enforcement is not None:
+            raise errors.Refused(
+                "--tbox-from-abox cannot be used with --enforce-shapes; load the classes first, with"
+                " --tbox --extend"
+            )
         label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # stable across retries
         read = partial(self._parser.read, content, load.filename, label, graph=load.graph)
+
+        def use(document: rdf.Document) -> Loaded | Future[Loaded]:
+            if load.tbox_from_abox:
+                return self._extend_and_load(load, document)
+            return self._load(load, lambda _: document)
+
         if load.urdf:
             urdf = unpacked(load.urdf, _URDF)
             return self._run_aside(
                 lambda: (read(), self._parser.read_urdf(urdf, _URDF)),
-                lambda both: self._load(load, lambda _: self._add_poses(*both)),
+                lambda both: use(self._add_poses(*both)),
             )
         if self._parser.isolates(content):
-            return self._run_aside(read, lambda document: self._load(load, lambda _: document))
+            return self._run_aside(read, use)
+        if load.tbox_from_abox:
+            return use(read())
         if not (load.replace or load.parts or load.dry_run):
             self._sparql.prefetch(load.id, content, v.ABOX, packed=load.content)
         return self._load(load, read)
@@ -197,11 +212,7 @@ class LoadHandlers:
             del document
             if not document_change.is_exact_copy(triples, transaction):
                 self._sparql.discard_prepared()
-            same = {o for _, p, o in filtered.triples if p == v.OWL_SAME_AS}
-            known = {
-                entity.name: entity
-                for entity in filter(None, map(self._map.find_by_individual, same.union(replaced.known)))
-            }
+            known = self._find_known(filtered, replaced)
             retract = replaced.retract
             if load.dry_run:
                 names, tried = self._dry_run_load(transaction)
@@ -233,6 +244,58 @@ class LoadHandlers:
         """Return the names of all entities that a load would change, and its effects."""
         tried = dry_runs.dry_run(self._map, lambda: self._map.commit(transaction))
         return (tried.trial.changed if tried is not None and tried.trial is not None else (), tried)
+
+    def _extend_and_load(self, load: LoadDocument, document: rdf.Document) -> Loaded | Future[Loaded]:
+        """Load an RDF document in one commit that adds its declarations to the TBox.
+
+        A commit that changes the TBox is not validated, so `on_load` refuses this where shapes are enforced.
+        """
+        if (earlier := self._journal.commit_of(load.id)) is not None:
+            return Loaded(commit=effects(earlier), names=earlier.names, skipped=(), notes=())
+        before = self._map.tbox
+        declared, others = map_declarations.split_declarations(document.triples, before)
+        new = set(declared).difference(before)
+        noted = (*document.notes, map_declarations.describe(new))
+        if not new:
+            return self._load(load, lambda _: document._replace(triples=others, notes=noted))
+        tbox = before.union(
+            tbox_declarations.find_extension(new, before, self._map.classes, of_file=document.prefixes)
+        )
+        document_change.require_no_map(self._map, load, tbox)
+
+        def commit(closed: Facts | None) -> Loaded | Future[Loaded]:
+            if self._map.tbox is not before:  # replaced meanwhile
+                return self._extend_and_load(load, document)
+            classes = ClassTable(tbox_validation.compile_tbox(tbox, load.filename, closed=closed))
+            transaction, filtered, replaced = document_change.make_document_transaction(
+                self._map, load, others, document.prefixes, coming=classes, tbox=tbox
+            )
+            transaction = document_change.without_repetition(self._map, transaction, tbox)
+            known = self._find_known(filtered, replaced)
+
+            def replace() -> Commit:
+                return self._map.replace_tbox(transaction, tbox, closed=closed, strict=True)
+
+            made = self._changing.run_change(replace, load.dry_run)
+            changed = () if made is None else made.changed
+            after = {entity.name: entity for entity in changed}
+            return Loaded(
+                commit=made,
+                names=() if made is None else tuple(_described(made)),
+                counts=_count(known, () if made is None else (made,), after),
+                skipped=tuple(filtered.skipped),
+                notes=(*noted, *filtered.notes, *abox_document.name_notes(changed)),
+            )
+
+        return self._run_aside(partial(self._parser.close_tbox, tbox, load.filename, of="the TBox"), commit)
+
+    def _find_known(
+        self, filtered: abox_document.FilteredDocument, replaced: Replacement
+    ) -> dict[str, Entity]:
+        """Return the entities of the map that a document describes, by name."""
+        same = {o for _, p, o in filtered.triples if p == v.OWL_SAME_AS}
+        found = filter(None, map(self._map.find_by_individual, same.union(replaced.known)))
+        return {entity.name: entity for entity in found}
 
     def on_load_tbox(self, load: LoadTBox) -> Loaded | Future[Loaded]:
         """Load another TBox, or extend the current one, in one commit, and return notes on it.

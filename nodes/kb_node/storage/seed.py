@@ -10,7 +10,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from semmap.nodes.kb_node.documents import abox_document, ontology_files, rdf
-from semmap.nodes.kb_node.documents.tbox import tbox_declarations, tbox_validation
+from semmap.nodes.kb_node.documents.tbox import map_declarations, tbox_declarations, tbox_validation
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.semantic_map import SemanticMap
@@ -36,13 +36,15 @@ def seed(
     imports: Mapping[str, Path] = MappingProxyType({}),
     spatial_root: Sequence[str] = (),
     skip_unknown: bool = False,
+    tbox_from_abox: bool = False,
     fresh: bool = False,
 ) -> str:
     """Create the journal of folder `data` from a TBox and an ABox file, and return a summary.
 
     The TBox may consist of several files and folders. `imports` maps imported ontologies to files.
     `spatial_root` names the classes of spatial things, if they cannot be detected. With `skip_unknown`, the
-    individuals of unknown classes are left out. An existing journal is kept and used, unless `fresh`: then it
+    individuals of unknown classes are left out. With `tbox_from_abox`, the classes and properties that the
+    ABox file declares become part of the TBox. An existing journal is kept and used, unless `fresh`: then it
     is moved to `data/kept/<time>/`. Raises BadFile, UnknownClass or Inconsistent, with existing data
     unchanged.
     """
@@ -53,8 +55,21 @@ def seed(
     name = ", ".join(map(str, tboxes))
     with limited():
         gathered = ontology_files.gather(tboxes, imports)
+    document = None if abox is None else ontology_files.read(abox, "a")
+    with limited():
+        of_tbox, prefixes = gathered.triples, gathered.prefixes
+        if document is not None and tbox_from_abox:
+            split = map_declarations.split_declarations(document.triples, of_tbox)
+            of_tbox, prefixes = [*of_tbox, *split.declared], {**document.prefixes, **prefixes}
+            document = document._replace(
+                triples=split.others,
+                notes=(
+                    *document.notes,
+                    map_declarations.describe(set(split.declared).difference(gathered.triples)),
+                ),
+            )
         tbox_triples = tbox_declarations.with_declarations(
-            gathered.triples, of_file=gathered.prefixes, spatial_root=spatial_root, files=tboxes
+            of_tbox, of_file=prefixes, spatial_root=spatial_root, files=tboxes
         )
         reasoner = tbox_validation.compile_tbox(tbox_triples, name)
     closed = reasoner.closed  # before the ABox may add to the schema
@@ -63,8 +78,7 @@ def seed(
         *tbox_validation.import_triples(tbox_triples),
     ]
     notes = [*gathered.notes]
-    if abox is not None:
-        document = ontology_files.read(abox, "a")
+    if abox is not None and document is not None:
         try:
             filtered = abox_document.filter_document(
                 document.triples,

@@ -15,6 +15,7 @@ from semmap.nodes.coordinator.commands.registration import HANDLERS
 from semmap.nodes.coordinator.kb_coroutines import run_async
 from semmap.nodes.coordinator.reconciler.observed_state import ObservedState
 from semmap.nodes.coordinator.scheduler import Scheduler
+from semmap.nodes.kb_node.documents.isolated_parser import IsolatedParser
 from semmap.nodes.runtime.futures import settle
 from semmap.ontology import vocabulary as v
 from semmap.schemas import commands as c
@@ -676,6 +677,29 @@ def test_a_replacement_is_one_commit(dispatcher):
         dispatcher.change(c.Load(content=five_chairs(), filename="five.json", parts=True, replace=True))
     with pytest.raises(errors.BadRequest, match="--tbox makes one commit"):
         dispatcher.change(c.Load(content=b"x", filename="t.ttl", parts=True, tbox=True))
+
+
+@pytest.mark.parametrize(
+    ("fields", "text"),
+    [
+        ({"tbox": True}, "applies to maps only"),
+        ({"parts": True}, "makes one commit"),
+        ({"content": b'{"entities": []}', "filename": "a.json"}, "applies to maps in RDF or OWL only"),
+        ({"source": "agent"}, "only an operator may extend the TBox"),
+    ],
+)
+def test_declarations_are_added_to_the_tbox_from_whole_maps_by_operators(dispatcher, fields, text):
+    fields = {"content": b"<urn:a> <urn:b> <urn:c> .", "filename": "a.ttl", **fields}
+    with pytest.raises((errors.BadRequest, errors.Refused), match=text):
+        dispatcher.change(c.Load(tbox_from_abox=True, **fields))
+
+
+def test_classes_that_a_map_adds_to_the_tbox_can_be_used(dispatcher, monkeypatch):
+    monkeypatch.setattr(IsolatedParser, "close_tbox", lambda *_, **__: None)  # no process
+    content = home.PREFIXES + "dm:Stool a owl:Class ; rdfs:subClassOf dm:Chair . :stool1 a dm:Stool ."
+    loaded = dispatcher.change(c.Load(content=content.encode(), filename="own.ttl", tbox_from_abox=True))
+    assert (loaded.names, loaded.commit) == (("stool1",), 1)
+    assert add(dispatcher, "Stool").names == ("stool2",)
 
 
 def test_extend_requires_a_tbox(dispatcher):

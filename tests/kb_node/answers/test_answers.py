@@ -18,7 +18,8 @@ from tests.kb_node.reasoner.swrl import rule as swrl_rule
 SYNTAXES = ["rdfxml", "turtle", "ntriples", "jsonld"]
 
 MAPS_OWN = (
-    "only the map declares {}: nothing can be added or listed by such classes; to load classes use --tbox"
+    "only the map declares {}: nothing can be added by such classes; to add them to the TBox, load the map"
+    " with --tbox-from-abox"
 )
 
 

@@ -9,7 +9,8 @@ from tests.kb_node import home, stating
 from tests.kb_node.home import turtle
 
 MAPS_OWN = (
-    "only the map declares {}: nothing can be added or listed by such classes; to load classes use --tbox"
+    "only the map declares {}: nothing can be added by such classes; to add them to the TBox, load the map"
+    " with --tbox-from-abox"
 )
 
 

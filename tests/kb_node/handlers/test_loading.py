@@ -5,16 +5,20 @@ from contextlib import nullcontext
 import pytest
 from msgspec import structs
 
+from semmap.nodes.kb_node.answers.entity_queries import CurrentState
 from semmap.nodes.kb_node.documents import parser_process, rdf
 from semmap.nodes.kb_node.handlers import loading as handlers_loading
 from semmap.nodes.kb_node.handlers.changes import ChangeHandlers
 from semmap.nodes.kb_node.handlers.loading import LoadHandlers
 from semmap.nodes.kb_node.reasoner.rules import closure
+from semmap.nodes.kb_node.undo import undo
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
-from semmap.schemas.bridge import LoadDocument
+from semmap.schemas.bridge import LoadDocument, Loaded, TakeBack
+from semmap.schemas.commands import Get
 from semmap.schemas.entities import Pose
+from tests.kb_node import home
 
 
 class NoSparql:
@@ -193,3 +197,76 @@ def test_notes_on_other_graphs_are_part_of_the_reply(flat):
     loaded = handlers._load(load, lambda _: document)
     assert loaded.names == ("a",)
     assert loaded.notes[0].startswith("left out: 1 statement in other graphs (g: 1)")
+
+
+OWN = f"""
+@prefix : <{v.ABOX}> . @prefix dm: <{v.TBOX}> . @prefix owl: <{v.OWL}> . @prefix rdfs: <{v.RDFS}> .
+:Mug a owl:Class ; rdfs:subClassOf dm:Object . :holds a owl:ObjectProperty .
+:mug1 a :Mug ; :holds :tea ; dm:hasPosition :at . :tea a :Drink . :Drink a owl:Class .
+:at a dm:Coordinates ; dm:float_coordinates_x 1.0 ; dm:float_coordinates_y 2.0 ; dm:float_coordinates_z {{}} .
+"""
+
+
+def with_declarations(number, z="0.5", **fields):
+    fields = {"replace": False, "skip_unknown": False, "tbox_from_abox": True, **fields}
+    content = OWN.format(z).encode()
+    return LoadDocument(id=str(number), source="file", content=content, filename="own.ttl", **fields)
+
+
+def load_now(semantic_map, load):
+    handlers = loading(semantic_map, [])
+    handlers._parser.close_tbox = lambda tbox, filename, **_: None  # then it is computed without a process
+    loaded = handlers.on_load(load)
+    try:
+        return loaded if isinstance(loaded, Loaded) else loaded.result(60)
+    finally:
+        handlers.close()
+
+
+def test_declarations_of_a_map_become_part_of_the_tbox_in_the_same_commit(semantic_map):
+    tried = load_now(semantic_map, with_declarations(1, dry_run=True))
+    assert (tried.names, tried.commit.trial is None, semantic_map.seq) == (("mug1",), False, 0)
+    loaded = load_now(semantic_map, with_declarations(2))
+    assert (loaded.commit.seq, loaded.commit.tbox, loaded.names) == (1, True, ("mug1",))
+    assert loaded.counts == {"new": 1}
+    assert loaded.notes[0] == "added to the TBox: 2 classes and 1 property of the file"
+    assert semantic_map.entity("mug1").pose.position_m == (1.0, 2.0, 0.5)
+    assert {"Mug", "Drink"} <= set(semantic_map.classes.names.values())
+    assert not any(s.endswith(("Mug>", "holds>")) for s, _, _ in semantic_map.abox())
+    before, after = home.state(semantic_map), semantic_map.tbox
+    semantic_map = home.reopened(semantic_map)
+    assert (home.state(semantic_map), semantic_map.tbox) == (before, after)
+    semantic_map._journal.close()
+
+
+def test_loading_it_again_changes_the_facts_only_and_an_undo_takes_back_all(semantic_map):
+    load_now(semantic_map, with_declarations(1))
+    tbox = semantic_map.tbox
+    again = load_now(semantic_map, with_declarations(2, z="0.7"))
+    assert (again.commit.tbox, again.counts, semantic_map.tbox) == (False, {"moved": 1}, tbox)
+    with pytest.raises(errors.Refused, match="commit 1 cannot be undone: its facts were changed later"):
+        undo(semantic_map, semantic_map._journal, TakeBack(id="3", source="operator", commit=1))
+    undo(semantic_map, semantic_map._journal, TakeBack(id="4", source="operator", commit=2))
+    undo(semantic_map, semantic_map._journal, TakeBack(id="5", source="operator", commit=1))
+    assert (semantic_map.abox(), len(semantic_map), semantic_map.tbox) == ([], 0, frozenset(home.TBOX))
+
+
+def test_a_present_entity_moves_with_the_provenance_of_the_load(semantic_map):
+    load_now(semantic_map, with_declarations(1, z="0.1", tbox_from_abox=False))
+    assert "Mug" not in semantic_map.classes.names.values()
+    shown = CurrentState(semantic_map).entity(Get(name="mug1"))
+    assert (shown.class_, shown.types[-1], shown.properties["holds"]) == ("Object", "Mug", ("tea",))
+    loaded = load_now(semantic_map, with_declarations(2))
+    assert (loaded.commit.tbox, loaded.names) == (True, ("mug1",))
+    assert semantic_map.entity("mug1").pose_provenance.commit == 2
+    assert semantic_map.entity("mug1").class_ == "Mug"
+    assert not any(s.endswith("Mug>") for s, _, _ in semantic_map.abox())
+
+
+def test_a_map_that_contradicts_its_own_declarations_changes_nothing(semantic_map):
+    content = OWN.format("0.5") + ":Mug owl:disjointWith dm:Chair . :mug1 a dm:Chair ."
+    load = structs.replace(with_declarations(1), content=content.encode())
+    before = home.state(semantic_map), semantic_map.tbox
+    with pytest.raises(errors.Inconsistent, match="mug1"):
+        load_now(semantic_map, load)
+    assert (home.state(semantic_map), semantic_map.tbox) == before

@@ -143,6 +143,19 @@ def test_individuals_of_unknown_classes_are_left_out_on_request(data, files):
     assert read(data)[0] == ["_1", "chair1"]
 
 
+def test_declarations_of_the_abox_file_become_part_of_the_tbox_on_request(data, files):
+    files[1].write_text(ABOX + ":Mug a owl:Class ; rdfs:subClassOf dm:Object . :mug1 a :Mug .")
+    assert seed(data, *files, tbox_from_abox=True) == (
+        "2 entities from my abox.ttl; note: added to the TBox: 1 class and 0 properties of the file"
+    )
+    names, triples = read(data)
+    assert names == ["chair1", "mug1"]
+    assert not any(s.endswith("Mug>") for s, _, _ in triples)
+    assert seed(data, *files, fresh=True).startswith(
+        "2 entities from my abox.ttl; note: only the map declares Mug"
+    )
+
+
 def test_a_write_error_does_not_blame_the_files(data, files, monkeypatch):
     def refuse(path, tbox):
         raise errors.Refused(f"cannot create a journal at {path}: disk full")

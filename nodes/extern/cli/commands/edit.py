@@ -131,7 +131,7 @@ def update(client: Client, **fields: Any) -> None:
 @json_option
 @with_client
 def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fields: Any) -> None:
-    """Set a property of an entity.
+    """Set a property of an entity, or of an individual that is not in space.
 
     The value of a functional property replaces the previous one. Other properties keep their previous values.
     The range of the property gives the datatype. A text ends with its language where the range allows one:
@@ -150,7 +150,7 @@ def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fi
 @json_option
 @with_client
 def unset(client: Client, **fields: Any) -> None:
-    """Remove one value of a property of an entity, or all."""
+    """Remove one value of a property of an entity or individual, or all."""
     print_result(client.unset(**_drop_none(fields)), lines.format_change)
 
 
@@ -198,7 +198,10 @@ def track(client: Client, **fields: Any) -> None:
 @json_option
 @with_client
 def remove(client: Client, names: tuple[str, ...], dry_run: bool) -> None:
-    """Remove entities from the map and the scene."""
+    """Remove entities from the map and the scene.
+
+    NAMES may also be names or IRIs of individuals that are not in space.
+    """
     print_result(client.remove(*names, dry_run=dry_run), lines.format_change)
 
 
@@ -225,6 +228,9 @@ def clear(client: Client, dry_run: bool) -> None:
     "--tbox", is_flag=True, help="FILE (or folder, or household) is a TBox that replaces the current one."
 )
 @click.option("--extend", is_flag=True, help="With --tbox: add FILE to the current TBox.")
+@click.option(
+    "--tbox-from-abox", is_flag=True, help="Add classes and properties of a map's file to the TBox."
+)
 @click.option("--parts", is_flag=True, help="Load in several commits, for files of any size.")
 @click.option("--urdf", type=click.Path(), help="URDF file with poses of individuals named like its links.")
 @click.option("--graph", metavar="NAME", default="", help="Load this named graph, not the default graph.")

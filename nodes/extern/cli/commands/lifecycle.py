@@ -64,6 +64,9 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         "--skip-unknown", is_flag=True, help="Skip individuals of the ABox file of unknown classes."
     )
     @click.option(
+        "--tbox-from-abox", is_flag=True, help="Add classes and properties of the ABox file to the TBox."
+    )
+    @click.option(
         "--enforce-shapes", is_flag=True, help="Reject changes that violate a SHACL shape of the TBox."
     )
     @click.option(
@@ -336,7 +339,7 @@ def node(name: str, settings: Settings) -> None:
 
 def _settings(
     *, tbox: tuple[Path, ...], imports: tuple[tuple[str, Path], ...], spatial_root: tuple[str, ...],
-    abox: str | None, skip_unknown: bool, enforce_shapes: bool, world: str | None,
+    abox: str | None, skip_unknown: bool, tbox_from_abox: bool, enforce_shapes: bool, world: str | None,
     data: Path | None, fresh: bool, truth: str | None,
     threshold: float, angle_threshold: float, robot: str | None, robot_name: str,
     robot_at: tuple[float, float, float] | None, robot_yaw: float, stale: float, journal_every: float,
@@ -386,6 +389,7 @@ def _settings(
         "spatial_root": spatial_root,
         "abox": None if abox == "none" else _existing(Path(abox)),
         "skip_unknown": skip_unknown,
+        "tbox_from_abox": tbox_from_abox,
         "enforce_shapes": enforce_shapes,
         "world": _existing(Path(world)),
         "truth": truth,

@@ -85,6 +85,7 @@ def _columns(ctx: click.Context, parameter: click.Parameter, value: str | None) 
 @click.option("--nearest", type=int, metavar="N", help="With --to: only the N nearest, nearest first.")
 @click.option("--to", metavar="THING|X,Y,Z", shell_complete=entity_names, help="See --nearest.")
 @frame_option("Frame of all positions, in the arguments and in the output. Default: map")
+@click.option("--all", is_flag=True, help="Also individuals that are not in space, such as organisations.")
 @_format(type=click.Choice(["table", "json", "lu4r", "legacy"]), default="table", show_default=True)
 @click.option("--sort", type=click.Choice(COLUMNS), help="Sort by this column.")
 @click.option("--limit", type=click.IntRange(min=1), metavar="N", help="Only the first N entities.")
@@ -137,7 +138,11 @@ def _suppressed_notes(client: Client, names: Iterable[str]) -> Iterator[str]:
 @supports_robots(of_robots.entity)
 @with_client
 def get(client: Client, name: str, format: str, as_of: str | None, frame: str | None) -> None:
-    """Show one entity and its location."""
+    """Show one entity and its location.
+
+    NAME may also be the name or IRI of an individual that is not in space, such as an organisation: then the
+    output has what is asserted about it, and what refers to it.
+    """
     entity = client.get(name, where=True, as_of=as_of, frame=frame)
     if format == "json":
         print_json(entity)

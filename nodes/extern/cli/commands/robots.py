@@ -57,6 +57,8 @@ def entities(
 
     _require(format, ("table", "json"))
     _require_own(where.pop("frame"))
+    if where.pop("all"):
+        raise errors.BadRequest("--robots and --all exclude each other; remove one of them")
     _print(robots.list(class_, as_of=as_of, **where), show, format)
 
 

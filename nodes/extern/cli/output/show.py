@@ -104,11 +104,15 @@ def entity_line(entities: Sequence[Entity]) -> str:
         if failed
         else ""
     )
-    return wording.entities(len(entities)) + why
+    others = sum(not e.in_space for e in entities)
+    not_in_space = f" and {wording.counted(others, 'individual')} not in space" if others else ""
+    return wording.entities(len(entities) - others) + not_in_space + why
 
 
 def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
     """Return all data of one entity, with the labels of `properties`."""
+    if not e.in_space:
+        return _individual_card(e, properties)
     body = _body(e) + (f" ({e.body.detail})" if e.body is not None and e.body.detail else "")
     own_size = " (of the model)" if e.body is not None and e.body.own_size else ""
     rows = {
@@ -139,6 +143,23 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         "label set": provenance_text(e.reference_provenance),
         **({"joints set": provenance_text(e.joint_provenance)} if e.joint_provenance is not None else {}),
         **({"switches set": provenance_text(e.switch_provenance)} if e.switch_provenance is not None else {}),
+    }
+    return card(rows)
+
+
+def _individual_card(e: Described, properties: Iterable[PropertyInfo]) -> Table:
+    """Return all data of an individual that is not in space."""
+    rows = {
+        "name": e.name,
+        "iri": e.iri,
+        "class": e.class_,
+        "types": ", ".join(e.types),
+        "pose": "none: not in space",
+        "label": e.preferred_reference or "none",
+        "aliases": ", ".join(e.alternative_references) or "-",
+        **_stated(e, {p.name: p for p in properties}),
+        "referred to by": "; ".join(f"{p}: {wording.few(names)}" for p, names in e.referred_by.items())
+        or "-",
     }
     return card(rows)
 

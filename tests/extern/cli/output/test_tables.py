@@ -81,6 +81,20 @@ TABLES = {
 }
 
 
+def test_a_card_of_what_is_not_in_space_has_what_refers_to_it_and_no_pose():
+    person = structs.replace(
+        Described.of(entity("anna")),
+        in_space=False,
+        properties={"age": 41},
+        referred_by={"knows": ("bob", "carla")},
+    )
+    card = drawn(show.entity_card(person), 80)
+    for text in ("none: not in space", "knows: bob and carla", "age"):
+        assert text in card
+    assert "last change" not in card
+    assert show.entity_line([entity("chair1"), person]) == "1 entity and 1 individual not in space"
+
+
 def drawn(table, width, *, is_terminal=True):
     out = io.StringIO()
     terminal = {"force_terminal": is_terminal, "color_system": None}

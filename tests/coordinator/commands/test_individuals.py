@@ -1,0 +1,63 @@
+"""Commands on individuals that are not in space change a real map, without Zenoh."""
+
+import pytest
+
+from semmap.schemas import commands as c
+from semmap.schemas import errors
+from tests.kb_node.home import transaction, turtle
+
+ANNA = "http://example.org/people/anna"
+
+
+@pytest.fixture
+def people(dispatcher, semantic_map):
+    """The dispatcher of a map with `chair1`, `anna` and `bob`."""
+    dispatcher.change(c.Add(class_="Chair", name="chair1", at=(0.0, 0.0, 0.0), ref="seat"))
+    persons = turtle(f"<{ANNA}> a <urn:Person> . <urn:x:bob> a <urn:Person> .")
+    semantic_map.commit(transaction("people", persons))
+    dispatcher.map.begin(semantic_map.snapshot())
+    return dispatcher
+
+
+@pytest.mark.parametrize("name", ["anna", ANNA, f"<{ANNA}>"])
+def test_a_property_is_set_and_unset_by_name_or_iri(people, semantic_map, name):
+    made = people.change(c.Set(name=name, property="isOpen", values=(True,)))
+    assert (made.text, made.names, made.commit) == ("anna: isOpen: not set → true", ("anna",), 3)
+    again = people.change(c.Set(name=name, property="isOpen", values=(True,)))
+    assert (again.text, again.commit) == ("anna: unchanged: already up to date", None)
+    people.change(c.Unset(name=name, property="isOpen"))
+    assert semantic_map.described("anna").properties == {}
+
+
+def test_a_dry_run_changes_nothing_and_says_what_would_change(people, semantic_map):
+    tried = people.change(c.Set(name="anna", property="isOpen", values=(True,), dry_run=True))
+    assert (tried.commit, tried.dry_run) == (None, True)
+    assert tried.text.endswith("it would be: anna: set anna isOpen true")
+    assert semantic_map.seq == 2
+
+
+def test_an_individual_is_gone_after_its_last_value_is_unset(people, semantic_map):
+    semantic_map.commit(transaction(3, turtle("<urn:x:carla> dm:isOpen true .")))
+    made = people.change(c.Unset(name="carla", property="isOpen"))
+    assert made.text == "carla: unset carla isOpen"
+
+
+def test_individuals_and_entities_are_removed_together_or_not_at_all(people, semantic_map):
+    with pytest.raises(errors.UnknownName, match="no entity is named 'dora'"):
+        people.change(c.Remove(names=("anna", "dora")))
+    with pytest.raises(errors.Refused, match="anna was defined by an operator"):
+        people.change(c.Remove(names=("anna",), source="perception"))
+    made = people.change(c.Remove(names=("anna", "chair1", "urn:x:bob")))
+    assert made.text == "removed 3: anna, chair1 and bob"
+    assert semantic_map.abox() == []
+
+
+def test_an_entity_is_also_given_by_its_iri_but_not_by_its_label(people, semantic_map):
+    iri = semantic_map.entity("chair1").iri
+    people.change(c.Set(name=iri, property="isOpen", values=(True,)))
+    assert semantic_map.entity("chair1").properties == {"isOpen": True}
+    for word in ("seat", "chair2"):
+        with pytest.raises(errors.UnknownName, match=f"no entity is named '{word}'"):
+            people.change(c.Set(name=word, property="isOpen", values=(True,)))
+    people.change(c.Remove(names=(f"<{iri}>",)))
+    assert "chair1" not in semantic_map.by_name
