@@ -11,6 +11,7 @@ from semmap.nodes.kb_node.handlers import loading as handlers_loading
 from semmap.nodes.kb_node.handlers.changes import ChangeHandlers
 from semmap.nodes.kb_node.handlers.loading import LoadHandlers
 from semmap.nodes.kb_node.reasoner.rules import closure
+from semmap.nodes.kb_node.shacl.enforcement import ShapeEnforcement
 from semmap.nodes.kb_node.undo import undo
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
@@ -270,3 +271,9 @@ def test_a_map_that_contradicts_its_own_declarations_changes_nothing(semantic_ma
     with pytest.raises(errors.Inconsistent, match="mug1"):
         load_now(semantic_map, load)
     assert (home.state(semantic_map), semantic_map.tbox) == before
+
+
+def test_declarations_are_not_added_while_shapes_are_enforced(semantic_map):
+    semantic_map.enforcement = ShapeEnforcement(frozenset())
+    with pytest.raises(errors.Refused, match="--tbox-from-abox cannot be used with --enforce-shapes"):
+        load_now(semantic_map, with_declarations(1))
