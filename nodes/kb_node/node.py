@@ -57,7 +57,7 @@ class KnowledgeBase:
             node.report(problem)
         self.map = SemanticMap(journal, progress=node.beat)
         if config.enforce_shapes:
-            self.map.enforcement = ShapeEnforcement(self.map.tbox)
+            self.map.enforcement = ShapeEnforcement(self.map.tbox, is_stored=True)
         self._publisher = CommitPublisher(
             node.session, self.map.entities(), entity_queries.CurrentState(self.map).describe
         )

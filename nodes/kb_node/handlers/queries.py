@@ -376,8 +376,9 @@ class QueryHandlers:
     def _find_last_pose(self, found: Sighting, closed: str) -> Sighting:
         now_ns = time.time_ns()
         last = trails.Trails(self._trail_lines(), now_ns, {found.name})
-        found = live_sightings.set_last_pose(found, last, now_ns)
-        return structs.replace(found, text=f"{found.text}{closed}")
+        seen = live_sightings.set_last_pose(found, last, now_ns)
+        # `closed` is about the committed pose.
+        return structs.replace(found, text=f"{found.text}{closed}") if seen is found else seen
 
     def _describe_closed(self, entity: Entity) -> str:
         """Return `; not observable: ...` if an entity is in a closed container, also by its live pose."""
@@ -436,7 +437,7 @@ class QueryHandlers:
 
         if query.engine == "owlrl":
             return self._second_opinions.submit(check)
-        has_shapes = violations.has_shapes(query, held)
+        has_shapes = violations.may_have_shapes(query, self._map.reasoner)
         return (self._validations if has_shapes else self._aside).submit(check)
 
     def on_sparql(self, query: Sparql) -> Future[SparqlResult]:

@@ -22,6 +22,8 @@ _VIOLATION: Final = "violation"
 _MOST_FAILURES: Final = 100
 """The maximum number of errors that are logged."""
 
+_LONGEST_TEXT: Final = 500
+
 log = logging.getLogger(__name__)
 
 
@@ -38,8 +40,11 @@ class ViolatesShapes(Exception):
 class ShapeEnforcement:
     """Validates what a commit touches against the shapes of a TBox."""
 
-    def __init__(self, tbox: Iterable[Triple]) -> None:
-        """Read the shapes. Raises BadFile for those that are invalid or refer to themselves."""
+    def __init__(self, tbox: Iterable[Triple], *, is_stored: bool = False) -> None:
+        """Read the shapes. Raises BadFile for those that are invalid or refer to themselves.
+
+        Those of a stored map are logged instead: it must start, and then its TBox can be corrected.
+        """
         tbox = list(tbox)
         self._shapes: Shapes | None = None
         self._failures = set[str]()
@@ -47,11 +52,13 @@ class ShapeEnforcement:
         if find_shapes(tbox):
             from semmap.nodes.kb_node.shacl.shapes import Shapes
 
-            self._shapes = Shapes(tbox, "the TBox")
-            if cycle := find_cycle(select_shapes(tbox)):
-                name = next((v.local_name(term) for term in cycle if term.startswith("<")), "a shape")
-                raise errors.BadFile(f"the TBox: invalid SHACL shape: {name} refers to itself")
-            self._shapes.require_evaluable()
+            try:
+                self._shapes = Shapes(tbox, "the TBox")
+                _require_evaluable(self._shapes, tbox)
+            except errors.BadFile as error:
+                if not is_stored:
+                    raise
+                self._log_failure(error.text)
 
     def begin(self, commit: Commit, reasoner: Reasoner) -> TouchedIndividuals | None:
         """Prepare to find what a commit touches, before `reasoner` has it. Return None without shapes."""
@@ -73,6 +80,15 @@ class ShapeEnforcement:
 
     def _log_failure(self, text: str) -> None:
         """Log an error once."""
+        text = errors.shortened(text, _LONGEST_TEXT)
         if text not in self._failures and len(self._failures) < _MOST_FAILURES:
             self._failures.add(text)
-            log.warning("%s; the shape is not enforced", text)
+            log.warning("%s; it is not enforced", text)
+
+
+def _require_evaluable(shapes: Shapes, tbox: Iterable[Triple]) -> None:
+    """Raise BadFile for shapes that refer to themselves or cannot be evaluated."""
+    if cycle := find_cycle(select_shapes(tbox)):
+        name = next((v.local_name(term) for term in cycle if term.startswith("<")), "a shape")
+        raise errors.BadFile(f"the TBox: invalid SHACL shape: {name} refers to itself")
+    shapes.require_evaluable()

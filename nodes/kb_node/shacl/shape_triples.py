@@ -17,6 +17,11 @@ _OF_SHAPES: Final = frozenset(
     for name in ("property", "targetClass", "targetNode", "targetSubjectsOf", "targetObjectsOf")
 )
 """Properties of shapes, which need no type."""
+PATTERNS_OF_SHAPES: Final[tuple[tuple[Term, Term | None], ...]] = (
+    *((p, None) for p in sorted(_OF_SHAPES)),
+    *((v.RDF_TYPE, o) for o in sorted(_SHAPES)),
+)
+"""Properties and values of the triples by which `find_shapes` finds shapes; None stands for any value."""
 _REFERENCES: Final = frozenset(
     (
         v.RDF_FIRST,

@@ -69,7 +69,8 @@ class Shapes:
     ) -> list[Result]:
         """Return the violations of all individuals, or of the `touched` ones, in the order of their names.
 
-        `failed` receives the error of each shape that cannot be evaluated. Without it, raises BadFile.
+        `failed` receives an error of each shape that cannot be evaluated on some of them, which are left out.
+        Without it, raises BadFile.
         """
         find = representative(reasoner)
         facts, executor = fact_graph(reasoner), SHACLExecutor()
@@ -78,18 +79,29 @@ class Shapes:
         for shape in self._shapes:
             terms = _all_targets(shape, reasoner) if known is None else _targets(shape, reasoner, known)
             focus = sorted(set(map(find, terms)))
-            try:
-                with self._named_errors():
-                    for start in range(0, len(focus), _AT_ONCE):
-                        nodes = [to_node(term) for term in focus[start : start + _AT_ONCE]]
-                        _, reports = shape.validate(executor, facts, focus=nodes)
-                        results = (self._read(_by_property(parts)) for _, _, parts in reports)
-                        found.update(dict.fromkeys(results))
-            except errors.BadFile as error:
-                if failed is None:
-                    raise
+            error: errors.BadFile | None = None
+            for start in range(0, len(focus), _AT_ONCE):
+                nodes = [to_node(term) for term in focus[start : start + _AT_ONCE]]
+                for some in (nodes, *([node] for node in nodes)):  # one by one after an error
+                    try:
+                        found.update(dict.fromkeys(self._evaluate(shape, some, facts, executor)))
+                    except errors.BadFile as raised:
+                        if failed is None:
+                            raise
+                        error = raised
+                        continue
+                    if some is nodes:
+                        break
+            if failed is not None and error is not None:
                 failed(error.text)
         return sorted(found, key=lambda one: (one.focus, one.path, one.message, one.value))
+
+    def _evaluate(
+        self, shape: Shape, focus: list[Node], facts: Graph, executor: SHACLExecutor
+    ) -> list[Result]:
+        with self._named_errors():
+            _, reports = shape.validate(executor, facts, focus=focus)
+            return [self._read(_by_property(parts)) for _, _, parts in reports]
 
     @contextmanager
     def _named_errors(self) -> Iterator[None]:

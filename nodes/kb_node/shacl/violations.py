@@ -9,9 +9,9 @@ from typing import Any, Final, NamedTuple, cast
 from msgspec import structs
 
 from semmap.nodes.kb_node.map_state import MapState
-from semmap.nodes.kb_node.reasoner import GivenFacts
+from semmap.nodes.kb_node.reasoner import GivenFacts, Reasoner
 from semmap.nodes.kb_node.shacl.results import Result
-from semmap.nodes.kb_node.shacl.shape_triples import find_shapes
+from semmap.nodes.kb_node.shacl.shape_triples import PATTERNS_OF_SHAPES, find_shapes
 from semmap.nodes.kb_node.shacl.validation_process import ShapeValidator, not_evaluated
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors, wording
@@ -92,6 +92,13 @@ def require_size(query: Check) -> None:
 def has_shapes(query: Check, facts: GivenFacts) -> bool:
     """Return whether a check has shapes to evaluate: those of its document, of the map or of the TBox."""
     return bool(query.shapes or find_shapes(facts.asserted))
+
+
+def may_have_shapes(query: Check, reasoner: Reasoner) -> bool:
+    """Return whether a check has shapes to evaluate, without a look at each fact of the map."""
+    return bool(query.shapes) or any(
+        next(reasoner.asserted(None, p, o), None) is not None for p, o in PATTERNS_OF_SHAPES
+    )
 
 
 def with_validation(

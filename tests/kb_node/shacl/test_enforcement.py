@@ -129,6 +129,12 @@ def test_a_tbox_with_shapes_that_cannot_be_evaluated_is_rejected(enforcing, shap
     assert enforcing.seq == 0
 
 
+def test_a_stored_map_starts_with_shapes_that_cannot_be_evaluated(caplog):
+    shapes = ":S sh:targetClass dm:Chair ; sh:property [ sh:path dm:a ; sh:pattern '(' ] ."
+    ShapeEnforcement([*home.TBOX, *turtle(SH + shapes)], is_stored=True)
+    assert caplog.text.count("missing ); it is not enforced") == 1
+
+
 def test_a_shape_that_fails_rejects_no_commit(enforcing, caplog):
     deep = " ".join(f":d{n} sh:property [ sh:path dm:on ; sh:node :d{n + 1} ] ." for n in range(30))
     shapes = turtle(SH + deep + ":d0 sh:targetClass dm:Chair . :S sh:targetClass dm:Door ; sh:closed true .")
@@ -138,4 +144,4 @@ def test_a_shape_that_fails_rejects_no_commit(enforcing, caplog):
     assert enforcing.seq == 3
     with pytest.raises(errors.Refused, match="door1: violates sh:closed"):
         enforcing.commit(transaction("d", turtle(":door1 a dm:Door ; dm:on :chair1 .")))
-    assert caplog.text.count("the shape is not enforced") == 1
+    assert caplog.text.count("it is not enforced") == 1

@@ -37,6 +37,10 @@ _RETRY_NS: Final = 60_000_000_000
 """The time until the file is tried again that could not be written."""
 
 
+_CLOCK_STEP_NS = 1_000_000_000
+"""A wall clock that goes back by more begins a new period of the trail."""
+
+
 class _Known(Struct):
     """The last recorded state of an entity, its last position, and where its places were last determined.
 
@@ -82,7 +86,11 @@ class TrailRecorder:
         if not message.entities and not self._known:
             return
         now_ns = self._clock_ns()
-        self._received_ns, self._stamp_ns = now_ns, max(self._stamp_ns, self._wall_ns())
+        wall_ns = self._wall_ns()
+        if wall_ns < self._stamp_ns - _CLOCK_STEP_NS:  # the wall clock was set back
+            self.close()
+            self._has_started, self._stamp_ns = False, wall_ns
+        self._received_ns, self._stamp_ns = now_ns, max(self._stamp_ns, wall_ns)
         for name in self._known.keys() - message.entities.keys():
             self._end(name)
         self._fetch_places()
