@@ -7,7 +7,7 @@ reasoner infers. Targets are found here, so that a commit is validated without a
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Final
 
@@ -17,7 +17,7 @@ from pyshacl.pytypes import SHACLExecutor
 from pyshacl.shape import Shape
 from pyshacl.shapes_graph import ShapesGraph
 from rdflib import SH, Graph, Literal, URIRef
-from rdflib.term import Node
+from rdflib.term import IdentifiedNode, Node
 
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.shacl.fact_graph import fact_graph, representative, to_node, to_term
@@ -97,7 +97,7 @@ class Shapes:
         return sorted(found, key=lambda one: (one.focus, one.path, one.message, one.value))
 
     def _evaluate(
-        self, shape: Shape, focus: list[Node], facts: Graph, executor: SHACLExecutor
+        self, shape: Shape, focus: Sequence[IdentifiedNode | Literal], facts: Graph, executor: SHACLExecutor
     ) -> list[Result]:
         with self._named_errors():
             _, reports = shape.validate(executor, facts, focus=focus)
