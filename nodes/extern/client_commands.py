@@ -376,8 +376,8 @@ def _list(
     They can be restricted to the entities `on` an object, `in_` a place or container, `near` an object
     (`within` a distance [m]), or to the `nearest` N entities `to` an object. Each of these is a name, a label
     or a class; `near` and `to` may also be positions: "2.5,1,0.8" [m]. With `frame`, these positions and the
-    poses in the reply are in that frame. With `all`, individuals that are not in space follow, whose `in_space`
-    is false.
+    poses in the reply are in that frame. With `all`, individuals that are not in space follow, whose
+    `in_space` is false.
 
     `as_of` selects the state of the map after a commit number or at a time: seconds since 1970, ISO 8601, or
     the `stamp_ns` of a reply. A time means its written precision (see `semmap.schemas.moments.When`).
