@@ -13,7 +13,7 @@ _NOT_STATED: Final = (
     *("and", "be", "have", "modal", "speaker", "robot", "condition", "question", "negation", "determiner"),
     *("all", "possessive", "pronoun", "relative_adverb", "polite", "then", "anaphoric", "here", "place"),
 )
-"""Classes of expressions that are no state or quality."""
+"""Classes of expressions that do not denote a state or quality."""
 
 
 class NounPhraseReader(PronounReader):
