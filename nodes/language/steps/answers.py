@@ -44,6 +44,8 @@ def answer(message: str, head: str, topic: str, phrase: NounPhrase, meaning: Mea
             return _unknown(meaning.unknown, " and ".join(phrase.attributes))
         if not names and phrase.asked and not phrase.places:
             return _none(topic)
+        if _asks_nothing(phrase, meaning):
+            return f"'{topic}': the map cannot tell; look there"
         return _yes_or_no(topic, meaning, world)
     if words[:2] in (["how", "many"], ["how", "much"]) or wanted == "number":
         return _with_evidence(str(len(names)), names, world) if names else f"0: {_none(topic)}"
@@ -56,6 +58,12 @@ def answer(message: str, head: str, topic: str, phrase: NounPhrase, meaning: Mea
     if wanted is None:
         return f"'{topic}': the map does not have {message}; look there"
     return " ".join(filter(None, (_property(name, wanted, head, world) for name in names[:_MOST])))
+
+
+def _asks_nothing(phrase: NounPhrase, meaning: Meaning) -> bool:
+    """Return whether a question with *is* asks nothing of certain things that is understood."""
+    is_certain = phrase.is_definite or meaning.is_person
+    return is_certain and not (phrase.asked or phrase.places or phrase.asks_existence)
 
 
 def answer_states(phrase: NounPhrase, verdicts: Mapping[str, Verdicts], world: World) -> str:

@@ -50,7 +50,7 @@ class ClauseStarts:
         """Read clauses of `text`. `is_person` tells whether a phrase denotes a person."""
         self._t, self._g, self._words = text, grammar, text.words
         self._is_person = is_person
-        self._np = NounPhraseReader(text, grammar, nouns, self.starts_clause, above)
+        self._np = NounPhraseReader(text, grammar, nouns, self.starts_clause, is_person, above)
         self._nouns, self._above = nouns, above
         self.found = Parsed()
         self._is_negated = False
@@ -80,6 +80,8 @@ class ClauseStarts:
             return True
         if self._wish(j):
             return True
+        if self._asks_state(j):
+            return False
         if (
             (g.match("negation", words, j) and not self._excludes(j))
             or self._phase(j)
@@ -103,6 +105,20 @@ class ClauseStarts:
         if self._np.is_known(j, j + 1) and not self._opens_phrase(j + 1):
             return False
         return following not in ("of", "is", "are", "'s")
+
+    def _asks_state(self, i: int) -> bool:
+        """Return whether a last word at `i`, which may be a verb, is what a question asks: off and CLEAN?"""
+        g, words = self._g, self._words
+        if words[i - 1 : i] not in (("and",), ("or",)) or not self._np.is_last_word(i):
+            return False
+        first = i
+        while first and not self._t.ends_sentence(first - 1):
+            first -= 1
+        end = next(j for j in range(i, len(words) + 1) if self._t.ends_sentence(j))
+        has_subject = any(g.match(kind, words, first) for kind in ("determiner", "possessive", "all"))
+        has_be = "is" in words[first:i] or "are" in words[first:i]
+        is_asked = words[first] in ("is", "are") or (has_subject and has_be)
+        return words[end : end + 1] == ("?",) and is_asked
 
     def _is_infinitive(self, i: int) -> bool:
         """Return whether *to* and a verb are at `i`."""

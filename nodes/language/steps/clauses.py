@@ -101,7 +101,9 @@ class ClauseReader(MessageReader):
                 front, i = fronted, fronted[1].end
             elif phase := self._phase(i):
                 i += phase
-            elif self._g.verb(self._words, i)[0] or self._lets_know(i) > 0:
+            elif (self._g.verb(self._words, i)[0] or self._lets_know(i) > 0) and not (
+                self._belongs_to_question(i) and not conditions
+            ):
                 before = len(self.found.clauses)
                 self._is_negated = negated
                 i = self._clause(i)
@@ -129,6 +131,19 @@ class ClauseReader(MessageReader):
         if conditions and not self.found.clauses:
             self.found.unused += conditions
         return self.found
+
+    def _belongs_to_question(self, i: int) -> bool:
+        """Return whether a verb at `i` is in a question with *is*, and not in a request after it.
+
+        Nothing is done because of such a question: *is it off and rather clean?*, but *can you clean it?*
+        """
+        words = self._words
+        first = max((j + 1 for j in range(i) if self._t.ends_sentence(j)), default=0)
+        end = next(j for j in range(i, len(words) + 1) if self._t.ends_sentence(j))
+        clauses = self.found.clauses
+        is_asked = bool(clauses) and clauses[-1].asks and words[end : end + 1] == ("?",)
+        begins = words[first] in ("is", "are") or self._declares(first) > 0
+        return is_asked and begins and words[i - 1] not in ("you", "please")
 
     def _keep_times(self, first: int, times: list[str]) -> None:
         """Give times at the end of a sentence to its last clause."""

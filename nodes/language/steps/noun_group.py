@@ -44,6 +44,7 @@ _ADVERBS: Final = frozenset(
         "perhaps",
         "as",
         "but",
+        "than",
     )
 )
 _SEVERAL: Final = frozenset(("these", "those", "several", "a few", "both", "a pair of", "a couple of"))
@@ -58,12 +59,13 @@ class NounGroupReader:
         grammar: Grammar,
         nouns: Nouns,
         starts_clause: Callable[[int], bool],
+        is_person: Callable[[NounPhrase], bool],
         above: Mapping[str, frozenset[str]],
     ) -> None:
         """Read phrases of `text`.
 
-        `starts_clause` returns whether a new clause begins at an index. `above` maps classes to their
-        superclasses.
+        `starts_clause` returns whether a new clause begins at an index, and `is_person` whether a phrase
+        denotes a person. `above` maps classes to their superclasses.
         """
         self.takes_that = False
         """Whether *that* may begin a message in the clause that is read, and not a relative clause."""
@@ -72,7 +74,7 @@ class NounGroupReader:
         self.takes_predicate = False
         """Whether a further word after the noun is what a question asks of it: is the fridge OPEN."""
         self._t, self._g, self._nouns, self._starts_clause = text, grammar, nouns, starts_clause
-        self._above = above
+        self._is_person, self._above = is_person, above
         self._words = text.words
         self._bases = [nouns.describing.base(word) for word in text.words]
 

@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from semmap.nodes.language.steps import quantities
 from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.pronoun_reader import PronounReader
 from semmap.nodes.language.steps.times import starts_time
+
+_NOT_STATED: Final = (
+    *("and", "be", "have", "modal", "speaker", "robot", "condition", "question", "negation", "determiner"),
+    *("all", "possessive", "pronoun", "relative_adverb", "polite", "then", "anaphoric", "here", "place"),
+)
+"""Classes of expressions that do not denote a state or quality."""
 
 
 class NounPhraseReader(PronounReader):
@@ -67,7 +75,7 @@ class NounPhraseReader(PronounReader):
         other = self.read(j + length) if length else None
         if other is None:
             return None
-        if not other.determiner and self._t.tokens[other.head].is_capital:  # all except Nora
+        if not other.determiner and self._t.tokens[other.head].is_capital and self._is_person(other):  # Nora
             return NounPhrase(
                 i, other.end, i, "person", "everyone", is_plural=True, all_of=True, excluded=[other]
             )
@@ -158,14 +166,31 @@ class NounPhraseReader(PronounReader):
             phrase.end = max(end, i)
 
     def _is_last_particle(self, i: int) -> bool:
-        """Return whether a particle ends the clause at `i`: is the oven ON."""
+        """Return whether a particle is the last of what is stated at `i`: is the oven ON."""
         if self._t.is_mark(i) or not self._g.is_a(self._words[i], "particle"):
             return False
-        return self._t.is_mark(i + 1) or self._g.is_a(self._words[i + 1], "and")
+        return self._ends_statement(i + 1) and self._g.match("place", self._words, i) <= 1
+
+    def _ends_statement(self, i: int) -> bool:
+        """Return whether only *and*, an adverb, a time, a place or nothing may follow a state before `i`."""
+        g, words = self._g, self._words
+        if self._t.is_mark(i) or self._starts_time(i):
+            return True
+        kinds = ("and", "relative_adverb", "polite", "manner", "place")
+        return any(g.match(kind, words, i) for kind in kinds)
 
     def is_state(self, i: int) -> bool:
         """Return whether a state or quality is at `i`: open, red, ON at the end of a clause."""
-        return not self._t.is_mark(i) and (self._is_modifier(i) or self._is_last_particle(i))
+        is_known = not self._t.is_mark(i) and (self._is_modifier(i) or self._is_last_particle(i))
+        return is_known or self.is_last_word(i)
+
+    def is_last_word(self, i: int) -> bool:
+        """Return whether a word at `i` is all that follows *and* and may state something: CLEAN, locked."""
+        g, words = self._g, self._words
+        is_last = self._ends_statement(i + 1) and not g.match("place", words, i + 1)
+        if self._t.is_mark(i) or not is_last or self._t.tokens[i].is_capital:
+            return False
+        return not (self.is_known(i, i + 1) or any(g.match(kind, words, i) for kind in _NOT_STATED))
 
     def _after_the_noun(self, phrase: NounPhrase, with_places: bool) -> None:
         """Read what follows the noun: places, relative clauses, participles, purposes, exceptions."""
@@ -189,7 +214,7 @@ class NounPhraseReader(PronounReader):
                 end = self._group_end(i + 1)
                 phrase.name, phrase.end = self._t.between(i + 1, end), max(end, i + 1)
             elif words[i] == "left" and self._t.is_mark(i + 1):
-                phrase.end = i + 1  # is any milk left
+                phrase.end, phrase.asks_existence = i + 1, True  # is any milk left
             elif phrase.noun and words[i] == "to" and i + 1 < len(words) and words[i + 1] in g.purposes:
                 phrase.purpose, phrase.end = words[i + 1], i + 2
             elif (
@@ -300,6 +325,7 @@ class NounPhraseReader(PronounReader):
         if (
             not length
             or self._starts_time(i)
+            or (self._is_last_particle(i) and not self._g.match("place", self._words, i + length))
             or self._g.match("manner", self._words, i)
             or self._g.match("here", self._words, i)
             or self._g.match("at_least", self._words, i)

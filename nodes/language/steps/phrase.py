@@ -73,6 +73,8 @@ class NounPhrase:
     """The other things after *or*, any of which will do as well."""
     asked: list[str] = field(default_factory=list)
     """What a question asks whether it is so of the things, in English: open, not red."""
+    asks_existence: bool = False
+    """Whether a question asks whether there is such a thing: is there the milk."""
     asks_any: bool = False
     """Whether a question asks which of the alternatives is so: is it open or closed."""
 

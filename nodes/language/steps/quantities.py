@@ -36,7 +36,8 @@ def read_bound(g: Grammar, words: Sequence[str], i: int) -> tuple[int, NounPhras
     j += taken
     before, (second, taken) = taken, read_number(g, words, j + 1)
     if taken and words[j] in ("or", "to", "and") and (words[j] != "and" or opening):
-        if taken > 1 and before == 1:  # two or three dozen
+        has_number = taken > 1 and g.number(words[j + 1]) is not None
+        if has_number and before == 1:  # two or three dozen, but not: six or A dozen, one or HALF a dozen
             number *= _GROUPS.get(words[j + 2], 1)
         first, last = sorted((number, second))
         found.quantity, found.is_plural, found.amount = first, True, Amount(at_least=first, at_most=last)

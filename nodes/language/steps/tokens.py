@@ -66,7 +66,8 @@ class Text:
 def _without_hesitation(tokens: list[Token]) -> Iterator[Token]:
     """Yield tokens without sounds such as *uh*, and without the commas around one.
 
-    Before a verb one comma is left, since it may be all that separates two clauses: go there, um, close it.
+    Before a verb or a correction one comma is left, since it may be all that separates it from the rest:
+    go there, um, close it; the cup, uh, no, the bowl.
     """
     words = [token.word for token in tokens]
     start = 0
@@ -78,7 +79,11 @@ def _without_hesitation(tokens: list[Token]) -> Iterator[Token]:
         if not any(token.word in _HESITATION for token in pause):
             end = max(end, start + 1)
             yield from tokens[start:end]
-        elif start and _ends_clause(words[:start]) and _begins_with_verb(tokens[end:]):
+        elif (
+            start
+            and _ends_clause(words[:start])
+            and (_begins_with_verb(tokens[end:]) or correction_length(words[end:]))
+        ):
             comma = next((token for token in pause if token.word == ","), pause[0])
             yield Token(",", comma.first, comma.end)
         start = end
@@ -92,6 +97,12 @@ def _ends_clause(words: list[str]) -> bool:
         for kind in _GOING_ON
         for length in range(1, g.longest[kind] + 1)
     )
+
+
+def correction_length(words: Sequence[str]) -> int:
+    """Return the number of words of an expression of correction that these words begin with, or 0."""
+    g = commands.load()
+    return max(g.match(kind, words, 0) for kind in ("correction", "weak_correction"))
 
 
 def _begins_with_verb(tokens: list[Token]) -> bool:

@@ -9,13 +9,14 @@ from typing import Final
 
 from semmap.nodes.language.lexicon.commands import load as grammar
 from semmap.nodes.language.lexicon.italian import italian as lexicon
-from semmap.nodes.language.steps.tokens import Text, Token
+from semmap.nodes.language.steps.tokens import Text, Token, correction_length
 from semmap.nodes.language.understanding import italian
 from semmap.nodes.language.understanding.grounding import Scene
 from semmap.nodes.language.words import without_markup
 
 _ADJECTIVES: Final = frozenset(lexicon().adjectives.values())
 _ARTICLES: Final = frozenset(("the", "these", "a", "this", "that", "and", "from", "on", "in", ",", "."))
+_BEFORE_GROUP: Final = _ARTICLES | {"is", "are"}
 _SOUND: Final = r"(?:ehm|uhm|um|mmm?|eh|ah|oh|beh|boh)"
 _HESITATION: Final = re.compile(
     rf"(?:,\s*)?(?<!\w){_SOUND}(?!\w)(?:\s*,?\s*{_SOUND}(?!\w))*(?:\s*,)?", re.IGNORECASE
@@ -46,16 +47,26 @@ def translate(text: str, scene: Scene) -> Text:
 def _without_hesitation(text: str) -> str:
     """Return a text of the same length with spaces for sounds such as *ehm* and the commas around one.
 
-    Before a verb one comma is left, since it may be all that separates two clauses.
+    Before a verb or a correction one comma is left, since it may be all that separates it from the rest.
     """
 
     def blank(found: re.Match[str]) -> str:
         following = _WORD.match(text, found.end())
         words = italian.split(following[1]) if following is not None else []
-        is_verb = bool(words) and found.start() > 0 and words[0] in lexicon().verbs
-        return ("," if is_verb and "," in found[0] else " ").ljust(len(found[0]))
+        is_verb = bool(words) and words[0] in lexicon().verbs and "," in found[0]
+        is_apart = is_verb or _begins_correction(text[found.end() :])
+        return ("," if is_apart and found.start() > 0 else " ").ljust(len(found[0]))
 
     return _HESITATION.sub(blank, text)
+
+
+def _begins_correction(text: str) -> bool:
+    """Return whether an Italian text begins with an expression of correction: no, scusa, anzi."""
+    words = italian.split(text)[:3]
+    texts = (
+        lexicon().expressions.get(tuple(words[:k]), " ".join(words[:k])) for k in range(1, len(words) + 1)
+    )
+    return any(correction_length(english.split()) == len(english.split()) for english in texts)
 
 
 def _with_times(tokens: list[Token]) -> list[Token]:
@@ -81,7 +92,7 @@ def _with_superlatives(tokens: list[Token]) -> list[Token]:
         if tokens[i].word == "most" and adjective in _ADJECTIVES:
             word = replace(tokens[i], word=_superlative(adjective), end=tokens[i + 1].end)
             k = len(found)
-            while k and found[k - 1].first < found[k - 1].end and found[k - 1].word not in _ARTICLES:
+            while k and found[k - 1].first < found[k - 1].end and found[k - 1].word not in _BEFORE_GROUP:
                 k -= 1
             found.insert(k, word)
             i += 2
@@ -114,9 +125,15 @@ def _with_predicates(tokens: list[Token], text: str) -> list[Token]:
             and lexicon().adjectives.get(said) == adjective.word
             and grammar().match("determiner", [article.word], 0)
         ):
-            end = next((k for k in range(i + 2, len(tokens)) if tokens[k].word in ",.;:!?"), len(tokens))
+            end = next((k for k in range(i + 2, len(tokens)) if _ends_subject(tokens, k)), len(tokens))
             found[i + 1 : end] = [*tokens[i + 2 : end], adjective]
     return found
+
+
+def _ends_subject(tokens: list[Token], k: int) -> bool:
+    """Return whether the subject of a question ends at `k`: before a mark, or *and* with an adjective."""
+    following = tokens[k + 1].word if k + 1 < len(tokens) else ""
+    return tokens[k].word in ",.;:!?" or (tokens[k].word in ("and", "or") and following in _ADJECTIVES)
 
 
 def _superlative(adjective: str) -> str:

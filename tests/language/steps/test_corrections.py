@@ -94,6 +94,26 @@ def test_a_drink_without_an_article_after_no_is_an_exception(read):
     assert "milk1" not in understood.steps[0].roles["Theme"][0].entities or understood.doubts
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "take the kettle, uh, no, the bowl",
+        "take the kettle uh sorry the bowl",
+        "take the kettle, um, I mean the bowl",
+        "take the kettle, er, actually, the bowl",
+        "take the kettle, uh, rather the bowl",
+        "prendi il bollitore, ehm, no, la ciotola",
+        "prendi il bollitore ehm scusa la ciotola",
+        "prendi il bollitore, ehm, anzi la ciotola",
+        "prendi il bollitore, cioè, la ciotola",
+    ],
+)
+def test_hesitation_before_a_correction_does_not_hide_it(read, text):
+    understood = read(text)
+    assert texts(understood) == ["Taking(Theme=bowl1)"]
+    assert [doubt for doubt in understood.doubts if "is corrected to" in doubt] == list(understood.doubts)
+
+
 @pytest.mark.parametrize("text", ["um, take the milk", "take, uh, the milk", "take the, er, milk"])
 def test_hesitation_is_left_out(read, text):
     understood = read(text)

@@ -36,6 +36,9 @@ def texts(understood):
         ("take two cups or more", "Taking(Theme=at least 2 of bluecup|cup1|redcup)"),
         ("take two or three cups", "Taking(Theme=2 to 3 of bluecup|cup1|redcup)"),
         ("take between two and three cups", "Taking(Theme=2 to 3 of bluecup|cup1|redcup)"),
+        ("take one or a couple of cups", "Taking(Theme=1 to 2 of bluecup|cup1|redcup)"),
+        ("take between one and half a dozen cups", "Taking(Theme=1 to 6 of bluecup|cup1|redcup)"),
+        ("take between two and a dozen cups", "Taking(Theme=2 to 12 of bluecup|cup1|redcup)"),
         ("take exactly two cups", "Taking(Theme=2 of bluecup|cup1|redcup)"),
         ("take two of the three cups", "Taking(Theme=2 of bluecup|cup1|redcup)"),
         ("take a few cups", "Taking(Theme=at least 2 of bluecup|cup1|redcup)"),
@@ -60,6 +63,27 @@ def texts(understood):
 def test_a_quantity_is_of_the_things_and_says_no_more(read, text, step):
     understood = read(text)
     assert (texts(understood), understood.doubts) == ([step], ())
+
+
+@pytest.mark.parametrize("text", ["prendi una mezza dozzina di tazze", "take a half a dozen cups"])
+def test_half_a_dozen_is_six(read, text):
+    (theme,) = read(text).steps[0].roles["Theme"]
+    assert theme.description.quantity == 6
+
+
+@pytest.mark.parametrize("noun", ["Milk", "Apples"])
+@pytest.mark.parametrize("excluding", ["except", "but"])
+def test_a_noun_with_a_capital_letter_is_no_person_after_all_except(read, noun, excluding):
+    written = read(f"take all {excluding} {noun}")
+    lower = read(f"take all {excluding} {noun.lower()}")
+    assert [step.frame for step in written.steps] == ["Taking"]
+    assert written.steps[0].roles["Theme"][0].entities == lower.steps[0].roles["Theme"][0].entities
+
+
+@pytest.mark.parametrize("name", ["Nora", "Ben"])
+def test_a_name_after_all_except_is_a_person(read, name):
+    (step,) = read(f"guide all except {name} to the kitchen").steps
+    assert step.roles["Cotheme"][0].description.excluded == (name,)
 
 
 def test_the_bounds_of_a_number_are_in_the_description(read):

@@ -18,6 +18,10 @@ from semmap.nodes.language.steps import tokens
         ("take the red, um, book, please", "take the red book , please"),
         ("um, take it, uh", "take it"),
         ("take the milk, the bread", "take the milk , the bread"),
+        ("take the cup, uh, no, the bowl", "take the cup , no , the bowl"),
+        ("take the cup uh sorry the bowl", "take the cup , sorry the bowl"),
+        ("take the cup, um, I mean the bowl", "take the cup , i mean the bowl"),
+        ("there is, uh, no milk", "there is no milk"),
         ("um", ""),
     ],
 )
