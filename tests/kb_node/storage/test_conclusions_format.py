@@ -20,9 +20,9 @@ from semmap.schemas.entities import Entity, Pose, Provenance
 
 DIGESTS = {
     "rules": "c7b28fd4106c7f0f",
-    "layouts": "4b9f0fd61df3924d",
+    "layouts": "b2f3f0cabe78dbca",
     "closure": "9984797e89890a87",
-    "entities": "67a1c1891ffd8f5b",
+    "entities": "9506490bdc8935d2",
     "columns": "e81c087c96f15110",
 }
 """The digests of the current format. If one of them changes, add 1 to FORMAT and store the new digests."""
@@ -79,7 +79,7 @@ def test_the_format_changes_with_inferences_and_layout():
         "entities": digest(entities),
         "columns": digest(sorted(map(_unlabelled, stored(reasoner.columns())))),
     }
-    assert (FORMAT, found) == (9, DIGESTS), "add 1 to FORMAT, and write the digests down here"
+    assert (FORMAT, found) == (10, DIGESTS), "add 1 to FORMAT, and write the digests down here"
 
 
 def _unlabelled(text):
