@@ -101,7 +101,7 @@ def test_an_individual_has_no_pose_to_change_and_one_of_the_tbox_cannot_be_chang
 
 def test_an_individual_is_removed_with_its_nameless_values_and_what_refers_to_it(people):
     people.commit(transaction(2, remove=["anna", "chair1"]))
-    assert names(people) == ["bob"]  # all that was said of the other was that it employs anna
+    assert names(people) == ["bob"]  # the other was only the employer of anna
     assert not any("anna" in "".join(t) or "Rome" in t[2] for t in people.abox())
     people.commit(transaction(3, remove=["<http://example.org/people/bob>"]))
     assert names(people) == []
