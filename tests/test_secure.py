@@ -292,7 +292,6 @@ def test_forbidden_subscriptions_are_reported(system, folder):
 def test_what_is_live_comes_from_robots_and_is_heard_by_all(as_):
     with as_("bob") as bob, as_("spot") as spot, as_("vera") as vera:
         bob.add("Ball", "ball7", at=(3.0, 3.0, 0.0), track="stream")
-        spot.publish_frame("spot/lidar", "ball7", at=(0.0, 0.0, 0.3), fixed=True)
 
         def is_live():
             spot.publish_pose("ball7", at=(2.0, 3.0, 0.0))
@@ -300,8 +299,13 @@ def test_what_is_live_comes_from_robots_and_is_heard_by_all(as_):
             return live is not None and live.pose.position_m == (2.0, 3.0, 0.0)
 
         until(is_live, "a viewer sees the robot's live pose")
-        placed = {frame.name: frame.map_pose for frame in vera.frames("spot/lidar")}
-        assert placed["spot/lidar"].position_m == pytest.approx((2.0, 3.0, 0.3))
+
+        def lidar_pose():
+            spot.publish_frame("spot/lidar", "ball7", at=(0.0, 0.0, 0.3), fixed=True)
+            return [frame.map_pose for frame in vera.frames() if frame.name == "spot/lidar"]
+
+        placed = until(lidar_pose, "a viewer sees the robot's frame")
+        assert placed[0].position_m == pytest.approx((2.0, 3.0, 0.3))
         for name in ("vera", "bob", "eye"):
             with as_(name) as client:
                 with pytest.raises(errors.Refused, match="may not publish on semmap/live"):
