@@ -12,6 +12,7 @@ from semmap.nodes.bus.liveliness import (
 )
 from semmap.nodes.bus.pubsub import (
     NewestSamples,
+    await_subscriber,
     follow,
     follow_cameras,
     includes,
@@ -73,6 +74,7 @@ __all__ = [
     "TimedOut",
     "ask",
     "ask_later",
+    "await_subscriber",
     "declare_presence",
     "find_robots",
     "first_round_s",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from typing import Any, Literal
@@ -27,6 +28,13 @@ def publisher(session: zenoh.Session, topic: keys.Topic, key: str | None = None)
         sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=0.5),
         publisher_detection=True,
     )
+
+
+def await_subscriber(publisher: Any, most_s: float) -> None:
+    """Wait until a publisher has a subscriber, at most `most_s`: before, Zenoh drops what it publishes."""
+    end = time.monotonic() + most_s
+    while not publisher.matching_status.matching and time.monotonic() < end:
+        time.sleep(0.005)
 
 
 def subscriber_check(session: zenoh.Session, topic: keys.Topic) -> Callable[[], bool]:

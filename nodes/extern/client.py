@@ -49,6 +49,8 @@ C = TypeVar("C", bound=Command)
 
 LONG_S = 6 * 3600.0
 """Timeout [s], longer than any command takes. If the node that executes it ends, the request ends earlier."""
+_MEET_S = 1.0
+"""The longest time until a new publisher knows its subscribers."""
 _VERSION_S = 2.0
 
 
@@ -247,6 +249,8 @@ class Client(CommandMethods):
                 raise errors.BadRequest(error.text.removeprefix(codec.MALFORMED)) from None
         self._require_publishing(topic)
         publisher = self._publisher(topic, key)
+        if isinstance(message, FramePose) and message.fixed:  # which is published once
+            bus.await_subscriber(publisher, _MEET_S)
         if message is None:
             publisher.delete()
         else:
