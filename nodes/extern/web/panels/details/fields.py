@@ -92,6 +92,10 @@ class Fields:
         """Select a class, after the field has made the typed text an option."""
         await asyncio.sleep(0.0)
         self._class.set_options(dict(self._classes), value=class_)
+        # Keys pressed just before Enter may still be filtering: this opens the list again, and Quasar keeps
+        # the typed text while it is open.
+        self._class.run_method("hidePopup")
+        self._class.run_method("updateInputValue", self._classes[class_], True, True)
 
     async def _pick(self) -> None:
         place = await self._page.pick_place()
