@@ -186,6 +186,11 @@ class System:
             self.open_map(_begun(abox))
             self.begun = abox
 
+    def await_scene(self) -> None:
+        """Wait until the coordinator knows the scene, and it agrees with the map."""
+        with self.client() as client:
+            until(lambda: (status := _ask_status(client)) and status.in_agreement, "map and scene agree")
+
     def _is_as_begun(self, abox: str) -> bool:
         if self.begun != abox:
             return False
@@ -245,8 +250,9 @@ def _shared_scene(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SharedSy
 
 @contextlib.contextmanager
 def _begin(data: Path, abox: str, *words: str) -> Iterator[System]:
-    """A system with the shipped flat, or with an empty map."""
-    with running(data, *words, *(("--abox", "none") if abox == "none" else ())) as system:
+    """A system with the shipped flat, or with an empty map; its simulated world is always the flat."""
+    shutil.copytree(_begun(abox), data, dirs_exist_ok=True)
+    with running(data, *words) as system:
         system.begun = abox
         yield system
 
@@ -266,13 +272,17 @@ def empty_map(_shared_map: SharedSystem) -> System:
 @pytest.fixture(scope="module")
 def flat_scene(_shared_scene: SharedSystem) -> System:
     """A system with a simulator whose map is the shipped flat, at commit 1."""
-    return _shared_scene.begin_anew("flat")
+    system = _shared_scene.begin_anew("flat")
+    system.await_scene()
+    return system
 
 
 @pytest.fixture(scope="module")
 def empty_scene(_shared_scene: SharedSystem) -> System:
     """A system with a simulator whose map is empty, at commit 1."""
-    return _shared_scene.begin_anew("none")
+    system = _shared_scene.begin_anew("none")
+    system.await_scene()
+    return system
 
 
 def _ask_status(client: Client) -> SystemStatus | None:

@@ -44,6 +44,8 @@ _COLUMN = max(map(len, keys.NODES))
 _LOOK_S = 0.2
 _COMPLETE_WITHIN_S = 3.0
 """Seconds; a heartbeat is published once a second."""
+_KNOWN_WITHIN_S = 30.0
+"""Seconds within which a coordinator on a busy machine knows the other nodes and the scene."""
 _WAITS_S = 3.0
 """Seconds; a node that waits longer may wait for another host."""
 _RUNS = ("STARTING", "RUNNING")
@@ -259,26 +261,39 @@ class _Foreground:
     def _wait_until_complete(self) -> None:
         """Wait until the coordinator knows every node and the bodies are placed, before reporting ready.
 
-        The wait is short: with many bodies, or a body that cannot be placed, the system is ready earlier.
+        The wait for bodies is short: with many, or with one that cannot be placed, the system is ready
+        earlier. A busy machine may need longer until the coordinator replies and has received the scene.
         """
         with (
             contextlib.suppress(errors.SemmapError, OSError),
             bus.open_session(self._network()) as session,
         ):
-            deadline_s = time.monotonic() + _COMPLETE_WITHIN_S
-            waits_for: tuple[str, ...] = ()
-            while time.monotonic() < deadline_s:
-                status = bus.ask(session, keys.CMD, Status.VERB, Status(), reply_type(Status))
+            begun_s = time.monotonic()
+            known_within_s = _KNOWN_WITHIN_S if "coordinator" in self._pids else _COMPLETE_WITHIN_S
+            while not self._stopping and self._process.poll() is None:
+                waited_s = time.monotonic() - begun_s
+                try:
+                    status = bus.ask(session, keys.CMD, Status.VERB, Status(), reply_type(Status))
+                except errors.NoAnswer:
+                    if waited_s > known_within_s:
+                        raise
+                    time.sleep(_LOOK_S)
+                    continue
                 known = {node.pid for node in status.nodes if node.state == "ready"}
                 keeps = status.truth != "perceived" and "sim_node" in self._pids
                 waits_for = status.pending if keeps else ()  # moving bodies are not waited for
-                stands = not keeps or (status.in_agreement is not None and not waits_for)
-                if stands and known >= {pid for node, pid in self._pids.items() if node != keys.WEB}:
+                is_known = known >= {pid for node, pid in self._pids.items() if node != keys.WEB}
+                is_known = is_known and not (keeps and status.in_agreement is None)
+                if waited_s > (_COMPLETE_WITHIN_S if is_known else known_within_s):
+                    for waited in waits_for:
+                        self._say(f"{'scene':<{_COLUMN}} not complete yet: {waited}")
                     break
-                time.sleep(0.05)
+                if is_known and not waits_for:
+                    break
+                for health in self._notices.wait(0.05):
+                    self._on_health(health)
             else:
-                for waited in waits_for:
-                    self._say(f"{'scene':<{_COLUMN}} not complete yet: {waited}")
+                return
             self._report_truth(status.truth)
             self._report_models(session)
             self._report_robot_position(session)
