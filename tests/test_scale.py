@@ -94,7 +94,8 @@ def test_a_checkpoint_follows_a_very_large_commit_and_a_kill_loses_nothing(syste
         assert client.check().consistent
 
 
-@pytest.mark.parametrize("kind", [pytest.param("scene", marks=pytest.mark.long), "turtle"])
+@pytest.mark.long
+@pytest.mark.parametrize("kind", ["scene", "turtle"])
 def test_a_load_in_parts(system, tmp_path, kind):
     file = scene(tmp_path / "many.json")
     if kind == "turtle":

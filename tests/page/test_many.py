@@ -35,6 +35,7 @@ def crowded(chromium, tmp_path_factory):
             yield system, web
 
 
+@pytest.mark.long
 def test_five_thousand_entities_are_usable(crowded, open_tab):
     system, web = crowded
     tab = open_tab(web)

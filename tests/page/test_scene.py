@@ -196,6 +196,7 @@ def test_an_entity_dragged_into_another_one_returns(tab, system, chair):
         assert client.get(chair).pose.position_m == pytest.approx(entity.pose.position_m, abs=0.05)
 
 
+@pytest.mark.long
 def test_a_dragged_entity_keeps_its_yaw(tab, system, chair):
     with standing(system, (1.6, 2.2, 0.0), yaw=math.radians(180.0)) as turned, system.client() as client:
         view = looking(tab, client)
@@ -259,6 +260,7 @@ def test_the_vertical_arrow_lifts_an_entity(tab, system, chair):
         until(lambda: height(client, chair) < 0.05, "it has come down again")
 
 
+@pytest.mark.long
 def test_closing_a_tab_during_a_drag_moves_nothing(open_tab, tab, web, system, chair):
     with system.client() as client:
         view, entity = looking(tab, client), client.get(chair)

@@ -140,6 +140,7 @@ def test_the_theme_follows_the_browser_until_toggled(open_tab, web, dark):
     tab.wait_for_selector("body:not(.body--dark)" if dark else "body.body--dark")
 
 
+@pytest.mark.long
 def test_a_lost_system_is_reported_and_a_new_map_resets_the_page(chromium, open_tab, tmp_path):
     words = ("--no-record", "--no-sim")
     with running(tmp_path / "one", *words) as first:
