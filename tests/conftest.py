@@ -1,9 +1,10 @@
 """Whole systems for tests: spawned processes, real Zenoh peers on loopback, each on a port of its own.
 
-A start takes seconds, so tests share two systems per worker, one without a simulator and one with it:
-`flat_map` and `empty_map`, `flat_scene` and `empty_scene` give each module one of them with a clean map.
-`shared_systems.py` starts them when they are needed and stops them when the next tests do not use them.
-Restarts, faults, security and fleets start their own by `running`.
+A start takes seconds, so tests share four systems per worker. `flat_map` and `empty_map` (without a
+simulator), `flat_scene` and `empty_scene` (with it) give each module one of two systems with a clean map.
+`robot_scene` and `full_system` are as the modules before have left them: each module uses names of its own,
+and removes what it has added. `shared_systems.py` starts them when they are needed and stops them when the
+next tests do not use them. Restarts, security and fleets start their own by `running`.
 """
 
 from __future__ import annotations
@@ -228,30 +229,50 @@ def running(data: Path, *words: str | Path, endpoint: str | None = None) -> Iter
         reader.join(PATIENCE_S)  # a process that keeps the pipe open is found by the check for leftovers
 
 
+_STALE = ("--stale", "3")
+"""A busy machine publishes live poses and frames less than 3 s apart."""
+_ROBOT_WORLD = Path(__file__).with_name("robot_world.xml")
+
+
 @pytest.fixture(scope="session")
 def _shared_map(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SharedSystem]:
-    """One system per worker without a simulator; a busy machine publishes frames less than 3 s apart."""
-    words = ("--no-sim", "--no-record", "--stale", "3")
-    shared = SharedSystem("_shared_map", lambda abox: _begin(tmp_path_factory.mktemp("map"), abox, *words))
-    yield shared
-    shared.stop()
+    """One system per worker without a simulator."""
+    yield from _share("_shared_map", tmp_path_factory, "--no-sim", "--no-record", *_STALE)
 
 
 @pytest.fixture(scope="session")
 def _shared_scene(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SharedSystem]:
-    """One system per worker with a simulator; a busy machine publishes live poses less than 3 s apart."""
-    words = ("--no-record", "--stale", "3")
-    shared = SharedSystem(
-        "_shared_scene", lambda abox: _begin(tmp_path_factory.mktemp("scene"), abox, *words)
-    )
+    """One system per worker with a simulator."""
+    yield from _share("_shared_scene", tmp_path_factory, "--no-record", *_STALE)
+
+
+@pytest.fixture(scope="session")
+def _shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SharedSystem]:
+    """One system per worker with a robot."""
+    words = ("--robot", "porter", "--robot-at", "-2", "0", "0", "--world", str(_ROBOT_WORLD))
+    yield from _share("_shared_robot", tmp_path_factory, "--no-record", *_STALE, *words)
+
+
+@pytest.fixture(scope="session")
+def _shared_full(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SharedSystem]:
+    """One system per worker with all nodes."""
+    yield from _share("_shared_full", tmp_path_factory)
+
+
+def _share(fixture: str, temporary: pytest.TempPathFactory, *words: str) -> Iterator[SharedSystem]:
+    """Make the system of a fixture available; it is started with these words when a module needs it."""
+    shared = SharedSystem(fixture, lambda abox: _begin(temporary.mktemp(fixture), abox, *words))
     yield shared
     shared.stop()
 
 
 @contextlib.contextmanager
 def _begin(data: Path, abox: str, *words: str) -> Iterator[System]:
-    """A system with the shipped flat, or with an empty map; its simulated world is always the flat."""
-    shutil.copytree(_begun(abox), data, dirs_exist_ok=True)
+    """A system with the shipped flat, or with an empty map; it simulates the flat or the given world."""
+    if "--world" in words:
+        words = (*words, "--abox", abox)
+    else:
+        shutil.copytree(_begun(abox), data, dirs_exist_ok=True)
     with running(data, *words) as system:
         system.begun = abox
         yield system
@@ -283,6 +304,25 @@ def empty_scene(_shared_scene: SharedSystem) -> System:
     system = _shared_scene.begin_anew("none")
     system.await_scene()
     return system
+
+
+@pytest.fixture(scope="module")
+def robot_scene(_shared_robot: SharedSystem) -> System:
+    """A system with the robot `robot1`, and a body `stove` at (-8, 0), in a world without walls.
+
+    Nothing but the robot and its gripper is in the map at first. The robot is where a module left it.
+    """
+    system = _shared_robot.use("none")
+    with system.client() as client:
+        robot = {"robot1", "robot1_gripper"}
+        until(lambda: robot <= {entity.name for entity in client.list()}, "the robot is in the map")
+    return system
+
+
+@pytest.fixture(scope="module")
+def full_system(_shared_full: SharedSystem) -> System:
+    """A system with the shipped flat, a simulator and a recorder."""
+    return _shared_full.use("flat")
 
 
 def _ask_status(client: Client) -> SystemStatus | None:

@@ -14,7 +14,7 @@ import pytest
 if TYPE_CHECKING:
     from tests.conftest import System
 
-FIXTURES = frozenset({"_shared_map", "_shared_scene"})
+FIXTURES = frozenset({"_shared_map", "_shared_scene", "_shared_robot", "_shared_full"})
 """The fixtures that return a shared system."""
 IDLE_TESTS = 500
 """A system is stopped if none of so many following tests uses it."""
@@ -23,7 +23,7 @@ _running: dict[str, SharedSystem] = {}
 
 
 class SharedSystem:
-    """A system that is started when a module needs it, and continues with a clean map for the next module."""
+    """A system that is started when a module needs it, and continues for the next module."""
 
     def __init__(
         self, fixture: str, start: Callable[[str], contextlib.AbstractContextManager[System]]
@@ -36,11 +36,15 @@ class SharedSystem:
 
     def begin_anew(self, abox: str) -> System:
         """Return the system with the map that a first `semmap up --abox ABOX` creates."""
+        if self._system is not None:
+            self._system.begin_anew(abox)
+        return self.use(abox)
+
+    def use(self, abox: str) -> System:
+        """Return the system with the map as it is; if it does not run, start it with that map."""
         if self._system is None:
             self._system = self._end.enter_context(self._start(abox))
             _running[self._fixture] = self
-        else:
-            self._system.begin_anew(abox)
         return self._system
 
     def stop(self) -> None:

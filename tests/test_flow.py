@@ -14,27 +14,21 @@ import pytest
 
 from semmap.nodes import bus
 from semmap.nodes.extern.client import connect
-from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
-from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
 from semmap.schemas import errors, keys
 from semmap.schemas.bridge import SnapshotQuery
 from semmap.schemas.commits import Snapshot
-from semmap.schemas.entities import Pose
-from semmap.schemas.scenes import BodyOrder, Scene, SceneQuery, Spawn, Spawned
-from tests.conftest import free_endpoint, running, until
+from semmap.schemas.scenes import Scene, SceneQuery
+from tests.conftest import free_endpoint, until
 
 NODES = ("coordinator", "kb_node", "sim_node", "recorder")
 
 
 @pytest.fixture(scope="module")
-def flat(tmp_path_factory):
+def flat(full_system):
     """The shipped flat, initialised from a non-empty TBox and ABox, with all nodes."""
-    data = tmp_path_factory.mktemp("flat")
-    with running(data, "--tbox", HOUSEHOLD_TTL, "--abox", FLAT_TTL) as system:
-        with system.client() as client:
-            until(lambda: client.status().in_agreement, "map and scene agree")
-        yield system
+    with full_system.client() as client:
+        until(lambda: client.status().in_agreement, "map and scene agree")
+    return full_system
 
 
 @pytest.fixture
@@ -164,7 +158,8 @@ def test_10_export_to_a_named_file_that_loads_back_equal(flat, client, tmp_path,
     assert reply.commit is None, reply.text
 
 
-@pytest.mark.parametrize("node", NODES)
+# A killed recorder begins another recording; the checks of recordings of this system need the whole of one.
+@pytest.mark.parametrize("node", [node for node in NODES if node != "recorder"])
 def test_kill_and_restart_any_one_node(flat, client, node):
     before = {e.name: e.pose for e in client.list()}
     pid = flat.pid(node)
@@ -203,127 +198,9 @@ def _nonsense(folder: Path) -> Path:
     return file
 
 
-def test_ctrl_c_ends_everything_and_the_map_survives(tmp_path):
-    words = ("--abox", "none", "--no-record")
-    with running(tmp_path, *words) as system:
-        with system.client() as client:
-            client.add("Table", "table1", at=(1.0, 1.0, 0.0), wait=True)
-            pids = [n.pid for n in client.status().nodes]
-        system.stop()
-        assert system.process.returncode == 0
-    assert not any(Path(f"/proc/{pid}").exists() for pid in pids)
-    journal = Journal(tmp_path / FILENAME)
-    assert [entity.name for entity in SemanticMap(journal).entities()] == ["table1"]
-    journal.close()
-
-
-def test_two_systems_on_one_machine_do_not_meet(flat, client, empty_map):
-    with empty_map.client() as guest:
-        assert guest.list() == ()
-        guest.add("Table", "table_of_the_other")
-    assert "table_of_the_other" in empty_map.cli("list")
-    assert "table_of_the_other" not in {e.name for e in client.list()}
-    assert "table_of_the_other" not in flat.cli("list")
-
-
 def test_without_a_system_the_result_is_an_error_and_not_an_empty_list():
     with pytest.raises(errors.NoAnswer), connect(free_endpoint()):
         pass
-
-
-SCENE = """<mujoco><custom><text name="semmap:mug" data="Cup"/><text name="semmap:seat" data="Seat"/>
-<text name="semmap:stool_9" data="Stool"/></custom>
-<worldbody><geom type="plane" size="5 5 .1"/><light pos="0 0 3"/>
-<body name="chair_3" pos="1 1 .25"><freejoint/><geom type="box" size=".2 .2 .25" mass="5"/>
-<body name="seat"><geom type="box" size=".1 .1 .01" mass=".1"/></body></body>
-<body name="mug" pos="2 1 .05"><freejoint/><geom type="cylinder" size=".04 .05" mass=".2"/></body>
-<body name="gizmo_1" pos="-1 1 .05"><freejoint/><geom type="box" size=".05 .05 .05" mass=".2"/></body>
-</worldbody></mujoco>"""
-
-
-def test_in_mode_scene_the_map_follows_what_stands_in_the_simulator(tmp_path):
-    world = tmp_path / "world.xml"
-    world.write_text(SCENE)
-    words = ("--abox", "none", "--world", world, "--truth", "scene", "--no-record")
-    with running(tmp_path / "data", *words) as system, system.client() as client:
-        names = {"chair_3", "seat", "mug", "gizmo_1"}
-        until(lambda: {e.name for e in client.list()} == names, "bodies become entities")
-        assert {e.class_ for e in client.list()} == {"Chair", "Seat", "Cup", "Object"}
-        assert client.get("seat").properties["isDirectPartOf"] == "chair_3"
-        assert client.get("mug").provenance.source == "scene"
-        until(
-            lambda: {client.get(name, where=True).shape for name in names} == {"world"},
-            "bodies have their own shapes",
-        )
-        unknown = "unknown class of 1 body of the world: gizmo_1; name the classes in a JSON file"
-        assert any(unknown in line for line in system.said)
-        assert any(unknown in note for node in client.status().nodes for note in node.notes)
-        ignored = "declared but ignored: stool_9 (no such body)"
-        assert any(ignored in line for line in system.said)
-        assert any(ignored in node.detail for node in client.status().nodes)
-        client.move("mug", (2.0, -1.0, 0.1))
-        until(lambda: client.get("mug").pose.position_m[1] < 0, "the map follows the mug")
-        until(lambda: client.status(names=("mug",)).in_agreement, "map and scene agree on the mug")
-
-
-FURNITURE = {
-    name: {"class": class_, "name": name, "at": [i, 2, 0]}
-    for i, (name, class_) in enumerate(
-        [
-            ("chair_7", "Chair"),
-            ("milk", "Milk"),
-            ("beer", "Beer"),
-            ("water", "Water"),
-            ("coffee", "Coffee"),
-            ("dining_table", "Dining_Table"),
-            ("door", "Door"),
-        ]
-    )
-}
-
-
-@pytest.fixture(scope="module")
-def furniture(tmp_path_factory):
-    """A JSON scene, and a system with it as its world, where the scene is the truth."""
-    folder = tmp_path_factory.mktemp("furniture")
-    file = folder / "scene.json"
-    file.write_text(json.dumps({"entities": [*FURNITURE.values()]}))
-    words = ("--abox", "none", "--world", file, "--truth", "scene", "--no-record")
-    with running(folder / "data", *words) as system:
-        yield file, system
-
-
-def test_a_world_in_json_becomes_the_map_and_so_does_what_is_put_in_later(furniture):
-    _, system = furniture
-    with system.client() as client:
-        until(lambda: {e.name for e in client.list()} == {*FURNITURE}, "the furniture becomes entities")
-        assert {e.name: e.class_ for e in client.list()} == {n: f["class"] for n, f in FURNITURE.items()}
-        pose = Pose(position_m=(2.0, -2.0, 0.0))
-        order = BodyOrder(name="cup_1", class_="Cup", model="cup", pose=pose, commit=0)
-        bus.ask(client.session, keys.SIM, "spawn", Spawn(bodies=(order,)), Spawned)
-        until(lambda: {e.name for e in client.list()} == {*FURNITURE, "cup_1"}, "the cup follows")
-        assert client.get("cup_1").class_ == "Cup"
-        client.remove("cup_1")
-
-
-def test_a_file_makes_the_same_bodies_as_a_world_and_when_it_is_loaded(furniture, empty_scene):
-    file, system = furniture
-    with system.client() as client:
-        scene = bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene)
-        as_world = [body for body in scene.bodies if body.name in FURNITURE]
-    with empty_scene.client() as client:
-        client.load(file)
-        until(lambda: client.status().bodies == len(FURNITURE), "the bodies stand")
-        loaded = bus.ask(client.session, keys.SIM, "snapshot", SceneQuery(), Scene).bodies
-        entities = client.list()
-    assert described_by(as_world) == described_by(loaded)
-    sizes = {b.name: b.size_m for b in loaded}
-    assert all(e.size_m == pytest.approx(sizes[e.name], abs=1e-4) for e in entities)
-    assert all(e.body.own_size for e in entities)
-
-
-def described_by(bodies):
-    return {body.name: (body.class_, body.model, body.size_m, body.fixed) for body in bodies}
 
 
 @pytest.mark.long

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 import pytest
 
 from semmap.schemas import errors
-from tests.conftest import running, until
+from tests.conftest import until
 
 
 @contextmanager
@@ -35,11 +35,11 @@ def fill(client):
         client.add("Chair", f"big{i}", at=(2.0, i, 0.0), alt=alt)
 
 
-def test_commits_are_refused_until_there_is_space_again(tmp_path):
-    with running(tmp_path, "--abox", "none", "--no-sim", "--no-record") as system, system.client() as client:
+def test_commits_are_refused_until_there_is_space_again(empty_map):
+    with empty_map.client() as client:
         client.add("Chair", "chair1", at=(1.0, 1.0, 0.0))
         before = node(client)
-        with full(tmp_path, before.pid):
+        with full(empty_map.data, before.pid):
             with pytest.raises(errors.Refused, match=r"commit \d+ could not be written to .*journal\.sqlite"):
                 fill(client)
             there = {e.name for e in client.list()}

@@ -1,6 +1,5 @@
 """Attachments in a whole system: commands, manual moves and the map agree."""
 
-import json
 import os
 import re
 import signal
@@ -12,26 +11,20 @@ from semmap.schemas import errors, keys
 from semmap.schemas.attachments import grip_of, holder_of
 from semmap.schemas.entities import compose, distance_m
 from semmap.schemas.scenes import Grip, GripOrder, Gripped, Scene, SceneQuery
-from tests.conftest import running, until
-
-OPTIONS = (
-    *("--no-record", "--abox", "none", "--world", "empty"),
-    *("--robot", "porter", "--robot-at", "-2", "0", "0"),
-)
-
+from tests.conftest import until
 
 HOME = (-2.0, 0.0, 0.0)
 TABLE, TRAY, CUP = (0.0, 0.0, 0.0), (3.0, 0.0, 0.0), (0.0, 0.0, 0.8)
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
+def system(robot_scene):
     """A system with a robot in a corner of the kitchen; the other things are put where they are each time."""
-    with running(tmp_path_factory.mktemp("grips"), *OPTIONS) as system:
-        with system.client() as client:
-            client.add("Kitchen", "kitchen1", at=(0.0, 0.0, 0.0), size=(20.0, 20.0, 3.0))
-            until(lambda: {"robot1", "robot1_gripper"} <= {e.name for e in client.list()}, "the robot")
-        yield system
+    with robot_scene.client() as client:
+        client.move("robot1", at=HOME, yaw=0.0)
+        client.add("Kitchen", "kitchen1", at=(0.0, 0.0, 0.0), size=(20.0, 20.0, 3.0))
+        yield robot_scene
+        client.remove("kitchen1")
 
 
 @pytest.fixture
@@ -241,37 +234,3 @@ def test_what_stands_on_a_tray_is_carried_by_a_robot_and_free_again(porter):
     client.undo(reply.commit)
     assert {holder_of(client.get(n)) for n in ("cup1", "cup2")} == {"tray1"}
     assert client.detach("tray1").text.endswith("; also detached: cup1 and cup2")
-
-
-WORLD = {
-    "entities": [
-        {"class": "Table", "name": "table1", "at": [3.0, 0.0, 0.0]},
-        {"class": "Tray", "name": "tray1", "at": [0.0, -2.0, 0.0]},
-        {"class": "Cup", "name": "cup1", "at": [0.08, -2.0, 0.02]},
-        {"class": "Cup", "name": "cup2", "at": [-0.08, -2.0, 0.02]},
-    ]
-}
-
-
-@pytest.mark.long
-def test_where_the_scene_is_the_truth_what_stands_on_it_is_taken_along_there_first(tmp_path):
-    (tmp_path / "world.json").write_text(json.dumps(WORLD))
-    options = ("--abox", "none", "--world", tmp_path / "world.json", "--truth", "scene", "--no-record")
-    with running(tmp_path, *options) as system, system.client() as client:
-        until(lambda: [e.name for e in client.list(on="tray1")] == ["cup1", "cup2"], "the map follows")
-        agree(client, "tray1", "cup1", "cup2")
-        with pytest.raises(errors.BadRequest, match="--leave requires --carry"):
-            client.attach("tray1", to="table1", leave=("cup1",))
-        reply = client.attach("tray1", to="table1", at=(0.0, 0.0, 0.8), carry=True, leave=("cup1",))
-        assert "cup2 moved with tray1" in reply.text
-        agree(client, "tray1", "cup1", "cup2")
-        assert [holder_of(client.get(n)) for n in ("cup1", "cup2")] == ["", "tray1"]
-        scene = scene_of(client)
-        there = {body.name: body for body in scene.bodies}
-        assert {name: body.held_by for name, body in there.items()} == {
-            "table1": "", "tray1": "table1", "cup1": "", "cup2": "tray1"
-        }  # fmt: skip
-        assert there["cup2"].pose.position_m == pytest.approx((2.92, 0.0, 0.81), abs=0.03)
-        assert client.detach("tray1").names == ("tray1", "cup2")
-        agree(client, "tray1", "cup1", "cup2")
-        assert holder_of(client.get("cup2")) == ""

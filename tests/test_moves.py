@@ -8,7 +8,7 @@ from semmap import aio
 from semmap.nodes import bus
 from semmap.schemas import errors, keys
 from semmap.schemas.scenes import Scene, SceneQuery
-from tests.conftest import running
+from tests.conftest import until
 from tests.depth import tries
 
 TIMES = tries(12)
@@ -16,13 +16,15 @@ PLACE = "(2, 1.2,"
 
 
 @pytest.fixture(scope="module")
-def system(tmp_path_factory):
-    words = ("--no-record", "--robot", "porter", "--robot-at", "7.4", "2", "0")
-    with running(tmp_path_factory.mktemp("moves"), *words) as system:
-        with system.client() as client:
-            client.add("Fridge", "fridge9", at=(-3.0, -3.0, 0.0), wait=True)
-            client.add("Chair", "chair9", at=(-3.0, 0.0, 0.0), wait=True)
-        yield system
+def system(robot_scene):
+    with robot_scene.client() as client:
+        client.move("robot1", at=(7.4, 2.0, 0.0), yaw=0.0)
+        client.add("Fridge", "fridge9", at=(-3.0, -3.0, 0.0), wait=True)
+        client.add("Chair", "chair9", at=(-3.0, 0.0, 0.0), wait=True)
+        mine = ("robot1", "robot1_gripper", "fridge9", "chair9")
+        until(lambda: client.status(names=mine).in_agreement, "map and scene agree")
+        yield robot_scene
+        client.remove("fridge9", "chair9")
 
 
 @pytest.fixture
@@ -44,7 +46,7 @@ def height(client, name):
 
 def test_by_python_an_undo_takes_back_the_move_and_not_what_was_added_before(client):
     for turn in range(TIMES):
-        added = client.add("Beer", f"beer{90 + turn}", at=(8.1, 2.3, 0.76), wait=True)
+        added = client.add("Beer", f"beer{90 + turn}", at=(8.1, 2.3, 0.0), wait=True)
         before = placed(client)
         moved = client.move("chair9", (-2.0, 0.5 + turn % 2, 0.05))
         assert moved.commit is not None
@@ -61,7 +63,7 @@ def test_by_python_an_undo_takes_back_the_move_and_not_what_was_added_before(cli
 
 def test_on_the_command_line_an_undo_takes_back_the_move_and_not_what_was_added_before(system):
     for turn in range(TIMES):
-        system.cli("add", "Beer", "beer80", "--at", "8.1", "2.3", "0.76", "--wait")
+        system.cli("add", "Beer", "beer80", "--at", "8.1", "2.3", "0", "--wait")
         wait = ("--wait",) if turn % 2 else ()
         moved = system.cli("move", "chair9", "--at", "-2", "1.5", "0.05", *wait)
         assert moved.startswith("moved chair9 to (-2, 1.5, ")

@@ -60,3 +60,11 @@ def test_without_a_simulator_and_on_an_event_loop(flat_map):
             return reply.names, [entity.name for entity in await client.list("Milk")]
 
     assert asyncio.run(session()) == (("oat_milk",), ["oat_milk"])
+
+
+def test_two_systems_on_one_machine_do_not_meet(flat_map, flat_scene):
+    with flat_map.client() as client, flat_scene.client() as other:
+        client.add("Table", "table_of_the_other")
+        assert "table_of_the_other" in {entity.name for entity in client.list()}
+        assert "table_of_the_other" not in {entity.name for entity in other.list()}
+    assert "table_of_the_other" not in flat_scene.cli("list")

@@ -7,14 +7,16 @@ from pathlib import Path
 
 import pytest
 
+from semmap.nodes.extern.client import connect
+from semmap.nodes.extern.testing import free_endpoint, own_system
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 from semmap.nodes.kb_node.undo import undo
+from semmap.nodes.supervisor.control import Supervisor
 from semmap.schemas import errors
 from semmap.schemas.bridge import TakeBack
 from semmap.schemas.commands import History
-from tests.conftest import running
 
 STORED = sorted((Path(__file__).parent / "data").glob("written_by_*.tar.xz"))
 NOW = {"astrolabe1", "beer1", "cup1", "kitchen1", "table1"}
@@ -101,11 +103,14 @@ def test_it_goes_on_and_opens_again(data):
 
 
 def test_a_system_starts_on_it(data):
-    with running(data, "--no-sim", "--no-record") as system:
-        assert "continuing with the map" in "".join(system.said)
-        assert "5 entities" in system.cli("list")
-        assert "3 entities" in system.cli("list", "--as-of", "5")
-        assert "9 commits" in system.cli("history")
-        system.cli("undo")
-        assert "coffee cup" in system.cli("get", "cup1")
-        assert system.cli("check").startswith("consistent")
+    """As in the test of a program that uses semmap: the system is there for it, and gone afterwards."""
+    endpoint = free_endpoint()
+    with own_system(data, "--no-sim", "--no-record", endpoint=endpoint) as client:
+        assert {entity.name for entity in client.list()} == NOW
+        assert len(client.list(as_of=5)) == 3
+        assert len(client.history()) == 9
+        client.undo()
+        with connect(endpoint) as other:
+            assert other.get("cup1").preferred_reference == "coffee cup"
+        assert client.check().consistent
+    assert not Supervisor(data).is_running()

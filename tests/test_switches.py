@@ -3,21 +3,15 @@
 import pytest
 
 from semmap.schemas import errors
-from tests.conftest import running, until
-from tests.sim_node.physics.test_joint_texts import STOVE
+from tests.conftest import until
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("switches")
-    world = folder / "stove.xml"
-    world.write_text(STOVE.replace('<text name="semmap-off:lever" data="upper"/>', ""))
-    with (
-        running(folder / "data", "--abox", "none", "--world", str(world), "--no-record") as system,
-        system.client() as client,
-    ):
-        client.add("Oven", "stove", at=(0.0, 0.0, 0.0), wait=True)
+def client(robot_scene):
+    with robot_scene.client() as client:
+        client.add("Oven", "stove", at=(-8.0, 0.0, 0.0), wait=True)
         yield client
+        client.remove("stove")
 
 
 def said(client):

@@ -59,6 +59,11 @@ def semantic_map(tmp_path: Path):
 
 @pytest.fixture
 def dispatcher(semantic_map):
+    return new_dispatcher(semantic_map)
+
+
+def new_dispatcher(semantic_map):
+    """Return a dispatcher whose knowledge base is this map."""
     answers = {
         "commit": lambda transaction: _changed(
             semantic_map, lambda: semantic_map.commit(transaction), transaction.dry_run

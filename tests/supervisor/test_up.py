@@ -4,25 +4,36 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
 import resource
+import signal
 import socket
+import sqlite3
 import subprocess
 import sys
+import time
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 
+from semmap.nodes import bus
 from semmap.nodes.extern.cli.app import execute
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.kb_node.storage.seed import seed
-from semmap.nodes.supervisor.settings import JOURNAL, SETTINGS
-from semmap.nodes.supervisor.up import require_files
+from semmap.nodes.supervisor.control import Supervisor
+from semmap.nodes.supervisor.settings import JOURNAL, SETTINGS, Settings
+from semmap.nodes.supervisor.up import _Foreground, require_files
+from semmap.nodes.supervisor.watchdog import SILENT_S
 from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
-from tests.conftest import PATIENCE_S, free_endpoint, running
+from tests.conftest import PATIENCE_S, free_endpoint, running, until
+from tests.household import household_classes
 
+SLOW_S = SILENT_S + 2.0
+"""Longer than any process may be silent while the system runs."""
 BASE = "http://www.semanticweb.org/ontologies/2016/1/semantic_mapping"
 
 
@@ -180,19 +191,24 @@ def test_an_unreadable_ontology_is_reported(tmp_path, text, said):
     assert said in line
 
 
-def test_a_model_file_without_class_is_reported(tmp_path):
-    models = tmp_path / "models"
+def test_a_model_file_without_class_is_reported(tmp_path, monkeypatch):
+    models, said = tmp_path / "models", []
     models.mkdir()
-    for name in ("chair.obj", "chiar.obj"):
-        (models / name).write_text("")
-    words = ("--models", models, "--abox", "none", "--no-record")
-    with running(tmp_path / "data", *words) as system:
-        (line,) = [line for line in system.said if line.startswith("models ")]
+    (models / "chiar.obj").write_text("")
+    replies = {"classes": household_classes(), "list": ()}
+    monkeypatch.setattr(bus, "ask", lambda session, prefix, verb, *ignored: replies[verb])
+    settings = Settings(data=str(tmp_path), tbox="", abox=None, world="", models=str(models))
+    foreground = _Foreground(Supervisor(tmp_path), settings, None, None, said.append)
+    foreground._report_models(None)
+    (line,) = said
     assert "ignored, because no class has a model with this name: chiar.obj (did you mean chair" in line
 
 
 def test_a_system_is_the_only_one_of_its_folder_and_is_stopped_by_its_endpoint(tmp_path, monkeypatch):
-    """The modules in the working directory do not matter, and another version can stop it."""
+    """The modules in the working directory do not matter, and another version can stop it.
+
+    Stopping waits for a slow knowledge base, because it may be writing a checkpoint.
+    """
     folder = tmp_path / "mine"
     folder.mkdir()
     for module in ("queue", "nodes", "supervisor"):
@@ -202,6 +218,7 @@ def test_a_system_is_the_only_one_of_its_folder_and_is_stopped_by_its_endpoint(t
     with running(data, "--abox", "none", "--no-sim", "--no-record") as system:
         with system.client() as client:
             assert client.sparql("ASK { ?s ?p ?o }").verdict
+            client.add("Cup", "cup1", at=(1.0, 2.0, 0.0))
         status, line = up(data)
         assert status == 1
         assert f"semmap down --data '{data}'" in line
@@ -210,6 +227,20 @@ def test_a_system_is_the_only_one_of_its_folder_and_is_stopped_by_its_endpoint(t
         status, line = down("--data", tmp_path / "other")
         assert status == 3
         assert f"{data} ({system.endpoint})" in line
-        assert down("--connect", system.endpoint) == (0, "stopped")
+        pid = system.pid("kb_node")
+        os.kill(pid, signal.SIGSTOP)
+        with system.spawned("down", "--connect", system.endpoint) as stopping:
+            time.sleep(SLOW_S)
+            os.kill(pid, signal.SIGCONT)
+            said, _ = stopping.communicate(timeout=PATIENCE_S)
+        assert (stopping.returncode, said) == (0, "stopped\n")
+        assert system.process.wait(timeout=PATIENCE_S) == 0
+        until(lambda: system.said[-1] == "stopped\n", "its last log line")
+        assert not any("does not answer" in line for line in system.said)
     assert down("--connect", system.endpoint)[0] == 3
     assert down("--data", data)[0] == 3
+    with closing(sqlite3.connect(data / JOURNAL)) as journal:
+        ((checkpoint, last),) = journal.execute(
+            "SELECT (SELECT max(seq) FROM checkpoints), (SELECT max(seq) FROM commits)"
+        )
+    assert checkpoint == last >= 2

@@ -7,35 +7,30 @@ import re
 import pytest
 
 from semmap.schemas import errors
-from tests.conftest import running, until
+from tests.conftest import until
 
 
 # What the truth changes is decided in `test_reconcile.py` and `test_agreement.py`.
-@pytest.fixture(scope="module", params=["map", pytest.param("perceived", marks=pytest.mark.long)])
-def system(request, tmp_path_factory):
-    words = ("--no-record", "--robot", "porter", "--robot-at", "7.4", "2", "0", "--truth", request.param)
-    with running(tmp_path_factory.mktemp("robot"), *words) as system:
-        yield system
-
-
-def names(client) -> set[str]:
-    return {entity.name for entity in client.list()}
+@pytest.fixture(scope="module")
+def system(robot_scene):
+    with robot_scene.client() as client:
+        client.move("robot1", at=(7.4, 2.0, 0.0), yaw=0.0)
+        client.add("Fridge", "fridge7", at=(7.0, -1.0, 0.0), wait=True)
+        yield robot_scene
+        client.remove("fridge7")
 
 
 def test_it_drives_live_and_is_committed_where_it_stops(system):
     with system.client() as client:
-        until(lambda: "robot1" in names(client), "the robot among the entities")
         robot = until(lambda: (e := client.get("robot1")).live and e, "where it is, live")
         assert (robot.class_, robot.tracked, robot.live.source) == ("Robot", "sim", "sim")
-        until(lambda: "robot1_gripper" in names(client), "its gripper among them")
-        if (truth := client.status().truth) == "map":
-            until(lambda: client.status(names=("robot1",)).in_agreement, "map and scene agree on it")
+        until(lambda: client.status(names=("robot1",)).in_agreement, "map and scene agree on it")
         before = {commit.seq for commit in client.history("robot1")}
         said = client.drive("robot1", to=((7.4, 2.0), (7.0, 1.2)), yaw=0.0, wait=False).text
         assert "on its way" in said
         until(lambda: client.get("robot1").live.pose.position_m[1] < 1.7, "that it is on its way")
         status = client.status()
-        assert status.in_agreement is (False if truth == "map" else None)
+        assert status.in_agreement is False
         (said,) = (line for line in status.displaced if line.startswith("robot1"))
         assert re.fullmatch(r"robot1 is moving: [\d.]+ m from its committed pose", said)
         assert not any("moving" in problem for problem in status.problems)
@@ -43,7 +38,7 @@ def test_it_drives_live_and_is_committed_where_it_stops(system):
         assert "is at (7.0" in driven.text
         assert client.get("robot1").pose.position_m[1] == pytest.approx(1.0, abs=0.03)
         assert driven.commit in {commit.seq for commit in client.history("robot1")} - before
-        until(lambda: not client.status().displaced, "nothing is displaced any more")
+        until(lambda: not client.status(names=("robot1",)).displaced, "it is no longer displaced")
 
 
 def test_what_cannot_be_driven_there_is_said(system):
