@@ -27,6 +27,7 @@ from semmap.nodes.kb_node.answers.past import (
     past_map,
     trails,
 )
+from semmap.nodes.kb_node.answers.past.renames import Renames
 from semmap.nodes.kb_node.answers.past.trail_recording import TrailRecorder
 from semmap.nodes.kb_node.answers.route_planning import RoutePlanning
 from semmap.nodes.kb_node.answers.sightings import Sightings, describe_closed, find_closed_container
@@ -307,7 +308,9 @@ class QueryHandlers:
         if query.relation != "isLocatedIn":
             return found
         now_ns = time.time_ns()
-        return trails.add_visits(found, trails.Trails(self._trail_lines(), now_ns, {found.subject}), now_ns)
+        renames = Renames.of(self._past, (found.subject, found.object)).in_time(self._journal)
+        lines = renames.in_trail(self._trail_lines())
+        return trails.add_visits(found, trails.Trails(lines, now_ns, {found.subject}), now_ns)
 
     def _trail_lines(self) -> Iterator[TrailLine]:
         return trail_file.read_lines(self._journal.path.parent)

@@ -230,6 +230,23 @@ class HistoryReader:
         self._require_known(word)
         return word
 
+    def resolve_renamed(self, word: str, present: Sequence[Entity]) -> str:
+        """Return the same, but the present name for the earlier name of a renamed entity."""
+        name = self.resolve(word, present)
+        if any(entity.name == name for entity in present):
+            return name
+        return self.find_later_names([name], self._journal.last).get(name, name)
+
+    def touching(self, name: str) -> list[tuple[int, str]]:
+        """Return the commits that touched an entity, in order, each with the name that it had then."""
+        found: list[tuple[int, str]] = []
+        until = self._journal.last
+        for since, had in self.list_names(name):
+            seqs = self._journal.touching(had, after=max(since - 1, 0), until=until)
+            found += [(seq, had) for seq in reversed(seqs)]
+            until = since - 1
+        return found[::-1]
+
     def _require_known(self, name: str) -> None:
         if not self.knows(name):
             known = [there for there, _ in self._journal.last_touches(self._journal.last)]
