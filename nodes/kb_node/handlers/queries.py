@@ -23,6 +23,7 @@ from semmap.nodes.kb_node.answers.past import (
     commit_selection,
     differences,
     fact_intervals,
+    individual_history,
     live_sightings,
     past_map,
     trails,
@@ -355,10 +356,16 @@ class QueryHandlers:
         )
 
     def on_history(self, query: History) -> Future[tuple[LoggedCommit, ...]]:
-        """Return commits of the history."""
-        if query.name is not None:
-            query = structs.replace(query, name=self._resolve_past(query.name))
+        """Return commits of the history, of an entity, or of an individual that is not in space."""
         limits = self._map.classes.limits
+        if (word := query.name) is not None:
+            try:
+                query = structs.replace(query, name=self._resolve_past(word))
+            except errors.UnknownName:
+                term = self._map.individuals.find_term(word)
+                return self._aside.submit(
+                    individual_history.list_commits, self._journal, self._past, query, limits, term
+                )
         return self._aside.submit(commit_selection.list_commits, self._journal, self._past, query, limits)
 
     def on_last_seen(self, query: LastSeen) -> Sighting | Future[Sighting]:
@@ -398,6 +405,9 @@ class QueryHandlers:
         """Return the name, present or former, that a word means. Raises UnknownName, BadRequest."""
         if self._map.find(word) is not None:
             return word
+        iri = self._map.individuals.parse_iri(word)
+        if iri is not None and (entity := self._map.find_by_individual(iri)) is not None:
+            return entity.name
         return self._past.resolve(word, tuple(self._map.entities()))
 
     def _seen(self, name: str) -> str:
