@@ -146,9 +146,9 @@ def _expand_intents(
 
 
 def _require_only_properties(individual: Entity, edit: Edit) -> None:
-    """Raise Refused if an edit changes more than properties of an individual that is not in space."""
-    if structs.replace(edit, set=(), unset=(), only_if=()) != Edit(name=edit.name):
+    """Raise Refused if an edit changes more than properties and the name of an individual not in space."""
+    if structs.replace(edit, set=(), unset=(), only_if=(), rename=None) != Edit(name=edit.name):
         raise errors.Refused(
-            f"{individual.name} is not in space, so only its properties can be changed;"
+            f"{individual.name} is not in space, so only its properties and its name can be changed;"
             f" see: semmap set {individual.name} PROPERTY VALUE"
         )

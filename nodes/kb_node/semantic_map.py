@@ -156,16 +156,24 @@ class SemanticMap(MapState):
             return self._make_commit(transaction)
 
     def _make_commit(self, transaction: Transaction) -> Commit | None:
+        return self._run_valid(partial(self._make_valid_commit, transaction), self.enforcement)
+
+    def _run_valid(
+        self, change: Callable[[ShapeEnforcement | None], C], enforcement: ShapeEnforcement | None
+    ) -> C:
+        """Return the commit of `change(enforcement)`. Raises Refused for violations that are new with it."""
         try:
-            return self._make_valid_commit(transaction, self.enforcement)
+            return change(enforcement)
         except ViolatesShapes as violation:
             self._require_known(violation)
-            return self._make_valid_commit(transaction, None)
+            return change(None)
 
     def _require_known(self, violation: ViolatesShapes) -> None:
         """Raise Refused for violations that the map did not have before the commit, which is reverted."""
-        known = self.enforcement.find_violations(violation.touched, self.reasoner) if self.enforcement else []
-        if new := [result for result in violation.results if result not in known]:
+        enforcement = self.enforcement
+        before = enforcement.find_violations(violation.touched, self.reasoner) if enforcement else []
+        known = {structs.replace(result, shape="") for result in before}  # a new TBox may have other names
+        if new := [one for one in violation.results if structs.replace(one, shape="") not in known]:
             raise errors.Refused(violations.describe_rejection(new, self))
 
     def _make_valid_commit(
@@ -271,12 +279,16 @@ class SemanticMap(MapState):
         before = self.classes
         enforcement = None if self.enforcement is None else ShapeEnforcement(new)
 
-        def make_durable(commit: Commit) -> Commit:
-            tbox_validation.require_fit(self.abox(), before, self.classes)
-            return self._write(commit, rdf.serialise(new, "ntriples"))
+        def replace(enforced: ShapeEnforcement | None) -> Commit:
+            def make_durable(commit: Commit) -> Commit:
+                tbox_validation.require_fit(self.abox(), before, self.classes)
+                if enforced is not None:
+                    enforced.require(None, self.reasoner)
+                return self._write(commit, rdf.serialise(new, "ntriples"))
 
-        switch = partial(self._applier.switch, commit, new, make_durable, closed, strict=strict)
-        made = self._run_change(lambda: self._accept(switch()))
+            return self._accept(self._applier.switch(commit, new, make_durable, closed, strict=strict))
+
+        made = self._run_change(lambda: self._run_valid(replace, enforcement))
         self.enforcement = enforcement
         return made
 

@@ -198,13 +198,18 @@ def _find_changed(made: Effects | None, name: str) -> Entity | None:
 
 @handles(Rename)
 def rename(view: MapView, command: Rename) -> KbCoroutine[Changed]:
-    """Rename an entity. Raises Refused if its name is fixed by something else, NameTaken."""
-    entity = view.entity(command.name)
+    """Rename an entity, or an individual that is not in space.
+
+    Raises Refused if its name is fixed by something else, NameTaken.
+    """
+    entity = view.entities.get(command.name) or (yield from individuals.find_individual(view, command.name))
     if command.new == entity.name:
         return make_reply(None, f"unchanged: the name is already {entity.name}", names=(entity.name,))
     if command.new in view.entities:
         raise errors.NameTaken(f"the name '{command.new}' is taken; see: semmap get {command.new}")
     require_authority(command, [entity])
+    if not entity.in_space:
+        return (yield from individuals.rename_individual(view, entity, command))
     _require_renamable(view, entity)
     reason = f"rename {entity.name} to {command.new}"
     renaming = Edit(name=entity.name, rename=command.new)

@@ -9,8 +9,8 @@ from semmap.nodes.coordinator.commands.commit import commit, make_reply
 from semmap.nodes.coordinator.commands.map_view import MapView
 from semmap.nodes.coordinator.kb_coroutines import KbCoroutine, ask
 from semmap.schemas import changes, errors
-from semmap.schemas.commands import Get
-from semmap.schemas.commits import Transaction
+from semmap.schemas.commands import Get, Rename
+from semmap.schemas.commits import Edit, Transaction
 from semmap.schemas.entities import Entity
 from semmap.schemas.relations import Described
 from semmap.schemas.replies import Changed
@@ -28,6 +28,20 @@ def find_individual(view: MapView, word: str) -> KbCoroutine[Entity]:
         return found
     is_iri = found is not None and found.iri == word.removeprefix("<").removesuffix(">")
     return view.entity(found.name if found is not None and is_iri else word)
+
+
+def rename_individual(view: MapView, was: Entity, command: Rename) -> KbCoroutine[Changed]:
+    """Commit another last part of the IRI of an individual. Raises NameTaken."""
+    try:
+        found: Described | None = yield from ask(Get(name=command.new))
+    except errors.UnknownName:
+        found = None
+    if found is not None and found.name == command.new:
+        raise errors.NameTaken(f"the name '{command.new}' is taken; see: semmap get {command.new}")
+    reason = f"rename {was.name} to {command.new}"
+    renaming = Edit(name=f"<{was.iri}>", rename=command.new)
+    made = yield from commit(view, transactions.build(command, reason, edit=[renaming]))
+    return make_reply(made, f"renamed {was.name} to {command.new}", names=(command.new,))
 
 
 def change_individual(view: MapView, was: Entity, transaction: Transaction) -> KbCoroutine[Changed]:

@@ -207,7 +207,8 @@ class Draft:
             raise errors.NameTaken(
                 f"the name '{name}' is taken by an individual that is not an entity; use another name"
             )
-        self._require_primary(entity, new, name)
+        if entity.in_space:
+            self._require_primary(entity, new, name)
         asserted = {*self._reasoner.asserted(iri), *self._reasoner.asserted(None, None, iri)}
         triples = sorted(
             t for t in (*asserted, *self.insert) if iri in (t[0], t[2]) and t not in self.retract

@@ -93,11 +93,6 @@ class LoadHandlers:
     def on_load(self, load: LoadDocument) -> Loaded | Future[Loaded]:
         """Load an RDF document in one commit or in parts."""
         content = unpacked(load.content, load.filename)
-        if load.tbox_from_abox and self._map.enforcement is not None:
-            raise errors.Refused(
-                "--tbox-from-abox cannot be used with --enforce-shapes; load the classes first, with"
-                " --tbox --extend"
-            )
         label = f"f{hashlib.blake2b(load.id.encode(), digest_size=4).hexdigest()}"  # stable across retries
         read = partial(self._parser.read, content, load.filename, label, graph=load.graph)
 
@@ -246,10 +241,7 @@ class LoadHandlers:
         return (tried.trial.changed if tried is not None and tried.trial is not None else (), tried)
 
     def _extend_and_load(self, load: LoadDocument, document: rdf.Document) -> Loaded | Future[Loaded]:
-        """Load an RDF document in one commit that adds its declarations to the TBox.
-
-        A commit that changes the TBox is not validated, so `on_load` refuses this where shapes are enforced.
-        """
+        """Load an RDF document in one commit that adds its declarations to the TBox."""
         if (earlier := self._journal.commit_of(load.id)) is not None:
             return Loaded(commit=effects(earlier), names=earlier.names, skipped=(), notes=())
         before = self._map.tbox

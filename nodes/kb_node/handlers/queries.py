@@ -23,10 +23,12 @@ from semmap.nodes.kb_node.answers.past import (
     commit_selection,
     differences,
     fact_intervals,
+    individual_history,
     live_sightings,
     past_map,
     trails,
 )
+from semmap.nodes.kb_node.answers.past.renames import Renames
 from semmap.nodes.kb_node.answers.past.trail_recording import TrailRecorder
 from semmap.nodes.kb_node.answers.route_planning import RoutePlanning
 from semmap.nodes.kb_node.answers.sightings import Sightings, describe_closed, find_closed_container
@@ -307,7 +309,9 @@ class QueryHandlers:
         if query.relation != "isLocatedIn":
             return found
         now_ns = time.time_ns()
-        return trails.add_visits(found, trails.Trails(self._trail_lines(), now_ns, {found.subject}), now_ns)
+        renames = Renames.of(self._past, (found.subject, found.object)).in_time(self._journal)
+        lines = renames.in_trail(self._trail_lines())
+        return trails.add_visits(found, trails.Trails(lines, now_ns, {found.subject}), now_ns)
 
     def _trail_lines(self) -> Iterator[TrailLine]:
         return trail_file.read_lines(self._journal.path.parent)
@@ -352,10 +356,16 @@ class QueryHandlers:
         )
 
     def on_history(self, query: History) -> Future[tuple[LoggedCommit, ...]]:
-        """Return commits of the history."""
-        if query.name is not None:
-            query = structs.replace(query, name=self._resolve_past(query.name))
+        """Return commits of the history, of an entity, or of an individual that is not in space."""
         limits = self._map.classes.limits
+        if (word := query.name) is not None:
+            try:
+                query = structs.replace(query, name=self._resolve_past(word))
+            except errors.UnknownName:
+                term = self._map.individuals.find_term(word)
+                return self._aside.submit(
+                    individual_history.list_commits, self._journal, self._past, query, limits, term
+                )
         return self._aside.submit(commit_selection.list_commits, self._journal, self._past, query, limits)
 
     def on_last_seen(self, query: LastSeen) -> Sighting | Future[Sighting]:
@@ -395,6 +405,9 @@ class QueryHandlers:
         """Return the name, present or former, that a word means. Raises UnknownName, BadRequest."""
         if self._map.find(word) is not None:
             return word
+        iri = self._map.individuals.parse_iri(word)
+        if iri is not None and (entity := self._map.find_by_individual(iri)) is not None:
+            return entity.name
         return self._past.resolve(word, tuple(self._map.entities()))
 
     def _seen(self, name: str) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.shacl.results import Result
 from semmap.nodes.kb_node.shacl.shape_triples import find_cycle, find_shapes, select_shapes
-from semmap.nodes.kb_node.shacl.touched_individuals import TouchedIndividuals
+from semmap.nodes.kb_node.shacl.touched_individuals import Reach, TouchedIndividuals
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.commits import Commit
@@ -30,8 +30,8 @@ log = logging.getLogger(__name__)
 class ViolatesShapes(Exception):
     """A commit with facts that violate shapes."""
 
-    def __init__(self, results: list[Result], touched: set[Term]) -> None:
-        """Create it; `touched` are the individuals that were validated."""
+    def __init__(self, results: list[Result], touched: set[Term] | None) -> None:
+        """Create it; `touched` are the individuals that were validated, or None for all of the map."""
         super().__init__()
         self.results = results
         self.touched = touched
@@ -47,6 +47,7 @@ class ShapeEnforcement:
         """
         tbox = list(tbox)
         self._shapes: Shapes | None = None
+        self._reach = Reach.of(tbox)
         self._failures = set[str]()
         """The errors that have been logged."""
         if find_shapes(tbox):
@@ -62,15 +63,15 @@ class ShapeEnforcement:
 
     def begin(self, commit: Commit, reasoner: Reasoner) -> TouchedIndividuals | None:
         """Prepare to find what a commit touches, before `reasoner` has it. Return None without shapes."""
-        return None if self._shapes is None else TouchedIndividuals(commit, reasoner)
+        return None if self._shapes is None else TouchedIndividuals(commit, reasoner, self._reach)
 
-    def require(self, touched: set[Term], reasoner: Reasoner) -> None:
-        """Raise ViolatesShapes if an individual that a commit touches violates a shape."""
+    def require(self, touched: set[Term] | None, reasoner: Reasoner) -> None:
+        """Raise ViolatesShapes if an individual that a commit touches, or any one, violates a shape."""
         if found := self.find_violations(touched, reasoner):
             raise ViolatesShapes(found, touched)
 
-    def find_violations(self, touched: Collection[Term], reasoner: Reasoner) -> list[Result]:
-        """Return the violations of individuals, without warnings.
+    def find_violations(self, touched: Collection[Term] | None, reasoner: Reasoner) -> list[Result]:
+        """Return the violations of some individuals, or of all, without warnings.
 
         A shape that cannot be evaluated, for example because of the depth of the facts, is logged. It must
         not make the individuals unchangeable.

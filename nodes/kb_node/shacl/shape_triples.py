@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 from typing import Final
 
@@ -22,7 +22,7 @@ PATTERNS_OF_SHAPES: Final[tuple[tuple[Term, Term | None], ...]] = (
     *((v.RDF_TYPE, o) for o in sorted(_SHAPES)),
 )
 """Properties and values of the triples by which `find_shapes` finds shapes; None stands for any value."""
-_REFERENCES: Final = frozenset(
+REFERENCES: Final = frozenset(
     (
         v.RDF_FIRST,
         v.RDF_REST,
@@ -70,7 +70,7 @@ def find_cycle(triples: Iterable[Triple]) -> list[Term]:
     """
     references: dict[Term, set[Term]] = {}
     for s, p, o in triples:
-        if p in _REFERENCES:
+        if p in REFERENCES:
             references.setdefault(s, set()).add(o)
     try:
         TopologicalSorter(references).prepare()
@@ -78,6 +78,15 @@ def find_cycle(triples: Iterable[Triple]) -> list[Term]:
         found: list[Term] = error.args[1]
         return found
     return []
+
+
+def read_list(node: Term, values: Mapping[tuple[Term, Term], Term]) -> Iterator[Term]:
+    """Yield the members of an RDF list. `values` has the triples of lists, by subject and property."""
+    seen = set[Term]()
+    while node not in seen and (node, v.RDF_FIRST) in values:
+        seen.add(node)
+        yield values[node, v.RDF_FIRST]
+        node = values.get((node, v.RDF_REST), v.RDF_NIL)
 
 
 def select_shapes(triples: Iterable[Triple]) -> list[Triple]:

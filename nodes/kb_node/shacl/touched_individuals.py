@@ -2,30 +2,66 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Iterator
 from itertools import chain
+from math import inf
+from typing import Final, NamedTuple
 
 from semmap.nodes.kb_node.derived_facts import DerivedChanges
 from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.shacl.property_paths import PropertyPaths, find_property_paths
+from semmap.nodes.kb_node.shacl.shape_triples import read_list
 from semmap.ontology import vocabulary as v
 from semmap.schemas.commits import Commit
 from semmap.schemas.explanations import Term, Triple
+
+_CHAIN: Final = v.iri(f"{v.OWL}propertyChainAxiom")
+_TRANSITIVE: Final = v.iri(f"{v.OWL}TransitiveProperty")
+_SWRL: Final = "http://www.w3.org/2003/11/swrl#"
+_HEAD: Final = v.iri(f"{_SWRL}head")
+_PREDICATE: Final = v.iri(f"{_SWRL}propertyPredicate")
+
+
+class Reach(NamedTuple):
+    """How far a change may be from the individuals that become valid or invalid by it."""
+
+    paths: PropertyPaths
+    """The property paths of the shapes."""
+    chained: frozenset[Term]
+    """Transitive properties, and the members of property chains."""
+    concluded: frozenset[Term]
+    """The properties in the heads of SWRL rules. What a rule compares may be anywhere in the map."""
+
+    @classmethod
+    def of(cls, tbox: Collection[Triple]) -> Reach:
+        """Return the reach of the shapes and axioms of a TBox."""
+        values = {(s, p): o for s, p, o in tbox if p in (v.RDF_FIRST, v.RDF_REST, _PREDICATE)}
+        chains = (read_list(o, values) for _, p, o in tbox if p == _CHAIN)
+        transitive = (s for s, p, o in tbox if p == v.RDF_TYPE and o == _TRANSITIVE)
+        atoms = chain.from_iterable(read_list(o, values) for _, p, o in tbox if p == _HEAD)
+        return cls(
+            paths=find_property_paths(tbox),
+            chained=frozenset(chain(chain.from_iterable(chains), transitive)),
+            concluded=frozenset(values[atom, _PREDICATE] for atom in atoms if (atom, _PREDICATE) in values),
+        )
 
 
 class TouchedIndividuals:
     """Finds the individuals that a commit touches. It is created before the reasoner has the change.
 
-    They are those whose facts or classes change, their values, and what refers to them. A fact that follows
-    from a chain may change without them: the facts about both ends of each changed triple are compared. A
-    path of more steps may lead to other individuals, which are not found.
+    They are those whose facts or classes change, their values, what refers to them, and the individuals from
+    which the paths of the shapes lead to them. A fact may also follow from a change elsewhere: the facts
+    about both ends of each changed triple and the conclusions of SWRL rules are compared, and the members of
+    property chains are followed.
     """
 
-    def __init__(self, commit: Commit, reasoner: Reasoner) -> None:
+    def __init__(self, commit: Commit, reasoner: Reasoner, reach: Reach) -> None:
         """Read the facts about the individuals of the commit."""
         self._reasoner = reasoner
+        self._reach = reach
         subjects, values = _ends(chain(commit.inserted, commit.retracted))
         self._ends = subjects | _individuals(values)
-        self._before = self._facts_about(self._ends)
+        self._before = self._read_facts()
         self._reclassified = set[Term]()
 
     def add_reclassified(self, terms: Iterable[Term]) -> None:
@@ -34,22 +70,47 @@ class TouchedIndividuals:
 
     def find(self, commit: Commit, derived: DerivedChanges) -> set[Term]:
         """Return the individuals and values. The reasoner has the change, and the commit its entities."""
+        after = self._read_facts()
         subjects, values = _ends(chain(commit.inserted, commit.retracted, *derived))
         core = subjects | self._reclassified | {v.iri(entity.iri) for entity in commit.changed}
-        after = self._facts_about(self._ends)
         referring = {s for s, _, o in self._before | after if o in core}
-        referring.update(s for s, _, _ in self._before ^ after)
         referring.update(s for s, _, _ in self._facts_about(core - self._ends))
-        return core | values | referring
+        changed = [*commit.inserted, *commit.retracted, *chain(*derived), *(self._before ^ after)]
+        subjects, values = self._find_chained(changed)
+        core |= subjects
+        starts = core | values if self._reach.paths.inverse else core
+        reached = self._reach.paths.find_starts(_individuals(starts), self._holding)
+        return core | values | referring | reached
+
+    def _find_chained(self, changed: Iterable[Triple]) -> tuple[set[Term], set[Term]]:
+        """Return the subjects and values of the changed triples, and of what follows by property chains."""
+        changed = [triple for triple in changed if triple[1] != v.RDF_TYPE]
+        relations = [(s, o) for s, _, o in changed if not o.startswith('"')]
+        chained = self._reach.chained
+        subjects = PropertyPaths(forward=chained, length=inf).find_starts(
+            self._reclassified.union(s for s, _ in relations), self._holding
+        )
+        values = PropertyPaths(inverse=chained, length=inf).find_starts(
+            self._reclassified.union(o for _, o in relations), self._holding
+        )
+        return subjects.union(s for s, _, _ in changed), values.union(o for _, _, o in changed)
+
+    def _read_facts(self) -> set[Triple]:
+        """Return the facts about the ends of the changed triples, and those that SWRL rules may conclude."""
+        reasoner = self._reasoner
+        facts = self._facts_about(self._ends)
+        for term in self._ends:
+            facts.update(self._holding(term, None, None))
+        for p in self._reach.concluded:
+            facts.update(reasoner.inferred(None, p, None))
+        return facts
 
     def _facts_about(self, terms: Iterable[Term]) -> set[Triple]:
         """Return the facts whose value is one of `terms`."""
-        reasoner = self._reasoner
-        return {
-            fact
-            for term in terms
-            for fact in chain(reasoner.given(None, None, term), reasoner.inferred(None, None, term))
-        }
+        return {fact for term in terms for fact in self._holding(None, None, term)}
+
+    def _holding(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
+        return chain(self._reasoner.given(s, p, o), self._reasoner.inferred(s, p, o))
 
 
 def _ends(triples: Iterable[Triple]) -> tuple[set[Term], set[Term]]:

@@ -47,7 +47,7 @@ class HistoryReader:
         include those under its earlier names.
         """
         if query.name is not None:
-            self._require_known(query.name)
+            self.require_known(query.name)
         beginning = self._journal.beginning.seq
         if only is None:
             shown = self._list_shown(query)
@@ -185,7 +185,7 @@ class HistoryReader:
 
         Raises UnknownName, also for the earlier name of a renamed entity.
         """
-        self._require_known(name)
+        self.require_known(name)
         removed: Provenance | None = None
         for seq in reversed(self._journal.touching(name)):
             commit = self._journal.commit(seq)
@@ -227,10 +227,28 @@ class HistoryReader:
         """
         if not self.knows(word) and (name := find_single(present, word)) is not None:
             return name
-        self._require_known(word)
+        self.require_known(word)
         return word
 
-    def _require_known(self, name: str) -> None:
+    def resolve_renamed(self, word: str, present: Sequence[Entity]) -> str:
+        """Return the same, but the present name for the earlier name of a renamed entity."""
+        name = self.resolve(word, present)
+        if any(entity.name == name for entity in present):
+            return name
+        return self.find_later_names([name], self._journal.last).get(name, name)
+
+    def touching(self, name: str) -> list[tuple[int, str]]:
+        """Return the commits that touched an entity, in order, each with the name that it had then."""
+        found: list[tuple[int, str]] = []
+        until = self._journal.last
+        for since, had in self.list_names(name):
+            seqs = self._journal.touching(had, after=max(since - 1, 0), until=until)
+            found += [(seq, had) for seq in reversed(seqs)]
+            until = since - 1
+        return found[::-1]
+
+    def require_known(self, name: str) -> None:
+        """Raise UnknownName for a name that no entity ever had."""
         if not self.knows(name):
             known = [there for there, _ in self._journal.last_touches(self._journal.last)]
             since = f" since commit {seq}, which the history begins with" if (seq := self._compacted) else ""

@@ -52,6 +52,19 @@ def test_individuals_and_entities_are_removed_together_or_not_at_all(people, sem
     assert semantic_map.abox() == []
 
 
+def test_an_individual_is_renamed_with_what_refers_to_it(people, semantic_map):
+    semantic_map.commit(transaction(3, turtle(f"<urn:x:bob> <urn:knows> <{ANNA}> .")))
+    made = people.change(c.Rename(name="anna", new="anne"))
+    assert (made.text, made.names) == ("renamed anna to anne", ("anne",))
+    assert semantic_map.described("anne").iri == "http://example.org/people/anne"
+    assert semantic_map.described("bob").properties == {"knows": ("anne",)}
+    for taken in ("bob", "chair1"):
+        with pytest.raises(errors.NameTaken, match=f"the name '{taken}' is taken"):
+            people.change(c.Rename(name="anne", new=taken))
+    with pytest.raises(errors.Refused, match="anne was defined by an operator"):
+        people.change(c.Rename(name="anne", new="anna", source="perception"))
+
+
 def test_an_entity_is_also_given_by_its_iri_but_not_by_its_label(people, semantic_map):
     iri = semantic_map.entity("chair1").iri
     people.change(c.Set(name=iri, property="isOpen", values=(True,)))

@@ -273,7 +273,16 @@ def test_a_map_that_contradicts_its_own_declarations_changes_nothing(semantic_ma
     assert (home.state(semantic_map), semantic_map.tbox) == before
 
 
-def test_declarations_are_not_added_while_shapes_are_enforced(semantic_map):
-    semantic_map.enforcement = ShapeEnforcement(frozenset())
-    with pytest.raises(errors.Refused, match="--tbox-from-abox cannot be used with --enforce-shapes"):
+def test_declarations_and_their_entities_are_validated_together(semantic_map):
+    shapes = home.turtle(
+        "@prefix sh: <http://www.w3.org/ns/shacl#> . :S sh:targetClass dm:Object ;"
+        " sh:property [ sh:path :holds ; sh:maxCount 0 ; sh:message 'holds nothing' ] ."
+    )
+    tbox = {*semantic_map.tbox, *shapes}
+    semantic_map.replace_tbox(home.transaction("shapes"), tbox)
+    semantic_map.enforcement = ShapeEnforcement(tbox)
+    with pytest.raises(errors.Refused, match=r"^mug1: holds nothing; holds; required by the shapes"):
         load_now(semantic_map, with_declarations(1))
+    assert (semantic_map.seq, semantic_map.tbox) == (1, tbox)
+    semantic_map.enforcement = None
+    assert load_now(semantic_map, with_declarations(2)).counts == {"new": 1}

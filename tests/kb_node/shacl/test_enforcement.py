@@ -8,6 +8,7 @@ from tests.kb_node import home
 from tests.kb_node.home import transaction, turtle
 from tests.kb_node.shacl.test_shapes import SH
 
+SWRL = "@prefix swrl: <http://www.w3.org/2003/11/swrl#> .\n"
 SHAPES = turtle(
     SH
     + """
@@ -49,6 +50,54 @@ def test_what_refers_to_a_change_is_validated(enforcing):
     enforcing.commit(transaction(1, turtle(CHAIR)))
     with pytest.raises(errors.Refused, match="chair1: its room is closed"):
         enforcing.commit(transaction(2, turtle(":kitchen1 dm:closed true .")))
+
+
+@pytest.mark.parametrize(
+    ("path", "before", "inserted"),
+    [
+        ("( dm:p dm:q dm:r dm:bad )", ":a dm:p :b . :b dm:q :c . :c dm:r :d .", ":d dm:bad 1 ."),
+        ("( dm:p dm:q dm:r dm:bad )", ":a dm:p :b . :c dm:r :d . :d dm:bad 1 .", ":b dm:q :c ."),
+        ("( [ sh:zeroOrMorePath dm:p ] dm:bad )", ":a dm:p :b . :b dm:p :c . :c dm:p :d .", ":d dm:bad 1 ."),
+        ("( [ sh:inversePath dm:p ] dm:q dm:bad )", ":a dm:q :x . :b dm:p :a ; dm:q :c .", ":c dm:bad 1 ."),
+        (
+            "( dm:q [ sh:inversePath dm:p ] [ sh:inversePath dm:bad ] )",
+            ":a dm:q :c . :e dm:bad :f .",
+            ":f dm:p :c .",
+        ),
+        (
+            "( [ sh:alternativePath ( dm:p dm:q ) ] dm:r dm:bad )",
+            ":a dm:q :b . :b dm:r :c .",
+            ":c dm:bad 1 .",
+        ),
+        (
+            "( dm:p dm:reaches dm:bad )",
+            ":a dm:p :b . :b dm:s :c . :d dm:u :e . :e dm:bad 1 .",
+            ":c dm:t :d .",
+        ),
+        ("( dm:p dm:follows dm:bad )", ":a dm:p :b . :b dm:n 1 . :d dm:bad 1 .", ":d dm:m 1 ."),
+    ],
+)
+def test_individuals_from_which_a_path_leads_to_a_change_are_validated(tmp_path, path, before, inserted):
+    shapes = f":L sh:targetSubjectsOf dm:p , dm:q ; sh:property [ sh:path {path} ; sh:maxCount 0 ] ."
+    rule = """
+dm:reaches owl:propertyChainAxiom ( dm:s dm:t dm:u ) . :x a swrl:Variable . :y a swrl:Variable .
+:n a swrl:Variable . [] a swrl:Imp ;
+    swrl:body ( [ a swrl:DatavaluedPropertyAtom ; swrl:propertyPredicate dm:n ; swrl:argument1 :x ;
+            swrl:argument2 :n ]
+        [ a swrl:DatavaluedPropertyAtom ; swrl:propertyPredicate dm:m ; swrl:argument1 :y ;
+            swrl:argument2 :n ] ) ;
+    swrl:head ( [ a swrl:IndividualPropertyAtom ; swrl:propertyPredicate dm:follows ; swrl:argument1 :x ;
+            swrl:argument2 :y ] ) .
+"""
+    made = home.new_map(tmp_path, [*home.TBOX, *turtle(SH + SWRL + shapes + rule)])
+    made.enforcement = ShapeEnforcement(made.tbox)
+    try:
+        made.commit(transaction(1, turtle(before)))
+        with pytest.raises(errors.Refused, match=r"^a: violates sh:maxCount"):
+            made.commit(transaction(2, turtle(inserted)))
+        assert made.seq == 1
+    finally:
+        home.close(made)
 
 
 @pytest.mark.parametrize(
@@ -105,6 +154,27 @@ def test_each_transaction_of_several_is_validated(enforcing):
     )
     assert made[0].seq == enforcing.seq == 1
     assert isinstance(made[1], errors.Refused)
+
+
+def test_a_tbox_is_refused_if_the_map_violates_its_shapes(enforcing):
+    enforcing.commit(transaction(1, turtle(CHAIR + ":x a dm:Door .")))
+    stools = turtle("dm:Stool a owl:Class ; rdfs:subClassOf dm:Chair . dm:Door rdfs:subClassOf dm:Stool .")
+    with pytest.raises(errors.Refused, match=f"^x: needs a room; isLocatedIn; {REFUSED}"):
+        enforcing.replace_tbox(transaction(2), [*enforcing.tbox, *stools])
+    assert enforcing.seq == 1
+    enforcing.commit(transaction(3, turtle(":x dm:isLocatedIn :kitchen1 .")))
+    assert enforcing.replace_tbox(transaction(4), [*enforcing.tbox, *stools]).seq == 3
+
+
+def test_violations_before_a_tbox_refuse_it_only_if_others_come(enforcing):
+    enforcement, enforcing.enforcement = enforcing.enforcement, None
+    enforcing.commit(transaction(1, turtle(":chair2 a dm:Chair ; dm:seats 5 .")))
+    enforcing.enforcement = enforcement
+    other = turtle("dm:Stool a owl:Class ; rdfs:subClassOf dm:Chair .")
+    assert enforcing.replace_tbox(transaction(2), [*enforcing.tbox, *other]).seq == 2
+    few = turtle(SH + ":T sh:targetClass dm:Chair ; sh:property [ sh:path dm:seats ; sh:maxInclusive 4 ] .")
+    with pytest.raises(errors.Refused, match=r"^chair2: violates sh:maxInclusive 4; seats; 5; required"):
+        enforcing.replace_tbox(transaction(3), [*enforcing.tbox, *few])
 
 
 def test_another_tbox_brings_other_shapes(enforcing):

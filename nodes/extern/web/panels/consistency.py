@@ -1,4 +1,4 @@
-"""The consistency check: contradictions, suppressed and denied facts, and doubts, with their entities."""
+"""The consistency check: contradictions, violations of shapes, suppressed and denied facts, and doubts."""
 
 from __future__ import annotations
 
@@ -8,7 +8,13 @@ from nicegui import ui
 
 from semmap.nodes.extern.web.page import Page
 from semmap.nodes.extern.web.panels.widgets.redraw import LazyRedraw
-from semmap.nodes.extern.web.views.findings import TITLES, Finding, collect_findings, format_verdict
+from semmap.nodes.extern.web.views.findings import (
+    TITLES,
+    Finding,
+    collect_findings,
+    format_verdict,
+    is_sound,
+)
 from semmap.schemas import errors, wording
 from semmap.schemas.commands import Check, List
 from semmap.schemas.entities import Entity
@@ -17,6 +23,8 @@ _MOST: Final = 200
 _TIMEOUT_S: Final = 120.0
 _ICONS: Final = {
     "contradiction": ("error", "negative"),
+    "violation": ("rule", "negative"),
+    "unchecked": ("help", "warning"),
     "suppressed": ("block", "warning"),
     "denied": ("wrong_location", "warning"),
     "doubt": ("help", "info"),
@@ -74,8 +82,9 @@ class _Consistency:
         found = collect_findings(checked, entities, self._page.live.classes)
         self._checked = self._page.live.commit
         self._verdict.text = format_verdict(checked)
-        self._icon.name = "check_circle" if checked.consistent else "error"
-        self._icon.props(f"color={'positive' if checked.consistent else 'negative'}")
+        sound = is_sound(checked)
+        self._icon.name = "check_circle" if sound else "error"
+        self._icon.props(f"color={'positive' if sound else 'negative'}")
         self._show_age()
         self._draw(found)
 

@@ -1,4 +1,4 @@
-"""Problems of the map: contradictions, suppressed and denied facts, doubts, and problems with bodies."""
+"""Problems of the map: contradictions, violations of shapes, suppressed facts, doubts, faults of bodies."""
 
 from __future__ import annotations
 
@@ -7,14 +7,17 @@ from collections.abc import Collection, Iterable, Iterator
 from typing import Final, Literal, NamedTuple
 
 from semmap.nodes.extern.web.views.proof_lines import BASIS_LABELS, Line, proof_lines, words_of
+from semmap.schemas import wording
 from semmap.schemas.entities import ClassInfo, Entity
 from semmap.schemas.explanations import Explanation
 from semmap.schemas.replies import Checked
 
-Kind = Literal["contradiction", "suppressed", "denied", "doubt", "body", "crowd"]
+Kind = Literal["contradiction", "violation", "unchecked", "suppressed", "denied", "doubt", "body", "crowd"]
 
 TITLES: Final[dict[Kind, str]] = {
     "contradiction": "Contradiction",
+    "violation": "Violation of a SHACL shape",
+    "unchecked": "Not checked",
     "suppressed": "Suppressed fact",
     "denied": "Asserted fact that contradicts the geometry",
     "doubt": "Uncertain",
@@ -45,9 +48,20 @@ def collect_findings(
 
 
 def format_verdict(checked: Checked) -> str:
-    """Return the verdict in one sentence, with the time of the check."""
+    """Return the verdict in one sentence, with the time of the check and the result of the SHACL shapes."""
     took = f"{1000.0 * checked.elapsed_s:.0f} ms" if checked.elapsed_s < 1.0 else f"{checked.elapsed_s:.1f} s"
-    return f"{checked.text} ({checked.triples:,} triples, {took}, {checked.engine})"
+    verdict = f"{checked.text} ({checked.triples:,} triples, {took}, {checked.engine})"
+    if not checked.shapes:
+        return verdict
+    found = (
+        wording.counted(checked.violation_count, "violation") if checked.violation_count else "no violations"
+    )
+    return f"{verdict}; {wording.counted(checked.shapes, 'SHACL shape')}: {found}"
+
+
+def is_sound(checked: Checked) -> bool:
+    """Return whether the map is consistent, and no shape is violated or was not evaluated."""
+    return checked.consistent and checked.conforms is True
 
 
 def names_in(text: str, known: Collection[str]) -> tuple[str, ...]:
@@ -63,6 +77,12 @@ def _of_check(checked: Checked, known: Collection[str], classes: Iterable[ClassI
         yield Finding(
             "contradiction", text, names_in(text, known), () if explained is None else format_proof(explained)
         )
+    for violation in checked.violations:
+        kind = "" if violation.severity == "violation" else f"{violation.severity}: "
+        about = dict.fromkeys((violation.name, violation.value))
+        yield Finding("violation", f"{kind}{violation.text}", tuple(name for name in about if name in known))
+    for text in checked.notes:
+        yield Finding("unchecked", text, ())
     for text in checked.withheld:
         yield Finding("suppressed", text, names_in(text, known))
     for relation in checked.denied:

@@ -30,12 +30,19 @@ class Authorship(Struct, frozen=True):
 
 
 def list_commits(
-    journal: Journal, past: HistoryReader, query: History, limits: Thresholds
+    journal: Journal,
+    past: HistoryReader,
+    query: History,
+    limits: Thresholds,
+    only: Set[int] | None = None,
 ) -> tuple[LoggedCommit, ...]:
-    """Return the commits that a query selects, newest last. Raises UnknownName, Refused, BadRequest."""
-    only: set[int] | None = None
+    """Return the commits that a query selects, newest last; `only` are those that may be returned.
+
+    Raises UnknownName, Refused, BadRequest.
+    """
     if query.by is not None:
-        only = find_commits_by(journal.decode_partially(Authorship), query.by)
+        by = find_commits_by(journal.decode_partially(Authorship), query.by)
+        only = by if only is None else only & by
     for how, word in (("in", query.in_), ("on", query.on)):
         if word is None:
             continue

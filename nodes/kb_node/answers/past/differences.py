@@ -10,6 +10,7 @@ from msgspec import structs
 
 from semmap.nodes.kb_node.answers.past import states
 from semmap.nodes.kb_node.answers.past.fact_intervals import PoseChanges, find_intervals
+from semmap.nodes.kb_node.answers.past.renames import Renames
 from semmap.nodes.kb_node.answers.past.span_texts import describe_spells, lasted_s, stamp_of
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact, Facts
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
@@ -104,7 +105,7 @@ def find_spells(journal: Journal, past: HistoryReader, query: WasWhen, limits: T
         raise errors.BadRequest(f"{asked} requires the other entity: when NAME {asked} OTHER")
     present = past.entities(past.last) if past.last else ()
     entities = {entity.name: entity for entity in present}
-    one, other = (past.resolve(word, present) for word in (query.name, query.other))
+    one, other = (past.resolve_renamed(word, present) for word in (query.name, query.other))
     text, intervals = _find_spells(one, asked, other, journal, past, limits)
     if not intervals and (bearer := _find_support(one, asked, other, entities, limits)) is not None:
         relation, below = bearer
@@ -127,9 +128,9 @@ def _find_spells(
     """Return when a relation held, as text and as intervals."""
     fact = (one, relation, other)
     first = past.initial_entities().values()
-    found = find_intervals(journal.decode_partially(PoseChanges), first, [fact], limits, in_any_place=True)[
-        fact
-    ]
+    renames = Renames.of(past, (one, other))
+    history = journal.decode_partially(PoseChanges)
+    found = find_intervals(history, first, [fact], limits, renames, in_any_place=True)[fact]
     intervals = tuple(
         Spell(
             since=since,

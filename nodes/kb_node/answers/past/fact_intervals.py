@@ -11,8 +11,9 @@ from collections.abc import Collection, Iterable, Mapping
 from itertools import groupby
 from typing import NamedTuple
 
-from msgspec import Struct
+from msgspec import Struct, structs
 
+from semmap.nodes.kb_node.answers.past.renames import Renames
 from semmap.nodes.kb_node.relations.facts.pair_facts import are_near
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.facts.rules import RULES
@@ -94,21 +95,26 @@ class FactStarts(NamedTuple):
 def look_up_starts(
     journal: Journal, past: HistoryReader, facts: Collection[Fact], limits: Thresholds
 ) -> FactStarts:
-    """Return since when each fact has held without interruption."""
+    """Return since when each fact has held without interruption, also under earlier names."""
+    renames = Renames.of(past, {name for s, _, o in facts for name in (s, o)})
     found = find_fact_starts(
-        journal.decode_partially(PoseChanges), past.initial_entities().values(), facts, limits
+        journal.decode_partially(PoseChanges), past.initial_entities().values(), facts, limits, renames
     )
     return FactStarts(found, journal.first)
 
 
 def find_fact_starts(
-    history: Iterable[PoseChanges], first: Iterable[Entity], facts: Collection[Fact], limits: Thresholds
+    history: Iterable[PoseChanges],
+    first: Iterable[Entity],
+    facts: Collection[Fact],
+    limits: Thresholds,
+    renames: Renames | None = None,
 ) -> dict[Fact, int]:
     """Return the commit since which each fact has held. Facts that do not hold at the end are left out.
 
     For commits and thresholds see `find_intervals`.
     """
-    found = find_intervals(history, first, facts, limits)
+    found = find_intervals(history, first, facts, limits, renames)
     return {fact: spans[-1][0] for fact, spans in found.items() if spans and spans[-1][1] is None}
 
 
@@ -117,6 +123,7 @@ def find_intervals(
     first: Iterable[Entity],
     facts: Collection[Fact],
     limits: Thresholds,
+    renames: Renames | None = None,
     *,
     in_any_place: bool = False,
 ) -> dict[Fact, list[tuple[int, int | None]]]:
@@ -125,9 +132,11 @@ def find_intervals(
     `history` are the commits in order and `first` the entities before them. An interval that began before the
     first commit begins with 0. All measurements use the given thresholds. An object is located in the
     smallest place around it. With `in_any_place` it is also located in all places that this one is part of,
-    and a place in those around it.
+    and a place in those around it. `renames` has the earlier names of the entities of the facts.
     """
-    placed_by_name = {entity.name: PlacedEntity.of(entity) for entity in first}
+    renames = Renames() if renames is None else renames
+    at_first = (_with_present_names(PlacedEntity.of(entity), 0, renames) for entity in first)
+    placed_by_name = {placed.name: placed for placed in at_first}
     by_name = groupby(sorted(facts), key=lambda fact: fact[0])
     spots = [
         _Neighbourhood(name, frozenset(about), limits, placed_by_name, in_any_place)
@@ -136,10 +145,13 @@ def find_intervals(
     found: dict[Fact, list[tuple[int, int | None]]] = {fact: [] for fact in facts}
     since = {fact: 0 for spot in spots for fact in spot.holding()}
     for moves in history:
-        before = {name: placed_by_name.get(name) for name in _names(moves)}
-        for left in moves.removed:
-            placed_by_name.pop(left.name, None)
-        placed_by_name.update((stood.name, stood.placed) for stood in moves.changed)
+        removed = [renames.present(left.name, moves.seq) for left in moves.removed]
+        changed = [_with_present_names(stood.placed, moves.seq, renames) for stood in moves.changed]
+        names = [*(placed.name for placed in changed), *removed]
+        before = {name: placed_by_name.get(name) for name in names}
+        for name in removed:
+            placed_by_name.pop(name, None)
+        placed_by_name.update((placed.name, placed) for placed in changed)
         shifted = {
             name: (was, placed_by_name.get(name))
             for name, was in before.items()
@@ -158,8 +170,12 @@ def find_intervals(
     return found
 
 
-def _names(moves: PoseChanges) -> list[str]:
-    return [*(stood.name for stood in moves.changed), *(left.name for left in moves.removed)]
+def _with_present_names(placed: PlacedEntity, seq: int, renames: Renames) -> PlacedEntity:
+    """Return an entity after a commit under its present name, attached to the present name of its holder."""
+    name, holder = renames.present(placed.name, seq), renames.present(placed.held_by, seq)
+    if (name, holder) == (placed.name, placed.held_by):
+        return placed
+    return structs.replace(placed, name=name, held_by=holder)
 
 
 class _Neighbourhood:

@@ -25,12 +25,12 @@ def find_state_spells(journal: Journal, past: HistoryReader, query: WasWhen) -> 
 
     Raises UnknownName; BadRequest for an ambiguous name, or a property that the entity never had.
     """
-    name = past.resolve(query.name, past.entities(past.last) if past.last else ())
+    name = past.resolve_renamed(query.name, past.entities(past.last) if past.last else ())
     states: list[tuple[int, Mapping[str, Stated]]] = []
-    if (first := past.initial_entities().get(name)) is not None:
+    if (first := past.initial_entities().get(past.list_names(name)[-1][1])) is not None:
         states.append((0, first.properties))
-    for seq in journal.touching(name):
-        states.append((seq, _properties_after(journal.commit(seq).changed, name)))
+    for seq, had in past.touching(name):
+        states.append((seq, _properties_after(journal.commit(seq).changed, had)))
     known = {key for _, properties in states for key in properties}
     key = _find_property(query.relation, known, name)
     wanted = _format_value(query.other)

@@ -1,11 +1,11 @@
 from msgspec import structs
 
-from semmap.nodes.extern.web.views.findings import collect_findings, format_verdict, names_in
+from semmap.nodes.extern.web.views.findings import collect_findings, format_verdict, is_sound, names_in
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import BodyState
 from semmap.schemas.explanations import Explanation, Step
 from semmap.schemas.relations import Relation
-from semmap.schemas.replies import Checked
+from semmap.schemas.replies import Checked, Violation
 from tests.recorder.messages import SINCE, entity
 
 SOUND = Checked(
@@ -33,6 +33,33 @@ def test_contradictions_are_first_with_their_proof():
     assert first.proof[0] == "these facts contradict one another (contradiction)"
     assert first.proof[1].strip() == "cup1 is a Cup (asserted)"
     assert second.kind == "suppressed"
+
+
+def test_violations_of_shapes_name_their_entities_and_their_severity():
+    def violation(severity, value=""):
+        text = f"cup1: needs a support; isOn{value and f'; {value}'}"
+        return Violation(
+            name="cup1", message="needs a support", path="isOn", value=value, severity=severity, shape="",
+            text=text,
+        )  # fmt: skip
+
+    checked = structs.replace(
+        SOUND,
+        conforms=False,
+        shapes=2,
+        violation_count=2,
+        violations=(violation("violation", "table1"), violation("warning")),
+        notes=("shapes not evaluated: too deep",),
+    )
+    found = [(f.kind, f.text, f.names) for f in collect_findings(checked, [CUP, TABLE])]
+    assert found == [
+        ("violation", "cup1: needs a support; isOn; table1", ("cup1", "table1")),
+        ("violation", "warning: cup1: needs a support; isOn", ("cup1",)),
+        ("unchecked", "shapes not evaluated: too deep", ()),
+    ]
+    assert format_verdict(checked).endswith("; 2 SHACL shapes: 2 violations")
+    assert not is_sound(checked)
+    assert is_sound(SOUND)
 
 
 def test_suppressed_and_denied_facts_name_their_entities():

@@ -22,24 +22,27 @@ def new(name, class_name, x, **fields):
     return NewEntity(name=name, class_iri=iri, pose=Pose(position_m=(x, 0.0, 0.0)), **fields)
 
 
-def is_open(value):
-    return Edit(name="fridge1", set=(Statement(property="isOpen", values=(str(value).lower(),)),))
+def is_open(value, name="fridge1"):
+    return Edit(name=name, set=(Statement(property="isOpen", values=(str(value).lower(),)),))
 
 
 @pytest.fixture(scope="module")
 def ask(tmp_path_factory):
-    """Commits: 1 the objects, 2 open, 3 moved away, 4 closed, 5 open and near again."""
+    """Commits: 1 the objects, 2 open, 3 moved away, 4 closed, 5 open and near again, 6 and 7 renamed."""
     journal = Journal.create(tmp_path_factory.mktemp("map") / "journal.sqlite", HOUSEHOLD_TTL.read_bytes())
     semantic_map = SemanticMap(journal)
 
     def commit(number, **fields):
         semantic_map.commit(Transaction(id=f"{number}", source="operator", **fields))
 
-    commit(1, add=(new("fridge1", "Fridge", 0.0), new("chair1", "Chair", 1.0)))
-    commit(2, edit=(is_open(True),))
+    others = (new("oven1", "Oven", 30.0), new("stool1", "Chair", 31.0))
+    commit(1, add=(new("fridge1", "Fridge", 0.0), new("chair1", "Chair", 1.0), *others))
+    commit(2, edit=(is_open(True), is_open(True, "oven1")))
     commit(3, edit=(Edit(name="chair1", at=(9.0, 0.0, 0.0)),))
     commit(4, edit=(is_open(False),))
     commit(5, edit=(is_open(True), Edit(name="chair1", at=(1.0, 0.0, 0.0))))
+    commit(6, edit=(Edit(name="oven1", rename="stove1"),))
+    commit(7, edit=(Edit(name="stool1", rename="oven1"),))
 
     def find(name, relation, other=True):
         asked = WasWhen(name=name, relation=relation, other=other)
@@ -57,6 +60,10 @@ def ask(tmp_path_factory):
         (("fridge1", "isOpen", False), [(4, 5)], "fridge1 is no longer closed; it was from commit 4 until"),
         (("chair1", "isNear", "fridge1"), [(1, 3), (5, None)], "chair1 has been near fridge1 since commit 5"),
         (("chair1", "isOn", "fridge1"), [], "chair1 was never on fridge1"),
+        (("stove1", "isOpen"), [(2, None)], "stove1 has been open since commit 2 ("),
+        (("oven1", "isNear", "stove1"), [(1, None)], "oven1 has been near stove1 since commit 1 ("),
+        (("stool1", "isNear", "stove1"), [(1, None)], "oven1 has been near stove1 since commit 1 ("),
+        (("stove1", "isNear", "fridge1"), [], "stove1 was never near fridge1"),
     ],
 )
 def test_when_a_property_had_a_value(ask, words, spans, text):

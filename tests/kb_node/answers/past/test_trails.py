@@ -7,6 +7,7 @@ import itertools
 import pytest
 
 from semmap.nodes.kb_node.answers.past import trails
+from semmap.nodes.kb_node.answers.past.renames import Renames
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.storage.trail_file import FILENAME, TrailFile, TrailLine, read_lines
 from semmap.schemas import errors
@@ -190,3 +191,21 @@ def test_when_includes_visits_that_no_commit_has(place, text):
     found = trails.add_visits(never, trails.Trails(lines, BEGIN + 20 * S), BEGIN + 20 * S)
     assert found.text == text
     assert len(found.visits) == (place == "kitchen1")
+
+
+def test_a_trail_has_the_present_names_of_entities_and_places():
+    lines = [
+        TrailLine(BEGIN, "start"),
+        TrailLine(BEGIN + 2 * S, "at", "r1", (3.0, 0.0, 0.0), ("kitchen1",)),
+        TrailLine(BEGIN + 6 * S, "at", "r2", (3.0, 0.0, 0.0), ("kitchen1", "galley1")),
+        TrailLine(BEGIN + 9 * S, "at", "r1", (3.0, 0.0, 0.0), ("galley1",)),
+    ]
+    renames = Renames(
+        [[(BEGIN + 4 * S, "r2"), (0, "r1")], [(BEGIN + 7 * S, "galley1"), (0, "kitchen1")], [(0, "hall1")]]
+    )
+    assert [(line.name, line.places) for line in renames.in_trail(lines)] == [
+        ("", ()),
+        ("r2", ("galley1",)),
+        ("r2", ("galley1", "galley1 (another entity)")),
+        ("r1", ("galley1",)),
+    ]
