@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta, Struct
 
-Decision = Literal["waiting", "approved", "rejected"]
+Decision = Literal["waiting", "approved", "rejected", "withdrawn"]
 Consequences = tuple[Annotated[str, Meta(max_length=1000)], ...]
 
 

@@ -803,13 +803,15 @@ class Submit(Command[Request], frozen=True, tag="submit"):
     """Request a person's approval of a change; sent again with the same `id`, it returns the decision.
 
     `text` describes the change and `follows` its consequences, one per line. Approval does not lock the map:
-    the agent that submitted the change makes it after the approval.
+    the agent that submitted the change makes it after the approval. With `withdraw`, the pending request with
+    this `id` is deleted, and a decided one stays.
     """
 
     ROLES: ClassVar[Roles] = OPERATORS
 
     text: Annotated[str, Meta(min_length=1, max_length=2000)]
     follows: Annotated[Consequences, Meta(max_length=200)] = ()
+    withdraw: bool = False
 
 
 class Approve(Command[tuple[Request, ...]], frozen=True, tag="approve"):

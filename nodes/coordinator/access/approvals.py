@@ -31,14 +31,19 @@ class Approvals:
     def submit(self, command: Submit) -> Request:
         """Submit a request, or return its state: the same id of the same agent is the same request.
 
-        Raises BadRequest without an id. Raises Refused if too many requests wait, in total or of this agent.
-        It is not Busy, because clients repeat busy requests and an operator takes longer than they wait.
+        With `withdraw`, a pending request is deleted; a decided one is returned. Raises BadRequest without an
+        id. Raises Refused if too many requests wait, in total or of this agent, and if there is none to
+        withdraw. It is not Busy, because clients repeat busy requests and an operator takes longer than they
+        wait.
         """
         self._forget()
         if not command.id:
             raise errors.BadRequest("the request has no id; it is needed to query the decision")
         key = (command.agent, command.id)
-        if (known := self._by_id.get(key)) is not None:
+        known = self._by_id.get(key)
+        if command.withdraw:
+            return self._withdraw(key, known)
+        if known is not None:
             return known
         waiting = [request.agent for request in self._by_id.values() if request.decision == "waiting"]
         if waiting.count(command.agent) >= _MOST_OF_ONE:
@@ -85,6 +90,14 @@ class Approvals:
         if request.agent == own:
             raise errors.Refused(f"request {request.number} is your own; another operator must decide it")
         return (self._decide(key, request, command),)
+
+    def _withdraw(self, key: tuple[str, str], known: Request | None) -> Request:
+        if known is None:
+            raise errors.Refused(f"there is no request with the id '{errors.shortened(key[1], 100)}'")
+        if known.decision != "waiting":
+            return known
+        del self._by_id[key]
+        return structs.replace(known, decision="withdrawn")
 
     def _decide(self, key: tuple[str, str], request: Request, command: Approve) -> Request:
         self._by_id[key] = decided = structs.replace(

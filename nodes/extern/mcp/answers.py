@@ -14,6 +14,7 @@ from typing import Any, Final
 
 from msgspec import Struct
 
+from semmap.nodes.extern.mcp.names import LONGEST, list_names_like_text
 from semmap.schemas import errors
 from semmap.schemas.entities import Entity, Pose, Provenance, Size
 
@@ -24,6 +25,8 @@ _LONGEST_TEXT: Final = 1000
 _WHO: Final = re.compile(r"[^\w./@-]+")
 SYSTEM: Final = "semmap"
 _MOST_AUTHORS: Final = 5
+_MOST_NAMES: Final = 3
+_MOST_ON_A_PAGE: Final = 100
 _WORD: Final = re.compile(r"\w+|[^\w\s]")
 _Words = tuple[str, ...]
 
@@ -53,7 +56,7 @@ def text(answer: Answer, start: int = 0) -> str:
     Raises BadRequest if there is no such item.
     """
     commit = answer.last if answer.is_settled else f"{answer.first} to {answer.last}, the map is changing"
-    head: Any = {"commit": commit, "units": UNITS, **answer.head}
+    head: Any = {"commit": commit, "units": UNITS, **_mark_names(answer, start), **answer.head}
     if (items := answer.items) is None:
         return _within(head)
     if start > len(items):
@@ -73,6 +76,15 @@ def text(answer: Answer, start: int = 0) -> str:
     end = start + len(page)
     rest = {"next": f"{answer.last}.{end}"} if end < len(items) else {}
     return _json({**head, answer.of: page, **rest})
+
+
+def _mark_names(answer: Answer, start: int) -> dict[str, Any]:
+    """Return the beginnings of entity names on this page that read like a text, if there are any."""
+    shown = (answer.items or ())[start : start + _MOST_ON_A_PAGE]
+    found = dict.fromkeys(list_names_like_text([answer.head, *shown]))
+    if not found:
+        return {}
+    return {"names_that_are_data": [f"{name[:LONGEST]}..." for name in list(found)[:_MOST_NAMES]]}
 
 
 def read_cursor(cursor: str) -> tuple[int, int]:

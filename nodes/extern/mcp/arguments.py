@@ -13,6 +13,7 @@ from msgspec import Meta, Struct, field
 from semmap.schemas.entities import Angle, Probability, Size, Text, Value, Vector, Word
 from semmap.schemas.language import Language
 from semmap.schemas.moments import When
+from semmap.schemas.plans import RADIUS_M, Clearance, Point
 from semmap.schemas.relations import ViewPoint
 
 MOST: Final = 50
@@ -25,7 +26,11 @@ Cursor = Annotated[
     str, Meta(max_length=100, description="The `next` of the previous page, to get the next page.")
 ]
 _NAME = "Name of an entity, such as cup1; or a label or class that only one entity has."
+_END = "A place, thing or person, or a position such as 2.5,1 [m]."
 Named = Annotated[str, Meta(max_length=1000, description=_NAME)]
+
+
+Reason = Annotated[str, Meta(min_length=1, max_length=300, description="Reason, in one sentence.")]
 
 
 class Arguments(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
@@ -145,6 +150,23 @@ class History(Paged, frozen=True, kw_only=True):
     on: Annotated[Text, Meta(description="Only commits that changed something on this object.")] | None = None
 
 
+class Could(Paged, frozen=True, kw_only=True):
+    """A statement."""
+
+    name: Named
+    predicate: Annotated[Word, Meta(description="A property such as isOn, or type for a class.")]
+    value: Annotated[str, Meta(max_length=1000, description="An entity, a class or a literal.")]
+
+
+class FindWay(Paged, frozen=True, kw_only=True):
+    """The ends of a path, and the size of the robot."""
+
+    from_: Annotated[Text, Meta(description=f"{_END} Start.")] = field(name="from")
+    to: Annotated[Text, Meta(description=f"{_END} Goal.")]
+    radius: Annotated[Clearance, Meta(description="Radius of the robot [m].")] = RADIUS_M
+    as_of: Moment | None = None
+
+
 class Diff(Paged, frozen=True, kw_only=True):
     """Two commits or times."""
 
@@ -196,8 +218,8 @@ class Picture(Arguments, frozen=True, kw_only=True):
 class Propose(Arguments, frozen=True, kw_only=True):
     """A change; which fields apply depends on `verb`."""
 
-    verb: Literal["add", "update", "set", "unset", "remove"]
-    reason: Annotated[str, Meta(min_length=1, max_length=300, description="Reason, in one sentence.")]
+    verb: Literal["add", "update", "set", "unset", "remove", "attach", "detach"]
+    reason: Reason
     name: Annotated[str, Meta(max_length=1000, description="Entity; optional for add.")] | None = None
     names: Annotated[tuple[Word, ...], Meta(max_length=MOST, description="Remove: entities.")] | None = None
     class_: Annotated[str, Meta(max_length=200, description="Add: class. Update: new class.")] | None = field(
@@ -213,13 +235,46 @@ class Propose(Arguments, frozen=True, kw_only=True):
     size: Annotated[Size, Meta(description="Size along its own x, y, z [m].")] | None = None
     ref: Annotated[Text, Meta(description="Label.")] | None = None
     alt: Annotated[tuple[Text, ...], Meta(max_length=MOST, description="Aliases.")] | None = None
-    carry: Annotated[bool, Meta(description="Update of the pose: also move the objects on it.")] | None = None
+    carry: Annotated[bool, Meta(description="Update of the pose, attach: with the objects on it.")] | None = (
+        None
+    )
+    to: Annotated[Word, Meta(description="Attach: the robot, gripper or tray.")] | None = None
     property_: Annotated[Text, Meta(description="Set and unset: property, e.g. isOpen.")] | None = field(
         name="property", default=None
     )
     values: Annotated[tuple[Value, ...], Meta(max_length=MOST, description="Set: values.")] | None = None
     value: Annotated[Value, Meta(description="Unset: value; without it, all values.")] | None = None
     confidence: Probability | None = None
+
+
+class Open(Arguments, frozen=True, kw_only=True):
+    """An object with joints."""
+
+    name: Named
+    reason: Reason
+    to: Annotated[Probability, Meta(description="Share of the range of the joints.")] = 1.0
+    joint: Annotated[str, Meta(max_length=1000, description="Only this joint.")] | None = None
+
+
+class Close(Arguments, frozen=True, kw_only=True):
+    """An object with joints."""
+
+    name: Named
+    reason: Reason
+    joint: Annotated[str, Meta(max_length=1000, description="Only this joint.")] | None = None
+
+
+class Drive(Arguments, frozen=True, kw_only=True):
+    """A robot and the points of its path."""
+
+    name: Named
+    reason: Reason
+    to: Annotated[
+        tuple[Point, ...], Meta(max_length=MOST, description="Points x, y [m], in straight lines.")
+    ] = ()
+    yaw: Annotated[Angle, Meta(description="Final rotation about z [rad].")] | None = None
+    stop: Annotated[bool, Meta(description="Stop it where it is.")] = False
+    wait: Annotated[bool, Meta(description="Return when it has arrived.")] = False
 
 
 class Commit(Arguments, frozen=True, kw_only=True):
@@ -242,7 +297,7 @@ def schema(kind: type[Arguments]) -> dict[str, Any]:
     """
     _, parts = msgspec.json.schema_components([kind])
     found = parts[kind.__name__]
-    properties = {name: _without_null(field) for name, field in found["properties"].items()}
+    properties = {name: _with_items(_without_null(field)) for name, field in found["properties"].items()}
     return {"type": "object", "properties": properties, **{key: found[key] for key in _KEPT}}
 
 
@@ -255,4 +310,17 @@ def _without_null(field: dict[str, Any]) -> dict[str, Any]:
     if len(choices) != 1 or "default" not in field:
         return field
     found: dict[str, Any] = choices[0]
+    return found
+
+
+def _with_items(schema: Any) -> Any:
+    """Return a schema whose tuples have `items` beside `prefixItems`: some hosts reject them without it."""
+    if isinstance(schema, list):
+        return [_with_items(each) for each in schema]
+    if not isinstance(schema, dict):
+        return schema
+    found = {key: _with_items(each) for key, each in schema.items()}
+    if "prefixItems" in found:
+        kinds = [each for n, each in enumerate(found["prefixItems"]) if each not in found["prefixItems"][:n]]
+        found["items"] = kinds[0] if len(kinds) == 1 else {"anyOf": kinds}
     return found

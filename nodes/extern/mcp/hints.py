@@ -15,10 +15,12 @@ _REPLACEMENTS: Final[tuple[tuple[str, str], ...]] = (
     (r" \(for the reason,? see: semmap check\)", ""),
     (r"semmap get ([\w.-]+)", r"get name=\1"),
     (r"semmap explain ([\w.-]+) (\S+) ([\w.-]+)", r"explain name=\1 predicate=\2 value=\3"),
+    (r"semmap (history|last-seen) ([\w.-]+)", r"\1 name=\2"),
+    (r", or add --force\b", ""),
     (r"semmap undo (\d+)", r"undo commit=\1, if that is your own"),
     (r"semmap update ([\w.-]+) --(at|size) X Y Z", r"propose verb=update name=\1 \2=[x, y, z]"),
     (r"semmap update ([\w.-]+) --(\w+) \[?[A-Z]+\]?", r"propose verb=update name=\1 with \2"),
-    (r"semmap (unset|set|update|add|remove)\b", r"propose verb=\1"),
+    (r"semmap (unset|set|update|add|remove|attach|detach)\b", r"propose verb=\1"),
     (r"semmap (classes|properties)\b", r"the resource semmap://schema/\1"),
     (r"semmap status\b", "overview"),
 )

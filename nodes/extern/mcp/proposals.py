@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from msgspec import Struct, structs
 
+from semmap.nodes.extern.mcp.answers import Answer
 from semmap.schemas import errors
 from semmap.schemas.commands import Command
 from semmap.schemas.replies import Changed
@@ -24,7 +25,8 @@ _MOST: Final = 200
 class Proposal(Struct, frozen=True, kw_only=True):
     """A change with its dry run after commit `commit`; it depends on the entities `rests_on`.
 
-    `began_s` is on the clock of the store. `done` is the commit of the executed proposal.
+    `began_s` is on the clock of the store. `sent` is set if the change was sent and its reply is missing.
+    `done` is the reply of the executed proposal.
     """
 
     token: str
@@ -33,7 +35,8 @@ class Proposal(Struct, frozen=True, kw_only=True):
     tried: Changed
     rests_on: tuple[str, ...]
     began_s: float
-    done: int | None = None
+    sent: bool = False
+    done: Answer | None = None
     at_work: bool = False
 
 
@@ -55,36 +58,38 @@ class Proposals:
         return made
 
     def take(self, token: str) -> Proposal:
-        """Return the proposal with this token, and lock it until `put_back` or `finish`. Raises Refused."""
+        """Return the proposal with this token, and lock it until `put_back` or `finish`.
+
+        One that is done is returned without a lock. Raises Refused for an unknown or expired token, and Busy
+        while another call commits it.
+        """
         with self._lock:
             found = self._by_token.get(token)
             if found is None:
                 raise errors.Refused("unknown token; propose the change again")
             if found.done is not None:
-                raise errors.Refused(
-                    f"this token was already used for commit {found.done}; propose the change again"
-                )
+                return found
             if self._clock() - found.began_s > LASTS_S:
                 del self._by_token[token]
                 raise errors.Refused(
                     f"the proposal expired after {LASTS_S / 60:g} minutes; propose the change again"
                 )
             if found.at_work:
-                raise errors.Refused("the proposal with this token is currently being committed")
+                raise errors.Busy("another call commits this token; call again", again_s=1.0)
             self._by_token[token] = taken = structs.replace(found, at_work=True)
             return taken
 
-    def put_back(self, proposal: Proposal) -> None:
-        """Unlock a proposal that was not committed."""
+    def put_back(self, proposal: Proposal, *, sent: bool = False) -> None:
+        """Unlock a proposal that was not committed or, if it was `sent`, whose reply is missing."""
         with self._lock:
-            self._by_token[proposal.token] = structs.replace(proposal, at_work=False)
+            self._by_token[proposal.token] = structs.replace(proposal, at_work=False, sent=sent)
 
     def drop(self, proposal: Proposal) -> None:
         """Delete a proposal that can no longer be committed."""
         with self._lock:
             self._by_token.pop(proposal.token, None)
 
-    def finish(self, proposal: Proposal, commit: int) -> None:
-        """Record the commit of a proposal."""
+    def finish(self, proposal: Proposal, reply: Answer) -> None:
+        """Record the reply of a proposal, which a repeated call returns."""
         with self._lock:
-            self._by_token[proposal.token] = structs.replace(proposal, at_work=False, done=commit)
+            self._by_token[proposal.token] = structs.replace(proposal, at_work=False, done=reply)

@@ -9,11 +9,19 @@ from typing import Any, Final, TypeVar
 from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.mcp import arguments as a
 from semmap.nodes.extern.mcp import rows
-from semmap.nodes.extern.mcp.answers import Answer, Authors, attribute_text, format_time, read_cursor
+from semmap.nodes.extern.mcp.answers import (
+    Answer,
+    Authors,
+    attribute_text,
+    format_time,
+    read_cursor,
+    round_metres,
+)
 from semmap.nodes.extern.mcp.consistent_read import known, newest, read_at_one_commit
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.entities import Entity
+from semmap.schemas.explanations import Explanation
 from semmap.schemas.language import Candidate
 from semmap.schemas.moments import When
 
@@ -25,6 +33,8 @@ _RELATIONS: Final = " ".join(f"dm:{name}" for name in rows.PLACED)
 _WHERE_ALL: Final = f"SELECT ?e ?r ?o WHERE {{ VALUES ?r {{ {_RELATIONS} }} ?e ?r ?o }}"
 MOST_ROWS: Final = 2000
 _FEW: Final = 5
+_MOST_PLACES: Final = 100
+"""The number of places whose contents are listed for the overview."""
 _ON_A_PAGE: Final = 60
 """An upper bound of the number of rows on a page of a list."""
 
@@ -33,10 +43,27 @@ def overview(client: Client, _: a.Overview) -> Answer:
     """Return the number of entities per class and place."""
 
     def read() -> dict[str, Any]:
+        entities = client.list()
         where = rows.places_of(client.sparql(_WHERE_ALL, inferred=True, limit=100_000).rows)
-        return rows.overview(client.status(), client.list(), where)
+        return rows.overview(client.status(), entities, _contents(client, entities, where))
 
     return _answer(client, read)
+
+
+def _contents(
+    client: Client, entities: Sequence[Entity], where: dict[str, dict[str, list[str]]]
+) -> dict[str, Sequence[Entity]]:
+    """Return what is in each place, as `list` does: in its parts, too, and where poses put it.
+
+    `where` has the inferred places. If there are very many places, those with few things are as inferred.
+    """
+    inferred: dict[str, list[Entity]] = {entity.name: [] for entity in entities if entity.place}
+    for thing in entities:
+        for place in where.get(thing.name, {}).get("in", ()):
+            if place in inferred:
+                inferred[place].append(thing)
+    fullest = sorted(inferred, key=lambda place: -len(inferred[place]))[:_MOST_PLACES]
+    return {**inferred, **{place: client.list(in_=place) for place in fullest}}
 
 
 def find(client: Client, arguments: a.Find) -> Answer:
@@ -160,20 +187,43 @@ def explain(client: Client, arguments: a.Explain) -> Answer:
         found = client.explain(
             arguments.name, arguments.predicate, arguments.value, negated=arguments.negated
         )
-        steps = [
-            {
-                "rule": step.rule,
-                "from": {"said": [v.to_words(triple) for triple in step.premises]},
-                "follows": {
-                    "said": "a contradiction" if step.conclusion is None else v.to_words(step.conclusion)
-                },
-            }
-            for step in found.steps
-        ]
-        asserted = {"said": [v.to_words(triple) for triple in found.support]}
-        return {"because": attribute_text(found.text, "the reasoner"), "asserted": asserted}, steps
+        because: dict[str, Any] = {"because": attribute_text(found.text, "the reasoner")}
+        return because | _asserted(found), _proof(found)
 
     return _paged(client, arguments, None, read, of="steps")
+
+
+def could(client: Client, arguments: a.Could) -> Answer:
+    """Return whether a statement would be consistent with the map, with the proof if it is not."""
+
+    def read(as_of: When | None) -> Found:
+        if as_of is not None:
+            raise errors.Refused("the map has changed since that page; call could without a cursor")
+        found = client.could(arguments.name, arguments.predicate, arguments.value)
+        head = {"possible": found.possible, "answer": attribute_text(found.text, "the reasoner")}
+        if found.explanation is None:
+            return head, None
+        return head | _asserted(found.explanation), _proof(found.explanation)
+
+    return _paged(client, arguments, None, read, of="steps")
+
+
+def route(client: Client, arguments: a.FindWay) -> Answer:
+    """Return the shortest path between two places, things or positions, and its corners."""
+
+    def read(as_of: When | None) -> Found:
+        found = client.route(arguments.from_, arguments.to, radius=arguments.radius, as_of=as_of)
+        head = {
+            "answer": attribute_text(found.text, "semmap"),
+            "metres": round(found.metres, 2),
+            "places": found.places,
+            "doors": found.doors,
+            **({"closed": found.closed} if found.closed else {}),
+            **({"notes": attribute_text("; ".join(found.notes), "semmap")} if found.notes else {}),
+        }
+        return head, [round_metres(point) for point in found.points]
+
+    return _paged(client, arguments, arguments.as_of, read, of="points")
 
 
 def history(client: Client, arguments: a.History) -> Answer:
@@ -286,6 +336,24 @@ def render_picture(client: Client, arguments: a.Picture) -> tuple[Answer, bytes]
     )
     head = {"picture": "the scene as it is simulated", "of": arguments.place or "everything"}
     return Answer(first=first, last=last, head=head), png
+
+
+def _asserted(found: Explanation) -> dict[str, Any]:
+    return {"asserted": {"said": [v.to_words(triple) for triple in found.support]}}
+
+
+def _proof(found: Explanation) -> list[dict[str, Any]]:
+    """Return the steps of a proof."""
+    return [
+        {
+            "rule": step.rule,
+            "from": {"said": [v.to_words(triple) for triple in step.premises]},
+            "follows": {
+                "said": "a contradiction" if step.conclusion is None else v.to_words(step.conclusion)
+            },
+        }
+        for step in found.steps
+    ]
 
 
 def _answer(client: Client, read: Callable[[], dict[str, Any]]) -> Answer:

@@ -43,6 +43,18 @@ def summarize_change(command: Any, tried: Changed) -> Summary:
     return Summary(text=_change_in_words(command, tried), reason=command.reason, follows=facts(tried))
 
 
+def summarize_action(command: commands.Open | commands.Close | commands.Drive) -> Summary:
+    """Summarize an action on a body of the scene: an entity that opens or closes, or a robot that drives."""
+    text = f"{command.VERB} {_word(command.name)}"
+    if isinstance(command, commands.Drive):
+        text += f" through {', '.join(map(_numbers, command.to))}" if command.to else ""
+        text += "" if command.yaw is None else f" to yaw {command.yaw:.3g} rad"
+    else:
+        text += "" if command.joint is None else f" by joint {_word(command.joint)}"
+        text += f" to {command.to:.0%}" if isinstance(command, commands.Open) and command.to < 1.0 else ""
+    return Summary(text=text, reason=command.reason)
+
+
 def summarize_undo(undone: LoggedCommit, tried: Changed, reason: str) -> Summary:
     """Summarize the undoing of a commit: the reverted changes, and the reason of the commit."""
     reverted = [_reverted(change) for change in undone.changes[:_FEW]]
@@ -79,6 +91,12 @@ def _change_in_words(command: Any, tried: Changed) -> str:
         case commands.Unset():
             which = "" if command.value is None else f" {_value(command.value)}"
             return f"unset {_word(command.property)}{which} of {name}"
+        case commands.Attach():
+            at = [] if command.at is None else [f"at {_numbers(command.at)} in its frame"]
+            contents = ["with the objects on it"] if command.carry else []
+            return ", ".join([f"attach {name} to {_word(command.to)}", *at, *contents])
+        case commands.Detach():
+            return f"detach {name}"
         case commands.Add():
             return ", ".join([f"add {_word(command.class_)} {name}", *_details(command)])
     class_ = [] if command.class_ is None else [f"class {_word(command.class_)}"]

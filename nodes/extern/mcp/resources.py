@@ -108,8 +108,11 @@ class _Subscription(NamedTuple):
 class Subscriptions:
     """The subscriptions of one server. They can be used from any thread."""
 
-    def __init__(self, client: Client, changed: Callable[[str], None]) -> None:
-        """Set up; `changed(uri)` is called on a separate thread when the result of a query changes."""
+    def __init__(self, client: Callable[[], Client], changed: Callable[[str], None]) -> None:
+        """Set up; `changed(uri)` is called on a separate thread when the result of a query changes.
+
+        `client()` returns the client.
+        """
         self._client = client
         self._changed = changed
         self._lock = threading.Lock()
@@ -127,7 +130,7 @@ class Subscriptions:
             if len(self._active) >= MOST:
                 raise errors.Refused(f"limit of {MOST} standing queries reached; unsubscribe from one first")
             stack = ExitStack()
-            standing = stack.enter_context(self._client.watch(**arguments))
+            standing = stack.enter_context(self._client().watch(**arguments))
             self._active[uri] = _Subscription(1, stack.close)
 
         def wait() -> None:

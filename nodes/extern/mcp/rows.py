@@ -201,21 +201,18 @@ def places_of(rows: Iterable[Row]) -> dict[str, dict[str, list[str]]]:
 
 
 def overview(
-    status: SystemStatus, entities: Sequence[Entity], where: Mapping[str, Mapping[str, Sequence[str]]]
+    status: SystemStatus, entities: Sequence[Entity], contents: Mapping[str, Sequence[Entity]]
 ) -> dict[str, Any]:
-    """Return the places with their contents, the other entities, and problems. `where` has places under `in`.
+    """Return the places with their contents, the other entities, and problems. `contents` is by place.
 
-    An object in several places is counted in the smallest of them. If the overview is too long, the rarest
+    An object in several places is counted in each, as `list` does. If the overview is too long, the rarest
     classes and the places with the fewest objects are left out.
     """
     places = {e.name: e for e in entities if e.place}
     things = [e for e in entities if not e.place]
-    held: dict[str, Counter[str]] = {name: Counter() for name in places}
-    elsewhere: Counter[str] = Counter()
-    for thing in things:
-        inside = [places[name] for name in where.get(thing.name, {}).get("in", ()) if name in places]
-        smallest = min(inside, key=_area_m2, default=None)
-        (elsewhere if smallest is None else held[smallest.name])[thing.class_] += 1
+    held = {name: Counter(e.class_ for e in contents.get(name, ()) if not e.place) for name in places}
+    inside = {thing.name for found in contents.values() for thing in found}
+    elsewhere = Counter(thing.class_ for thing in things if thing.name not in inside)
     fullest = sorted(held, key=lambda name: (-held[name].total(), name))
     for classes, most in ((12, 40), (8, 20), (5, 14), (3, 10), (2, 6), (1, 4), (0, 3)):
         shown = {
@@ -225,7 +222,7 @@ def overview(
             **({"more_places": len(fullest) - most} if len(fullest) > most else {}),
             **({"elsewhere": _counts(elsewhere, classes)} if elsewhere else {}),
             **({"problems": [text[:120] for text in status.problems[:3]]} if status.problems else {}),
-            "further": "list in=PLACE or class=CLASS, get name=NAME",
+            "further": "list in=PLACE (with its parts, as holds) or class=CLASS, get name=NAME",
         }
         if len(json.dumps(shown, ensure_ascii=False, separators=(",", ":"))) <= OVERVIEW_BUDGET:
             break
@@ -247,7 +244,3 @@ def _counts(held: Counter[str], most: int) -> str:
     if rest := held.total() - sum(count for _, count in first):
         shown.append(f"{rest} others")
     return f"{held.total()}: {', '.join(shown)}" if held else "0"
-
-
-def _area_m2(place: Entity) -> float:
-    return float("inf") if place.size_m is None else place.size_m[0] * place.size_m[1]

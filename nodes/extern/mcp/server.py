@@ -7,6 +7,7 @@ import base64
 import logging
 import os
 import sys
+import threading
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager, suppress
 from functools import partial
@@ -23,6 +24,7 @@ from mcp.server.subscriptions import InMemorySubscriptionBus, ListenHandler, Res
 from mcp.shared.exceptions import MCPError
 
 from semmap.nodes.extern.mcp import resources
+from semmap.nodes.extern.mcp.approval import CANCELLED
 from semmap.nodes.extern.mcp.resources import Subscriptions
 from semmap.nodes.extern.mcp.tools import Page, Tool, Tools, error_text
 from semmap.nodes.runtime.version import version
@@ -52,8 +54,13 @@ def server(tools: Tools) -> Server[Any]:
         return types.ListToolsResult(tools=[_described(tool) for tool in tools.by_name.values()])
 
     async def call_tool(_: Context, request: types.CallToolRequestParams) -> types.CallToolResult:
+        cancelled = threading.Event()
+        CANCELLED.set(cancelled)  # the thread of the call has a copy of this context
         try:
             page = await beside(partial(tools.call, request.name, request.arguments or {}))
+        except anyio.get_cancelled_exc_class():
+            cancelled.set()
+            raise
         except errors.SemmapError as error:
             return _refused(error)
         except Exception:  # a bug: report it, and keep the server running

@@ -49,6 +49,20 @@ def test_a_decision_is_made_once_and_reported(approvals):
         approvals.approve(Approve(number=1, reject=True))
 
 
+def test_a_pending_request_is_withdrawn_and_a_decided_one_stays(approvals):
+    asked(approvals)
+    asked(approvals, id="b")
+    approvals.approve(Approve(number=2, agent="cli/ann"))
+    assert asked(approvals, withdraw=True).decision == "withdrawn"
+    assert asked(approvals, id="b", withdraw=True).decision == "approved"
+    assert approvals.approve(Approve()) == ()
+    with pytest.raises(errors.Refused, match="request 1 is not waiting"):
+        approvals.approve(Approve(number=1, agent="cli/ann"))
+    with pytest.raises(errors.Refused, match="there is no request with the id 'a'"):
+        asked(approvals, withdraw=True)
+    assert asked(approvals).number == 3
+
+
 @pytest.mark.parametrize("source", ["agent", "perception", "scene"])
 def test_only_an_operator_decides(approvals, source):
     asked(approvals)

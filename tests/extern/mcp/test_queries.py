@@ -21,7 +21,7 @@ def asked(client, talk, **options):
     """What `talk(agent)` gives, of a server in this process."""
 
     async def session():
-        async with in_memory(server(Tools(client, rate=Rate(1e6, 1e6), **options))) as agent:
+        async with in_memory(server(Tools(lambda: client, rate=Rate(1e6, 1e6), **options))) as agent:
             return await talk(agent)
 
     return run(session())

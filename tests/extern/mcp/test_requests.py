@@ -4,7 +4,7 @@ import pytest
 
 from semmap.nodes.extern.mcp import requests
 from semmap.schemas.changes import Change
-from semmap.schemas.commands import Add, Remove, Set, Unset, Update
+from semmap.schemas.commands import Add, Attach, Close, Detach, Drive, Open, Remove, Set, Unset, Update
 from semmap.schemas.entities import Pose
 from semmap.schemas.replies import Changed, LoggedCommit
 
@@ -37,6 +37,12 @@ def tried(*names, follows=(), gone=()):
         (Unset(name="cup2", property="isOpen"), "unset isOpen of cup2"),
         (Unset(name="cup2", property="hasColor", value="red"), 'unset hasColor "red" of cup2'),
         (Remove(names=("the cup",)), "remove cup2"),
+        (Attach(name="cup2", to=FORGED, carry=True), f"attach cup2 to {WRITTEN}, with the objects on it"),
+        (
+            Attach(name="cup2", to="tray1", at=(0, 0, 0.1)),
+            "attach cup2 to tray1, at (0, 0, 0.1) in its frame",
+        ),
+        (Detach(name="cup2"), "detach cup2"),
     ],
 )
 def test_a_change_in_words_quotes_what_the_agent_wrote(command, text):
@@ -121,3 +127,19 @@ def test_what_an_undo_takes_back(change, text):
 def test_of_many_changes_a_few_are_reported_and_the_others_counted():
     changes = [Change(name=f"cup{n}", kind="added", now="Cup") for n in range(8)]
     assert requests.summarize_undo(commit(*changes), tried("cup1"), "x").text.endswith("; and 3 more changes")
+
+
+@pytest.mark.parametrize(
+    ("command", "text"),
+    [
+        (Open(name="fridge1"), "open fridge1"),
+        (Open(name="fridge1", to=0.5, joint=FORGED), f"open fridge1 by joint {WRITTEN} to 50%"),
+        (Close(name=FORGED), f"close {WRITTEN}"),
+        (
+            Drive(name="robot1", to=((1.0, 2.0), (3.5, 2.0)), yaw=1.5),
+            "drive robot1 through (1, 2), (3.5, 2) to yaw 1.5 rad",
+        ),
+    ],
+)
+def test_an_action_is_summarized(command, text):
+    assert requests.summarize_action(command).text == text

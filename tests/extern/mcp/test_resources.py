@@ -24,7 +24,7 @@ def client(flat):
 
 
 def made(client):
-    return server(Tools(client, rate=Rate(1e6, 1e6)))
+    return server(Tools(lambda: client, rate=Rate(1e6, 1e6)))
 
 
 async def read(agent, uri):
@@ -137,7 +137,7 @@ def test_an_unknown_resource_is_rejected(client, uri):
 
 
 def test_the_number_of_standing_queries_is_limited(client):
-    subscriptions = Subscriptions(client, lambda uri: None)
+    subscriptions = Subscriptions(lambda: client, lambda uri: None)
     try:
         for number in range(MOST):
             subscriptions.subscribe(

@@ -35,7 +35,7 @@ def length(found):
     return len(json.dumps(found, ensure_ascii=False, separators=(",", ":")))
 
 
-def test_a_thing_counts_for_the_smallest_place_that_it_is_in():
+def test_a_thing_counts_for_each_place_that_it_is_in_as_in_list():
     entities = [
         entity("flat1", "Location", place=True, size=(10.0, 8.0, 2.0)),
         entity("kitchen1", "Kitchen", place=True, size=(4.0, 3.0, 2.0)),
@@ -44,13 +44,10 @@ def test_a_thing_counts_for_the_smallest_place_that_it_is_in():
         entity("door1", "Door"),
         entity("tree1", "Plant"),
     ]
-    where = {
-        "cup1": {"in": ["flat1", "kitchen1"]},
-        "cup2": {"in": ["kitchen1", "flat1"]},
-        "door1": {"in": ["flat1"]},
-    }
-    found = overview(status(), entities, where)
-    assert {p["name"]: p["holds"] for p in found["places"]} == {"kitchen1": "2: 2 Cup", "flat1": "1: 1 Door"}
+    contents = {"kitchen1": entities[2:4], "flat1": entities[1:5]}
+    found = overview(status(), entities, contents)
+    holds = {p["name"]: p["holds"] for p in found["places"]}
+    assert holds == {"kitchen1": "2: 2 Cup", "flat1": "3: 2 Cup, 1 Door"}
     assert found["elsewhere"] == "1: 1 Plant"
     assert (found["entities"], found["things"]) == (6, 4)
 
@@ -61,8 +58,8 @@ def test_a_thousand_entities_of_many_classes_in_many_places_fit():
         for n in range(150)
     ]
     entities += [entity(f"thing{n}", f"Rather_Long_Class_Name_{n % 97}" * 2) for n in range(850)]
-    where = {f"thing{n}": {"in": [f"room{n % 150}"]} for n in range(800)}
-    found = overview(status("a problem " * 100, "another"), entities, where)
+    contents = {f"room{n}": entities[150 + n : 950 : 150] for n in range(150)}
+    found = overview(status("a problem " * 100, "another"), entities, contents)
     assert length(found) <= OVERVIEW_BUDGET
     assert found["entities"] == 1000
     assert found["places"], "some are shown"

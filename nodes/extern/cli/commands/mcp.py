@@ -11,14 +11,15 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from semmap.nodes.extern.cli.command import command
-from semmap.nodes.extern.cli.common import with_client
+from semmap.nodes.extern.cli.common import connect_option, identity_option, namespace_option
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.runtime import extras
 from semmap.schemas import errors
 
 if TYPE_CHECKING:
-    from semmap.nodes.extern.client import Client
-    from semmap.nodes.extern.mcp.tools import Tool
+    from semmap.nodes.extern.mcp.changes import Changes
+    from semmap.nodes.extern.mcp.lazy_client import LazyClient
+    from semmap.nodes.extern.mcp.tools import Tools
 
 
 def _with_its_extra(function: Callable[..., None]) -> Callable[..., None]:
@@ -65,9 +66,13 @@ def _names(_: click.Context, __: click.Parameter, value: str | None) -> frozense
     help="Serve over HTTP on this machine (port 7448), for clients with the printed token.",
 )
 @_with_its_extra
-@with_client
+@connect_option
+@identity_option
+@namespace_option
 def mcp(
-    client: Client,
+    where: str | None,
+    identity: str | None,
+    namespace: str | None,
     allow: str | None,
     classes: frozenset[str],
     places: frozenset[str],
@@ -80,7 +85,7 @@ def mcp(
 
     The server uses the Model Context Protocol on standard input and output; the host of the agent starts it.
     It is read-only by default. With --allow change, an agent proposes a change, reads its consequences, and
-    commits it.
+    commits it. The server may start before the system: until then, its tools report that it is not running.
     """
     limits = [
         option
@@ -94,11 +99,45 @@ def mcp(
     ]
     if limits and allow is None:
         raise errors.BadRequest(f"{limits[0]} requires --allow change")
-    from semmap.nodes.extern.mcp.server import run_stdio
-    from semmap.nodes.extern.mcp.tools import Tools
+    from semmap.nodes.extern import connection
+    from semmap.nodes.extern.client import connect
+    from semmap.nodes.extern.mcp.lazy_client import LazyClient
+    from semmap.nodes.extern.mcp.tools import Tools, change_tools
 
-    tools = Tools(client, _change_tools(client, agent, classes, places, rate, approve) if allow else ())
+    certificate = connection.identity(identity)
+    # A client and not a peer: it connects faster, and again after a restart of the system.
+    client = LazyClient(
+        functools.partial(connect, where, agent=agent, identity=identity, namespace=namespace, mode="client")
+    )
+    changes = (
+        _changes(agent if certificate is None else certificate.name, classes, places, rate, approve)
+        if allow
+        else None
+    )
+    try:
+        _check(client, changes)
+        _serve(Tools(client, change_tools(changes) if changes else ()), http)
+    finally:
+        if changes is not None and client.connected is not None:
+            changes.withdraw_requests(client.connected)
+        client.close()
+
+
+def _check(client: LazyClient, changes: Changes | None) -> None:
+    """Connect, and check the limits; print a note if the system is not running."""
+    try:
+        connected = client()
+        if changes is not None:
+            changes.check_limits(connected)
+    except errors.NoAnswer as error:
+        print_escaped(f"note: {error.text}; the tools wait for it", file=sys.stderr)
+
+
+def _serve(tools: Tools, http: int | None) -> None:
+    """Serve on standard input and output, or on the port `http` of this machine."""
     if http is None:
+        from semmap.nodes.extern.mcp.server import run_stdio
+
         run_stdio(tools)
         return
     from semmap.nodes.extern.mcp.http import TOKEN_VARIABLE, choose_token, run_http
@@ -111,24 +150,15 @@ def mcp(
     )
 
 
-def _change_tools(
-    client: Client,
-    agent: str,
-    classes: frozenset[str],
-    places: frozenset[str],
-    rate: float | None,
-    approve: bool,
-) -> tuple[Tool, ...]:
+def _changes(
+    agent: str, classes: frozenset[str], places: frozenset[str], rate: float | None, approve: bool
+) -> Changes:
     from semmap.nodes.extern.mcp.changes import Changes
     from semmap.nodes.extern.mcp.limits import CHANGES_PER_MIN, Limits
-    from semmap.nodes.extern.mcp.tools import change_tools
 
-    signed = agent if client.identity is None else client.identity.name
-    changes = Changes(
-        client,
-        signed,
+    return Changes(
+        agent,
         allowed=Limits(classes=classes, places=places),
         per_min=rate or CHANGES_PER_MIN,
         approve=approve,
     )
-    return change_tools(changes)

@@ -12,6 +12,7 @@ from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import places, proximity, support_contact
 from semmap.nodes.kb_node.relations.measuring.phrases import explain_location, format_length
 from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Term, Triple
 from semmap.schemas.relations import PHRASES, Relation, RelationName
@@ -23,6 +24,9 @@ PROPERTIES: Final[dict[Term, tuple[RelationName, bool]]] = {
     v.dm("holds"): ("isInside", True),
     v.dm("isLocatedIn"): ("isLocatedIn", False),
     v.dm("contains"): ("isLocatedIn", True),
+    v.dm("isNear"): ("isNear", False),
+    v.dm("isUnder"): ("isUnder", False),
+    v.dm("isAbove"): ("isAbove", False),
     **{p: (name, False) for known in shipped() for name, p in known.relations.items()},
 }
 """Properties that state a location, as relations, and whether subject and object are swapped.
@@ -52,8 +56,8 @@ def find_contradictions(space: Space, asserted: Iterable[Fact]) -> Iterator[Rela
 def find_contradiction(space: Space, fact: Fact) -> Relation | None:
     """Return why geometry denies a fact, or None if it agrees or cannot decide.
 
-    It cannot decide without a position or size, or on a flat map. It does not deny attachment to a wall,
-    differences of a few centimetres, or supports in a crowd.
+    It cannot decide without a position or size, or on a flat map, except on nearness. It does not deny
+    attachment to a wall, differences of a few centimetres, or supports in a crowd.
     """
     name, relation, other_name = fact
     solid, other = space.solids.get(name), space.solids.get(other_name)
@@ -89,8 +93,16 @@ def _find_reason(space: Space, relation: RelationName, solid: Solid, other: Soli
             if apart < limits.touch_m
             else _describe_distance(solid, apart)
         )
-    if other.is_place or solid.is_place or not solid.is_measured or space.is_flat:
+    if other.is_place or solid.is_place or not solid.is_measured:
         return None
+    if relation == "isNear":
+        return _deny_nearness(solid, other, limits)
+    if space.is_flat:
+        return None
+    if relation == "isUnder":
+        return _deny_above(other, solid, limits)
+    if relation == "isAbove":
+        return _deny_above(solid, other, limits)
     if space.is_crowded(solid) and distance(solid.outline, other.outline) <= limits.gap_m:
         return None  # its support may not be among the compared objects
     if other in _find_supporters(space, solid):
@@ -111,6 +123,23 @@ def _find_reason(space: Space, relation: RelationName, solid: Solid, other: Soli
         if made is None
         else explain_location(relation, solid, other, made)
     )
+
+
+def _deny_nearness(solid: Solid, other: Solid, limits: Thresholds) -> str | None:
+    made = proximity.near(solid, other, limits)
+    if made is None or made.gap_m <= (made.limit) + limits.gap_m:
+        return None
+    limit = format_length(made.limit)
+    return f"they are {format_length(made.gap_m)} apart (isNear allows up to {limit} for their sizes)"
+
+
+def _deny_above(upper: Solid, lower: Solid, limits: Thresholds) -> str | None:
+    """Return why no part of a solid can be above the other one, or None."""
+    if (apart := distance(upper.outline, lower.outline)) > limits.gap_m:
+        return f"seen from above they are {format_length(apart)} apart"
+    if upper.top <= lower.bottom + limits.touch_m:
+        return f"{upper.name} is below {lower.name}"
+    return None
 
 
 def _find_supporters(space: Space, solid: Solid) -> set[Solid]:

@@ -1,0 +1,98 @@
+"""The actions with a client that records the commands."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from semmap.nodes.extern.mcp import approval
+from semmap.nodes.extern.mcp import arguments as a
+from semmap.nodes.extern.mcp.actions import Actions
+from semmap.nodes.extern.mcp.approval import Approval
+from semmap.nodes.extern.mcp.limits import Limits
+from semmap.nodes.extern.mcp.permissions import Permissions
+from semmap.schemas import errors
+from semmap.schemas.approvals import Request
+from semmap.schemas.commands import Close, Drive, Open, Submit
+from semmap.schemas.replies import Moved
+
+
+class Recorder:
+    """A client whose requests for approval have the decision `decision`."""
+
+    def __init__(self, decision="approved"):
+        self.decision = decision
+        self.sent = []
+
+    def get(self, name):
+        return SimpleNamespace(name=name, types=("Robot",), pose=None)
+
+    def send(self, command):
+        self.sent.append(command)
+        if isinstance(command, Submit):
+            return Request(number=1, agent="a", text="t", stamp_ns=1, decision=self.decision, by="ann")
+        return Moved(name=command.name, text="on its way", commit=7)
+
+
+def actions(*, required=False):
+    own = Approval("tester", per_min=600.0, required=required, patience_s=0.0)
+    return Actions("tester", Permissions(Limits()), own)
+
+
+@pytest.fixture(autouse=True)
+def newest(monkeypatch):
+    monkeypatch.setattr(approval, "newest", lambda client: 5)
+
+
+SIGNED = {"source": "agent", "agent": "tester", "reason": "why"}
+
+
+@pytest.mark.parametrize(
+    ("tool", "arguments", "command"),
+    [
+        ("open", a.Open(name="fridge1", reason="why"), Open(name="fridge1", wait=True, **SIGNED)),
+        (
+            "open",
+            a.Open(name="fridge1", to=0.5, joint="door", reason="why"),
+            Open(name="fridge1", to=0.5, joint="door", wait=True, **SIGNED),
+        ),
+        ("close", a.Close(name="fridge1", reason="why"), Close(name="fridge1", wait=True, **SIGNED)),
+        (
+            "drive",
+            a.Drive(name="r1", to=((1.0, 2.0),), yaw=1.0, reason="why"),
+            Drive(name="r1", to=((1.0, 2.0),), yaw=1.0, **SIGNED),
+        ),
+        ("drive", a.Drive(name="r1", stop=True, reason="why"), Drive(name="r1", stop=True, **SIGNED)),
+    ],
+)
+def test_an_action_is_sent_as_its_command(tool, arguments, command):
+    client = Recorder()
+    reply = getattr(actions(), tool)(client, arguments)
+    assert client.sent == [command]
+    assert reply.head["done"]
+    assert reply.last == 7
+
+
+def test_an_action_waits_for_approval_and_is_requested_again_after_it_is_done():
+    own, client = actions(required=True), Recorder("waiting")
+    opening = a.Open(name="fridge1", reason="why")
+    assert own.open(client, opening).head["done"] is False
+    client.decision = "approved"
+    assert own.open(client, opening).head["approved_by"] == "ann"
+    first = {sent.id for sent in client.sent if isinstance(sent, Submit)}
+    own.open(client, opening)
+    both = {sent.id for sent in client.sent if isinstance(sent, Submit)}
+    assert (len(first), len(both)) == (1, 2)
+
+
+def test_a_rejected_action_is_not_sent_and_can_be_requested_again():
+    own, client = actions(required=True), Recorder("rejected")
+    for _ in range(2):
+        with pytest.raises(errors.Refused, match="was rejected by ann"):
+            own.close(client, a.Close(name="fridge1", reason="why"))
+    assert len({sent.id for sent in client.sent}) == 2
+    assert all(isinstance(sent, Submit) for sent in client.sent)
+
+
+def test_a_robot_is_stopped_without_approval():
+    client = Recorder("waiting")
+    assert actions(required=True).drive(client, a.Drive(name="r1", stop=True, reason="why")).head["done"]
