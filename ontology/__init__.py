@@ -10,6 +10,8 @@ FLAT_TTL = _HERE / "flat.ttl"
 """An ABox: a flat of 10 m x 8 m with its rooms and furniture."""
 FLAT_WORLD = _HERE / "flat_world.xml"
 """The flat's floor, walls, lights and cameras, without anything that is an entity of the ABox."""
+FLAT_START_M = (7.4, 2.0, 0.0)
+"""A free place in the flat, where a new robot begins; the origin is inside a wall."""
 EMPTY_WORLD = _HERE / "empty_world.xml"
 """A bare floor with a light and a camera."""
 ALIGNMENTS = _HERE / "alignments"

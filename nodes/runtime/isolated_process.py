@@ -155,14 +155,24 @@ def limited(cpu_s: float = CPU_S) -> Iterator[None]:
 
     Beyond the limits, SIGXCPU ends the process, or MemoryError is raised.
     """
-    before = {kind: resource.getrlimit(kind) for kind in (resource.RLIMIT_CPU, resource.RLIMIT_AS)}
+    before = resource.getrlimit(resource.RLIMIT_CPU)
     _limit_cpu(cpu_s)
-    _limit_memory(MEMORY_BYTES)
+    try:
+        with limited_memory():
+            yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_CPU, before)
+
+
+@contextmanager
+def limited_memory(memory_bytes: int = MEMORY_BYTES) -> Iterator[None]:
+    """Limit the memory that this process may allocate within the context; beyond it, raise MemoryError."""
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    _limit_memory(memory_bytes)
     try:
         yield
     finally:
-        for kind, limits in before.items():
-            resource.setrlimit(kind, limits)
+        resource.setrlimit(resource.RLIMIT_AS, before)
 
 
 def _limit_cpu(cpu_s: float) -> None:

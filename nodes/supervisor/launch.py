@@ -20,7 +20,7 @@ from semmap.nodes.runtime.memory import uncollected
 from semmap.nodes.supervisor.orphans import end_when_orphaned
 from semmap.nodes.supervisor.privacy import UMASK
 from semmap.nodes.supervisor.settings import Settings
-from semmap.ontology import EMPTY_WORLD, FLAT_WORLD
+from semmap.ontology import EMPTY_WORLD, FLAT_START_M, FLAT_WORLD
 from semmap.ontology.model_shapes import add_own
 from semmap.schemas import codec, errors
 from semmap.schemas.endpoints import WEB_TOKEN_VARIABLE
@@ -107,7 +107,7 @@ def _read_world(settings: Settings) -> None:
         if has_own_world:
             models = Models(folder, Path(settings.data), reader)
             with limited():
-                require_world(Path(settings.world), models, _robot(settings))
+                require_world(Path(settings.world), models, robot_config(settings))
         if folder is not None or _own_shapes(settings).is_file():
             Path(settings.data).mkdir(parents=True, exist_ok=True)
             write_own(folder, _own_shapes(settings), reader)
@@ -154,13 +154,14 @@ def _coordinator(settings: Settings) -> None:
     run(CoordinatorConfig(settings.truth, thresholds, live, settings.network("coordinator"), keys))
 
 
-def _robot(settings: Settings) -> RobotConfig | None:
+def robot_config(settings: Settings) -> RobotConfig | None:
     """Return the configuration of the robot, if there is one."""
     from semmap.nodes.sim_node.config import RobotConfig
 
     if settings.robot is None:
         return None
-    at_m = settings.robot_at or (0.0, 0.0, 0.0)
+    origin_m = FLAT_START_M if Path(settings.world) == FLAT_WORLD else (0.0, 0.0, 0.0)
+    at_m = settings.robot_at or origin_m
     return RobotConfig(Path(settings.robot), settings.robot_name, at_m, settings.robot_yaw)
 
 
@@ -177,7 +178,7 @@ def _sim_node(settings: Settings) -> None:
     patience_s = FOREVER_S if settings.only else RESTART_S  # another host may start later
     data = Path(settings.data)
     still = settings.replay is not None
-    world, robot = Path(settings.world), _robot(settings)
+    world, robot = Path(settings.world), robot_config(settings)
     run(
         SimConfig(
             world,

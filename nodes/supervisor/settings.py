@@ -69,7 +69,7 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The MJCF file of a robot in the world."""
     robot_name: Name = "robot1"
     robot_at: tuple[Metres, Metres, Metres] | None = None
-    """Its initial position, if given; otherwise the origin."""
+    """Its initial position, if given; otherwise the origin, or in the shipped flat a free place."""
     robot_yaw: Radians = 0.0
     stale_s: Annotated[float, Meta(gt=0.0, le=86_400.0)] = 2.0
     """Seconds after which a live pose is stale."""

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from semmap.nodes.runtime import isolated_process
-from semmap.nodes.runtime.isolated_process import IsolatedProcess, limited
+from semmap.nodes.runtime.isolated_process import IsolatedProcess, limited, limited_memory
 from semmap.schemas import errors
 
 RECEIVE = """
@@ -79,6 +79,11 @@ def test_the_limits_of_a_context_end_with_it():
     with pytest.raises(MemoryError), limited():
         bytearray(4 * isolated_process.MEMORY_BYTES)
     assert isolated_process.resource.getrlimit(isolated_process.resource.RLIMIT_AS) == before
+
+
+def test_memory_beyond_the_limit_of_a_context_is_an_error():
+    with pytest.raises(MemoryError), limited_memory(1 << 20):
+        bytes(1 << 30)
 
 
 def test_a_limit_is_at_most_that_of_the_shell(monkeypatch):

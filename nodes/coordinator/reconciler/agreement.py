@@ -79,7 +79,7 @@ def describe_pending(wanted: Actions, known: Container[str]) -> tuple[str, ...]:
     `known` names bodies that cannot become entities, or whose joints the map cannot store.
     """
     spawned = [order.name for order in wanted.spawn]
-    adopted = [body.name for body in wanted.adopt if body.name not in known]
+    adopted = [body for body in wanted.adopt if body.name not in known]
     return (
         *_each(spawned, "has no body yet"),
         *_each((name for name in wanted.delete if name not in spawned), "has a body that is not removed yet"),
@@ -95,8 +95,15 @@ def describe_pending(wanted: Actions, known: Container[str]) -> tuple[str, ...]:
             "has new joint positions that are not committed yet",
         ),
         *_each(wanted.gripped, "was attached or detached, which is not committed yet"),
-        *_each(adopted, "is a scene body that is not an entity yet"),
+        *map(_describe_unadopted, adopted),
     )
+
+
+def _describe_unadopted(body: Body) -> str:
+    text = f"{body.name} is a scene body that is not an entity yet"
+    if body.resting or body.part_of:
+        return text
+    return f"{text}: it does not rest; if it overlaps a wall, use semmap move {body.name} --at X Y Z"
 
 
 def _each(names: Iterable[str], what: str) -> tuple[str, ...]:

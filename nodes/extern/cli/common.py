@@ -396,16 +396,23 @@ def _missing_values(error: click.BadOptionUsage, app: click.Command, name: str) 
     return _one_line(error)
 
 
+def _choices_of(choice: click.Choice[Any]) -> str:
+    return ", ".join(map(str, choice.choices))
+
+
 def _missing_parameter(error: click.MissingParameter) -> str:
     """Return the error text for a missing argument or option, with the next step."""
     parameter, ctx = error.param, error.ctx
     if parameter is None or ctx is None:
         return _one_line(error)
     if isinstance(parameter, click.Option):
-        return f"missing option {parameter.opts[0]} {parameter.metavar or ''}; see: {ctx.command_path} --help"
+        if isinstance(parameter.type, click.Choice):
+            return f"missing option {parameter.opts[0]}; choose from: {_choices_of(parameter.type)}"
+        option = " ".join(filter(None, (parameter.opts[0], parameter.metavar)))
+        return f"missing option {option}; see: {ctx.command_path} --help"
     name = parameter.human_readable_name.removesuffix("...")
     if isinstance(parameter.type, click.Choice):
-        return f"missing argument {name}; choose from: {', '.join(map(str, parameter.type.choices))}"
+        return f"missing argument {name}; choose from: {_choices_of(parameter.type)}"
     formatter = click.HelpFormatter(width=1000)
     ctx.command.format_usage(ctx, formatter)
     return f"missing argument {name}; usage: {formatter.getvalue().strip().removeprefix('Usage: ')}"
@@ -417,12 +424,22 @@ def _one_line(error: click.ClickException) -> str:
     return f"{text[:1].lower()}{text[1:]}".rstrip(".")
 
 
+_OPTION_SYNONYMS: Final = {
+    "-n": "--limit", "--last": "--limit", "--count": "--limit", "--max": "--limit", "--top": "--limit",
+    "--position": "--at", "--pos": "--at", "--pose": "--at", "--endpoint": "--connect", "--label": "--ref",
+    "--alias": "--alt", "--port": "--web-port", "-v": "--version",
+}  # fmt: skip
+"""Option names of other tools, and the options that correspond to them."""
+
+
 def _unknown_option(error: click.NoSuchOption) -> str:
     """Return the error text for an unknown option, with a suggestion: `--format json` for `--json`."""
     text = f"unknown option '{error.option_name}'"
     options = [p for p in error.ctx.command.params if isinstance(p, click.Option)] if error.ctx else []
     word = error.option_name.lstrip("-")
     for option in options:
+        if _OPTION_SYNONYMS.get(error.option_name) in option.opts:
+            return f"{text}; did you mean {option.opts[0]}?"
         if isinstance(option.type, click.Choice) and word in option.type.choices:
             return f"{text}; did you mean {option.opts[0]} {word}?"
     names = [name for option in options for name in (*option.opts, *option.secondary_opts)]

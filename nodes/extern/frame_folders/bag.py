@@ -1,7 +1,12 @@
-"""Messages in rosbags and MCAP files of ROS 1 and 2."""
+"""Messages in rosbags and MCAP files of ROS 1 and 2.
+
+They are decoded by our own definitions: a definition in a file may be recursive, or may make a message of a
+few bytes an array of billions of values.
+"""
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Collection, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -9,18 +14,18 @@ from typing import Any, Final
 
 from mcap.reader import make_reader
 from mcap.records import Schema
-from rosbags.highlevel import AnyReader
-from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
+from rosbags.rosbag1 import Reader as Reader1
+from rosbags.rosbag2 import Reader as Reader2
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys.store import Typestore
 
+from semmap.nodes.extern.frame_folders.topics import TRANSFORMS
 from semmap.nodes.extern.ros.types import store
 from semmap.schemas.errors import BadFile
 
 SUFFIXES: Final = (".bag", ".db3", ".mcap")
-_PARSERS: Final[dict[str, Callable[[str, str], Any]]] = {
-    "ros1msg": get_types_from_msg,
-    "ros2msg": get_types_from_msg,
-    "ros2idl": lambda text, _: get_types_from_idl(text),
-}
+_SCHEMAS: Final = ("ros1msg", "ros2msg", "ros2idl")
+"""The encodings of schemas of ROS messages."""
 Message = tuple[str, Any]
 """A topic and a message."""
 Reader = Callable[[Collection[str]], Iterator[Message]]
@@ -63,20 +68,27 @@ def _readable(path: Path) -> Iterator[None]:
         raise
     except OSError as error:
         raise BadFile(f"{path} cannot be read: {error.strerror or error}") from None
+    except MemoryError:  # a chunk may unpack to a million times its size, and lengths may be wrong
+        raise BadFile(f"{path} needs more memory to read than this machine can give it") from None
     except Exception as error:  # rosbags and mcap raise many types for incomplete recordings
         reason = " ".join(str(error).split()) or type(error).__name__
         raise BadFile(f"{path} is damaged, truncated, or was not closed by its recorder: {reason}") from None
 
 
 def _rosbag(path: Path, stack: ExitStack) -> Bag:
-    reader = stack.enter_context(AnyReader([path], default_typestore=store()))
+    reader: Any
+    if path.suffix.lower() == ".bag":
+        reader, decode = Reader1(path), _ros1().deserialize_ros1
+    else:
+        reader, decode = Reader2(path), store().deserialize_cdr
+    stack.enter_context(reader)
 
     def messages(topics: Collection[str]) -> Iterator[Message]:
         wanted = [connection for connection in reader.connections if connection.topic in topics]
         if not wanted:  # the reader would return all topics
             return
         for connection, _, raw in reader.messages(wanted):
-            yield connection.topic, reader.deserialize(raw, connection.msgtype)
+            yield connection.topic, decode(raw, connection.msgtype)
 
     types = {connection.topic: connection.msgtype for connection in reader.connections}
     return Bag(path, types, messages)
@@ -87,17 +99,12 @@ def _mcap(path: Path, stack: ExitStack) -> Bag:
     summary = reader.get_summary()
     if summary is None:
         raise BadFile(f"{path} is truncated, or was not closed by its recorder: it has no summary")
-    types = get_typestore(Stores.EMPTY)
-    for schema in summary.schemas.values():
-        if schema.encoding in _PARSERS:
-            types.register(_PARSERS[schema.encoding](schema.data.decode(), _type(schema)))
 
     def messages(topics: Collection[str]) -> Iterator[Message]:
         for schema, channel, message in reader.iter_messages(topics=list(topics)):
-            if schema is not None and schema.encoding in _PARSERS:
-                decode = (
-                    types.deserialize_ros1 if channel.message_encoding == "ros1" else types.deserialize_cdr
-                )
+            if schema is not None and schema.encoding in _SCHEMAS:
+                is_ros1 = channel.message_encoding == "ros1"
+                decode = _ros1().deserialize_ros1 if is_ros1 else store().deserialize_cdr
                 yield channel.topic, decode(message.data, _type(schema))
 
     return Bag(
@@ -109,6 +116,15 @@ def _mcap(path: Path, stack: ExitStack) -> Bag:
         },
         messages,
     )
+
+
+@functools.cache
+def _ros1() -> Typestore:
+    """Return the types of ROS 1, with those of `/tf`, which the store lacks."""
+    types = get_typestore(Stores.ROS1_NOETIC)
+    for name in TRANSFORMS:
+        types.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", name))
+    return types
 
 
 def _type(schema: Schema) -> str:

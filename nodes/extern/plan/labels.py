@@ -10,6 +10,8 @@ _EM_MM: Final = 0.6
 """The width of a letter divided by the font size, for wide fonts."""
 _OFFSETS_MM: Final = (0.6, 2.0, 4.0, 7.0)
 """The possible distances of a label from its object."""
+_GAP_MM: Final = 0.5
+"""The minimum distance of two labels: closer ones look like one text."""
 
 
 class Box(NamedTuple):
@@ -85,7 +87,7 @@ class Sheet:
     """A sheet on which labels are placed one after another."""
 
     def __init__(self, within: Box, things: Sequence[Box], walls: Sequence[Box] = ()) -> None:
-        """Labels stay `within`. Covering `things` has a cost, and covering `walls` a higher one."""
+        """Labels stay `within`, apart from one another. Covering `things` has a cost, and covering `walls` a higher one."""
         self._within = within
         self._things = _Boxes(things)
         self._walls = _Boxes(walls)
@@ -130,7 +132,8 @@ class Sheet:
         return self._take(Label(text, min(free, key=cost)))
 
     def _take(self, label: Label) -> Label:
-        self._taken.add(label.box)
+        box = label.box
+        self._taken.add(Box(box.x0 - _GAP_MM, box.y0 - _GAP_MM, box.x1 + _GAP_MM, box.y1 + _GAP_MM))
         return label
 
     def _is_free(self, box: Box) -> bool:

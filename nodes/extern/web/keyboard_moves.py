@@ -29,10 +29,24 @@ class KeyboardMoves:
         self._page = page
         self._moves = PendingMoves()
         self._is_sending = False
+        self._sending = asyncio.Lock()
+        """Held from when a change is sent until the map has it."""
+        page.discard_pending = self.discard_last
         for key in KEYS:
             page.on_key(key, partial(self._press, key))
         page.on_select(self._moves.close)
         page.client.on_delete(page.live.listen(self._on_event))
+
+    async def discard_last(self) -> bool:
+        """Discard the last change if it was not sent, and return whether there was one.
+
+        Without one, wait until the map has the change that is being sent.
+        """
+        if self._moves.discard_last():
+            self._preview()
+            return True
+        async with self._sending:
+            return False
 
     def _press(self, key: str) -> None:
         page = self._page
@@ -59,7 +73,8 @@ class KeyboardMoves:
         try:
             while not self._moves.is_empty:
                 await self._wait_until_quiet()
-                await self._send_first()
+                async with self._sending:
+                    await self._send_first()
         finally:
             self._is_sending = False
         self._preview()
@@ -73,7 +88,7 @@ class KeyboardMoves:
     async def _send_first(self) -> None:
         """Send the first move, and wait until the map has it: the next one begins at the new poses."""
         page, map_id = self._page, self._page.live.map_id
-        if self._moves.is_empty:  # another map is served
+        if self._moves.is_empty:  # another map is served, or the steps were discarded
             return
         try:
             change = self._moves.take(page.live.entities)

@@ -66,6 +66,11 @@ class Page:
         """Returns the next position that the user clicks; set by the scene."""
         self.preview: Callable[[Mapping[str, Pose]], None] | None = None
         """Shows entities at other poses until it is called without any; set by the scene."""
+        self.discard_pending: Callable[[], Awaitable[bool]] | None = None
+        """Discards the last change by keys that was not sent, and returns whether there was one.
+
+        Set by the arrow keys.
+        """
         self.cancel_interaction: Callable[[], bool] | None = None
         """Cancels picking or dragging in the scene, and returns whether there was any; set by the scene."""
         self.get_viewpoint: Callable[[], ViewPoint | None] | None = None

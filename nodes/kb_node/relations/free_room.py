@@ -117,7 +117,10 @@ class _Search:
             start = self._target.centre[:2] if self._placing == "next_to" else _middle(level.outline)
             for x, y in _grid(level.outline, start):
                 z = level.height - form.bottom
-                if not covers(level.outline, [(x + dx, y + dy) for dx, dy in form.base]):
+                base = [(x + dx, y + dy) for dx, dy in form.base]
+                if not covers(level.outline, base):
+                    continue
+                if self._placing == "next_to" and self._is_beneath(base):
                     continue
                 solid = Solid(self._name, (x, y, z), form, False, True)
                 if self._placing == "in" and not self._target.is_place and not self._is_contained(solid):
@@ -175,6 +178,10 @@ class _Search:
                 return False
         return True
 
+    def _is_beneath(self, base: Sequence[Point]) -> bool:
+        """Return whether a base is under or over a part of the target, as under a table."""
+        return area(clipped(base, self._target.outline)) > 0.0
+
     def _is_contained(self, solid: Solid) -> bool:
         made = containment.inside(solid, self._target, self._space.limits)
         return made is not None and made.holds
@@ -205,8 +212,8 @@ class _Search:
             return f"{name} is tilted, so nothing can be placed {placing_words(self._placing)} it"
         if self._placing == "in" and self._target.hollows:
             return (
-                f"{name} is solid in the simulator, so nothing can be placed in it;"
-                f" state it with: semmap set {self._name} isInside {name}"
+                f"{name} is solid in the simulator, so nothing can be placed in it; place {self._name}"
+                f" with --at, then: semmap set {self._name} isInside {name}"
             )
         if self._placing == "in" and self._target.form.shape.interiors:
             return f"{name} is shallow, so things are on it; use --on {name}"

@@ -98,3 +98,12 @@ def test_a_scene_body_that_cannot_become_an_entity_is_not_waited_for():
     wanted = look([], [body("gizmo1", at(0.0), of_entity=False)], "scene")
     assert describe_pending(wanted, ()) == ("gizmo1 is a scene body that is not an entity yet",)
     assert describe_pending(wanted, {"gizmo1"}) == ()
+
+
+def test_a_robot_that_does_not_come_to_rest_is_named_with_the_next_step():
+    robot = structs.replace(body("robot1", at(0.0), resting=False), robot=True)
+    (text,) = describe_pending(look([], [robot]), ())
+    assert text == (
+        "robot1 is a scene body that is not an entity yet: it does not rest;"
+        " if it overlaps a wall, use semmap move robot1 --at X Y Z"
+    )

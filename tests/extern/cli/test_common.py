@@ -48,7 +48,12 @@ def test_the_values_of_an_option_are_named(capsys, words, said):
             "missing argument VALUE; usage: semmap set [OPTIONS] NAME PROPERTY VALUE...",
         ),
         (["attach", "cup1"], "missing option --to HOLDER; see: semmap attach --help"),
+        (
+            ["keys", "add", "anna", "keys"],
+            "missing option --role; choose from: viewer, operator, perception, robot, admin, node",
+        ),
         (["completion"], "missing argument SHELL; choose from: bash, zsh, fish"),
+        (["list", "-n", "3"], "unknown option '-n'; did you mean --limit?"),
         (["list", "x"], "got unexpected extra argument (x)"),
     ],
 )

@@ -7,6 +7,8 @@ import struct
 
 import numpy as np
 import pytest
+from mcap.reader import SeekingReader
+from mcap.writer import Writer as McapWriter
 from PIL import Image
 
 from semmap.nodes.extern.cli.app import execute
@@ -245,3 +247,24 @@ def test_a_file_that_is_cut_off_is_reported(tmp_path, capsys, kind):
 def test_intrinsics_that_fit_no_picture_are_reported(tmp_path, capsys):
     file = write(tmp_path, "bag", instead(table(1), INFO, lambda _: info(WIDTH, 3 * HEIGHT, FRAME)))
     assert f"the intrinsics are for {WIDTH} x {3 * HEIGHT}" in refused(tmp_path, capsys, file)
+
+
+@pytest.mark.parametrize("text", ["sensor_msgs/Image[] a", "uint8[4000000000] a", "uint8", ""])
+def test_definitions_in_a_file_are_not_used(tmp_path, monkeypatch, text):
+    register = McapWriter.register_schema
+    monkeypatch.setattr(
+        McapWriter,
+        "register_schema",
+        lambda self, name, encoding, data: register(self, name, encoding, text.encode()),
+    )
+    assert len(converted(tmp_path, write(tmp_path, "mcap", table()))) == 3
+
+
+@pytest.mark.parametrize("function", ["get_summary", "iter_messages"])
+def test_a_file_that_needs_too_much_memory_is_reported(tmp_path, capsys, monkeypatch, function):
+    def read(*_, **__):
+        raise MemoryError
+
+    file = write(tmp_path, "mcap", table())
+    monkeypatch.setattr(SeekingReader, function, read)
+    assert "needs more memory to read than this machine can give it" in refused(tmp_path, capsys, file)

@@ -24,7 +24,7 @@ class Tab:
         self.selected = ("a",)
         self.sent, self.notices, self.shown = [], [], {}
         self.rejects = False
-        self.on_event = self.close = self.task = None
+        self.on_event = self.close = self.task = self.discard_pending = None
         self._keys = {}
 
     def _listen(self, listener):
@@ -156,6 +156,33 @@ def test_steps_are_not_sent_to_another_map(run):
         tab.live.map_id, tab.live.commit = "another", 0
         tab.on_event(LiveEvent(kind="reset", is_new_map=True))
         await settled()
+        assert tab.sent == [{"a": 0.1}]
+
+    run(scenario)
+
+
+def test_undo_discards_steps_that_were_not_sent(run):
+    async def scenario(tab):
+        tab.press()
+        assert await tab.discard_pending()
+        assert tab.shown == {}
+        await settled()
+        assert tab.sent == []
+
+    run(scenario)
+
+
+def test_undo_waits_for_the_change_that_is_being_sent(run):
+    async def scenario(tab):
+        tab.press()
+        await settled()
+        tab.press()
+        assert await tab.discard_pending()  # the second step, not the first
+        waiting = asyncio.ensure_future(tab.discard_pending())
+        await settled()
+        assert not waiting.done()
+        tab.commit()
+        assert not await waiting
         assert tab.sent == [{"a": 0.1}]
 
     run(scenario)

@@ -7,6 +7,7 @@ from itertools import combinations
 import pytest
 from msgspec import structs
 
+from semmap.nodes.geometry.polygons import clipped
 from semmap.nodes.kb_node.relations.free_room import find_room
 from semmap.nodes.kb_node.relations.measuring import proximity
 from semmap.nodes.kb_node.relations.measuring.arrangement import measure_next_to
@@ -112,6 +113,7 @@ def test_next_to_another_object_it_has_the_same_support(around, target):
     beside = measure_next_to(space, space.solids["cup1"], space.solids[target])
     assert beside is not None
     assert beside.holds
+    assert not clipped(space.solids["cup1"].outline, space.solids[target].outline)  # not under it
 
 
 def test_what_moves_with_it_takes_up_no_room():

@@ -59,7 +59,10 @@ def _or_folders(function: Callable[..., None]) -> Callable[..., None]:
         if folder is not None and name is not None:
             if format == "tree":
                 raise errors.BadRequest("--format tree applies to the frame tree only, not to a recording")
-            _folders(Path(name), folder, as_json=format == "json", **options)
+            from semmap.nodes.runtime.isolated_process import limited_memory
+
+            with limited_memory():
+                _folders(Path(name), folder, as_json=format == "json", **options)
             return
         if passed := list(drop_unset(options)):
             option = passed[0].replace("_", "-")

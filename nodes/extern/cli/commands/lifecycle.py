@@ -14,6 +14,7 @@ import click
 from msgspec import structs
 
 from semmap.nodes import bus
+from semmap.nodes.extern.cli.angles import ANGLE
 from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import ENDPOINT, json_option, print_error, print_result
 from semmap.nodes.extern.cli.ontology_options import (
@@ -176,9 +177,16 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         type=float,
         default=None,
         metavar="X Y Z",
-        help="Position of a new robot [m]; a robot in the map starts at its last pose.  [default: 0 0 0]",
+        help="Position of a new robot [m]; a robot in the map starts at its last pose. Default: 0 0 0, or a"
+        " free place in the flat.",
     )
-    @click.option("--robot-yaw", type=float, default=0.0, metavar="RAD", help="Yaw of a new robot.")
+    @click.option(
+        "--robot-yaw",
+        type=ANGLE,
+        default=0.0,
+        metavar="ANGLE",
+        help="Yaw of a new robot: radians, or degrees as in 90deg.",
+    )
     @click.option(
         "--reset-world",
         is_flag=True,

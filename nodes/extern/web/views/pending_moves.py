@@ -54,6 +54,14 @@ class PendingMoves:
         """End the last move, because of another selection."""
         self._is_closed = True
 
+    def discard_last(self) -> bool:
+        """Discard the last move if it was not taken yet; return whether there was one."""
+        if not self._moves:
+            return False
+        self._moves.pop()
+        self._is_closed = True
+        return True
+
     def clear(self) -> None:
         """Discard all steps, because another map is served."""
         self._moves.clear()

@@ -34,7 +34,10 @@ async def delete_selected(page: Page) -> None:
 
 
 async def undo(page: Page) -> None:
-    """Undo the last change by a user."""
+    """Undo the last change by a user; steps of the arrow keys that were not sent are discarded."""
+    if page.discard_pending is not None and await page.discard_pending():
+        page.notify("move discarded")
+        return
     if not page.is_allowed("undo"):
         page.notify("undo is not permitted for the role of this page", "warning")
         return
