@@ -239,5 +239,5 @@ def test_a_joint_that_opens_and_a_switch_may_be_named():
     for joint in ("door", "knob1"):
         _require_joints(c.Close(name="thing1", joint=joint), body(DOOR, SWITCH))
     _require_joints(c.Open(name="thing1", joint="knob1"), body(SWITCH))
-    with pytest.raises(errors.Refused, match="--joint knob1$"):
+    with pytest.raises(errors.Refused, match=r"--joint knob1$"):
         _require_joints(c.Close(name="thing1"), body(SWITCH))
