@@ -298,7 +298,7 @@ class PictureQuery(Call[Picture], frozen=True, kw_only=True, forbid_unknown_fiel
     """Render the scene from a camera of the world, or without one, the whole scene.
 
     With a `box` (lowest and highest corner [m], map frame), that region is rendered from above. `labels`
-    shows the names of the entities whose bodies' centres are in the box.
+    shows the names of the bodies whose centres are in the box.
     """
 
     VERB: ClassVar[str] = "picture"

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from semmap.schemas import agents, changes
+from semmap.schemas.changes import Change
 from semmap.schemas.commits import Commit
 from semmap.schemas.entities import Entity, Pose, Provenance, distance_m
+from semmap.schemas.joints import OPENING, SWITCHING
 from semmap.schemas.replies import LoggedCommit
 
 _STILL_M = 0.005
@@ -57,13 +59,21 @@ def moment(stamp_ns: int) -> str:
 
 def changed_in_short(was: Entity, now: Entity) -> str:
     """Return the change of an entity as a short label, such as `moved 1.2 m`; empty if nothing changed."""
-    found = changes.between(was, now)
+    found = _drop_details(changes.between(was, now))
     if [change.kind for change in found] != ["pose"] or was.pose is None or now.pose is None:
         return changes.in_words(found)
     moved_m = distance_m(was.pose, now.pose)
     if moved_m < _STILL_M:
         return "turned"
     return f"moved {moved_m:.1f} m" if moved_m >= _NOTED_M else f"moved {round(moved_m * 100)} cm"
+
+
+def _drop_details(found: Iterable[Change]) -> list[Change]:
+    """Leave out joint positions and the like if a shorter property says the same, such as `isOpen`."""
+    found = list(found)
+    changed = {change.property_ for change in found}
+    implied = {p for group in (OPENING, SWITCHING) for p in [name for name in group if name in changed][1:]}
+    return [change for change in found if change.property_ not in implied]
 
 
 def plain(value: float, digits: int) -> str:

@@ -181,6 +181,14 @@ class BodyIndex:
             positions[self.joint_ball] = 2.0 * np.arccos(np.minimum(1.0, np.abs(positions[self.joint_ball])))
         return np.asarray(positions)
 
+    def owners(self, model: mujoco.MjModel) -> NDArray[np.object_]:
+        """Return (nbody,) for each body of `model` the name of its body or parent in the index, or ""."""
+        names = np.full(model.nbody, "", dtype=object)
+        names[self.body] = self.names
+        for body in np.flatnonzero(names == ""):  # wholes have lower numbers than their parts
+            names[body] = names[model.body_parentid[body]]
+        return names
+
     def joint_coordinates(self, name: str) -> dict[str, slice]:
         """Return where the coordinates of each joint of a body are in `qpos`, by its name in MuJoCo."""
         rows = {joint: self.joint_row[joint] for joint in self.records[self.row[name]].joint_names}

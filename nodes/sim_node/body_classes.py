@@ -17,6 +17,9 @@ from semmap.schemas.entities import ClassInfo
 UNSURE: Final = "Object"
 """The class of a body whose name does not determine a class, if the TBox has this class."""
 
+ROBOT: Final = "Robot"
+"""The class of bodies whose joints do not open anything."""
+
 _LONGEST: Final = 4
 """The largest number of words of one label."""
 _CHUNK: Final = re.compile(r"[^\W_]+")
@@ -108,9 +111,15 @@ class BodyClasses:
             label = " ".join(words) if any(len(word) > 2 for word in words) else ""
             return Found(UNSURE if UNSURE in self._classes else None, is_sure=False, label=label)
         class_ = "Toy" if any(item.class_ == "Toy" for item in items[:head]) else items[head].class_
-        last = len(items) if items[head].is_italian else head + 1
-        label = " ".join(item.text for item in items[:last])
+        label = " ".join(item.text for item in self._order_for_label(items, head))
         return Found(class_, is_sure=True, label="" if self._labels.get(fold(label)) == class_ else label)
+
+    def _order_for_label(self, items: Sequence[_Item], head: int) -> Sequence[_Item]:
+        """Return the expressions of a label up to the head; colours and sizes after it come first."""
+        if items[head].is_italian:
+            return items
+        after = [item for item in items[head + 1 :] if item.text in self._words["qualities"]]
+        return [*after, *items[: head + 1]]
 
     def _stated_class(self, name: str) -> str | None:
         """Return the class of a body in the class map."""
@@ -140,7 +149,7 @@ class BodyClasses:
         is_part = not self._words["parts"].isdisjoint((class_.name, *class_.ancestors))
         if around is None:
             return not (moves and is_part)
-        return around.name != "Robot" and not is_part
+        return around.name != ROBOT and not is_part
 
     def is_variant(self, name: str, whole_name: str) -> bool:
         """Return whether a name is another one and a number, letter, colour or size: `cup_2`, `cup_red`."""

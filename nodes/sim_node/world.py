@@ -24,6 +24,7 @@ from semmap.nodes.sim_node.physics.walls import walls
 from semmap.nodes.sim_node.placement.settling import Settling
 from semmap.nodes.sim_node.robots.base_controller import ACTUATORS, Outcome, actuators
 from semmap.nodes.sim_node.scene_clock import SceneClock
+from semmap.nodes.sim_node.vision.labels import find_tops
 from semmap.nodes.sim_node.vision.view import bulk, camera_names, optical_pose, overview
 from semmap.schemas import wording
 from semmap.schemas.entities import Pose, relative
@@ -295,17 +296,8 @@ class World:
         return walls(self.model, self.data, set(self._engine.index.body.tolist()))
 
     def tops(self, box: tuple[Floats, Floats] | None = None) -> dict[str, Floats]:
-        """Return the centre of the top (3,) [m] of each entity's body whose centre is in the box."""
-        obstacles, index = self._engine.obstacles(), self._engine.index
-        found = {}
-        for name, row in index.row.items():
-            low, high = obstacles.body_low[row], obstacles.body_high[row]
-            middle = (low + high) / 2.0
-            if not self._engine.records[name].entity or not np.isfinite(middle).all():
-                continue
-            if box is None or bool(((box[0] <= middle) & (middle <= box[1])).all()):
-                found[name] = np.array([middle[0], middle[1], high[2]])
-        return found
+        """Return the centre of the top (3,) [m] of each body whose centre is in the box."""
+        return find_tops(self.model, self.data, self.body_names(), box)
 
     def poses(self) -> Poses:
         """Return the poses of all bodies."""
@@ -394,11 +386,7 @@ class World:
 
     def names_of(self, numbers: Ints) -> list[str]:
         """Return for each of these bodies of `model` the name of its body or parent, or ""."""
-        names = np.full(self.model.nbody, "", dtype=object)
-        names[self._engine.index.body] = self._engine.index.names
-        for body in np.flatnonzero(names == ""):  # wholes have lower numbers than their parts
-            names[body] = names[self.model.body_parentid[body]]
-        return names[numbers].tolist()  # type: ignore[no-any-return]
+        return self._engine.index.owners(self.model)[numbers].tolist()  # type: ignore[no-any-return]
 
     def _bodies(self, names: Iterable[str]) -> tuple[Body, ...]:
         engine = self._engine

@@ -50,6 +50,10 @@ def test_most_names_of_published_worlds_have_a_class():
         ("red_4d2f_mug", "red mug"),  # a hash of a converter is not a word
         ("red_mug_4d2f_1", "red mug"),
         ("tazza_rossa_1", "tazza rossa"),
+        ("mug_red_2", "red mug"),
+        ("cushion_blue", "blue cushion"),
+        ("wooden_board_big", "big wooden board"),
+        ("kettle_electric_1", ""),
         ("desk_caddy_1", "desk caddy"),
         ("obj_main", ""),
         ("12", ""),

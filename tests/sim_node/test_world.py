@@ -511,12 +511,12 @@ def test_a_world_s_own_geometry_stands_in_the_way_and_bodies_do_not(rover):
     assert len(World(wall).walls()) == 1
 
 
-def test_the_tops_of_entities_can_be_asked_for_also_within_a_box():
+def test_the_tops_of_bodies_can_be_asked_for_also_within_a_box():
     world = World()
     boxes = [order(f"box{i}", "", pose(2.0 * i, 0), size_m=(0.4, 0.4, 0.3), commit=i) for i in range(3)]
     world.spawn(boxes)
     tops = world.tops()
-    assert tops.keys() == {"box1", "box2"}  # the first is the world's own
+    assert tops.keys() == {"box0", "box1", "box2"}
     assert tops["box1"] == pytest.approx((2.0, 0.0, 0.3))
     assert world.tops((np.array([3.0, -1, 0]), np.array([5.0, 1, 1]))).keys() == {"box2"}
     assert world.tops((np.array([3.0, -1, 0.2]), np.array([5.0, 1, 1]))).keys() == set()

@@ -68,9 +68,14 @@ def properties_in(statements: Iterable[str]) -> tuple[str, ...]:
 
 
 def explain_endless_joint(joints: Sequence[Joint]) -> str:
-    """Return why joints without limits open nothing, or "" if all joints have limits."""
+    """Return why joints open nothing, or "" if all of them do."""
     joint = next((joint for joint in joints if not joint.has_ends), None)
     if joint is None:
         return ""
-    why = "is a ball joint" if joint.kind == "ball" else "has no limits, so it has no closed position"
+    if joint.kind == "ball":
+        why = "is a ball joint"
+    elif joint.lower is None or joint.upper is None:
+        why = "has no limits, so it has no closed position"
+    else:
+        why = "is that of a robot, or coupled to another joint"
     return f": its joint {joint.name} {why}"

@@ -86,11 +86,10 @@ def _require_joints(command: c.Open | c.Close, body: Body) -> None:
     opening = [joint.name for joint in body.joints if joint.opens]
     switches = [joint.name for joint in body.joints if joint.switches]
     if not opening and command.joint not in switches:
-        to_switch = f"; to switch it: semmap set {body.name} isSwitchedOn {_is_open(command)}"
-        raise errors.Refused(
-            f"{body.name} has no door, lid or drawer to {command.VERB}"
-            f"{to_switch if switches else explain_endless_joint(body.joints)}"
-        )
+        why = explain_endless_joint(body.joints)
+        if switches:  # by its joint: the map alone does not change it if the scene is the source of truth
+            why = f"; to switch it: semmap {command.VERB} {body.name} --joint {switches[0]}"
+        raise errors.Refused(f"{body.name} has no door, lid or drawer to {command.VERB}{why}")
     if command.joint and command.joint not in (*opening, *switches):
         there = [*opening, *switches]
         hint = errors.did_you_mean(command.joint, there) or f"; it has: {', '.join(there)}"

@@ -94,10 +94,10 @@ def _commit_scene(commit: Commit, there: dict[str, Entity], seconds: float) -> S
         elif was.pose != entity.pose:
             glide.append((entity.name, was.pose, entity.pose))
         if text := changed_in_short(was, entity):
-            labels[entity.name] = f"{entity.name} {text}"
+            labels[entity.name] = _printable(f"{entity.name} {text}")
     return Scene(
         seconds=seconds,
-        caption=caption(commit),
+        caption=_printable(caption(commit)),
         add=tuple(add),
         remove=tuple(remove),
         glide=tuple(glide),
@@ -114,6 +114,11 @@ def caption(commit: Commit) -> str:
     """Return a caption such as `commit 12 · 2026-11-23 00:44:31 · operator/cli: move cup1`."""
     what = commit.reason or wording.entities(len(commit.names))
     return f"commit {commit.seq} · {_format_time(commit.stamp_ns)} · {author(commit)}: {what}"
+
+
+def _printable(text: str) -> str:
+    """Replace arrows, which the font of images does not have."""
+    return text.replace("→", "->")
 
 
 def _format_time(stamp_ns: int) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from semmap.nodes.kb_node.relations.facts.pair_facts import is_separate
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import containment, places, proximity, support_contact
 from semmap.nodes.kb_node.relations.measuring.arrangement import measure_attachment
@@ -50,7 +51,8 @@ def explain_absence(space: Space, relation: RelationName, solid: Solid, other: S
             return _explain_not_inside(space, solid, other)
         case "isAttachedTo":
             return _explain_not_attached(space, solid, other)
-    if relation != "touches" and (rests := _describe_direct_support(space, solid, other)):
+    rests = None if relation == "touches" else _describe_direct_support(space, solid, other)
+    if rests is not None and not is_separate(space, solid, other):
         return rests
     pair = PAIR_RELATIONS[relation]
     return pair.explain(space, solid, other, pair.measure(space, solid, other))

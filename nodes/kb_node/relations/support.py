@@ -83,7 +83,9 @@ def _find_nearest_surface(space: Space, solid: Solid, floor_m: float) -> Found |
     nearest = abs(floor_m)
     for other in space.counted_around(solid):
         made = None if other.is_place else support_contact.over(solid, other, space.limits)
-        if made is not None and abs(made.gap_m) < nearest and made.gap_m > solid.bottom - solid.top:
+        if made is None or abs(made.gap_m) >= nearest or made.gap_m <= solid.bottom - solid.top:
+            continue
+        if solid not in find_supporters(space, other):  # such as a cup on the board of a wall cabinet
             found, nearest = (other, made), abs(made.gap_m)
     return found
 

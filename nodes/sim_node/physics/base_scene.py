@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.sim_node.bodies import BodyRecord, Floats, pose_of
-from semmap.nodes.sim_node.body_classes import BodyClasses, Found
+from semmap.nodes.sim_node.body_classes import ROBOT, BodyClasses, Found
 from semmap.nodes.sim_node.physics.build import COLLISION_GROUP, IMPEDANCE
 from semmap.nodes.sim_node.physics.entity_bodies import find_entities
 from semmap.nodes.sim_node.physics.joint_texts import (
@@ -189,13 +189,16 @@ def bodies_of(
     """Return the world's own bodies by the names of their entities, with the classes that `classes` finds.
 
     `find_entities` tells them from their parts. A joint belongs to the body that it moves, or else to its
-    nearest parent body. The size of a body is that of its own geoms and those of its parts, without nested
-    entities: a book does not make its table higher. A place, or a body without such geoms, includes them.
+    nearest parent body. The joints of a robot open nothing, unless a text declares it. The size of a body is
+    that of its own geoms and those of its parts, without nested entities: a book does not make its table
+    higher. A place, or a body without such geoms, includes them.
     """
     model, data = compiled
     ends = JointTexts.of(spec)
     switches = {joint for joint in range(model.njnt) if ends.is_switch(model, joint)}
     follow = coupled_joints(model, switches)  # a burner coupled to a knob opens nothing
+    undeclared = {j for j in range(model.njnt) if ends.closed_end(model.joint(j).name) is None}
+    robots = set[str]()
     records: dict[int, BodyRecord] = {}
     taken = {body.name for body in spec.bodies if is_name(body.name)}
     classes = classes or BodyClasses()
@@ -210,11 +213,13 @@ def bodies_of(
             geoms = np.flatnonzero(geom_owner == number)
             if not len(geoms) or classes.is_place(found[number]):
                 geoms = np.flatnonzero(_within(model, number)[model.geom_bodyid])
-            records[number] = _record(
-                model, data, spec.body(body), geoms, name, found[number], whole.name if whole else ""
-            )
+            part_of = whole.name if whole else ""
+            if found[number].class_ == ROBOT or part_of in robots:
+                robots.add(name)
+            records[number] = _record(model, data, spec.body(body), geoms, name, found[number], part_of)
         if whose and model.body_jntnum[number]:
-            _give_joints(records[whose], model, number, ends, switches, follow)
+            idle = follow | undeclared if records[whose].name in robots else follow
+            _give_joints(records[whose], model, number, ends, switches, idle)
     return {record.name: record for record in records.values()}
 
 
@@ -291,9 +296,9 @@ def _give_joints(
     body: int,
     ends: JointTexts,
     switches: set[int],
-    follow: set[int],
+    idle: set[int],
 ) -> None:
-    """Add the joints that move a body to a record; `follow` are joints that depend on others."""
+    """Add the joints that move a body to a record; those of `idle` open nothing by themselves."""
     first = int(model.body_jntadr[body])
     joints = range(first, first + int(model.body_jntnum[body]))
     numbers = [joint for joint in joints if int(model.jnt_type[joint]) in _KINDS]
@@ -303,7 +308,7 @@ def _give_joints(
             number,
             ends.closed_end(model.joint(number).name),
             number in switches,
-            number in follow,
+            number in idle,
         )
         for number in numbers
     )
@@ -311,7 +316,7 @@ def _give_joints(
 
 
 def _joint(
-    model: mujoco.MjModel, number: int, closed_end: str | None, is_switch: bool, follows: bool
+    model: mujoco.MjModel, number: int, closed_end: str | None, is_switch: bool, is_idle: bool
 ) -> Joint:
     """Return a joint in its initial position; with limits, it opens or switches something.
 
@@ -333,7 +338,7 @@ def _joint(
         position=initial,
         lower=lower,
         upper=upper,
-        closed=None if follows else closed,
+        closed=None if is_idle else closed,
         initial=initial,
         switch=is_switch,
     )

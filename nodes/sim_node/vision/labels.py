@@ -1,10 +1,11 @@
-"""Draws names on an image, each next to its thing."""
+"""Draws names on an image, each at the top of its body."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
+import mujoco
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
@@ -18,6 +19,38 @@ _TRIES: Final = 15
 _SMALLEST_PX, _LARGEST_PX = 9, 16
 _AHEAD_M: Final = 0.05
 _INK, _PAPER, _LINE = (20, 20, 20), (255, 255, 255, 215), (255, 255, 255, 200)
+
+
+def find_tops(
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    owners: Sequence[str],
+    box: tuple[Floats, Floats] | None = None,
+) -> dict[str, Floats]:
+    """Return the centre of the top (3,) [m] of each body with geoms, whose centre is in the box.
+
+    `owners` (ngeom,) has the names of the bodies, "" for none. A nested body does not count in the one around
+    it, and planes do not count.
+    """
+    number = {name: row for row, name in enumerate(dict.fromkeys(owners))}
+    rotation = data.geom_xmat.reshape(-1, 3, 3)
+    centre = data.geom_xpos + np.einsum("nij,nj->ni", rotation, model.geom_aabb[:, :3])
+    half = np.einsum("nij,nj->ni", np.abs(rotation), model.geom_aabb[:, 3:])
+    low, high = np.full((len(number), 3), np.nan), np.full((len(number), 3), np.nan)
+    shown = np.flatnonzero(model.geom_type != int(mujoco.mjtGeom.mjGEOM_PLANE))
+    rows = np.array([number[name] for name in owners], dtype=np.int64)[shown]
+    np.fmin.at(low, rows, (centre - half)[shown])
+    np.fmax.at(high, rows, (centre + half)[shown])
+    found = {}
+    for name, row in number.items():
+        middle = (low[row] + high[row]) / 2.0
+        if name and np.isfinite(middle).all() and (box is None or _is_in(middle, box)):
+            found[name] = np.array([middle[0], middle[1], high[row, 2]])
+    return found
+
+
+def _is_in(point: Floats, box: tuple[Floats, Floats]) -> bool:
+    return bool(((box[0] <= point) & (point <= box[1])).all())
 
 
 def project_points(view: View, points: Mapping[str, Floats]) -> dict[str, tuple[float, float]]:

@@ -16,7 +16,7 @@ from semmap.nodes.sim_node.models.sources import Models
 from semmap.nodes.sim_node.physics import base_scene
 from semmap.nodes.sim_node.physics.engine import Engine, is_at
 from semmap.nodes.sim_node.vision.camera import Eye
-from semmap.nodes.sim_node.vision.labels import draw_labels, project_points
+from semmap.nodes.sim_node.vision.labels import draw_labels, find_tops, project_points
 from semmap.nodes.sim_node.vision.view import FROM_ABOVE, View, bulk, camera_view, overview
 from semmap.nodes.sim_node.world_file import is_scene
 from semmap.ontology.model_shapes import is_same_size
@@ -144,17 +144,7 @@ class OffscreenScene:
         if scale > 1:
             image = image.resize((view.width, view.height), Image.Resampling.BOX)
         if labels:
-            tops = {labels[name]: top for name, top in self._tops(labels).items()}
-            image = draw_labels(image, project_points(view, tops))
+            tops = find_tops(model, data, self._engine.index.owners(model)[model.geom_bodyid])
+            points = {labels[name]: top for name, top in tops.items() if name in labels}
+            image = draw_labels(image, project_points(view, points))
         return np.asarray(image)
-
-    def _tops(self, names: Iterable[str]) -> dict[str, Floats]:
-        """Return the centre of the top (3,) [m] of each of these bodies."""
-        obstacles, found = self._engine.obstacles(), {}
-        for name in names:
-            if (row := self._engine.index.row.get(name)) is not None:
-                low, high = obstacles.body_low[row], obstacles.body_high[row]
-                if np.isfinite(low).all() and np.isfinite(high).all():
-                    middle = (low + high) / 2.0
-                    found[name] = np.array([middle[0], middle[1], high[2]])
-        return found

@@ -9,6 +9,7 @@ from semmap.schemas.joints import Joint
 from tests.coordinator.scene.test_joint_commands import HINGE, SWITCH, body
 
 BALL = Joint(name="neck1", kind="ball")
+ELBOW = Joint(name="elbow", kind="hinge", lower=-1.0, upper=1.0)
 DOOR = Joint(name="door", kind="hinge", lower=0.0, upper=1.0, closed=0.0)
 BODIES = {"thing1": body(DOOR, SWITCH), "door1": body(DOOR)}
 NO = "thing1 has no door, lid or drawer that could be open or shut: its joint"
@@ -30,6 +31,7 @@ def have(home, *joints):
     [
         ((BALL,), "neck1 is a ball joint"),
         ((HINGE, SWITCH), "hinge1 has no limits, so it has no closed position"),
+        ((ELBOW,), "elbow is that of a robot, or coupled to another joint"),
     ],
 )
 @pytest.mark.parametrize(

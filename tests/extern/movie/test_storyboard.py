@@ -40,7 +40,7 @@ def test_each_commit_is_a_scene_that_says_what_it_changes():
     assert one.caption.startswith("commit 2 · ")
     assert one.caption.endswith(" · operator: tidy")
     assert (two.add, two.glide) == ((larger,), ())
-    assert two.labels == {"table1": "table1 size: unknown → 1 x 1 x 1"}
+    assert two.labels == {"table1": "table1 size: unknown -> 1 x 1 x 1"}
     assert (three.remove, three.labels) == (("cup1",), {"cup1": "cup1 is removed"})
 
 

@@ -163,6 +163,15 @@ def test_a_floating_object_is_on_nothing(at, said):
     assert all(r.object for r in fixed)
 
 
+def test_the_height_of_a_wall_cupboard_is_not_that_below_its_contents():
+    table, shelf = thing("table1", (0.0, 0.0, 0.0), "table"), thing("shelf1", (0.0, 0.0, 1.1), "bookshelf")
+    board = min(support.height for support in Space([shelf]).solids["shelf1"].supports)
+    space = Space([ROOM, table, shelf, thing("cup1", (0.0, 0.0, board))])
+    assert [r.object for r in list_locations(space, "cup1")] == ["shelf1", "kitchen1"]
+    (found,) = (r for r in list_relations(space, Relations(name="shelf1")) if not r.object)
+    assert found.text.endswith("cm above a surface of table1")
+
+
 def test_an_object_over_an_edge_is_on_nothing():
     edge = TABLE.size_m[0] / 2
     box = thing("box1", (edge + 0.09, 0.0, TOP), size=(0.2, 0.2, 0.1))

@@ -251,6 +251,19 @@ def test_a_joint_without_limits_opens_nothing_and_a_ball_has_no_position_of_its_
     assert (gimbal.kind, gimbal.closed) == ("ball", None)
 
 
+def test_the_joints_of_a_robot_open_nothing_unless_a_text_declares_it():
+    part = '<body><joint name="{}" range="-90 90"/><geom size="1"/></body>'
+    parts = "".join(map(part.format, ("elbow", "power_button", "finger")))
+    arm = f'<body name="arm_1"><geom size="1"/>{parts}</body>'
+    cabinet = f'<body name="cabinet_1"><geom size="1"/>{part.format("door")}</body>'
+    texts = {"semmap:arm_1": "Robot", "semmap-closed:finger": "lower"}
+    found = records(arm + cabinet, texts=texts, household=True)
+    joints = {joint.name: joint for record in found.values() for joint in record.joints}
+    assert {name for name, joint in joints.items() if joint.opens} == {"finger", "door"}
+    assert not any(joint.switches for joint in joints.values())
+    assert (joints["elbow"].lower, joints["elbow"].upper) == pytest.approx((-math.pi / 2, math.pi / 2))
+
+
 def test_a_knob_is_a_switch_and_what_it_turns_opens_nothing():
     stove = """<body name="stove"><geom size="1"/>
       <body name="knob"><joint name="k" range="0 90"/><geom size="1"/></body>

@@ -1,10 +1,11 @@
+import mujoco
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from semmap.nodes.sim_node.vision.labels import draw_labels, free_place, project_points
+from semmap.nodes.sim_node.vision.labels import draw_labels, find_tops, free_place, project_points
 from semmap.nodes.sim_node.vision.view import look_at
 
 
@@ -15,6 +16,23 @@ def test_a_point_is_where_the_camera_sees_it():
     assert set(found) == {"middle", "right"}
     assert found["middle"] == pytest.approx((100.0, 50.0))
     assert found["right"][0] > 100.0
+
+
+def test_a_label_is_at_the_top_of_its_body_without_nested_bodies():
+    model = mujoco.MjModel.from_xml_string(
+        """<mujoco><worldbody><geom type="plane" size="5 5 .1"/>
+        <body name="table" pos="1 0 0"><geom type="box" size=".5 .4 .35" pos="0 0 .35"/>
+        <body name="book" pos="0 .1 .72"><geom type="box" size=".1 .1 .02"/></body></body>
+        </worldbody></mujoco>"""
+    )
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    tops = find_tops(model, data, ["", "table", "book"])
+    assert tops.keys() == {"table", "book"}
+    assert tops["table"] == pytest.approx((1.0, 0.0, 0.7))
+    assert tops["book"] == pytest.approx((1.0, 0.1, 0.74))
+    above = np.array([0.0, -1.0, 0.71]), np.array([2.0, 1.0, 1.0])
+    assert find_tops(model, data, ["", "table", "book"], above).keys() == {"book"}
 
 
 @given(

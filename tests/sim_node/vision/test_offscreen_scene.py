@@ -114,9 +114,3 @@ def test_a_picture_shows_bodies_and_the_names_that_are_asked_for(film):
     assert (film.picture(view, {"missing": "missing"}) == plain).all()
     film.put({"box0": pose(5.0, 5.0)})
     assert (film.picture(view, {}) != plain).any()
-
-
-def test_names_stand_at_the_tops_of_bodies(film):
-    film.add(boxes(0.0))
-    (top,) = film._tops(["box0", "missing"]).values()
-    assert np.asarray(top) == pytest.approx((0.0, 0.0, 0.9))

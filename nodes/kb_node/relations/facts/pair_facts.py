@@ -37,22 +37,22 @@ def measure_pair(
 ) -> Iterator[tuple[RelationName, Measure]]:
     """Yield the measured relations of the first object to the second.
 
-    An object is not reported as near or under what it is on or inside.
+    Of an object and what it is on or inside, only `touches` is measured, unless the object is the larger one:
+    a board on a post is above it.
     """
-    if is_separate(space, solid, other):
-        names: Iterable[RelationName] = (name for name in PAIR_RELATIONS if name in wanted)
-    else:
-        names = ("touches",) if "touches" in wanted else ()
+    names: Iterable[RelationName] = PAIR_RELATIONS if is_separate(space, solid, other) else ("touches",)
     for name in names:
-        made = PAIR_RELATIONS[name].measure(space, solid, other)
+        made = PAIR_RELATIONS[name].measure(space, solid, other) if name in wanted else None
         if made is not None:
             yield name, made
 
 
-def is_separate(space: Space, solid: Solid, other: Solid) -> bool:
-    """Return whether `solid` is not on or in `other`, nor a larger support or container of it."""
-    is_content = _is_on_or_in(space, other, solid) and solid.footprint >= other.footprint
-    return not (is_content or _is_on_or_in(space, solid, other))
+def is_separate(space: Space, one: Solid, other: Solid) -> bool:
+    """Return whether neither of two objects is on or inside the other, or only the larger one is."""
+    smaller, larger = (one, other) if one.footprint < other.footprint else (other, one)
+    if smaller.footprint == larger.footprint and _is_on_or_in(space, larger, smaller):
+        return False
+    return not _is_on_or_in(space, smaller, larger)
 
 
 def _is_on_or_in(space: Space, solid: Solid, other: Solid) -> bool:
@@ -65,7 +65,7 @@ def are_near(space: Space, one: Solid, other: Solid) -> bool:
     made = proximity.near(one, other, space.limits)
     if made is None or not made.holds or not (space.counts(one) and space.counts(other)):
         return False
-    return is_separate(space, one, other) or is_separate(space, other, one)
+    return is_separate(space, one, other)
 
 
 class PairFacts:
@@ -213,11 +213,9 @@ class PairFacts:
         wanted = _ALL if name in self._some or other_name in self._some else more or self._whole
         if not wanted:
             return ()
-        # If a small object supports a larger one, only relations of the small one are measured.
-        one, two = (solid, other) if is_separate(self.space, solid, other) else (other, solid)
-        found = list(self._list_facts(one, two, wanted))
+        found = list(self._list_facts(solid, other, wanted))
         if reverse := wanted & ONE_WAY:
-            found += self._list_facts(two, one, reverse)
+            found += self._list_facts(other, solid, reverse)
         return tuple(found)
 
     def _list_facts(self, one: Solid, two: Solid, wanted: Set[RelationName]) -> Iterator[Fact]:

@@ -1,6 +1,7 @@
 """Facts of pairs: the stored ones equal those of a full search."""
 
 import random
+from itertools import permutations
 
 import pytest
 from msgspec import structs
@@ -12,6 +13,7 @@ from semmap.nodes.kb_node.relations.measuring import crowds
 from semmap.nodes.kb_node.relations.measuring.crowds import MOST
 from semmap.nodes.kb_node.relations.measuring.relation_table import MIRRORED, PAIR_RELATIONS
 from semmap.nodes.kb_node.relations.measuring.space import Space
+from semmap.nodes.kb_node.relations.relation_reports import explain_relation
 from semmap.ontology import vocabulary as v
 from tests.depth import tries
 from tests.kb_node.relations.entities import ROOM, TABLE, TOP, thing
@@ -104,6 +106,21 @@ def test_an_object_on_another_is_not_near_it():
     cup, table, chair = (space.solids[name] for name in ("cup1", "table1", "chair1"))
     assert {name for name, made in measure_pair(space, cup, table) if made.holds} == {"touches"}
     assert "isNear" in {name for name, made in measure_pair(space, table, chair) if made.holds}
+
+
+def test_a_board_on_a_narrower_post_is_above_it_in_facts_and_explanations():
+    things = [
+        thing("post1", (0.0, 0.0, 0.0), "", size=(0.1, 0.1, 0.5)),
+        thing("board1", (0.0, 0.0, 0.5), "", size=(0.6, 0.6, 0.02)),
+        thing("cup1", (0.0, 0.0, 0.52)),
+    ]
+    space, stored = Space(things), PairFacts(Space(things))
+    stored.set_scope(EVERY, ())
+    assert stored.holds("board1", "isAbove", "post1")
+    for one, other in permutations([entity.name for entity in things], 2):
+        for relation in PAIR_RELATIONS:
+            explained = explain_relation(space, one, relation, other)
+            assert explained.holds == stored.holds(one, relation, other), explained.text
 
 
 def test_implied_properties_of_a_tbox_are_included():
