@@ -1,6 +1,7 @@
 """The actions with a client that records the commands."""
 
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -43,7 +44,7 @@ def newest(monkeypatch):
     monkeypatch.setattr(approval, "newest", lambda client: 5)
 
 
-SIGNED = {"source": "agent", "agent": "tester", "reason": "why"}
+SIGNED: Any = {"source": "agent", "agent": "tester", "reason": "why"}
 
 
 @pytest.mark.parametrize(
