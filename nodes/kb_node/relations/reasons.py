@@ -52,7 +52,7 @@ def explain_absence(space: Space, relation: RelationName, solid: Solid, other: S
         case "isAttachedTo":
             return _explain_not_attached(space, solid, other)
     rests = None if relation == "touches" else _describe_direct_support(space, solid, other)
-    if rests is not None and (relation == "isLeaningAgainst" or not is_separate(space, solid, other)):
+    if rests is not None and (relation not in ("isAbove", "isUnder") or not is_separate(space, solid, other)):
         return rests
     pair = PAIR_RELATIONS[relation]
     return pair.explain(space, solid, other, pair.measure(space, solid, other))
