@@ -59,7 +59,8 @@ class Permissions:
         limits.require(allowed, [own])
         if not path or not allowed.places:
             return
-        start = () if entity.pose is None else (entity.pose.position_m[:2],)
+        pose = entity.pose if entity.live is None else entity.live.pose
+        start = () if pose is None else (pose.position_m[:2],)
         outside = find_outside((*start, *path), client.floorplan(), _within(client, allowed.places))
         if outside is not None:
             x, y = outside

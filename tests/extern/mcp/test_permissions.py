@@ -73,3 +73,14 @@ def test_the_rooms_of_a_permitted_storey_are_permitted(monkeypatch):
     own.require_action(client, robot, ((1.0, 1.0),))
     with pytest.raises(errors.Refused, match=r"leads through .*: storey1"):
         own.require_action(client, robot, ((7.0, 1.5),))
+
+
+def test_the_path_of_a_driving_robot_begins_at_its_live_pose(monkeypatch):
+    monkeypatch.setattr(permissions.queries, "placed", lambda client, entities: {"r1": {"in": ["kitchen1"]}})
+    client = SimpleNamespace(list=tuple, classes=tuple, floorplan=lambda: PLAN)
+    committed, live = Pose(position_m=(1.0, 1.0, 0.0)), Pose(position_m=(5.0, 2.0, 0.0))
+    robot = SimpleNamespace(name="r1", types=("Robot",), pose=committed, live=SimpleNamespace(pose=live))
+    own = Permissions(Limits(places=frozenset({"kitchen1"})))
+    monkeypatch.setattr(own, "resolve", lambda client: Limits(places=frozenset({"kitchen1"})))
+    with pytest.raises(errors.Refused, match=r"leads through \(5.00, 2.00\)"):
+        own.require_action(client, robot, ((2.0, 2.0),))

@@ -1,8 +1,12 @@
 import json
 
-from semmap.nodes.extern.mcp.rows import OVERVIEW_BUDGET, overview, understood
-from semmap.schemas.entities import Entity, Pose, Provenance
+import msgspec
+import pytest
+
+from semmap.nodes.extern.mcp.rows import OVERVIEW_BUDGET, described, overview, understood
+from semmap.schemas.entities import Entity, Live, Pose, Provenance
 from semmap.schemas.language import CommandStep, Filler, ThingDescription, Understood
+from semmap.schemas.relations import Described
 from semmap.schemas.replies import SystemStatus
 
 BY = Provenance(commit=1, stamp_ns=1, source="operator")
@@ -88,3 +92,14 @@ def test_a_command_is_its_steps_with_what_is_not_understood_as_data():
     assert steps == [
         {"frame": "Taking", "verb": "take", "roles": {"Theme": (cup,)}, "condition": "if Ann leaves"}
     ]
+
+
+@pytest.mark.parametrize("stale", [False, True])
+def test_a_tracked_entity_has_its_live_pose_beside_the_committed_one(stale):
+    live = Live(pose=Pose(position_m=(2.0, 3.0, 0.0)), stamp_ns=1, age_s=0.24, source="sim", stale=stale)
+    fields = {
+        field.name: getattr(entity("r1", "Robot"), field.name) for field in msgspec.structs.fields(Entity)
+    }
+    head, _ = described(Described(**{**fields, "live": live}))
+    assert head["at"] == [0.0, 0.0, 0.0]
+    assert head["live"] == {"at": [2.0, 3.0, 0.0], "age_s": 0.2, **({"stale": True} if stale else {})}
