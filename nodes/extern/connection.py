@@ -97,7 +97,7 @@ def open_session(
         where = bus.to_tls(where)
         bus.require_tls(where)
     elif where.startswith(bus.TLS) and not own_config:
-        raise errors.NoAnswer(
+        raise bus.ConnectionClosed(
             f"the system at {where} requires a client certificate; add --identity DIR/NAME or set"
             f" {IDENTITY_VARIABLE}"
         )

@@ -170,6 +170,7 @@ class Changes:
         request = self._approval.require(client, f"mcp-undo-{arguments.commit}-{last}", summary)
         if request is not None and request.decision == "waiting":
             return report_waiting(client, request)
+        require_not_cancelled()
         made = client.send(undo)
         seq = made.commit if made.commit is not None else newest(client)
         return Answer(first=seq, last=seq, head={"undone": arguments.commit, "names": made.names})

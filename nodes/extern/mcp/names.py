@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
-from semmap.schemas.entities import is_name
+from semmap.schemas.entities import names_in
 
 LONGEST: Final = 40
 """Longer names read like a text, unless they are mostly numbers, as a UUID is."""
@@ -25,11 +25,11 @@ def reads_like_text(name: str) -> bool:
 
 def list_names_like_text(value: Any) -> Iterator[str]:
     """Yield the names in a reply that read like a text, outside `said`, where texts are marked already."""
-    if isinstance(value, str):
-        if is_name(value) and reads_like_text(value):
-            yield value
+    if isinstance(value, str):  # a name, a name with a prefix, or a sentence with names
+        yield from filter(reads_like_text, names_in(value))
     elif isinstance(value, Mapping):
         for key, each in value.items():
+            yield from list_names_like_text(key)
             if key not in _MARKED:
                 yield from list_names_like_text(each)
     elif isinstance(value, Iterable):

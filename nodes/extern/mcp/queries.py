@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import partial
 from typing import Any, Final, TypeVar
 
@@ -33,8 +34,8 @@ _RELATIONS: Final = " ".join(f"dm:{name}" for name in rows.PLACED)
 _WHERE_ALL: Final = f"SELECT ?e ?r ?o WHERE {{ VALUES ?r {{ {_RELATIONS} }} ?e ?r ?o }}"
 MOST_ROWS: Final = 2000
 _FEW: Final = 5
-_MOST_PLACES: Final = 100
-"""The number of places whose contents are listed for the overview."""
+_MOST_PLACES: Final = 40
+"""The number of places whose contents are listed for the overview, which shows at most as many."""
 _ON_A_PAGE: Final = 60
 """An upper bound of the number of rows on a page of a list."""
 
@@ -63,7 +64,11 @@ def _contents(
             if place in inferred:
                 inferred[place].append(thing)
     fullest = sorted(inferred, key=lambda place: -len(inferred[place]))[:_MOST_PLACES]
-    return {**inferred, **{place: client.list(in_=place) for place in fullest}}
+    found: dict[str, Sequence[Entity]] = {**inferred}
+    for place in fullest:
+        with suppress(errors.UnknownName):  # removed since the list; a changed map is read again
+            found[place] = client.list(in_=place)
+    return found
 
 
 def find(client: Client, arguments: a.Find) -> Answer:

@@ -9,7 +9,7 @@ from semmap.nodes.geometry.polygons import distance
 from semmap.nodes.kb_node.entities.alignments import shipped
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring import places, proximity, support_contact
+from semmap.nodes.kb_node.relations.measuring import overhead, places, proximity, support_contact
 from semmap.nodes.kb_node.relations.measuring.phrases import explain_location, format_length
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
@@ -134,8 +134,10 @@ def _deny_nearness(solid: Solid, other: Solid, limits: Thresholds) -> str | None
 
 
 def _deny_above(upper: Solid, lower: Solid, limits: Thresholds) -> str | None:
-    """Return why no part of a solid can be above the other one, or None."""
-    if (apart := distance(upper.outline, lower.outline)) > limits.gap_m:
+    """Return why no part of a solid, such as an open drawer, can be above the other one, or None."""
+    if overhead.beneath(lower, upper, limits) is not None:
+        return None
+    if (apart := proximity.gap_from_above(upper, lower)) > limits.gap_m:
         return f"seen from above they are {format_length(apart)} apart"
     if upper.top <= lower.bottom + limits.touch_m:
         return f"{upper.name} is below {lower.name}"
