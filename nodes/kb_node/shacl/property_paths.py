@@ -16,7 +16,7 @@ _ALTERNATIVES: Final = v.iri(f"{SHACL}alternativePath")
 _OPTIONAL: Final = v.iri(f"{SHACL}zeroOrOnePath")
 _REPEATED: Final = (v.iri(f"{SHACL}zeroOrMorePath"), v.iri(f"{SHACL}oneOrMorePath"))
 
-Facts = Callable[[Term | None, Term, Term | None], Iterable[Triple]]
+Facts = Callable[[Term | None, Term | None, Term | None], Iterable[Triple]]
 
 
 class PropertyPaths(NamedTuple):
@@ -44,10 +44,11 @@ class PropertyPaths(NamedTuple):
         return found
 
     def _step_back(self, term: Term, facts: Facts) -> Iterator[Term]:
-        for p in self.forward:
-            yield from (s for s, _, _ in facts(None, p, term))
-        for p in self.inverse:
-            yield from (o for _, _, o in facts(term, p, None) if not o.startswith('"'))
+        if self.forward:
+            yield from (s for s, p, _ in facts(None, None, term) if p in self.forward)
+        if self.inverse:
+            about = facts(term, None, None)
+            yield from (o for _, p, o in about if p in self.inverse and not o.startswith('"'))
 
 
 def find_property_paths(tbox: Iterable[Triple]) -> PropertyPaths:
