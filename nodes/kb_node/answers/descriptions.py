@@ -9,12 +9,14 @@ from semmap.nodes.kb_node.answers import answers
 from semmap.nodes.kb_node.answers.entity_queries import CurrentState
 from semmap.nodes.kb_node.answers.inventories import LARGEST, Inventories
 from semmap.nodes.kb_node.answers.sightings import Sightings
+from semmap.nodes.kb_node.entities.equal_individuals import about_entity
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.language import nouns
 from semmap.nodes.language.generation import summary
 from semmap.nodes.language.generation.inventory import Inventory
 from semmap.nodes.language.generation.summary import Summary
 from semmap.nodes.language.vocabulary import to_words
+from semmap.ontology import vocabulary as v
 from semmap.ontology.model_shapes import own_size_m
 from semmap.schemas import language
 from semmap.schemas.commands import Tell
@@ -91,7 +93,9 @@ class Descriptions:
             yield f"Problems: {'; '.join(troubles).removeprefix(f'{entity.name}, ')}."
         wrong = {(r.subject, r.relation, r.object) for r in self._now.find_denied()}
         known = {row.name: row for row in self._map.classes.property_table.rows()}
-        for property_, stated in entity.properties.items():
+        iri = v.iri(entity.iri)
+        nameless = self._map.classes.property_table.read_nameless(about_entity(self._map.reasoner, iri), iri)
+        for property_, stated in {**entity.properties, **nameless}.items():
             for_programs = property_ in (JOINT_POSITIONS, SWITCH_POSITIONS)
             if not for_programs and (row := known.get(property_)) is not None:
                 values = stated if isinstance(stated, tuple) else (stated,)
@@ -101,7 +105,7 @@ class Descriptions:
 
     def _last_sentences(self, entity: Entity) -> Iterator[str]:
         if entity.pose is not None:
-            size = entity.size_m or own_size_m(entity.model)
+            size = entity.size_m or (own_size_m(entity.model) if entity.model else None)
             measures_ = "" if size is None else f" measures {' x '.join(f'{e:g}' for e in size)} m and"
             x, y, z = (round(value, 3) + 0.0 for value in entity.pose.position_m)
             yield f"It{measures_} stands at ({x:g}, {y:g}, {z:g}) m."

@@ -164,7 +164,8 @@ class Nouns:
     def __init__(self, classes: ClassTable) -> None:
         rows = {row.name: row for row in classes.rows}
         self._labels = {
-            name: row.labels.get("en") or row.labels.get("") or to_words(name) for name, row in rows.items()
+            name: _uncapitalized(row.labels.get("en") or row.labels.get("") or to_words(name))
+            for name, row in rows.items()
         }
         self._heads = {
             word.rpartition(" ")[2].lower()
@@ -196,3 +197,9 @@ class Nouns:
         if head in self._heads:
             return reference.lower() if reference.istitle() else reference
         return reference if head == reference.lower() and head not in _NO_NAMES else label
+
+
+def _uncapitalized(label: str) -> str:
+    """Return the label of a class as a common noun: `designed handle` for `Designed handle`."""
+    is_capitalized = label[:1].isupper() and (label.istitle() or label[1:] == label[1:].lower())
+    return label.lower() if is_capitalized and len(label) > 1 else label

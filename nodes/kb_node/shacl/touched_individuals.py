@@ -10,13 +10,16 @@ from typing import Final, NamedTuple
 from semmap.nodes.kb_node.derived_facts import DerivedChanges
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.shacl.property_paths import PropertyPaths, find_property_paths
-from semmap.nodes.kb_node.shacl.shape_triples import read_list
+from semmap.nodes.kb_node.shacl.shape_triples import SHACL, read_list
 from semmap.ontology import vocabulary as v
 from semmap.schemas.commits import Commit
 from semmap.schemas.explanations import Term, Triple
 
 _CHAIN: Final = v.iri(f"{v.OWL}propertyChainAxiom")
 _TRANSITIVE: Final = v.iri(f"{v.OWL}TransitiveProperty")
+_SYMMETRIC: Final = v.iri(f"{v.OWL}SymmetricProperty")
+_INVERSE: Final = v.iri(f"{v.OWL}inverseOf")
+_TARGET_OBJECTS_OF: Final = v.iri(f"{SHACL}targetObjectsOf")
 _SWRL: Final = "http://www.w3.org/2003/11/swrl#"
 _HEAD: Final = v.iri(f"{_SWRL}head")
 _PREDICATE: Final = v.iri(f"{_SWRL}propertyPredicate")
@@ -31,6 +34,8 @@ class Reach(NamedTuple):
     """Transitive properties, and the members of property chains."""
     concluded: frozenset[Term]
     """The properties in the heads of SWRL rules. What a rule compares may be anywhere in the map."""
+    reads_values: bool
+    """Whether a shape is about the values of a property, or follows one from its values."""
 
     @classmethod
     def of(cls, tbox: Collection[Triple]) -> Reach:
@@ -38,11 +43,19 @@ class Reach(NamedTuple):
         values = {(s, p): o for s, p, o in tbox if p in (v.RDF_FIRST, v.RDF_REST, _PREDICATE)}
         chains = (read_list(o, values) for _, p, o in tbox if p == _CHAIN)
         transitive = (s for s, p, o in tbox if p == v.RDF_TYPE and o == _TRANSITIVE)
+        chained = frozenset(chain(chain.from_iterable(chains), transitive))
+        turned = {one for s, p, o in tbox if p == _INVERSE for one in (s, o)}
+        turned.update(s for s, p, o in tbox if p == v.RDF_TYPE and o == _SYMMETRIC)
+        concluded_by_chains = chained.union(s for s, p, _ in tbox if p == _CHAIN)
+        paths = find_property_paths(tbox)
         atoms = chain.from_iterable(read_list(o, values) for _, p, o in tbox if p == _HEAD)
         return cls(
-            paths=find_property_paths(tbox),
-            chained=frozenset(chain(chain.from_iterable(chains), transitive)),
+            paths=paths,
+            chained=chained,
             concluded=frozenset(values[atom, _PREDICATE] for atom in atoms if (atom, _PREDICATE) in values),
+            reads_values=bool(paths.inverse)
+            or not turned.isdisjoint(paths.forward - concluded_by_chains)
+            or any(p == _TARGET_OBJECTS_OF for _, p, _ in tbox),
         )
 
 
@@ -75,25 +88,27 @@ class TouchedIndividuals:
         core = subjects | self._reclassified | {v.iri(entity.iri) for entity in commit.changed}
         referring = {s for s, _, o in self._before | after if o in core}
         referring.update(s for s, _, _ in self._facts_about(core - self._ends))
-        changed = [*commit.inserted, *commit.retracted, *chain(*derived), *(self._before ^ after)]
-        subjects, values = self._find_chained(changed)
-        core |= subjects
+        followed = self._before ^ after
+        changed = [*commit.inserted, *commit.retracted, *chain(*derived), *followed]
+        core.update(s for s, _, _ in followed)
+        core |= self._find_chained_subjects(changed)
+        if self._reach.reads_values:
+            values |= self._find_chained_values(changed)
         starts = core | values if self._reach.paths.inverse else core
         reached = self._reach.paths.find_starts(_individuals(starts), self._holding)
         return core | values | referring | reached
 
-    def _find_chained(self, changed: Iterable[Triple]) -> tuple[set[Term], set[Term]]:
-        """Return the subjects and values of the changed triples, and of what follows by property chains."""
-        changed = [triple for triple in changed if triple[1] != v.RDF_TYPE]
-        relations = [(s, o) for s, _, o in changed if not o.startswith('"')]
-        chained = self._reach.chained
-        subjects = PropertyPaths(forward=chained, length=inf).find_starts(
-            self._reclassified.union(s for s, _ in relations), self._holding
-        )
-        values = PropertyPaths(inverse=chained, length=inf).find_starts(
-            self._reclassified.union(o for _, o in relations), self._holding
-        )
-        return subjects.union(s for s, _, _ in changed), values.union(o for _, _, o in changed)
+    def _find_chained_subjects(self, changed: Iterable[Triple]) -> set[Term]:
+        """Return the subjects of the changed triples, and of what may follow from them by property chains."""
+        subjects = {s for s, p, o in changed if p != v.RDF_TYPE and not o.startswith('"')}
+        back = PropertyPaths(forward=self._reach.chained, length=inf)
+        return back.find_starts(subjects | self._reclassified, self._holding)
+
+    def _find_chained_values(self, changed: Iterable[Triple]) -> set[Term]:
+        """Return the values of the changed triples, and of what may follow from them by property chains."""
+        values = {o for _, p, o in changed if p != v.RDF_TYPE}
+        ahead = PropertyPaths(inverse=self._reach.chained, length=inf)
+        return values | ahead.find_starts(_individuals(values) | self._reclassified, self._holding)
 
     def _read_facts(self) -> set[Triple]:
         """Return the facts about the ends of the changed triples, and those that SWRL rules may conclude."""

@@ -65,6 +65,16 @@ def test_what_refers_to_a_change_is_validated(enforcing):
             ":f dm:p :c .",
         ),
         (
+            "( dm:q [ sh:inversePath ( dm:bad [ sh:alternativePath ( dm:r ( dm:s dm:p ) ) ] ) ] )",
+            ":a dm:q :c . :e dm:bad :f . :f dm:s :g .",
+            ":g dm:p :c .",
+        ),
+        (
+            "[ sh:inversePath [ sh:oneOrMorePath ( dm:bad dm:p ) ] ]",
+            ":a dm:q :x . :e dm:bad :f .",
+            ":f dm:p :a .",
+        ),
+        (
             "( [ sh:alternativePath ( dm:p dm:q ) ] dm:r dm:bad )",
             ":a dm:q :b . :b dm:r :c .",
             ":c dm:bad 1 .",
