@@ -87,7 +87,10 @@ class Sheet:
     """A sheet on which labels are placed one after another."""
 
     def __init__(self, within: Box, things: Sequence[Box], walls: Sequence[Box] = ()) -> None:
-        """Labels stay `within`, apart from one another. Covering `things` has a cost, and covering `walls` a higher one."""
+        """Labels stay `within`, apart from one another.
+
+        Covering `things` has a cost, and covering `walls` a higher one.
+        """
         self._within = within
         self._things = _Boxes(things)
         self._walls = _Boxes(walls)
