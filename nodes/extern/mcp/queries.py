@@ -79,8 +79,9 @@ def find(client: Client, arguments: a.Find) -> Answer:
         viewpoint=arguments.viewpoint,
         asker=arguments.asker,
         answer=arguments.answer,
+        as_of=arguments.as_of,
     )
-    authors = Authors(client.list())
+    authors = Authors(client.list(as_of=arguments.as_of))
 
     def quote(text: str) -> dict[str, str]:
         return attribute_text(text, authors.by(text))
@@ -89,6 +90,8 @@ def find(client: Client, arguments: a.Find) -> Answer:
         return rows.candidate(each, authors.by(each.called, *each.reasons))
 
     head: dict[str, Any] = {"outcome": found.outcome, "answer": quote(found.text)}
+    if arguments.as_of is not None:
+        head["as_of"] = arguments.as_of
     if found.question:
         head["question_to_ask_back"] = quote(found.question)
     if found.nearest:

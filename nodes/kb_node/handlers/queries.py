@@ -13,7 +13,7 @@ from msgspec import structs
 
 from semmap.nodes.kb_node.answers import answers, entity_queries, questions
 from semmap.nodes.kb_node.answers.command_parser import CommandParser
-from semmap.nodes.kb_node.answers.descriptions import Descriptions
+from semmap.nodes.kb_node.answers.descriptions import Descriptions, describe_past
 from semmap.nodes.kb_node.answers.entity_search import EntitySearch, describe_missing, find_past
 from semmap.nodes.kb_node.answers.live_poses import LiveEntities
 from semmap.nodes.kb_node.answers.location_queries import LocationQueries
@@ -59,7 +59,7 @@ from semmap.schemas.commands import (
 )
 from semmap.schemas.entities import ClassInfo, Entity, PropertyInfo, RuleInfo
 from semmap.schemas.explanations import Explanation
-from semmap.schemas.language import Found
+from semmap.schemas.language import Account, Found
 from semmap.schemas.live import LivePoses
 from semmap.schemas.relations import Described, Relation
 from semmap.schemas.replies import Checked, Document, Done, Inferred, Possible
@@ -133,7 +133,7 @@ class QueryHandlers:
             Could.answered_by(self.on_could),
             Relations.answered_by(self.on_relations),
             Understand.answered_by(self._parser.parse),
-            Tell.answered_by(self._descriptions.describe),
+            Tell.answered_by(self.on_tell),
             Find.answered_by(self.on_find),
             Export.answered_by(self.on_export),
             PlanOf.answered_by(self._routes.compute_plan),
@@ -280,6 +280,12 @@ class QueryHandlers:
                 describe_missing(self._journal, self._past, missing, there, limits)
             )
         )
+
+    def on_tell(self, query: Tell) -> Account | Future[Account]:
+        """Return a description of the map, a place or an object, now or in the past."""
+        if query.as_of is None:
+            return self._descriptions.describe(query)
+        return self._aside.submit(describe_past, query, self._past, self._descriptions.past_writer())
 
     def on_check(self, query: Check) -> Future[Checked]:
         """Check the consistency in another thread, and validate the facts in another process."""
