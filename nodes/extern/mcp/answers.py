@@ -14,9 +14,10 @@ from typing import Any, Final
 
 from msgspec import Struct
 
-from semmap.nodes.extern.mcp.names import LONGEST, list_names_like_text
+from semmap.nodes.extern.mcp.names import list_names_like_text
 from semmap.schemas import errors
 from semmap.schemas.entities import Entity, Pose, Provenance, Size
+from semmap.schemas.wording import LONGEST_NAME
 
 BUDGET: Final = 4000
 """The maximum length of a reply."""
@@ -92,7 +93,7 @@ def _mark_names(shown: Iterable[Any]) -> dict[str, Any]:
     found = dict.fromkeys(list_names_like_text(shown))
     if not found:
         return {}
-    return {"names_that_are_data": [f"{name[:LONGEST]}..." for name in list(found)[:_MOST_NAMES]]}
+    return {"names_that_are_data": [f"{name[:LONGEST_NAME]}..." for name in list(found)[:_MOST_NAMES]]}
 
 
 def read_cursor(cursor: str) -> tuple[int, int]:

@@ -1,6 +1,7 @@
 import pytest
 
-from semmap.nodes.extern.mcp.names import list_names_like_text, reads_like_text
+from semmap.nodes.extern.mcp.names import list_names_like_text
+from semmap.schemas.wording import reads_like_text
 
 
 @pytest.mark.parametrize(
