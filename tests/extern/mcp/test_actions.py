@@ -75,7 +75,8 @@ def test_an_action_is_sent_as_its_command(tool, arguments, command):
     client = Recorder()
     reply = getattr(actions(), tool)(client, arguments)
     assert client.sent == [command]
-    assert reply.head["done"]
+    assert reply.head["done"] == (command.wait or getattr(command, "stop", False))
+    assert ("then" in reply.head) == (not reply.head["done"])
     assert reply.last == 7
 
 
