@@ -16,7 +16,7 @@ _ALTERNATIVES: Final = v.iri(f"{SHACL}alternativePath")
 _OPTIONAL: Final = v.iri(f"{SHACL}zeroOrOnePath")
 _REPEATED: Final = (v.iri(f"{SHACL}zeroOrMorePath"), v.iri(f"{SHACL}oneOrMorePath"))
 
-Facts = Callable[[Term | None, Term, Term | None], Iterable[Triple]]
+Facts = Callable[[Term | None, Term | None, Term | None], Iterable[Triple]]
 
 
 class PropertyPaths(NamedTuple):
@@ -33,7 +33,8 @@ class PropertyPaths(NamedTuple):
     def find_starts(self, terms: Iterable[Term], facts: Facts) -> set[Term]:
         """Return the individuals from which the paths may lead to one of `terms`, and `terms`.
 
-        `facts(s, p, o)` returns the facts of a pattern.
+        `facts(s, p, o)` returns the facts of a pattern. All facts of a term are read together, which is
+        quicker than by property.
         """
         found = newest = set(terms)
         steps = 0
@@ -44,10 +45,12 @@ class PropertyPaths(NamedTuple):
         return found
 
     def _step_back(self, term: Term, facts: Facts) -> Iterator[Term]:
-        for p in self.forward:
-            yield from (s for s, _, _ in facts(None, p, term))
-        for p in self.inverse:
-            yield from (o for _, _, o in facts(term, p, None) if not o.startswith('"'))
+        """Yield the individuals from which one step leads to `term`."""
+        if self.forward:
+            yield from (s for s, p, _ in facts(None, None, term) if p in self.forward)
+        if self.inverse:
+            found = facts(term, None, None)
+            yield from (o for _, p, o in found if p in self.inverse and not o.startswith('"'))
 
 
 def find_property_paths(tbox: Iterable[Triple]) -> PropertyPaths:
