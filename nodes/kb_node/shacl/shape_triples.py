@@ -33,6 +33,12 @@ REFERENCES: Final = frozenset(
     )
 )
 """Properties from a shape, or a list of shapes, to another one."""
+COMPARISONS: Final = frozenset(
+    v.iri(SHACL + name) for name in ("equals", "disjoint", "lessThan", "lessThanOrEquals")
+)
+"""Constraints that compare the values of a path with those of another property."""
+CLOSED: Final = v.iri(f"{SHACL}closed")
+TARGETED_VALUES: Final = v.iri(f"{SHACL}targetObjectsOf")
 _UNSUPPORTED: Final = {
     v.iri(SHACL + name): kind
     for name, kind in (

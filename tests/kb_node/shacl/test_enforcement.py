@@ -3,6 +3,7 @@
 import pytest
 
 from semmap.nodes.kb_node.shacl.enforcement import ShapeEnforcement
+from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from tests.kb_node import home
 from tests.kb_node.home import transaction, turtle
@@ -149,6 +150,65 @@ def test_individuals_whose_facts_follow_from_a_change_are_validated(
     with pytest.raises(errors.Refused, match=f"^{text}; {REFUSED}"):
         enforcing.commit(transaction(2, turtle(inserted), turtle(retracted)))
     assert (enforcing.seq, set(enforcing.abox())) == state
+
+
+@pytest.mark.parametrize(
+    ("before", "inserted"),
+    [
+        (":x dm:p :b . :y dm:bad 1 .", ":b a dm:Bad ."),  # the class of x implies the value y
+        (":x dm:s :b . :c dm:u :y . :y dm:bad 1 .", ":b dm:t :c ."),
+        (":y dm:bad 1 .", ":y dm:isFlagOf :x ."),
+        (":y dm:bad 1 .", ":x dm:flag2 :y ."),
+    ],
+)
+def test_values_that_become_targets_are_validated(tmp_path, before, inserted):
+    tbox = """
+:T sh:targetObjectsOf dm:flag , dm:reaches ; sh:property [ sh:path dm:bad ; sh:maxCount 0 ] .
+dm:Q a owl:Class ; rdfs:subClassOf [ a owl:Restriction ; owl:onProperty dm:flag ; owl:hasValue :y ] .
+dm:Bad a owl:Class .
+[ a owl:Restriction ; owl:onProperty dm:p ; owl:someValuesFrom dm:Bad ] rdfs:subClassOf dm:Q .
+dm:p a owl:ObjectProperty . dm:flag a owl:ObjectProperty ; owl:inverseOf dm:isFlagOf .
+dm:flag2 a owl:ObjectProperty ; rdfs:subPropertyOf dm:flag .
+dm:reaches a owl:ObjectProperty ; owl:propertyChainAxiom ( dm:s dm:t dm:u ) .
+"""
+    made = home.new_map(tmp_path, [*home.TBOX, *turtle(SH + tbox)])
+    made.enforcement = ShapeEnforcement(made.tbox)
+    try:
+        made.commit(transaction(1, turtle(before)))
+        with pytest.raises(errors.Refused, match=r"^y: violates sh:maxCount"):
+            made.commit(transaction(2, turtle(inserted)))
+    finally:
+        home.close(made)
+
+
+@pytest.mark.parametrize("path", ["dm:isLocatedIn", "( dm:isLocatedIn dm:seats )"])
+def test_what_is_put_into_a_room_touches_none_of_the_other_contents(tmp_path, path):
+    """With the shipped TBox, whose rooms contain all that is located in them."""
+    shape = f":S sh:targetClass dm:Chair ; sh:property [ sh:path {path} ; sh:maxCount 9 ] ."
+    made = home.new_map(tmp_path, [*home.household(), *turtle(SH + shape)])
+    enforcement = made.enforcement = ShapeEnforcement(made.tbox)
+    found = []
+    begin = enforcement.begin
+
+    def counting(commit, reasoner):
+        touched = begin(commit, reasoner)
+        find = touched.find
+        touched.find = lambda *change: found.append(find(*change)) or found[-1]
+        return touched
+
+    enforcement.begin = counting
+    try:
+        for first, last in ((0, 3), (3, 30)):
+            chairs = (f":c{n} a dm:Chair ; dm:isLocatedIn :k ." for n in range(first, last))
+            made.commit(transaction(f"chairs{last}", turtle(":k a dm:Kitchen ." + " ".join(chairs))))
+            found.clear()
+            cup = turtle(":cup a dm:Cup ; dm:isLocatedIn :k .")
+            made.commit(transaction(f"cup{last}", cup))
+            made.commit(transaction(f"gone{last}", (), cup))
+            assert [v.local_name(term) for term in sorted(found[0])] == ["cup", "k"]
+            assert found[0] == found[1]
+    finally:
+        home.close(made)
 
 
 def test_warnings_and_earlier_violations_refuse_nothing(enforcing):
