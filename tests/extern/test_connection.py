@@ -49,7 +49,7 @@ def test_the_system_that_is_meant(monkeypatch, running, tmp_path):
     both = f"tcp/127.0.0.1:7801 ({tmp_path}/7801) and tcp/127.0.0.1:7802 ({tmp_path}/7802)"
     with running(7801, 7802), pytest.raises(errors.BadRequest, match=re.escape(both)):
         connection.endpoint()
-    with running(*range(7801, 7809)), pytest.raises(errors.BadRequest, match=" and 4 more$"):
+    with running(*range(7801, 7809)), pytest.raises(errors.BadRequest, match=r" and 4 more$"):
         connection.endpoint()
 
 
