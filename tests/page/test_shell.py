@@ -10,7 +10,7 @@ from statistics import median
 import pytest
 
 from semmap.commands import Add, Remove
-from semmap.nodes.extern.web.scene.tab import SWITCHES
+from semmap.nodes.extern.web.scene.switches import SWITCHES
 from tests.conftest import running, until
 from tests.page.conftest import serving
 from tests.page.waiting import commit_of, has_commit, settle
