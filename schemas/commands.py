@@ -641,13 +641,15 @@ class FindTrail(Command[Trail], frozen=True, tag="trail"):
 class Tell(Command[Account], frozen=True, tag="tell"):
     """Describe the map, a place or a thing in a text of at most `words` words.
 
-    The most important facts come first, similar things are counted together, and omissions are reported.
+    The most important facts come first, similar things are counted together, and omissions are reported. With
+    `as_of`, it is the map of that time.
     """
 
     ROLES: ClassVar[Roles] = ANYBODY
 
     name: Word | None = None
     words: Annotated[int, Meta(ge=20, le=5000)] = 150
+    as_of: When | None = None
 
 
 class Understand(Command[Understood], frozen=True, tag="understand"):

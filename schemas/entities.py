@@ -159,6 +159,11 @@ def is_name(text: str) -> bool:
     return re.match(NAME_PATTERN, text) is not None
 
 
+def names_in(text: str) -> list[str]:
+    """Return the words of a text that can be names of entities: `:cup1` and `cup1's` contain `cup1`."""
+    return [word for word in _NOT_OF_NAMES.split(text) if is_name(word)]
+
+
 def composed(name: str) -> str:
     """Return a name in Unicode's composed form (NFC), in which names are stored and compared."""
     return name if name.isascii() else unicodedata.normalize("NFC", name)

@@ -1,4 +1,4 @@
-"""`python -m benchmarks.agents [--json FILE]`: sixty tasks with tools, and with `list --format json` only."""
+"""`python -m benchmarks.agents [--json FILE]`: seventy tasks with tools, or `list --format json` only."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sixty tasks: the request, the shortest correct sequence of tool calls, and the expected result.
+"""Seventy tasks: the request, the shortest correct sequence of tool calls, and the expected result.
 
 The agent's result is compared with that of a client that uses other commands.
 """
@@ -11,8 +11,11 @@ from typing import Any, Literal, NamedTuple
 
 from benchmarks.agents.agent import Agent
 from semmap import Client
+from semmap.schemas import errors
 
-Kind = Literal["find", "count", "compare", "why", "when", "change", "refuse", "undo"]
+Kind = Literal[
+    "find", "understand", "count", "compare", "plan", "why", "possible", "when", "change", "refuse", "undo"
+]
 
 
 class Task(NamedTuple):
@@ -176,6 +179,54 @@ def _stood(client: Client) -> list[float]:
     return [] if pose is None else [round(value, 3) for value in pose.position_m]
 
 
+# understand, plan, possible
+
+
+async def _steps(text: str, role: str, agent: Agent) -> tuple[set[str], bool]:
+    found = await agent("understand", text=text)
+    roles = [step["roles"][role] for step in found["steps"] if role in step["roles"]]
+    names = {name for fillers in roles for filler in fillers for name in filler.get("entities", ())}
+    return names, bool(found.get("doubts"))
+
+
+def _understand(text: str, role: str, holds: Callable[[Client], set[str]], *, doubted: bool = False) -> Task:
+    return Task("understand", text, partial(_steps, text, role), lambda client: (holds(client), doubted))
+
+
+async def _ends(first: str, last: str, agent: Agent) -> bool:
+    """Return whether a path begins in the place of the first and ends in the place of the last."""
+    found = await agent("route", from_=first, to=last)
+    ends = (found["places"][0], found["places"][-1])
+    within = [{_name(row) for row in (await agent("list", in_=place))["entities"]} for place in ends]
+    return found["metres"] > 0 and first in within[0] and last in within[1]
+
+
+def _plan(first: str, last: str) -> Task:
+    wanted = f"how does a robot get from {first} to {last}?"
+    return Task("plan", wanted, partial(_ends, first, last), lambda client: True)
+
+
+async def _could(name: str, predicate: str, value: str, agent: Agent) -> bool:
+    return bool((await agent("could", name=name, predicate=predicate, value=value))["possible"])
+
+
+def _is_consistent(client: Client, name: str, predicate: str, value: str) -> bool:
+    """Return whether nothing explains why a statement cannot hold."""
+    try:
+        client.explain(name, predicate, value, negated=True)
+    except errors.Refused:
+        return True
+    return False
+
+
+def _possible(name: str, predicate: str, value: str) -> Task:
+    wanted = f"could {name} {predicate} {value}?"
+    statement = (name, predicate, value)
+    return Task(
+        "possible", wanted, partial(_could, *statement), lambda client: _is_consistent(client, *statement)
+    )
+
+
 # change, refuse, undo
 
 
@@ -205,8 +256,9 @@ async def _impossible(agent: Agent) -> bool:
 
 async def _twice(agent: Agent) -> bool:
     token = (await agent("propose", verb="add", class_="Cup", at=_TABLE, reason="seen"))["token"]
-    await agent("commit", token=token)
-    return "already used" in await agent.refused("commit", token=token)
+    first = await agent("commit", token=token)
+    again = await agent("commit", token=token)
+    return "was committed before" in again.pop("note") and again == first
 
 
 async def _back(fields: dict[str, Any], agent: Agent) -> bool:
@@ -248,6 +300,10 @@ TASKS = (
     _find("the bed", "Bed"),
     _find("the laptop", "Laptop"),
     _find("il frigorifero", "Fridge"),
+    _understand("take the cup on the desk", "Theme", lambda c: _those(c, "Cup", on="desk1")),
+    _understand("bring the milk to the kitchen", "Theme", lambda c: _those(c, "Milk")),
+    _understand("metti il libro sul tavolo", "Goal", lambda c: _those(c, "Dining_Table")),
+    _understand("take the yellow laptop", "Theme", lambda c: set(), doubted=True),
     *map(_number, ("Chair", "Book", "Door", "Window", "Seat")),
     *(_count(f"how many things in {name}?", in_=name) for name in ("kitchen1", "studio1", "bathroom1")),
     *(_count(f"how many things on {name}?", on=name) for name in ("table1", "desk1")),
@@ -259,6 +315,12 @@ TASKS = (
     _near("Light_Source", "couch1"),
     _more("Door", "Window"),
     _more("Book", "Cup"),
+    _plan("bed1", "fridge1"),
+    _plan("desk1", "table1"),
+    _plan("bathtub1", "couch1"),
+    _possible("cup1", "type", "Table"),
+    _possible("cup1", "isOn", "desk1"),
+    _possible("kitchen1", "isOn", "table1"),
     _why("cup1", "isLocatedIn", "studio1"),
     _why("cup1", "type", "Dishware"),
     _why("cup1", "type", "Breakable_Thing"),

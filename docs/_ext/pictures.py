@@ -178,7 +178,7 @@ def plan_svg(tab: Page, client: Client) -> None:
     """Render the plan of the flat."""
     status, entities = client.status(), client.list()
     now = client.history(limit=1)[0]
-    floor = floor_of(entities)
+    floor = floor_of(entities, plan=client.send(commands.PlanFloor()))
     (DOCS / "plan.svg").write_text(
         drawing(floor, title="The flat", commit=status.commit, stamp_ns=now.stamp_ns)
     )

@@ -135,7 +135,7 @@ def require_tls(endpoint: str) -> None:
 
 
 class ConnectionClosed(errors.NoAnswer):
-    """The listener closed the connection, for example because it requires a certificate."""
+    """The system rejects this client, for example because it requires a certificate."""
 
 
 def host_of(endpoint: str) -> str:

@@ -20,6 +20,7 @@ from semmap.schemas.endpoints import (
     parse_endpoint,
     robot_name,
 )
+from semmap.schemas.wording import few
 
 _START_S = 15.0
 """Timeout for a system that is starting [s]."""
@@ -47,7 +48,7 @@ def endpoint(namespace: str | None = None) -> str:
     if not running or any(system.reachable == bus.DEFAULT_ENDPOINT for system in running):
         return bus.DEFAULT_ENDPOINT
     if len(running) > 1:
-        found = ", ".join(f"{system.reachable} ({system.data})" for system in running)
+        found = few([f"{system.reachable} ({system.data})" for system in running], 5)
         raise errors.BadRequest(
             f"{len(running)} systems are running; choose one with --connect or {CONNECT_VARIABLE}: {found}"
         )
@@ -97,7 +98,7 @@ def open_session(
         where = bus.to_tls(where)
         bus.require_tls(where)
     elif where.startswith(bus.TLS) and not own_config:
-        raise errors.NoAnswer(
+        raise bus.ConnectionClosed(
             f"the system at {where} requires a client certificate; add --identity DIR/NAME or set"
             f" {IDENTITY_VARIABLE}"
         )

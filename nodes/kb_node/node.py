@@ -130,7 +130,7 @@ class KnowledgeBase:
 
         Nodes that fetch the map have priority: the coordinator serves no commands before it has all entities.
         """
-        if self._queries.is_being_fetched:
+        if self._queries.copies.is_being_fetched:
             self._node.later(_FETCHED_S, self._derive_places)
         elif self.map.derive_some():
             self._node.soon(self._derive_places)

@@ -31,6 +31,7 @@ from semmap.nodes.supervisor.privacy import UMASK, make_private
 from semmap.nodes.supervisor.settings import SETTINGS, Settings
 from semmap.schemas import codec, errors
 from semmap.schemas.endpoints import WEB_TOKEN_VARIABLE
+from semmap.schemas.wording import few
 
 GROUP = "semmap"
 _SOCKET = f"semmap-{os.getuid()}-{{}}{{}}"
@@ -208,8 +209,8 @@ class Supervisor:
         except _NO_ANSWER:
             if self.end_leftovers():
                 return
-            others = ", ".join(f"{other.data} ({other.listen})" for other in registry.systems())
-            hint = f"; running systems: {others}" if others else ""
+            others = [f"{other.data} ({other.listen})" for other in registry.systems()]
+            hint = f"; running systems: {few(others, 5)}" if others else ""
             raise errors.NoAnswer(f"no system is running on {self.data}{hint}") from None
         deadline = time.monotonic() + LONGEST_STOP_S
         while self.is_running() and time.monotonic() < deadline:

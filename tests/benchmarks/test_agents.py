@@ -9,10 +9,11 @@ from benchmarks.agents.__main__ import all_done, rows
 from benchmarks.agents.tasks import TASKS, prepare
 
 
-def test_there_are_sixty_tasks_of_eight_kinds():
-    assert len(TASKS) == 60
+def test_there_are_seventy_tasks_of_eleven_kinds():
+    assert len(TASKS) == 70
     assert set(Counter(task.kind for task in TASKS)) == {
-        "find", "count", "compare", "why", "when", "change", "refuse", "undo"
+        *("find", "understand", "count", "compare", "plan", "why", "possible", "when"),
+        *("change", "refuse", "undo"),
     }  # fmt: skip
 
 

@@ -7,7 +7,18 @@ from pathlib import Path
 
 import pytest
 
+from semmap.nodes.kb_node.answers.entity_queries import CurrentState
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.runtime.class_names import ClassNames
+from semmap.nodes.sim_node.models.sources import Models
+from semmap.nodes.sim_node.world_file import open_world
+from semmap.ontology import vocabulary as v
+from semmap.schemas.bridge import Entities
+from semmap.schemas.commits import NewEntity, Transaction
+from semmap.schemas.relations import Where
 from tests.conftest import running, until
+from tests.household import household_classes
+from tests.kb_node import home
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -64,16 +75,22 @@ def test_a_robot_s_tests():
     assert "3 passed" in done.stdout, done.stdout
 
 
-def test_a_world_of_one_s_own_becomes_the_map(tmp_path):
-    world = ("--abox", "none", "--world", EXAMPLES / "workbench.xml", "--truth", "scene", "--no-record")
-    with running(tmp_path, *world) as system, system.client() as client:
-        until(lambda: len(client.list()) == 3, "its bodies are entities")
-        assert {(e.name, e.class_) for e in client.list()} == {
-            ("bench", "Table"),
-            ("mug", "Cup"),
-            ("box_1", "Box"),
-        }
-        assert {e.name for e in client.list(on="bench")} == {"mug", "box_1"}
+# Where the scene is the truth, bodies become entities: see `test_restart.py`.
+def test_a_world_of_one_s_own_has_bodies_of_known_classes(tmp_path):
+    world = open_world(EXAMPLES / "workbench.xml", Models(), classes=ClassNames(household_classes()))
+    world.step(0.5)
+    bodies = {body.name: body for body in world.scene().bodies}
+    classes = {name: body.class_ for name, body in bodies.items()}
+    assert classes == {"bench": "Table", "mug": "Cup", "box_1": "Box"}
+    semantic_map = SemanticMap(home.new_household_journal(tmp_path))
+    add = [
+        NewEntity(name=body.name, class_iri=v.bare(v.dm(body.class_)), pose=body.pose, size=body.size_m)
+        for body in bodies.values()
+    ]
+    semantic_map.commit(Transaction(id="bodies", source="scene", add=tuple(add)))
+    on_bench = CurrentState(semantic_map).entities(Entities(where=Where(on="bench")))
+    assert {entity.name for entity in on_bench} == {"mug", "box_1"}
+    home.close(semantic_map)
 
 
 def test_a_camera_of_one_s_own_fills_the_map(tmp_path):

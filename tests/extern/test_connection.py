@@ -46,8 +46,10 @@ def test_the_system_that_is_meant(monkeypatch, running, tmp_path):
     monkeypatch.setenv(connection.CONNECT_VARIABLE, "")
     with running(7801, 7447):
         assert connection.endpoint() == bus.DEFAULT_ENDPOINT
-    both = f"tcp/127.0.0.1:7801 ({tmp_path}/7801), tcp/127.0.0.1:7802 ({tmp_path}/7802)"
+    both = f"tcp/127.0.0.1:7801 ({tmp_path}/7801) and tcp/127.0.0.1:7802 ({tmp_path}/7802)"
     with running(7801, 7802), pytest.raises(errors.BadRequest, match=re.escape(both)):
+        connection.endpoint()
+    with running(*range(7801, 7809)), pytest.raises(errors.BadRequest, match=r" and 4 more$"):
         connection.endpoint()
 
 

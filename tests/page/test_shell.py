@@ -10,14 +10,15 @@ from statistics import median
 import pytest
 
 from semmap.commands import Add, Remove
-from semmap.nodes.extern.web.scene.tab import SWITCHES
+from semmap.nodes.extern.web.scene.switches import SWITCHES
 from tests.conftest import running, until
 from tests.page.conftest import serving
 from tests.page.waiting import commit_of, has_commit, settle
 
+# A click beside all controls focuses the layout, and not the body.
 _PRESS_TWO_ARROWS = """
 for (const init of [{key: "ArrowRight"}, {key: "ArrowUp", shiftKey: true}])
-  document.body.dispatchEvent(new KeyboardEvent("keydown", {...init, bubbles: true}));
+  document.querySelector(".q-layout").dispatchEvent(new KeyboardEvent("keydown", {...init, bubbles: true}));
 """
 
 

@@ -15,6 +15,7 @@ from semmap.schemas.entities import (
     distance_m,
     free_name,
     is_name,
+    names_in,
     orientation_from_yaw,
     parse_angle,
     valid_name,
@@ -123,3 +124,16 @@ def test_roll_and_pitch_precede_the_yaw(roll, pitch, yaw):
         found = compose(found, Pose(position_m=(0.0, 0.0, 0.0), orientation_wxyz=turn))
     assert found.roll_pitch_rad == pytest.approx((roll, pitch))
     assert found.yaw_rad == pytest.approx(yaw)
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        (":cup1", ["cup1"]),
+        ("cup1's side, 2.0 cm from the_door-2", ["cup1", "s", "side", "cm", "from", "the_door-2"]),
+        ("<http://example.org/map#tasse_für_tee>", ["http", "example.org", "map", "tasse_für_tee"]),
+        ("x" * 129, []),
+    ],
+)
+def test_the_names_in_a_text(text, names):
+    assert names_in(text) == names

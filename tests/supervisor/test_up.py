@@ -60,7 +60,6 @@ def down(*words: str | Path) -> tuple[int, str]:
     [
         (FLAT_TTL.read_text()[:3000], 2, "not valid Turtle"),
         (f"<{BASE}_1#a> a <{BASE}_domain_model#Chair>, <{BASE}_domain_model#Kitchen> .", 1, "cannot be both"),
-        (f"<{BASE}_1#a> a <{BASE}_domain_model#Chiar> .", 2, "unknown class 'Chiar'"),
     ],
 )
 def test_a_bad_abox_stops_the_start_and_leaves_existing_data_alone(tmp_path, abox, status, said):
@@ -174,21 +173,11 @@ def test_ontologies_start_with_their_imports_and_notes(tmp_path):
 
 
 @pytest.mark.process
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        (
-            "Ontology(<urn:o>\n\n  Nonsense())",
-            "own.ofn is not valid OWL functional syntax: line 3 cannot be read",
-        ),
-        ("<urn:a> <urn:b> <urn:c> .", "own.ofn has no class: is it a TBox"),
-    ],
-)
-def test_an_unreadable_ontology_is_reported(tmp_path, text, said):
-    (tmp_path / "own.ofn").write_text(text)
+def test_an_unreadable_ontology_is_reported(tmp_path):
+    (tmp_path / "own.ofn").write_text("Ontology(<urn:o>\n\n  Nonsense())")
     status, line = up(tmp_path / "data", "--tbox", tmp_path / "own.ofn")
     assert status == 2
-    assert said in line
+    assert "own.ofn is not valid OWL functional syntax: line 3 cannot be read" in line
 
 
 def test_a_model_file_without_class_is_reported(tmp_path, monkeypatch):

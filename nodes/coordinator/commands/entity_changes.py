@@ -10,7 +10,12 @@ from semmap.nodes.coordinator.commands.commit import commit, make_reply, new_id,
 from semmap.nodes.coordinator.commands.joint_state import require_openable
 from semmap.nodes.coordinator.commands.map_view import MapView
 from semmap.nodes.coordinator.commands.placement import place
-from semmap.nodes.coordinator.commands.plausibility import find_doubts, require_carry, require_same_nature
+from semmap.nodes.coordinator.commands.plausibility import (
+    find_doubtful_name,
+    find_doubts,
+    require_carry,
+    require_same_nature,
+)
 from semmap.nodes.coordinator.commands.registration import handles
 from semmap.nodes.coordinator.kb_coroutines import KbCoroutine, ask
 from semmap.nodes.coordinator.reconciler.observed_state import ObservedState, describe_joint_change
@@ -75,6 +80,7 @@ def _add(view: MapView, command: Add, found: ClassInfo) -> KbCoroutine[Changed]:
         notes=(
             *notes,
             *view.classes.note(command.class_, found),
+            *find_doubtful_name(name),
             *find_doubts(name, found, pose if command.at else None, command.size, view.places),
         ),
     )
@@ -215,9 +221,12 @@ def rename(view: MapView, command: Rename) -> KbCoroutine[Changed]:
     renaming = Edit(name=entity.name, rename=command.new)
     made = yield from commit(view, transactions.build(command, reason, edit=[renaming]))
     now = _find_changed(made, command.new)
-    notes: tuple[str, ...] = ()
+    notes = find_doubtful_name(command.new)
     if now is not None and now.model != entity.model:
-        notes = (f"the model of its body follows its name: {now.model} instead of {entity.model}",)
+        notes = (
+            *notes,
+            f"the model of its body follows its name: {now.model} instead of {entity.model}",
+        )
     return make_reply(made, f"renamed {entity.name} to {command.new}", names=(command.new,), notes=notes)
 
 

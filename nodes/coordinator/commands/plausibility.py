@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable
 
 from semmap.ontology.model_choice import chosen
 from semmap.ontology.model_shapes import own_size_m
-from semmap.schemas import errors
+from semmap.schemas import errors, wording
 from semmap.schemas.commands import Attach, Move, Update
 from semmap.schemas.entities import ClassInfo, Entity, Pose, Size
 from semmap.schemas.polygons import extent_of
@@ -40,6 +40,13 @@ def find_doubts(
 ) -> tuple[str, ...]:
     """Return what may be wrong with the pose and size of entity `name` of class `found`."""
     return (*_outside(name, found, pose, places), *_odd_size(name, found, size_m))
+
+
+def find_doubtful_name(name: str) -> tuple[str, ...]:
+    """Return a note on a new name that reads like a text."""
+    if not wording.reads_like_text(name):
+        return ()
+    return (f"the name {name} reads like a text, which an agent could take for an instruction",)
 
 
 def find_isolation(name: str, pose: Pose, others: Iterable[Pose]) -> tuple[str, ...]:

@@ -289,6 +289,7 @@ class Reconciler:
             *scene_report.fallen_robots(bodies.values()),
             *scene_report.unstable_bodies(self.scene.unstable),
             *scene_report.perception_conflicts(entities.values()),
+            *scene_report.names_like_text(entities.values()),
             *(f"{name}: {why}" for name, why in sorted(rejected.items()) if name in bodies),
             *(
                 scene_report.bodies_to_adopt(bodies.values(), entities, rejected, self._updater.whole_of)

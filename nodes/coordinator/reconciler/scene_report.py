@@ -39,6 +39,15 @@ def perception_conflicts(entities: Collection[Entity]) -> list[str]:
     return sorted(f"{e.name}: perception: {e.conflict}" for e in entities if e.conflict)
 
 
+def names_like_text(entities: Collection[Entity]) -> list[str]:
+    """Return the entities of agents whose names read like a text."""
+    return sorted(
+        f"{e.name}: the name reads like a text, and an agent defined it; to change it: semmap rename"
+        for e in entities
+        if e.shape_provenance.source == "agent" and wording.reads_like_text(e.name)
+    )
+
+
 def failed_attachments(failed: Mapping[str, tuple[int, str]], entities: Mapping[str, Entity]) -> list[str]:
     """Return the attachments that the scene rejected: `failed` maps a name to the commit and the reason."""
     return sorted(

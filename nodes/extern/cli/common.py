@@ -122,7 +122,7 @@ def with_client(function: Callable[..., None]) -> Callable[..., None]:
             try:
                 function(client, **arguments)
             except errors.NoAnswer as error:
-                if not (others := _other_robots(where, identity, namespace)):
+                if not (others := other_robots(where, identity, namespace)):
                     raise
                 raise errors.NoAnswer(f"{error.text}; available robots: {', '.join(others)}") from None
 
@@ -158,7 +158,7 @@ def supports_robots(show: Callable[..., None]) -> Callable[[Callable[..., None]]
     return decorate
 
 
-def _other_robots(where: str | None, identity: str | None, namespace: str | None) -> tuple[str, ...]:
+def other_robots(where: str | None, identity: str | None, namespace: str | None) -> tuple[str, ...]:
     """Return the other robots at the endpoint, if the robot `namespace` has no node there."""
     from semmap.nodes.extern.fleet.robots import robot_names
 

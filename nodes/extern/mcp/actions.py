@@ -10,6 +10,8 @@ import threading
 from collections import OrderedDict
 from typing import Any, Final
 
+from msgspec import structs
+
 from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.mcp import arguments as a
 from semmap.nodes.extern.mcp import requests
@@ -19,6 +21,7 @@ from semmap.nodes.extern.mcp.consistent_read import newest
 from semmap.nodes.extern.mcp.permissions import Permissions
 from semmap.schemas import commands, errors
 from semmap.schemas.plans import Point
+from semmap.schemas.replies import Moved
 
 _MOST: Final = 200
 """The maximum number of actions that wait for approval; the oldest are dropped."""
@@ -66,25 +69,32 @@ class Actions:
         return {"source": "agent", "agent": self._agent, "reason": arguments.reason}
 
     def _act(self, client: Client, command: _Action, path: tuple[Point, ...] = ()) -> Answer:
-        self._permissions.require_action(client, client.get(command.name), path)
+        entity = client.get(command.name)
+        self._permissions.require_action(client, entity, path)
+        command = structs.replace(command, name=entity.name)  # the word may be a label or class
         request = None
-        if not isinstance(command, commands.Drive) or not command.stop:  # stopping is always permitted
+        if isinstance(command, commands.Drive) and command.stop:  # stopping is always permitted
+            moved = client.send(command)
+        else:
             name = self._id(command)
             try:
                 request = self._approval.require(client, name, requests.summarize_action(command))
-            except errors.Busy:
+                if request is not None and request.decision == "waiting":
+                    return report_waiting(client, request)
+                if request is not None:  # meanwhile the robot may have been moved
+                    self._permissions.require_action(client, client.get(entity.name), path)
+                require_not_cancelled()
+            except (errors.Busy, errors.NoAnswer):
                 raise
             except BaseException:
                 self._forget(command)
                 raise
-            if request is not None and request.decision == "waiting":
-                return report_waiting(client, request)
-            require_not_cancelled()
-        self._forget(command)
-        moved = client.send(command)
+            moved = self._send_once(client, command, name)
         seq = moved.commit if moved.commit is not None else newest(client)
+        is_done = command.wait or (isinstance(command, commands.Drive) and command.stop)
         head: dict[str, Any] = {
-            "done": True,
+            "done": is_done,
+            **({} if is_done else {"then": "it is on its way; get has its position"}),
             "name": moved.name,
             "text": attribute_text("; ".join((moved.text, *moved.notes)), "semmap"),
         }
@@ -98,6 +108,27 @@ class Actions:
             while len(self._ids) > _MOST:
                 self._ids.popitem(last=False)
             return found
+
+    def _send_once(self, client: Client, command: _Action, name: str) -> Moved:
+        """Send an action after deleting its id, so that an approval is for one execution.
+
+        Raises Busy if a parallel call has done so.
+        """
+        with self._lock:
+            if self._ids.get(command) != name:
+                raise errors.Busy("another call executes this action", again_s=1.0)
+            del self._ids[command]
+        try:
+            return client.send(command)
+        except errors.Busy:  # not executed
+            with self._lock:
+                self._ids.setdefault(command, name)
+            raise
+        except errors.NoAnswer as error:
+            again = ", which requires approval again" if self._approval.required else ""
+            raise errors.NoAnswer(
+                f"{error.text}; the action may have been executed: see get before you repeat it{again}"
+            ) from None
 
     def _forget(self, command: _Action) -> None:
         with self._lock:

@@ -14,9 +14,10 @@ from typing import Any, Final
 
 from msgspec import Struct
 
-from semmap.nodes.extern.mcp.names import LONGEST, list_names_like_text
+from semmap.nodes.extern.mcp.names import list_names_like_text
 from semmap.schemas import errors
 from semmap.schemas.entities import Entity, Pose, Provenance, Size
+from semmap.schemas.wording import LONGEST_NAME
 
 BUDGET: Final = 4000
 """The maximum length of a reply."""
@@ -26,7 +27,6 @@ _WHO: Final = re.compile(r"[^\w./@-]+")
 SYSTEM: Final = "semmap"
 _MOST_AUTHORS: Final = 5
 _MOST_NAMES: Final = 3
-_MOST_ON_A_PAGE: Final = 100
 _WORD: Final = re.compile(r"\w+|[^\w\s]")
 _Words = tuple[str, ...]
 
@@ -55,36 +55,45 @@ def text(answer: Answer, start: int = 0) -> str:
 
     Raises BadRequest if there is no such item.
     """
-    commit = answer.last if answer.is_settled else f"{answer.first} to {answer.last}, the map is changing"
-    head: Any = {"commit": commit, "units": UNITS, **_mark_names(answer, start), **answer.head}
-    if (items := answer.items) is None:
+    if answer.items is not None and start > len(answer.items):
+        raise errors.BadRequest(f"the reply has {len(answer.items)} {answer.of}; call again without a cursor")
+    head, page = _fill_page(answer, start, {})
+    if marked := _mark_names([answer.head, *page]):
+        head, page = _fill_page(answer, start, marked)
+    if answer.items is None:
         return _within(head)
-    if start > len(items):
-        raise errors.BadRequest(f"the reply has {len(items)} {answer.of}; call again without a cursor")
+    end = start + len(page)
+    rest = {"next": f"{answer.last}.{end}"} if end < len(answer.items) else {}
+    return _json({**head, answer.of: page, **rest})
+
+
+def _fill_page(answer: Answer, start: int, marked: Mapping[str, Any]) -> tuple[dict[str, Any], list[Any]]:
+    """Return the head of a page, with the `marked` names, and the items that have room on it."""
+    commit = answer.last if answer.is_settled else f"{answer.first} to {answer.last}, the map is changing"
+    head: Any = {"commit": commit, "units": UNITS, **marked, **answer.head}
+    page: list[Any] = []
+    if (items := answer.items) is None:
+        return head, page
     head["total"] = len(items)
     empty = {answer.of: [], "next": f"{answer.last}.{len(items)}"}
     if (room := BUDGET - len(_json({**head, **empty}))) < BUDGET // 2:
         head = _fitting(head, BUDGET // 2)
         room = BUDGET - len(_json({**head, **empty}))
-    page: list[Any] = []
     for item in items[start:]:
         shown = _fitting(item, BUDGET // 4)
         room -= len(_json(shown)) + 1
         if room < 0:
             break
         page.append(shown)
-    end = start + len(page)
-    rest = {"next": f"{answer.last}.{end}"} if end < len(items) else {}
-    return _json({**head, answer.of: page, **rest})
+    return head, page
 
 
-def _mark_names(answer: Answer, start: int) -> dict[str, Any]:
-    """Return the beginnings of entity names on this page that read like a text, if there are any."""
-    shown = (answer.items or ())[start : start + _MOST_ON_A_PAGE]
-    found = dict.fromkeys(list_names_like_text([answer.head, *shown]))
+def _mark_names(shown: Iterable[Any]) -> dict[str, Any]:
+    """Return the beginnings of entity names that read like a text, if there are any."""
+    found = dict.fromkeys(list_names_like_text(shown))
     if not found:
         return {}
-    return {"names_that_are_data": [f"{name[:LONGEST]}..." for name in list(found)[:_MOST_NAMES]]}
+    return {"names_that_are_data": [f"{name[:LONGEST_NAME]}..." for name in list(found)[:_MOST_NAMES]]}
 
 
 def read_cursor(cursor: str) -> tuple[int, int]:

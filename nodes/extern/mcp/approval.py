@@ -106,7 +106,10 @@ class Approval:
         return request
 
     def _withdraw(self, client: Client, submit: Submit) -> None:
-        client.send(structs.replace(submit, withdraw=True))
+        """Withdraw a request. One that is decided already stays requested, so that a retry is not counted."""
+        with suppress(errors.Refused):  # a restarted coordinator has no requests
+            if client.send(structs.replace(submit, withdraw=True)).decision != "withdrawn":
+                return
         self._requested.pop(submit.id, None)
 
 

@@ -63,6 +63,7 @@ class Find(Paged, frozen=True, kw_only=True):
     answer: (
         Annotated[Text, Meta(description="Answer to the clarification question about the text.")] | None
     ) = None
+    as_of: Moment | None = None
 
 
 class Understand(Paged, frozen=True, kw_only=True):

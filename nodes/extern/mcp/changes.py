@@ -18,7 +18,6 @@ from msgspec import structs
 from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.mcp import arguments as a
 from semmap.nodes.extern.mcp import limits, requests
-from semmap.nodes.extern.mcp import names as entity_names
 from semmap.nodes.extern.mcp.actions import Actions
 from semmap.nodes.extern.mcp.answers import Answer, attribute_text, format_author
 from semmap.nodes.extern.mcp.approval import PATIENCE_S, Approval, report_waiting, require_not_cancelled
@@ -27,7 +26,7 @@ from semmap.nodes.extern.mcp.hints import translate_hints
 from semmap.nodes.extern.mcp.limits import Limits
 from semmap.nodes.extern.mcp.permissions import Permissions
 from semmap.nodes.extern.mcp.proposals import Proposal, Proposals
-from semmap.schemas import codec, commands, errors
+from semmap.schemas import codec, commands, errors, wording
 from semmap.schemas.commands import COMMANDS, Command
 from semmap.schemas.entities import NAME_PATTERN
 from semmap.schemas.replies import Changed
@@ -170,6 +169,7 @@ class Changes:
         request = self._approval.require(client, f"mcp-undo-{arguments.commit}-{last}", summary)
         if request is not None and request.decision == "waiting":
             return report_waiting(client, request)
+        require_not_cancelled()
         made = client.send(undo)
         seq = made.commit if made.commit is not None else newest(client)
         return Answer(first=seq, last=seq, head={"undone": arguments.commit, "names": made.names})
@@ -184,10 +184,10 @@ class Changes:
             raise errors.BadRequest(
                 f"propose: {verb} has no field {unknown[0]}; valid fields: {', '.join(valid)}"
             )
-        if verb == "add" and entity_names.reads_like_text(fields.get("name", "")):
+        if verb == "add" and wording.reads_like_text(fields.get("name", "")):
             raise errors.BadRequest(
-                f"propose: the name '{fields['name'][: entity_names.LONGEST]}' reads like a text; choose one"
-                f" of at most four words and {entity_names.LONGEST} characters, and use ref for a text"
+                f"propose: the name '{fields['name'][: wording.LONGEST_NAME]}' reads like a text; choose one"
+                f" of at most four words and {wording.LONGEST_NAME} characters, and use ref for a text"
             )
         if verb == "add" and not fields.keys() & {"at", "on", "in", "next_to"}:
             raise errors.BadRequest("propose: missing field at, on, in or next_to; at is [x, y, z] in metres")

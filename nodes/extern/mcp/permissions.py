@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import Any, Final
 
@@ -11,14 +11,17 @@ from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.mcp import arguments as a
 from semmap.nodes.extern.mcp import limits, queries
 from semmap.nodes.extern.mcp.limits import Limits, Touched
+from semmap.nodes.geometry.polygons import contains, distance
 from semmap.schemas import commands, errors
 from semmap.schemas.entities import ClassInfo, Entity
-from semmap.schemas.plans import PlannedPlace, Point
+from semmap.schemas.plans import Plan, Point
 from semmap.schemas.polygons import Polygon
 from semmap.schemas.replies import Changed
 
 _STEP_M: Final = 0.1
 """The distance of the points at which the path of a robot is checked [m]."""
+_GAP_M: Final = 0.15
+"""The distance from a permitted place that is permitted, too: half of a thick wall [m]."""
 
 
 class Permissions:
@@ -56,9 +59,10 @@ class Permissions:
         limits.require(allowed, [own])
         if not path or not allowed.places:
             return
-        start = () if entity.pose is None else (entity.pose.position_m[:2],)
-        permitted = [place for place in client.floorplan().places if place.name in allowed.places]
-        if (outside := find_outside((*start, *path), permitted)) is not None:
+        pose = entity.pose if entity.live is None else entity.live.pose
+        start = () if pose is None else (pose.position_m[:2],)
+        outside = find_outside((*start, *path), client.floorplan(), _within(client, allowed.places))
+        if outside is not None:
             x, y = outside
             raise errors.Refused(
                 f"the path of {entity.name} leads through ({x:.2f}, {y:.2f}), which is not in a place that"
@@ -66,10 +70,31 @@ class Permissions:
             )
 
 
-def find_outside(path: Sequence[Point], places: Iterable[PlannedPlace]) -> Point | None:
-    """Return a point of a path of straight lines that is in none of the places, or None."""
-    areas = [Polygon(place.rings[0], place.rings[1:]) for place in places]
-    return next((point for point in _sampled(path) if not any(area.contains(point) for area in areas)), None)
+def find_outside(path: Sequence[Point], plan: Plan, permitted: Collection[str]) -> Point | None:
+    """Return a point of a path of straight lines that is outside the permitted places, or None.
+
+    Places end at their walls: a point is permitted, too, within 0.15 m of a permitted place, such as in the
+    gap between two rooms, and in a door that connects permitted places only.
+    """
+    areas = [Polygon(place.rings[0], place.rings[1:]) for place in plan.places if place.name in permitted]
+    doors = [t.footprint for t in plan.things if t.door and t.connects and {*t.connects} <= {*permitted}]
+
+    def is_permitted(point: Point) -> bool:
+        return any(
+            area.contains(point) or any(distance(ring, [point]) <= _GAP_M for ring in area.rings)
+            for area in areas
+        ) or any(len(door) > 2 and contains(door, point) for door in doors)
+
+    return next((point for point in _sampled(path) if not is_permitted(point)), None)
+
+
+def _within(client: Client, places: Collection[str]) -> frozenset[str]:
+    """Return these places and those in them: a storey has no outline of its own, but its rooms have."""
+    every = [entity for entity in client.list() if entity.place]
+    parts = (
+        name for name, where in queries.placed(client, every).items() if {*where.get("in", ())} & {*places}
+    )
+    return frozenset((*places, *parts))
 
 
 def _sampled(path: Sequence[Point]) -> Iterator[Point]:

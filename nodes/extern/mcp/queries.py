@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import partial
 from typing import Any, Final, TypeVar
 
@@ -33,8 +34,8 @@ _RELATIONS: Final = " ".join(f"dm:{name}" for name in rows.PLACED)
 _WHERE_ALL: Final = f"SELECT ?e ?r ?o WHERE {{ VALUES ?r {{ {_RELATIONS} }} ?e ?r ?o }}"
 MOST_ROWS: Final = 2000
 _FEW: Final = 5
-_MOST_PLACES: Final = 100
-"""The number of places whose contents are listed for the overview."""
+_MOST_PLACES: Final = 40
+"""The number of places whose contents are listed for the overview, which shows at most as many."""
 _ON_A_PAGE: Final = 60
 """An upper bound of the number of rows on a page of a list."""
 
@@ -63,7 +64,11 @@ def _contents(
             if place in inferred:
                 inferred[place].append(thing)
     fullest = sorted(inferred, key=lambda place: -len(inferred[place]))[:_MOST_PLACES]
-    return {**inferred, **{place: client.list(in_=place) for place in fullest}}
+    found: dict[str, Sequence[Entity]] = {**inferred}
+    for place in fullest:
+        with suppress(errors.UnknownName):  # removed since the list; a changed map is read again
+            found[place] = client.list(in_=place)
+    return found
 
 
 def find(client: Client, arguments: a.Find) -> Answer:
@@ -74,8 +79,9 @@ def find(client: Client, arguments: a.Find) -> Answer:
         viewpoint=arguments.viewpoint,
         asker=arguments.asker,
         answer=arguments.answer,
+        as_of=arguments.as_of,
     )
-    authors = Authors(client.list())
+    authors = Authors(client.list(as_of=arguments.as_of))
 
     def quote(text: str) -> dict[str, str]:
         return attribute_text(text, authors.by(text))
@@ -84,6 +90,8 @@ def find(client: Client, arguments: a.Find) -> Answer:
         return rows.candidate(each, authors.by(each.called, *each.reasons))
 
     head: dict[str, Any] = {"outcome": found.outcome, "answer": quote(found.text)}
+    if arguments.as_of is not None:
+        head["as_of"] = arguments.as_of
     if found.question:
         head["question_to_ask_back"] = quote(found.question)
     if found.nearest:

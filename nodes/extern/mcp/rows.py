@@ -58,6 +58,9 @@ def called(found: Entity) -> dict[str, Any]:
 def described(found: Described) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     """Return the main data of an entity, and its other facts as items."""
     head: dict[str, Any] = {"name": found.name, "class": found.class_, **pose_fields(found.pose)}
+    if found.live is not None:  # the pose is the last committed one
+        is_stale = {"stale": True} if found.live.stale else {}
+        head["live"] = {**pose_fields(found.live.pose), "age_s": round(found.live.age_s, 1), **is_stale}
     if found.size_m is not None:
         head["size"] = round_metres(found.size_m)
     if found.body is not None and found.body.status not in ("present", "none", "unknown"):

@@ -224,7 +224,7 @@ def change_tools(changes: Changes) -> tuple[Tool, ...]:
         Tool(
             "drive",
             "Drives a robot of the scene through points in straight lines, such as those of route, or stops"
-            " it. Returns immediately unless wait is set; get has its position.",
+            " it. Returns immediately unless wait is set; `live` of get is where a tracked robot is.",
             a.Drive,
             changes.actions.drive,
             changes=True,

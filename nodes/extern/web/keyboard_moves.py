@@ -7,7 +7,8 @@ import math
 from functools import partial
 from typing import Final
 
-from semmap.nodes.extern.web.live import PERIOD_S, LiveEvent
+from semmap.nodes.extern.web.live import LiveEvent
+from semmap.nodes.extern.web.live_subscriber import PERIOD_S
 from semmap.nodes.extern.web.page import Page
 from semmap.nodes.extern.web.views.key_steps import KEYS, step_of
 from semmap.nodes.extern.web.views.pending_moves import PendingMoves

@@ -175,7 +175,9 @@ def _draw_state(page: Page) -> None:
         dot = ui.element("span").classes("semmap-dot")
         commit = ui.label().classes("semmap-commit")
         count = ui.label().classes("semmap-entities")
-        back = ui.button("Back to now", on_click=lambda: page.go_to(None)).props("flat dense color=warning")
+        back = ui.button("Back to now", on_click=lambda: page.go_to(None)).props(
+            "dense unelevated color=warning text-color=black padding='2px 10px'"
+        )
 
     def show() -> None:
         is_now, is_away = page.moment.is_now, not page.live.connected

@@ -11,7 +11,7 @@ import contextlib
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from types import MappingProxyType
 from typing import Any, Final, Literal, TypeVar
 
@@ -19,33 +19,25 @@ from msgspec import Struct
 
 from semmap.nodes import bus
 from semmap.nodes.drawing.articulation import JointPositions, joint_positions_of
-from semmap.nodes.drawing.scene_state import SceneState
 from semmap.nodes.extern.client import Client
 from semmap.nodes.extern.sparql_client import StandingQuery
+from semmap.nodes.extern.web.live_subscriber import LiveSubscriber, LoadedMap, Updates
 from semmap.nodes.extern.web.loads import measure_loads
 from semmap.nodes.extern.web.views.system_status import RateHistory
 from semmap.nodes.identity import Identity
 from semmap.nodes.runtime.loop import Node
-from semmap.nodes.runtime.map_follower import Follower, SnapshotLoaded
-from semmap.nodes.runtime.map_replica import MapReplica
 from semmap.schemas import keys, roles
-from semmap.schemas.bridge import CopyQuery, MapCopy
 from semmap.schemas.calls import Call
 from semmap.schemas.commands import Command
 from semmap.schemas.commits import Commit
 from semmap.schemas.entities import ClassInfo, Entity, Pose
 from semmap.schemas.health import Health
-from semmap.schemas.scenes import Point, Poses, Scene, SceneQuery
+from semmap.schemas.scenes import Point, Scene
 
 Kind = Literal["commit", "poses", "drives", "scene", "reset", "connection", "health"]
 
-PERIOD_S: Final = 0.1
-"""Minimum interval between two updates."""
 TIMEOUT_S: Final = 10.0
 _PARALLEL_REQUESTS: Final = 16
-_SILENT_S: Final = 3.5
-"""Time without a heartbeat after which the knowledge base counts as lost; nodes send one per second."""
-_SCENE_LOST_S: Final = 10.0
 
 R = TypeVar("R")
 
@@ -109,7 +101,7 @@ class Live:
         self._threads = ThreadPoolExecutor(_PARALLEL_REQUESTS, thread_name_prefix="request")
         self._client = Client(session, agent="web", identity=identity)
         self._node = Node(keys.WEB, session, network.commands)
-        self._subscriber = _Subscriber(self._node, self._post, secure=identity is not None)
+        self._subscriber = LiveSubscriber(self._node, self._post, secure=identity is not None)
         self._thread = threading.Thread(target=self._node.run, name="live", daemon=True)
 
     # On the event loop
@@ -190,19 +182,19 @@ class Live:
 
     # From the node's thread to the event loop
 
-    def _post(self, updates: _Updates) -> None:
+    def _post(self, updates: Updates) -> None:
         """Post updates from the thread of the node to the event loop."""
         loop = self._loop
         if loop is not None:
             with contextlib.suppress(RuntimeError):  # the loop has ended
                 loop.call_soon_threadsafe(self._deliver, updates)
 
-    def _deliver(self, updates: _Updates) -> None:
+    def _deliver(self, updates: Updates) -> None:
         for event in self._apply(updates):
             for listener in tuple(self._listeners):
                 listener(event)
 
-    def _apply(self, updates: _Updates) -> Iterator[LiveEvent]:
+    def _apply(self, updates: Updates) -> Iterator[LiveEvent]:
         """Apply the updates, and yield an event for each kind of change."""
         if updates.map is not None:
             yield self._reset(updates.map)
@@ -248,176 +240,10 @@ class Live:
             loads = measure_loads(self.health.values())
             self.rates.add_sample(now_s, self.commit, self._poses_received, loads)
 
-    def _reset(self, read: _Map) -> LiveEvent:
+    def _reset(self, read: LoadedMap) -> LiveEvent:
         is_another = bool(self.map_id) and read.map_id != self.map_id
         self.loads += 1
         self._entities.clear()
         self._entities.update(read.entities)
         self.classes, self.commit, self.map_id = read.classes, read.seq, read.map_id
         return LiveEvent(kind="reset", is_new_map=is_another)
-
-
-class _Map(Struct, frozen=True, kw_only=True):
-    map_id: str
-    seq: int
-    entities: dict[str, Entity]
-    classes: tuple[ClassInfo, ...]
-
-
-class _Bodies(Struct, frozen=True, kw_only=True):
-    now: Scene | None
-
-
-class _Updates:
-    """Updates since the last post; the thread of the node collects them."""
-
-    def __init__(self) -> None:
-        self.map: _Map | None = None
-        self.commits: list[Commit] = []
-        self.scene: _Bodies | None = None
-        self.moved: dict[str, Pose] = {}
-        self.joint_positions: dict[str, JointPositions] = {}
-        self.drives: dict[str, tuple[Point, ...]] | None = None
-        self.poses_received = 0
-        self.health: dict[str, Health] = {}
-        self.offline_reason: str | None = None
-        """Why there is no connection; empty while there is one, None if that is unknown."""
-
-
-class _Subscriber:
-    """The subscriptions of the node to the map, the scene and the nodes.
-
-    It runs on the thread of the node.
-    """
-
-    def __init__(self, node: Node, post: Callable[[_Updates], None], *, secure: bool) -> None:
-        self._node = node
-        self._post = post
-        self._updates = _Updates()
-        self._is_due = False
-        self._replica = MapReplica[Commit]()
-        self._map_id = ""
-        self._classes: tuple[ClassInfo, ...] = ()
-        self._has_map = False
-        """Whether the whole map was posted, so that single commits can follow."""
-        self._scene = SceneState()
-        self._drives: dict[str, tuple[Point, ...]] = {}
-        self._fetching_scene = False
-        self._poses_s = 0.0
-        self._kb_s = 0.0
-        self._posted_s = 0.0
-        classes_at = keys.CMD if secure else keys.BRIDGE
-        Follower(
-            node,
-            self._replica,
-            keys.COMMIT,
-            on_commit=self._on_commit,
-            on_snapshot=self._on_map,
-            classes_at=classes_at,
-        )
-        node.follow(keys.HEALTH, self._on_health)
-        node.follow_newest(keys.POSES, self._on_poses)
-        node.every(0.5, self._check_liveliness)
-
-    def _schedule(self) -> None:
-        """Post the updates now, or as soon as the minimum interval has passed."""
-        if not self._is_due:
-            self._is_due = True
-            self._node.later(self._posted_s + PERIOD_S - time.monotonic(), self._flush)
-
-    def _flush(self) -> None:
-        self._is_due, self._posted_s = False, time.monotonic()
-        updates, self._updates = self._updates, _Updates()
-        self._post(updates)
-
-    # The map
-
-    def _on_commit(self, commit: Commit, known: bool) -> None:
-        if known and self._has_map:
-            self._updates.commits.append(commit)
-            self._schedule()
-
-    def _on_map(self, begun: SnapshotLoaded) -> None:
-        """Request the id of the map, and post the map when it is known."""
-        self._has_map, self._classes = False, begun.classes
-        self._updates.commits.clear()
-
-        def on_copy(future: Future[MapCopy]) -> None:
-            if future.exception() is None:
-                self._map_id = future.result().map_id
-            self._post_map()
-
-        self._node.ask_later(keys.BRIDGE, CopyQuery(content=False)).add_done_callback(on_copy)
-
-    def _post_map(self) -> None:
-        self._has_map = True
-        self._updates.commits.clear()
-        self._updates.map = _Map(
-            map_id=self._map_id,
-            seq=self._replica.seq,
-            entities=dict(self._replica.entities),
-            classes=self._classes,
-        )
-        self._check_liveliness()
-
-    # The nodes
-
-    def _on_health(self, health: Health) -> None:
-        if health.node == "kb_node":
-            self._kb_s = time.monotonic()
-        self._updates.health[health.node] = health
-        self._schedule()
-
-    def _check_liveliness(self) -> None:
-        self._updates.offline_reason = self._offline_reason()
-        self._schedule()
-        if self._scene.known and time.monotonic() - self._poses_s > _SCENE_LOST_S:
-            self._scene = SceneState()
-            self._updates.drives = self._drives = {}
-            self._updates.scene, self._updates.moved = _Bodies(now=None), {}
-            self._updates.joint_positions.clear()
-
-    def _offline_reason(self) -> str:
-        if time.monotonic() - self._kb_s > _SILENT_S:
-            if self._kb_s:
-                return "no response from the knowledge base; the page continues when it is back"
-            return "no knowledge base found; start a system with `semmap up`"
-        return "" if self._has_map else "reading the map"
-
-    # The scene
-
-    def _on_poses(self, poses: Poses) -> None:
-        self._poses_s = time.monotonic()
-        self._updates.poses_received += 1
-        if poses.drives != self._drives:
-            self._updates.drives = self._drives = poses.drives
-            self._schedule()
-        if not self._scene.matches(poses):
-            self._fetch_scene()
-            return
-        if problem := self._scene.find_problem(poses):
-            self._node.drop(f"poses dropped: {problem}")
-            return
-        moved = dict(self._scene.follow(poses))
-        if moved:
-            self._updates.moved.update(moved)
-            bodies = (self._scene.bodies[name] for name in moved)
-            self._updates.joint_positions.update(
-                (body.name, joint_positions_of(body.joints)) for body in bodies if body.joints
-            )
-            self._schedule()
-
-    def _fetch_scene(self) -> None:
-        if self._fetching_scene:
-            return
-        self._fetching_scene = True
-
-        def on_scene(future: Future[Scene]) -> None:
-            self._fetching_scene = False
-            if future.exception() is None:
-                self._scene.take(future.result())
-                self._updates.scene, self._updates.moved = _Bodies(now=future.result()), {}
-                self._updates.joint_positions.clear()
-                self._schedule()
-
-        self._node.ask_later(keys.SIM, SceneQuery()).add_done_callback(on_scene)

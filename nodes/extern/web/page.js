@@ -6,7 +6,7 @@
 
   // Arrow keys move the selection, except in elements that use them.
   const hasSelection = () => Boolean(document.querySelector(".semmap-marks")?.dataset.selected);
-  const takesArrows = (element) => !(element === document.body || element.id === "views"
+  const takesArrows = (element) => !(element === document.body || element.matches(".q-layout, #views")
     || (element.matches("button, a") && !element.closest("[role=tablist], [role=radiogroup], .q-btn-toggle")));
 
   function onArrow(event) {

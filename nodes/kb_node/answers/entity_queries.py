@@ -130,7 +130,8 @@ class CurrentState:
     def _with_all_properties(self, found: Described) -> Described:
         iri = v.iri(found.iri)
         about = about_entity(self._map.reasoner, iri)
-        others = self._map.classes.property_table.read_others(about, iri)
+        table = self._map.classes.property_table
+        others = {**table.read_nameless(about, iri), **table.read_others(about, iri)}
         others.pop(SAME_AS, None)
         own = find_own_classes(self._map.classes, about(iri).get(v.RDF_TYPE, ()))
         if not others and not own:

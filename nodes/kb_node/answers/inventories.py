@@ -7,11 +7,11 @@ import re
 from collections.abc import Iterable, Iterator, Set
 from typing import Final
 
+from semmap.nodes.kb_node.answers.map_states import MapState
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.measuring import proximity
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.language import nouns
 from semmap.nodes.language.generation.inventory import How, Inventory, Place, Thing
 from semmap.nodes.language.vocabulary import to_words
@@ -31,30 +31,20 @@ _DETERMINERS: Final = frozenset(("a", "an", "the", "my", "your", "his", "her", "
 
 
 class Inventories:
-    """Collects objects and places for descriptions. Owned by the node's thread."""
+    """Collects objects and places of a map for descriptions. For one thread."""
 
-    def __init__(self, semantic_map: SemanticMap) -> None:
-        self._map = semantic_map
-        self._named: tuple[ClassTable, Nouns] | None = None
-        self._whole: tuple[int, Inventory] | None = None
-
-    @property
-    def nouns(self) -> Nouns:
-        """The nouns for entities."""
-        if self._named is None or self._named[0] is not self._map.classes:
-            self._named = (self._map.classes, Nouns(self._map.classes))
-        return self._named[1]
+    def __init__(self, state: MapState, nouns: Nouns) -> None:
+        self._state = state
+        self.nouns = nouns
 
     def whole(self) -> Inventory:
-        """Return all objects and places after the last commit, collected once per commit."""
-        if self._whole is None or self._whole[0] != self._map.seq:
-            self._whole = (self._map.seq, self._of(self._map.entities()))
-        return self._whole[1]
+        """Return all objects and places."""
+        return self._of(self._state.entities())
 
     def numbers(self) -> Inventory:
         """Return all objects and places without locations."""
         noun = self.nouns.of
-        entities = tuple(self._map.entities())
+        entities = self._state.entities()
         return Inventory(
             (
                 Thing(entity.name, noun(entity), kind=self.nouns.kind(entity))
@@ -66,27 +56,25 @@ class Inventories:
 
     def around(self, entity: Entity) -> Inventory:
         """Return the contents of a place and its parts, or an object with what surrounds it."""
-        self._map.ensure_derived()
-        names = {entity.name, *(other for _, other in self._map.places.about(entity.name))}
-        space = self._map.places.space()
+        names = {entity.name, *(other for _, other in self._state.about(entity.name))}
+        space = self._state.space()
         if _is_table(entity) and (solid := space.solids.get(entity.name)) is not None:
             names.update(other.name for other in space.counted_around(solid, space.limits.near_most_m))
         if entity.place:
             places = Inventory((), self._places())
             names |= set(places.parts_of(entity.name))
-        found = filter(None, map(self._map.find, sorted(self._map.places.with_supported(names))))
+        found = filter(None, map(self._state.find, sorted(self._state.with_supported(names))))
         return self._of(found)
 
     def _of(self, entities: Iterable[Entity]) -> Inventory:
-        self._map.ensure_derived()
-        left_out = self._map.derived_facts.suppressed_measurements
+        left_out = self._state.left_out()
         things = [self._thing(entity, left_out) for entity in entities if not entity.place]
         return Inventory(things, self._places())
 
     def _places(self) -> Iterator[Place]:
         """Yield all places; their names distinguish them."""
-        places = [entity for entity in self._map.entities() if entity.place]
-        space, parts = self._map.places.space(), _parts_said(places)
+        places = [entity for entity in self._state.entities() if entity.place]
+        space, parts = self._state.space(), _parts_said(places)
         for place in places:
             within = parts.get(place.name) or _around(space, place.name)
             yield Place(place.name, self.nouns.of(place), within)
@@ -94,7 +82,7 @@ class Inventories:
     def _thing(self, entity: Entity, left_out: Set[Fact]) -> Thing:
         at: tuple[How, str] | None = None
         place: str | None = None
-        for relation, other in self._map.places.about(entity.name):
+        for relation, other in self._state.about(entity.name):
             if (entity.name, relation, other) in left_out:
                 continue
             if relation in _HOW and at is None:
@@ -116,13 +104,13 @@ class Inventories:
 
     def _table_of(self, entity: Entity) -> str | None:
         """Return the nearest table of a seat."""
-        space = self._map.places.space()
+        space = self._state.space()
         if _SEATS.isdisjoint(entity.types) or (solid := space.solids.get(entity.name)) is None:
             return None
         tables = [
             (made.gap_m, other.name)
             for other in space.counted_around(solid, space.limits.near_most_m)
-            if _is_table(self._map.find(other.name))
+            if _is_table(self._state.find(other.name))
             and (made := proximity.near(solid, other, space.limits)) is not None
             and made.holds
         ]
@@ -164,7 +152,8 @@ class Nouns:
     def __init__(self, classes: ClassTable) -> None:
         rows = {row.name: row for row in classes.rows}
         self._labels = {
-            name: row.labels.get("en") or row.labels.get("") or to_words(name) for name, row in rows.items()
+            name: _uncapitalized(row.labels.get("en") or row.labels.get("") or to_words(name))
+            for name, row in rows.items()
         }
         self._heads = {
             word.rpartition(" ")[2].lower()
@@ -196,3 +185,9 @@ class Nouns:
         if head in self._heads:
             return reference.lower() if reference.istitle() else reference
         return reference if head == reference.lower() and head not in _NO_NAMES else label
+
+
+def _uncapitalized(label: str) -> str:
+    """Return the label of a class as a common noun: `designed handle` for `Designed handle`."""
+    is_capitalized = label[:1].isupper() and (label.istitle() or label[1:] == label[1:].lower())
+    return label.lower() if is_capitalized and len(label) > 1 else label

@@ -57,6 +57,7 @@ class DocumentOrigin(NamedTuple):
 
 
 _UNKNOWN_ORIGIN = DocumentOrigin()
+_BLANK = "a blank node"
 
 
 class FilteredDocument(NamedTuple):
@@ -100,7 +101,8 @@ def filter_document(
     spatial = _with_subclasses(classes.spatial, by_property.get(v.RDFS_SUB_CLASS_OF, []))
     own = {o for o in used if not is_built_in(o)}
     if declared and spatial.isdisjoint(own):
-        raise errors.BadFile("it declares classes but no entities; to load a TBox use --tbox")
+        name = of_file.filename or "the file"
+        raise errors.BadFile(f"{name}: declares classes but no entities; to load a TBox use --tbox")
     strange = own - known
     unknown = sorted((s, o) for s, _, o in types_said if o in strange) if strange else []
     users: dict[str, list[str]] = {}
@@ -108,7 +110,8 @@ def filter_document(
         name = c if classes.index.namesakes(c) else v.local_name(c)
         users.setdefault(name, []).append(_display_name(s))
     if unknown and not skip_unknown:
-        raise errors.UnknownClass(classes.index.unknown_classes(users))
+        text = classes.index.unknown_classes({c: _with_blank_nodes_counted(n) for c, n in users.items()})
+        raise errors.UnknownClass(f"{of_file.filename}: {text}" if of_file.filename else text)
     named: list[str] = []
     if not classes.alignments and (
         nameless := dict(sorted((s, o) for s, _, o in types_said if is_blank(s) and o in spatial))
@@ -337,8 +340,15 @@ def _incomplete_values(by_property: Mapping[Term, list[Triple]], triples: list[T
     return [f"incomplete position, orientation or size ignored: {few}"]
 
 
+def _with_blank_nodes_counted(names: Sequence[str]) -> list[str]:
+    """Return display names with the number of blank nodes at the end."""
+    named = [name for name in names if name != _BLANK]
+    count = len(names) - len(named)
+    return [*named, wording.counted(count, "blank node")] if count else named
+
+
 def _display_name(individual: Term) -> str:
-    return "a blank node" if individual.startswith("_:") else v.entity_name(individual)
+    return _BLANK if individual.startswith("_:") else v.entity_name(individual)
 
 
 def is_built_in(term: Term) -> bool:

@@ -13,6 +13,7 @@ from msgspec import structs
 from semmap.nodes.kb_node.documents import abox_document, rdf
 from semmap.nodes.kb_node.documents.replacement import Replacement, find_replacement
 from semmap.nodes.kb_node.documents.tbox import tbox_declarations, tbox_validation
+from semmap.nodes.kb_node.entities import entity_reading
 from semmap.nodes.kb_node.entities.aligned_values import shift_along_z
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
@@ -66,7 +67,7 @@ def make_document_transaction(
     if not load.replace:
         replaced = find_replacement(filtered.triples, semantic_map.reasoner, classes, tbox)
     if replaced.retract and load.add_only:
-        names = sorted(v.entity_name(owner) for owner in replaced.retract)
+        names = sorted({_name_owner(semantic_map, node) for node in replaced.retract})
         raise errors.NameTaken(
             f"{load.filename or 'the file'} has other values for {wording.few(names, 5)}; to replace those of"
             " the map, load it without --add-only"
@@ -77,6 +78,13 @@ def make_document_transaction(
         insert=_outside(replaced.insert, tbox),
     )
     return transaction, filtered, replaced
+
+
+def _name_owner(semantic_map: SemanticMap, node: Term) -> str:
+    """Return the name of the entity that an individual is or describes, else that of the individual."""
+    owners = entity_reading.find_owners(semantic_map.reasoner, semantic_map.classes, node)
+    found = filter(None, map(semantic_map.find_by_individual, sorted(owners)))
+    return next((entity.name for entity in found), v.entity_name(node))
 
 
 def _find_frame(semantic_map: SemanticMap, iri: Term) -> Pose | None:

@@ -22,7 +22,7 @@ from semmap.nodes.kb_node.entities import (
 from semmap.nodes.kb_node.entities.aligned_values import LABELS
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.entities.equal_individuals import Objects
-from semmap.nodes.kb_node.entities.property_table import Property
+from semmap.nodes.kb_node.entities.property_table import STRUCTURAL, Property
 from semmap.nodes.kb_node.entities.property_values import is_same_value, to_text
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import entity_triples
@@ -237,7 +237,7 @@ class Draft:
 
     def _require(self, name: str, asserted: Objects, only_if: Sequence[Statement]) -> None:
         """Raise PreconditionFailed unless each property has one of the values, or none if none is given."""
-        for prop, terms in self._typed(only_if, name):
+        for prop, terms in self._typed(only_if, name, asserted):
             known = asserted.get(prop.iri, ())
             if not any(is_same_value(one, other) for one in known for other in terms) and (known or terms):
                 now = " and ".join(to_text(term) for term in sorted(known)) or "not set"
@@ -251,9 +251,9 @@ class Draft:
         property.
         """
         iri = v.iri(entity.iri)
-        wanted = list(self._typed(edit.set, entity.name))
+        wanted = list(self._typed(edit.set, entity.name, asserted))
         left: dict[Term, list[Term]] = {}
-        for prop, terms in self._typed(edit.unset, entity.name):
+        for prop, terms in self._typed(edit.unset, entity.name, asserted):
             for term in terms:
                 if any(
                     prop.iri == other.iri and any(is_same_value(term, o) for o in new)
@@ -278,11 +278,25 @@ class Draft:
             self._retract((iri, property_, term) for term in before if term not in now)
             self._insert((iri, property_, term) for term in now if term not in before)
 
-    def _typed(self, statements: Sequence[Statement], name: str) -> Iterator[tuple[Property, list[Term]]]:
-        """Yield the properties and values that are meant. Raises BadRequest, UnknownName."""
+    def _typed(
+        self, statements: Sequence[Statement], name: str, used: Iterable[Term] = ()
+    ) -> Iterator[tuple[Property, list[Term]]]:
+        """Yield the properties and values that are meant. `used` are the properties of the entity now.
+
+        Raises BadRequest, UnknownName.
+        """
         table = self._classes.property_table
         for statement in statements:
-            prop = table.find(statement.property, name)
+            try:
+                prop = table.find(statement.property, name)
+            except errors.BadRequest:
+                foreign = (p for p in used if p not in table.by_iri and p not in STRUCTURAL)
+                if statement.property not in map(v.local_name, foreign):
+                    raise
+                raise errors.BadRequest(
+                    f"property '{statement.property}' is not part of the TBox, only of the map; to declare"
+                    " it, load its ontology with --tbox --extend, or its map with --tbox-from-abox"
+                ) from None
             yield (
                 prop,
                 [

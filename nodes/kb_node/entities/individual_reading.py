@@ -84,6 +84,7 @@ def read_individual(reasoner: Reasoner, classes: ClassTable, iri: Term) -> Entit
     label, *others = dict.fromkeys(labels) or [None]
     properties = {
         **classes.property_table.read_values(asserted),
+        **classes.property_table.read_nameless(about, iri),
         **classes.property_table.read_others(about, iri),
     }
     properties.pop(SAME_AS, None)

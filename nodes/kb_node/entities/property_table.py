@@ -106,7 +106,8 @@ class PropertyTable:
         known = asserted.keys() & self.by_iri.keys()
         if not known:
             return {}
-        return dict(sorted(_shown(self.by_iri[p], asserted[p]) for p in known))
+        to_value = property_values.to_json_value
+        return dict(sorted(_shown(self.by_iri[p], map(to_value, asserted[p])) for p in known))
 
     def read_others(self, about: About, subject: Term) -> dict[str, property_values.Stated]:
         """Return the asserted values of the properties that are not in the table, by name.
@@ -122,6 +123,16 @@ class PropertyTable:
                 name = p
             found[name] = tuple(sorted((_content(about, o, ()) for o in about(subject)[p]), key=str))
         return found
+
+    def read_nameless(self, about: About, subject: Term) -> dict[str, property_values.Stated]:
+        """Return the values of properties in the table with nameless ones among them, with their content."""
+        asserted = about(subject)
+        return {
+            name: stated
+            for p in asserted.keys() & self.by_iri.keys()
+            if any(o.startswith("_:") for o in asserted[p])
+            for name, stated in [_shown(self.by_iri[p], (_content(about, o, ()) for o in asserted[p]))]
+        }
 
     def find(self, word: str, name: str = "NAME") -> Property:
         """Return the property that `word` means: a name, an IRI in <>, a prefixed name or a label.
@@ -296,8 +307,8 @@ def _content(about: About, value: Term, above: tuple[Term, ...]) -> Value:
     return f"[{', '.join(parts)}{', ...' if edges[_FEW:] else ''}]"
 
 
-def _shown(prop: Property, terms: Iterable[Term]) -> tuple[str, property_values.Stated]:
-    values = tuple(sorted(map(property_values.to_json_value, terms), key=str))
+def _shown(prop: Property, values: Iterable[Value]) -> tuple[str, property_values.Stated]:
+    values = tuple(sorted(values, key=str))
     return prop.name, values[0] if prop.functional and len(values) == 1 else values
 
 

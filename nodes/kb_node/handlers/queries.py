@@ -1,11 +1,10 @@
-"""Handlers for queries on the map. Long ones run in other threads or processes."""
+"""Handlers for queries on the current map. Long ones run in other threads or processes."""
 
 from __future__ import annotations
 
 import logging
 import threading
-import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from concurrent.futures import Future
 from functools import partial
 from typing import TypeVar
@@ -14,67 +13,41 @@ from msgspec import structs
 
 from semmap.nodes.kb_node.answers import answers, entity_queries, questions
 from semmap.nodes.kb_node.answers.command_parser import CommandParser
-from semmap.nodes.kb_node.answers.descriptions import Descriptions
+from semmap.nodes.kb_node.answers.descriptions import Descriptions, describe_past
 from semmap.nodes.kb_node.answers.entity_search import EntitySearch, describe_missing, find_past
 from semmap.nodes.kb_node.answers.live_poses import LiveEntities
 from semmap.nodes.kb_node.answers.location_queries import LocationQueries
-from semmap.nodes.kb_node.answers.pages import Pages
-from semmap.nodes.kb_node.answers.past import (
-    commit_selection,
-    differences,
-    fact_intervals,
-    individual_history,
-    live_sightings,
-    past_map,
-    trails,
-)
-from semmap.nodes.kb_node.answers.past.renames import Renames
+from semmap.nodes.kb_node.answers.past import fact_intervals, past_map
 from semmap.nodes.kb_node.answers.past.trail_recording import TrailRecorder
 from semmap.nodes.kb_node.answers.route_planning import RoutePlanning
-from semmap.nodes.kb_node.answers.sightings import Sightings, describe_closed, find_closed_container
+from semmap.nodes.kb_node.answers.sightings import Sightings
+from semmap.nodes.kb_node.handlers.map_copies import MapCopyHandlers
+from semmap.nodes.kb_node.handlers.past_queries import PastQueryHandlers
 from semmap.nodes.kb_node.reasoner import GivenFacts
 from semmap.nodes.kb_node.reasoner.entailment.explaining import nearby
 from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
 from semmap.nodes.kb_node.relations.free_room import find_room
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
-from semmap.nodes.kb_node.relations.selection import is_in
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.shacl import violations
 from semmap.nodes.kb_node.shacl.validation_process import ShapeValidator
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.storage import history, trail_file
 from semmap.nodes.kb_node.storage.journal import Journal
-from semmap.nodes.kb_node.storage.trail_file import TrailLine
 from semmap.nodes.runtime.fair_queue import FairPool
 from semmap.schemas import errors
-from semmap.schemas.bridge import (
-    CopyQuery,
-    Entities,
-    FindRoom,
-    LoadOf,
-    MapCopy,
-    PlanOf,
-    Recall,
-    Room,
-    SnapshotQuery,
-    StarQuery,
-    WayOf,
-)
+from semmap.schemas.bridge import Entities, FindRoom, LoadOf, PlanOf, Room, WayOf
 from semmap.schemas.calls import Handler, by_verb
 from semmap.schemas.commands import (
     Check,
     Classes,
     Could,
-    Diff,
     Explain,
     Export,
     Find,
-    FindTrail,
     Get,
-    History,
     Infer,
-    LastSeen,
     Properties,
     Relations,
     Renew,
@@ -82,17 +55,14 @@ from semmap.schemas.commands import (
     Sparql,
     Tell,
     Understand,
-    WasWhen,
     Watch,
 )
-from semmap.schemas.commits import Commit, Snapshot, Star
 from semmap.schemas.entities import ClassInfo, Entity, PropertyInfo, RuleInfo
 from semmap.schemas.explanations import Explanation
-from semmap.schemas.language import Found
+from semmap.schemas.language import Account, Found
 from semmap.schemas.live import LivePoses
-from semmap.schemas.map_history import Difference, Spells, Trail
 from semmap.schemas.relations import Described, Relation
-from semmap.schemas.replies import Checked, Document, Done, Inferred, LoggedCommit, Possible, Sighting
+from semmap.schemas.replies import Checked, Document, Done, Inferred, Possible
 from semmap.schemas.sparql import SparqlResult, Watching
 
 log = logging.getLogger(__name__)
@@ -122,7 +92,6 @@ class QueryHandlers:
         self._location_queries = location_queries
         self._journal = journal
         self._past = history.HistoryReader(journal)
-        self._pages = Pages(semantic_map)
         self._now = entity_queries.CurrentState(semantic_map)
         self.live = LiveEntities(semantic_map)
         """Receives live poses."""
@@ -142,14 +111,16 @@ class QueryHandlers:
         """For checks with shapes, which clients may send and which may take a minute."""
         self._validator = ShapeValidator()
         self._is_over = threading.Event()
+        self.copies = MapCopyHandlers(semantic_map, journal, self._past, self._aside)
+        """Returns copies of the map."""
+        self.past = PastQueryHandlers(
+            semantic_map, journal, self._past, self.live, self.trail, self.sightings, self._aside
+        )
+        """Answers queries about the past."""
 
     def handlers(self) -> dict[str, Handler]:
         """Return the handlers by command."""
-        return by_verb(
-            SnapshotQuery.answered_by(self.on_snapshot),
-            CopyQuery.answered_by(self.on_copy),
-            Recall.answered_by(self.on_recall),
-            StarQuery.answered_by(self.on_star),
+        own = by_verb(
             LoadOf.answered_by(self.on_load_of),
             FindRoom.answered_by(self.on_find_room),
             Classes.answered_by(self.on_classes),
@@ -161,22 +132,18 @@ class QueryHandlers:
             Explain.answered_by(self.on_explain),
             Could.answered_by(self.on_could),
             Relations.answered_by(self.on_relations),
-            Diff.answered_by(self.on_diff),
-            WasWhen.answered_by(self.on_when),
-            FindTrail.answered_by(self.on_trail),
             Understand.answered_by(self._parser.parse),
-            Tell.answered_by(self._descriptions.describe),
+            Tell.answered_by(self.on_tell),
             Find.answered_by(self.on_find),
             Export.answered_by(self.on_export),
             PlanOf.answered_by(self._routes.compute_plan),
             WayOf.answered_by(self._routes.compute_route),
-            History.answered_by(self.on_history),
-            LastSeen.answered_by(self.on_last_seen),
             Check.answered_by(self.on_check),
             Sparql.answered_by(self.on_sparql),
             Watch.answered_by(self.on_watch),
             Renew.answered_by(self.on_renew),
         )
+        return {**own, **self.copies.handlers(), **self.past.handlers()}
 
     def _list_solids(self) -> tuple[int, Iterable[Solid], Thresholds]:
         """Return the version of the map, its solids and the thresholds of relations."""
@@ -186,41 +153,6 @@ class QueryHandlers:
         """Use and record the live poses of all tracked entities."""
         self.live.update(message)
         self.trail.update(message)
-
-    @property
-    def is_being_fetched(self) -> bool:
-        """Return whether the map is being fetched page by page, or is likely to be after a start."""
-        return self._pages.is_request_expected
-
-    def on_snapshot(self, query: SnapshotQuery) -> Snapshot:
-        """Return the entities as of the last commit, or a page of them."""
-        return self._pages.snapshot(query)
-
-    def on_copy(self, query: CopyQuery) -> MapCopy:
-        """Return the whole map, or only its identity."""
-        map_id, begun_ns = self._journal.origin()
-        seq = self._map.seq
-        return MapCopy(
-            map_id=map_id,
-            begun_ns=begun_ns,
-            seq=seq,
-            digest=self._map.digest,
-            stamp_ns=self._stamp_of_last(seq),
-            triples=tuple(self._map.abox()) if query.content else (),
-            entities=tuple(self._map.entities()) if query.content else (),
-        )
-
-    def _stamp_of_last(self, seq: int) -> int:
-        begins = self._journal.beginning
-        return self._journal.stamps.of(seq) if seq > begins.seq else begins.stamp_ns
-
-    def on_recall(self, query: Recall) -> Future[tuple[Commit, ...]]:
-        """Return whole commits of the history."""
-        return self._aside.submit(self._past.commits, query.seqs)
-
-    def on_star(self, query: StarQuery) -> tuple[Star, ...]:
-        """Return the triples of some entities."""
-        return self._map.stars(query.names)
 
     def on_load_of(self, query: LoadOf) -> tuple[str, ...]:
         """Return what an object supports."""
@@ -293,37 +225,6 @@ class QueryHandlers:
         )
         return self._aside.submit(found.with_dates, look_up)
 
-    def on_diff(self, query: Diff) -> Future[Difference]:
-        """Return what changed between two commits or times."""
-        limits = self._map.classes.limits
-        return self._aside.submit(differences.compute_difference, self._journal, self._past, query, limits)
-
-    def on_when(self, query: WasWhen) -> Future[Spells]:
-        """Return when one object was on, in or at another."""
-        limits = self._map.classes.limits
-        self.trail.write()
-        return self._aside.submit(self._find_spells, query, limits)
-
-    def _find_spells(self, query: WasWhen, limits: Thresholds) -> Spells:
-        found = differences.find_spells(self._journal, self._past, query, limits)
-        if query.relation != "isLocatedIn":
-            return found
-        now_ns = time.time_ns()
-        renames = Renames.of(self._past, (found.subject, found.object)).in_time(self._journal)
-        lines = renames.in_trail(self._trail_lines())
-        return trails.add_visits(found, trails.Trails(lines, now_ns, {found.subject}), now_ns)
-
-    def _trail_lines(self) -> Iterator[TrailLine]:
-        return trail_file.read_lines(self._journal.path.parent)
-
-    def on_trail(self, query: FindTrail) -> Future[Trail]:
-        """Return where live entities were, by their stored trail."""
-        self.trail.write()
-        present = tuple(self._map.entities())
-        return self._aside.submit(
-            lambda: trails.find_trail(self._trail_lines(), self._past, present, query, time.time_ns())
-        )
-
     def on_could(self, query: Could) -> Possible | Future[Possible]:
         """Return whether a statement could hold."""
         asked = questions.parse_could(self._map, query)
@@ -355,61 +256,6 @@ class QueryHandlers:
             answers.export, answers.export_snapshot(self._map, query.inferred), query.format
         )
 
-    def on_history(self, query: History) -> Future[tuple[LoggedCommit, ...]]:
-        """Return commits of the history, of an entity, or of an individual that is not in space."""
-        limits = self._map.classes.limits
-        if (word := query.name) is not None:
-            try:
-                query = structs.replace(query, name=self._resolve_past(word))
-            except errors.UnknownName:
-                term = self._map.individuals.find_term(word)
-                return self._aside.submit(
-                    individual_history.list_commits, self._journal, self._past, query, limits, term
-                )
-        return self._aside.submit(commit_selection.list_commits, self._journal, self._past, query, limits)
-
-    def on_last_seen(self, query: LastSeen) -> Sighting | Future[Sighting]:
-        """Return where an entity was last seen, or where it is."""
-        name = self._resolve_past(query.name)
-        entity = self._map.find(name)
-        if entity is None or self.sightings.is_missing(entity):
-            return self._aside.submit(self.sightings.describe_removed, name, entity)
-        found, closed = self.sightings.describe_present(entity), self._describe_closed(entity)
-        if (live := self.live.find(entity)) is not None:
-            places = self.trail.find_places(live.pose.position_m)
-            found = live_sightings.set_live_pose(found, live.pose, places, time.time_ns())
-        elif entity.tracked:
-            self.trail.write()
-            return self._aside.submit(self._find_last_pose, found, closed)
-        return structs.replace(found, text=f"{found.text}{closed}")
-
-    def _find_last_pose(self, found: Sighting, closed: str) -> Sighting:
-        now_ns = time.time_ns()
-        last = trails.Trails(self._trail_lines(), now_ns, {found.name})
-        seen = live_sightings.set_last_pose(found, last, now_ns)
-        # `closed` is about the committed pose.
-        return structs.replace(found, text=f"{found.text}{closed}") if seen is found else seen
-
-    def _describe_closed(self, entity: Entity) -> str:
-        """Return `; not observable: ...` if an entity is in a closed container, also by its live pose."""
-        closed = find_closed_container(self._map, entity)
-        if closed is not None and self.live.find(entity) is not None:
-            with self.live.applied():
-                space = self._map.places.space()
-                solid = space.solids.get(entity.name)
-                if solid is None or not is_in(space, solid, {closed.entity.name}, frozenset()):
-                    return ""
-        return "" if closed is None else f"; {describe_closed(closed)}"
-
-    def _resolve_past(self, word: str) -> str:
-        """Return the name, present or former, that a word means. Raises UnknownName, BadRequest."""
-        if self._map.find(word) is not None:
-            return word
-        iri = self._map.individuals.parse_iri(word)
-        if iri is not None and (entity := self._map.find_by_individual(iri)) is not None:
-            return entity.name
-        return self._past.resolve(word, tuple(self._map.entities()))
-
     def _seen(self, name: str) -> str:
         """Return when an entity of the map was last seen or placed, in words."""
         entity = self._map.find(name)
@@ -434,6 +280,12 @@ class QueryHandlers:
                 describe_missing(self._journal, self._past, missing, there, limits)
             )
         )
+
+    def on_tell(self, query: Tell) -> Account | Future[Account]:
+        """Return a description of the map, a place or an object, now or in the past."""
+        if query.as_of is None:
+            return self._descriptions.describe(query)
+        return self._aside.submit(describe_past, query, self._past, self._descriptions.past_writer())
 
     def on_check(self, query: Check) -> Future[Checked]:
         """Check the consistency in another thread, and validate the facts in another process."""

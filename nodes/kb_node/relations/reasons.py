@@ -5,7 +5,7 @@ from __future__ import annotations
 from semmap.nodes.kb_node.relations.facts.pair_facts import is_separate
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
 from semmap.nodes.kb_node.relations.measuring import containment, places, proximity, support_contact
-from semmap.nodes.kb_node.relations.measuring.arrangement import measure_attachment
+from semmap.nodes.kb_node.relations.measuring.arrangement import find_attachments, measure_attachment
 from semmap.nodes.kb_node.relations.measuring.phrases import (
     UNSUPPORTED,
     describe_support,
@@ -64,11 +64,8 @@ def _describe_direct_support(space: Space, solid: Solid, other: Solid) -> str | 
         (solid, other, "it", other.name),
         (other, solid, other.name, "it"),
     ):
-        container, supports, _ = space.spatial_relations(upper)
-        if container is not None and container[0] is lower:
-            return f"{subject} is inside {object_}"
-        if any(support is lower for support, _ in supports):
-            return f"{subject} is on {object_}"
+        if lower in space.spatial_relations(upper).supporters:
+            return f"{subject} is {_choose_preposition(space, upper, lower)} {object_}"
     return None
 
 
@@ -77,21 +74,26 @@ def _explain_not_on(space: Space, solid: Solid, other: Solid) -> str:
         return by
     limits = space.limits
     if not other.supports:
-        return f"{other.name} has no supporting surface; it {describe_support(space, solid)}"
+        return f"{other.name} has no supporting surface; it {_describe_hold(space, solid)}"
     made = support_contact.over(solid, other, limits)
     if made is None:
         apart = proximity.gap(solid, other)
         where = f"{format_length(apart)} apart" if apart > 0.0 else "touching or overlapping"
-        support = describe_support(space, solid)
+        support = _describe_hold(space, solid)
         return f"it is not above any surface of {other.name} (they are {where}); it {support}"
     where = f"its bottom is {format_height(made.gap_m)} the nearest surface of {other.name}"
     if abs(made.gap_m) > limits.gap_m:
         return f"{where}, at {format_length(made.height_m)} (isOn allows up to {format_length(limits.gap_m)})"
     if made.share < limits.base_share:
-        return (
-            f"{where}, but only {made.share:.0%} of its base is over it; it {describe_support(space, solid)}"
-        )
-    return f"{where}, but {_explain_crowd(space, solid, other) or f'it {describe_support(space, solid)}'}"
+        return f"{where}, but only {made.share:.0%} of its base is over it; it {_describe_hold(space, solid)}"
+    return f"{where}, but {_explain_crowd(space, solid, other) or f'it {_describe_hold(space, solid)}'}"
+
+
+def _describe_hold(space: Space, solid: Solid) -> str:
+    """Return what an object is inside, on or attached to, as a predicate."""
+    if attached := [other.name for other in find_attachments(space, solid)]:
+        return f"is attached to {' and '.join(attached)}"
+    return describe_support(space, solid)
 
 
 def _explain_crowd(space: Space, solid: Solid, other: Solid) -> str | None:
@@ -103,17 +105,15 @@ def _explain_crowd(space: Space, solid: Solid, other: Solid) -> str | None:
 
 def _explain_indirect_support(space: Space, solid: Solid, other: Solid) -> str | None:
     """Return the clause that `other` supports or contains the solid, directly or not, or None."""
-    container, supports, _ = space.spatial_relations(solid)
+    container, first = space.spatial_relations(solid).container, space.spatial_relations(solid).supporters
     if container is not None and container[0] is other:
         return f"it is inside {other.name}, and an object inside another is not also on it"
-    first = [support for support, _ in (*filter(None, (container,)), *supports)]
     seen = {solid, *first}
     for support in first:
         chain, waiting = [support], [support]
         while waiting:
             upper = waiting.pop()
-            container, supports, _ = space.spatial_relations(upper)
-            below = [lower for lower, _ in (*filter(None, (container,)), *supports)]
+            below = space.spatial_relations(upper).supporters
             if other in below:
                 chain = [support] if upper is support else [support, upper]
                 return f"it {_format_chain(space, solid, chain, other)}"

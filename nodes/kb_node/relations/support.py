@@ -16,8 +16,7 @@ def find_supporters(space: Space, solid: Solid) -> set[Solid]:
     """Return what an object is on or inside, directly or through other objects."""
     found, waiting = set[Solid](), [solid]
     while waiting:
-        container, supports, _ = space.spatial_relations(waiting.pop())
-        below = {support for support, _ in (*filter(None, (container,)), *supports)} - found
+        below = {*space.spatial_relations(waiting.pop()).supporters} - found
         found |= below
         waiting += below
     return found

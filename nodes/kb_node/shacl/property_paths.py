@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from math import inf
 from typing import Final, NamedTuple
 
@@ -56,6 +56,45 @@ class PropertyPaths(NamedTuple):
 def find_property_paths(tbox: Iterable[Triple]) -> PropertyPaths:
     """Return the steps of the paths of the shapes in a TBox."""
     return _PathReader(select_shapes(tbox)).read()
+
+
+def push_inverses(triples: Iterable[Triple]) -> list[Triple]:
+    """Return the triples of shapes with inverse paths of properties only: `^(a/b)` becomes `^b/^a`.
+
+    pySHACL would follow the steps of an inverse sequence in the wrong order.
+    """
+    found = list(triples)
+    while True:
+        about: dict[tuple[Term, Term], Term] = {(s, p): o for s, p, o in found}
+        for triple in found:
+            if triple[1] == _INVERSE and (pushed := [*_push(triple[0], triple[2], about)]):
+                found.remove(triple)
+                found += pushed
+                break
+        else:
+            return found
+
+
+def _push(node: Term, path: Term, about: Mapping[tuple[Term, Term], Term]) -> Iterator[Triple]:
+    """Yield the triples of `node` as the inverse of a path; none if that is a property or an inverse."""
+    if (path, v.RDF_FIRST) in about:
+        yield from _wrap(node, [*read_list(path, about)][::-1])
+    elif (parts := about.get((path, _ALTERNATIVES))) is not None:
+        yield (node, _ALTERNATIVES, f"{node}a")
+        yield from _wrap(f"{node}a", [*read_list(parts, about)])
+    else:
+        for p in (_OPTIONAL, *_REPEATED):
+            if (part := about.get((path, p))) is not None:
+                yield from ((node, p, f"{node}i"), (f"{node}i", _INVERSE, part))
+
+
+def _wrap(node: Term, paths: Sequence[Term]) -> Iterator[Triple]:
+    """Yield the list `node` of the inverses of some paths."""
+    for n, path in enumerate(paths):
+        here, rest = (node if n == 0 else f"{node}r{n}"), f"{node}r{n + 1}"
+        yield (here, v.RDF_FIRST, f"{node}i{n}")
+        yield (f"{node}i{n}", _INVERSE, path)
+        yield (here, v.RDF_REST, rest if n + 1 < len(paths) else v.RDF_NIL)
 
 
 class _PathReader:

@@ -21,6 +21,7 @@ from rdflib.term import IdentifiedNode, Node
 
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.shacl.fact_graph import fact_graph, representative, to_node, to_term
+from semmap.nodes.kb_node.shacl.property_paths import push_inverses
 from semmap.nodes.kb_node.shacl.results import Result
 from semmap.nodes.kb_node.shacl.shape_triples import select_shapes
 from semmap.ontology import vocabulary as v
@@ -46,7 +47,7 @@ class Shapes:
         """Read shapes. Raises BadFile, with `name` as the subject of its text, for invalid ones."""
         self._name = name
         graph = Graph()
-        for s, p, o in select_shapes(triples):
+        for s, p, o in push_inverses(select_shapes(triples)):
             graph.add((to_node(s), to_node(p), to_node(_short_message(o) if p == _MESSAGE else o)))
         self._graph = ShapesGraph(graph)
         with self._named_errors():

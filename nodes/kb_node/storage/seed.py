@@ -87,12 +87,12 @@ def seed(
                 of_file=abox_document.DocumentOrigin(abox.name),
             )
         except errors.UnknownClass as error:
+            text = error.text.removeprefix(f"{abox.name}: ")
             raise type(error)(
-                f"{abox}: {error.text}; other classes are given with --tbox FILE, another map with"
-                " --abox FILE|none"
+                f"{abox}: {text}; other classes are given with --tbox FILE, another map with --abox FILE|none"
             ) from None
         except errors.BadRequest as error:
-            raise type(error)(f"{abox}: {error.text}") from None
+            raise type(error)(f"{abox}: {error.text.removeprefix(f'{abox.name}: ')}") from None
         abox_triples += filtered.triples
         notes += [*document.notes, *filtered.notes]
         if filtered.skipped:

@@ -11,6 +11,8 @@ from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.times import starts_time
 
 _SKIPPED: Final = ("then", "polite")
+_AFTER_A_NOUN: Final = ("but", "and", "not", "rather")
+"""The first words of exceptions that do not stand before a verb."""
 
 
 class ClauseReader(MessageReader):
@@ -24,6 +26,7 @@ class ClauseReader(MessageReader):
         times: list[str] = []  # of the clauses after it, up to the next time
         has_time = False
         front: tuple[str, PlacePhrase] | None = None
+        excluded: list[NounPhrase] = []  # before the verb
         manner: Role | None = None
         while i < len(self._words):
             if self._t.ends_sentence(i):
@@ -99,6 +102,8 @@ class ClauseReader(MessageReader):
                 manner, i = Role("Manner", i, i + length, i), i + length
             elif (fronted := self._fronted(i)) is not None:
                 front, i = fronted, fronted[1].end
+            elif others := self._fronted_exception(i):
+                excluded, i = [*excluded, *others], others[-1].end
             elif phase := self._phase(i):
                 i += phase
             elif (self._g.verb(self._words, i)[0] or self._lets_know(i) > 0) and not (
@@ -117,6 +122,8 @@ class ClauseReader(MessageReader):
                 if made and front is not None:
                     self._add_front(made[0], *front)
                     front = None
+                if made and self._except(made[0], excluded):
+                    excluded = []
                 has_time, negated = True, False
             else:
                 negated = negated and self._t.is_mark(i - 1)  # not the red one, take the blue one
@@ -127,6 +134,7 @@ class ClauseReader(MessageReader):
         self._close(first_of_sentence, conditions)
         if front is not None:
             self.found.unused.append(self._t.between(front[1].first, front[1].end))
+        self.found.unused += (self._t.between(other.first, other.end) for other in excluded)
         self._keep_times(first_of_sentence, [] if has_time else times)
         if conditions and not self.found.clauses:
             self.found.unused += conditions
@@ -231,6 +239,24 @@ class ClauseReader(MessageReader):
                 ):
                     return kind, PlacePhrase(" ".join(self._words[i : i + length]), phrase, i, phrase.end)
         return None
+
+    def _fronted_exception(self, i: int) -> list[NounPhrase]:
+        """Return the phrases of an exception before the verb: EXCEPT FOR THE CUP, take all of them."""
+        length = self._np.exclusion(i)
+        if not length or self._words[i] in _AFTER_A_NOUN:
+            return []
+        found = self._np.read_excluded(i + length)
+        is_apart = found and (self._t.is_mark(found[-1].end) or self.starts_clause(found[-1].end))
+        return found if is_apart else []
+
+    def _except(self, clause: Clause, others: list[NounPhrase]) -> bool:
+        """Add an exception before the verb to the things of a clause; return whether there are several."""
+        main = clause.role(self._g.frames[clause.frame].roles.get("object", ""))
+        phrase = main.phrases[-1] if main is not None and main.phrases else None
+        if phrase is None or not (phrase.all_of or phrase.is_plural):
+            return False
+        phrase.exclude(others)
+        return True
 
     def _add_front(self, clause: Clause, kind: str, place: PlacePhrase) -> None:
         """Add a place that stands before the verb to a clause: as a role, or to its object."""

@@ -53,6 +53,9 @@ _SLEEP_WITH = {
 """The equality constraints with which MuJoCo supports sleep; with others it would fail."""
 _DEFAULT_IMPEDANCE = (0.9, 0.95, 0.001, 0.5, 2.0)
 
+_COVERED = 0.8
+"""The least share of each extent of colliding geoms that visual ones must cover to be drawn instead."""
+
 OVERVIEW = "overview"
 """The camera of a bare floor."""
 
@@ -133,10 +136,36 @@ def prepare(spec: mujoco.MjSpec) -> Compiled:
     quality.numslices, quality.numstacks, quality.numquads = 24, 8, 1
     _add_names(spec)
     compiled = _compiled(spec)
+    _hide_collision_shapes(spec, *compiled)
     if np.isnan(spec.stat.extent):  # extent of the drawn floor, if the scene is empty
         spec.stat.extent = max(_EXTENT_M, float(compiled.model.stat.extent))
     _add_net(spec, *compiled)
     return compiled
+
+
+def _hide_collision_shapes(spec: mujoco.MjSpec, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+    """Hide the colliding geoms of group 0 that visual ones of group 1 cover, as in robosuite's worlds.
+
+    Its viewer shows only group 1. MuJoCo's shows both, so that red boxes hide the objects.
+    """
+    for body in spec.bodies[1:]:
+        number = model.body(body.name).id if body.name else 0
+        first, count = int(model.body_geomadr[number]), int(model.body_geomnum[number])
+        if number == 0 or count != len(body.geoms):  # such as with discardvisual
+            continue
+        geoms = np.arange(first, first + count)
+        hits = (model.geom_contype[geoms] | model.geom_conaffinity[geoms]) != 0
+        colliding = geoms[hits & (model.geom_group[geoms] == 0)]
+        visual = geoms[~hits & (model.geom_group[geoms] == 1)]
+        if not (len(colliding) and len(visual)):
+            continue
+        low, high = _extents(model, data, colliding, number)
+        its_low, its_high = _extents(model, data, visual, number)
+        shared = np.minimum(high, its_high) - np.maximum(low, its_low)
+        if (shared >= _COVERED * (high - low)).all():
+            model.geom_group[colliding] = COLLISION_GROUP
+            for geom, group in zip(body.geoms, model.geom_group[geoms].tolist(), strict=True):
+                geom.group = group
 
 
 def _add_names(spec: mujoco.MjSpec) -> None:

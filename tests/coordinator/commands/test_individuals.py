@@ -52,6 +52,16 @@ def test_individuals_and_entities_are_removed_together_or_not_at_all(people, sem
     assert semantic_map.abox() == []
 
 
+def test_a_property_that_only_the_map_uses_is_not_set(people, semantic_map):
+    semantic_map.commit(transaction(3, turtle("<urn:x:bob> <urn:x#rating> 3 .")))
+    with pytest.raises(errors.BadRequest, match="'rating' is not part of the TBox, only of the map; to decl"):
+        people.change(c.Set(name="bob", property="rating", values=(4,)))
+    with pytest.raises(errors.BadRequest, match="unknown property 'ratings'"):
+        people.change(c.Set(name="bob", property="ratings", values=(4,)))
+    with pytest.raises(errors.BadRequest, match="changed with: semmap update"):
+        people.change(c.Set(name="chair1", property="hasPosition", values=("x",)))
+
+
 def test_an_individual_is_renamed_with_what_refers_to_it(people, semantic_map):
     semantic_map.commit(transaction(3, turtle(f"<urn:x:bob> <urn:knows> <{ANNA}> .")))
     made = people.change(c.Rename(name="anna", new="anne"))

@@ -21,6 +21,8 @@ from semmap.nodes.extern.client import connect
 from semmap.nodes.extern.fleet import mirror_config, query
 from semmap.nodes.extern.fleet.mirror import Mirror
 from semmap.nodes.extern.fleet.server import TIMEOUT_S
+from semmap.nodes.kb_node.storage.seed import seed
+from semmap.ontology import HOUSEHOLD_TTL
 from semmap.schemas import errors
 from tests.conftest import PATIENCE_S, until
 from tests.extern.fleet.sparql_servers import oxigraph, spelled, virtuoso
@@ -250,21 +252,18 @@ def test_a_map_that_is_started_again_is_another_epoch(server, tmp_path):
     from tests.extern.fleet.conftest import BARE
 
     endpoint = free_endpoint()
-    words = (*BARE, "--namespace", "lift1")
-    with running(tmp_path / "d", *words, endpoint=endpoint) as lift1:
+    with running(tmp_path / "d", *BARE, "--namespace", "lift1", endpoint=endpoint) as lift1:
         lift1.cli("add", "Cup", "cup1", "--at", "1", "1", "0.7")
         once(server, endpoint)
-    with (
-        mirroring_to(server, endpoint) as (_, told),
-        running(tmp_path / "d", *words, "--fresh", endpoint=endpoint) as lift1,
-        lift1.client() as client,
-    ):
-        until(
-            lambda: any("started a new map" in text for text in told),
-            "it is seen that the map is another one",
-        )
-        client.add("Bowl", "bowl1", at=(1, 1, 0.7))
-        assert_same(server, client, "lift1")
+        with mirroring_to(server, endpoint) as (_, told), lift1.client() as client:
+            seed(tmp_path / "fresh", HOUSEHOLD_TTL, None)
+            lift1.open_map(tmp_path / "fresh")
+            until(
+                lambda: any("started a new map" in text for text in told),
+                "it is seen that the map is another one",
+            )
+            client.add("Bowl", "bowl1", at=(1, 1, 0.7))
+            assert_same(server, client, "lift1")
     (robot,) = query.sparql("ASK {}", server.query_url, reachable=False).robots
     assert robot.epoch == 2
     ended = "SELECT ?commit { ?epoch a fleet:Epoch ; fleet:number 1 ; fleet:commit ?commit }"

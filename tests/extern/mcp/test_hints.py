@@ -47,6 +47,28 @@ from semmap.nodes.extern.mcp.hints import translate_hints
             "unknown property; see: semmap properties",
             "unknown property; see: the resource semmap://schema/properties",
         ),
+        (
+            "lamp1 has no door, lid or drawer to open; to switch it: semmap open lamp1 --joint switch",
+            "lamp1 has no door, lid or drawer to open; to switch it: open name=lamp1 joint=switch",
+        ),
+        (
+            "to change it: semmap open door1, or semmap close",
+            "to change it: open name=door1, or close",
+        ),
+        ("see: semmap last-seen cup1", "see: last_seen name=cup1"),
+        (
+            "for the past use: semmap when, semmap last-seen, semmap find --as-of",
+            "for the past use: when, last_seen, find with as_of",
+        ),
+        ("first: semmap detach cup1", "first: propose verb=detach name=cup1"),
+        (
+            "to attach the contents too: semmap attach tray1 --carry",
+            "to attach the contents too: propose verb=attach name=tray1 carry=true",
+        ),
+        (
+            "to change only the map: semmap set fridge1 isOpen true",
+            "to change only the map: propose verb=set name=fridge1 property=isOpen values=[true]",
+        ),
         ("to have none: semmap unset", "to have none: propose verb=unset"),
         ("add --carry", "add carry"),
         ("a well--known cup of semmap://schema", "a well--known cup of semmap://schema"),

@@ -1,8 +1,15 @@
 import json
+from types import SimpleNamespace
 
-from semmap.nodes.extern.mcp.rows import OVERVIEW_BUDGET, overview, understood
-from semmap.schemas.entities import Entity, Pose, Provenance
+import msgspec
+import pytest
+
+from semmap.nodes.extern.mcp import queries
+from semmap.nodes.extern.mcp.rows import OVERVIEW_BUDGET, described, overview, understood
+from semmap.schemas import errors
+from semmap.schemas.entities import Entity, Live, Pose, Provenance
 from semmap.schemas.language import CommandStep, Filler, ThingDescription, Understood
+from semmap.schemas.relations import Described
 from semmap.schemas.replies import SystemStatus
 
 BY = Provenance(commit=1, stamp_ns=1, source="operator")
@@ -33,6 +40,26 @@ def status(*problems):
 
 def length(found):
     return len(json.dumps(found, ensure_ascii=False, separators=(",", ":")))
+
+
+def test_the_contents_of_few_places_are_listed_and_a_removed_place_is_as_inferred():
+    """The overview is the first call of every agent: its number of requests is limited."""
+    asked = []
+
+    def listed(in_):
+        asked.append(in_)
+        if in_ == "room0":
+            raise errors.UnknownName("no entity is named 'room0'")
+        return [cup, table]
+
+    cup, table = entity("cup1", "Cup"), entity("table1", "Table")
+    entities = [cup, table, *(entity(f"room{n}", "Kitchen", place=True) for n in range(60))]
+    where = {"cup1": {"in": ["room0", "room7"]}}
+    found = queries._contents(SimpleNamespace(list=listed), entities, where)
+    assert len(asked) == 40
+    assert found["room0"] == [cup]
+    assert found["room7"] == [cup, table]
+    assert len(found) == 60
 
 
 def test_a_thing_counts_for_each_place_that_it_is_in_as_in_list():
@@ -88,3 +115,14 @@ def test_a_command_is_its_steps_with_what_is_not_understood_as_data():
     assert steps == [
         {"frame": "Taking", "verb": "take", "roles": {"Theme": (cup,)}, "condition": "if Ann leaves"}
     ]
+
+
+@pytest.mark.parametrize("stale", [False, True])
+def test_a_tracked_entity_has_its_live_pose_beside_the_committed_one(stale):
+    live = Live(pose=Pose(position_m=(2.0, 3.0, 0.0)), stamp_ns=1, age_s=0.24, source="sim", stale=stale)
+    fields = {
+        field.name: getattr(entity("r1", "Robot"), field.name) for field in msgspec.structs.fields(Entity)
+    }
+    head, _ = described(Described(**{**fields, "live": live}))
+    assert head["at"] == [0.0, 0.0, 0.0]
+    assert head["live"] == {"at": [2.0, 3.0, 0.0], "age_s": 0.2, **({"stale": True} if stale else {})}

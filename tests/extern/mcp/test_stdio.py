@@ -1,10 +1,23 @@
-"""A client that disconnects."""
+"""A client that disconnects, and a system that is not running."""
 
 import json
 import os
 import subprocess
 
-from tests.extern.mcp.conftest import SEMMAP
+from semmap.nodes.extern.testing import free_endpoint
+from tests.extern.mcp.conftest import SEMMAP, by_stdio, run
+
+
+def test_a_server_starts_before_its_system_and_says_so():
+    async def session():
+        words = ("--allow", "change", "--classes", "Cup")
+        async with by_stdio(free_endpoint(), *words) as agent:
+            return await agent.tools(), await agent.refused("overview")
+
+    tools, refused = run(session())
+    assert {"overview", "propose"} <= set(tools)
+    assert refused.startswith("no response from tcp/127.0.0.1:")
+    assert refused.endswith("start a system with: semmap up")
 
 
 def test_when_the_client_is_gone_the_server_ends_without_a_word(flat, tmp_path):

@@ -139,7 +139,7 @@ def test_a_tracked_carton_is_not_observable_while_it_is_live_in_a_closed_fridge(
     queries = QueryHandlers(kitchen, kitchen._journal, sparql=None, location_queries=None)
     live = Live(pose=Pose(position_m=(x, 0.0, 0.645)), stamp_ns=1, age_s=0.0, source="sim")
     queries.on_live_poses(LivePoses(stamp_ns=1, entities={"carton1": live}))
-    text = queries.on_last_seen(LastSeen(name="carton1")).text
+    text = queries.past.on_last_seen(LastSeen(name="carton1")).text
     assert text.startswith(f"live now at ({x:.2f}, 0.00, 0.65) m" if is_inside else "live now at (3.00")
     assert ("not observable: fridge1 has been closed" in text) == is_inside
     queries.close()

@@ -36,6 +36,19 @@ def test_all_unknown_classes_are_named(classes):
     )
 
 
+def test_an_error_names_the_file_and_counts_blank_nodes(classes):
+    origin = abox_document.DocumentOrigin("map.ttl")
+    with pytest.raises(errors.UnknownClass, match=r"^map.ttl: unknown class 'Pose' \(of x, 2 blank nodes\)"):
+        abox_document.filter_document(
+            turtle("[] a dm:Pose . :x a dm:Pose . [] a dm:Pose ."),
+            classes,
+            skip_unknown=False,
+            of_file=origin,
+        )
+    with pytest.raises(errors.BadFile, match=r"^map.ttl: declares classes but no entities; to load a TBox"):
+        abox_document.filter_document(turtle(":C a owl:Class ."), classes, skip_unknown=False, of_file=origin)
+
+
 @pytest.mark.parametrize("namespace", ["http://lab.org/x#", v.TBOX.replace("_domain_model", ""), v.ABOX])
 def test_a_class_in_a_wrong_namespace_is_suggested_in_the_right_one(classes, namespace):
     with pytest.raises(errors.UnknownClass) as caught:

@@ -75,7 +75,7 @@ def test_a_load_counts_described_entities_and_not_those_with_changed_inferences(
 def test_a_urdf_file_is_parsed_outside_the_node(flat, monkeypatch):
     loads, requests = loading(flat, []), []
     monkeypatch.setattr(
-        loads._parser,
+        loads._reader.parser,
         "exchange",
         lambda request, _: requests.append(request) or parser_process.answer(request),
     )
@@ -136,7 +136,7 @@ def test_the_axioms_that_are_tried_are_those_that_are_committed(flat, monkeypatc
     skipped = "\n<http://o#x> a <http://o#Unknown> .\n" + SOME.format(0, "owl:hasValue <http://o#x>")
     content = load.content + skipped.encode()
     loads, tried = loading(flat, []), []
-    monkeypatch.setattr(loads._parser, "close_tbox", lambda known, *_, **__: tried.append(known))
+    monkeypatch.setattr(loads._reader.parser, "close_tbox", lambda known, *_, **__: tried.append(known))
     loaded = loads.on_load(structs.replace(load, content=content, skip_unknown=True, replace=replace)).result(
         60
     )
@@ -216,7 +216,7 @@ def with_declarations(number, z="0.5", **fields):
 
 def load_now(semantic_map, load):
     handlers = loading(semantic_map, [])
-    handlers._parser.close_tbox = lambda tbox, filename, **_: None  # then it is computed without a process
+    handlers._reader.parser.close_tbox = lambda tbox, filename, **_: None  # computed without a process
     loaded = handlers.on_load(load)
     try:
         return loaded if isinstance(loaded, Loaded) else loaded.result(60)

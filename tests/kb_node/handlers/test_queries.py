@@ -58,14 +58,14 @@ LIVE = Live(
 def test_last_seen_returns_the_live_pose_without_reading_the_trail(queries, monkeypatch):
     queries.on_live_poses(LivePoses(stamp_ns=1, entities={"chair1": LIVE}))
     monkeypatch.delattr(trail_file, "read_lines")
-    found = queries.on_last_seen(LastSeen(name="chair1"))
+    found = queries.past.on_last_seen(LastSeen(name="chair1"))
     assert (found.pose, found.text) == (LIVE.pose, "live now at (7.00, 2.00, 0.00) m")
 
 
 def test_last_seen_returns_the_last_stored_position_after_the_live_poses(queries):
     queries.on_live_poses(LivePoses(stamp_ns=1, entities={"chair1": LIVE}))
     queries.on_live_poses(LivePoses(stamp_ns=2, entities={}))
-    found = queries.on_last_seen(LastSeen(name="chair1")).result(timeout=60)
+    found = queries.past.on_last_seen(LastSeen(name="chair1")).result(timeout=60)
     assert found.pose == Pose(position_m=(7.0, 2.0, 0.0))
     assert re.fullmatch(r"live \d+ s ago at \(7.00, 2.00, 0.00\) m", found.text)
 

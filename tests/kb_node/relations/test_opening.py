@@ -5,9 +5,11 @@ import math
 import pytest
 from msgspec import structs
 
+from semmap.nodes.kb_node.relations.facts.contradictions import find_contradiction
 from semmap.nodes.kb_node.relations.facts.place_facts import Facts
 from semmap.nodes.kb_node.relations.geometry.fitting import fit_model
 from semmap.nodes.kb_node.relations.geometry.opening import open_shape, positions_of
+from semmap.nodes.kb_node.relations.measuring.proximity import gap_from_above
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.relation_reports import list_relations
 from semmap.ontology.model_shapes import own_size_m, shapes
@@ -162,3 +164,29 @@ def test_opening_keeps_sizes_and_closing_restores_the_shape(model):
             assert math.hypot(*after) == pytest.approx(math.hypot(*before))
         assert (was == now) == (k in still)
     assert open_shape(shape, (0.0,) * len(shape.leaves)) == shape
+
+
+@pytest.mark.parametrize(
+    ("x", "joints", "text"),
+    [
+        (0.34, f"drawer_1={TRAVEL}", None),
+        (0.34, "drawer_1=0", "to be under chest1; seen from above they are 7.5 cm apart"),
+        (1.5, f"drawer_1={TRAVEL}", "to be under chest1; seen from above they are"),
+    ],
+)
+def test_an_object_under_an_open_drawer_is_under_the_chest(x, joints, text):
+    cup, chest = thing("cup1", (x, 0.0, 0.0), size=(0.08, 0.08, 0.1)), standing(CHEST, joints)
+    space = Space([ROOM, chest, cup])
+    is_under, is_above = ("cup1", "isUnder", "chest1"), ("chest1", "isAbove", "cup1")
+    for denied in (find_contradiction(space, is_under), find_contradiction(space, is_above)):
+        assert (denied is None) == (text is None)
+    assert text is None or text in find_contradiction(space, is_under).text
+
+
+def test_the_distance_from_above_is_that_of_the_open_drawer():
+    cup, chest = thing("cup1", (1.5, 0.0, 0.0)), standing(CHEST, f"drawer_1={TRAVEL}")
+    gaps = [
+        gap_from_above(solids["cup1"], solids["chest1"])
+        for solids in (Space([ROOM, each, cup]).solids for each in (CHEST, chest))
+    ]
+    assert gaps[0] - gaps[1] == pytest.approx(TRAVEL, abs=0.05)

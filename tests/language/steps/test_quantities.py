@@ -234,3 +234,25 @@ def test_a_later_pronoun_refers_to_what_is_left_of_the_things(read):
 def test_a_verb_takes_what_it_acts_with_and_on(read, text, steps):
     understood = read(text)
     assert (texts(understood), understood.doubts) == (steps, ())
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "except for the red cup, take all cups",
+        "apart from the red cup take all the cups",
+        "except for the red one, take all cups",
+        "tranne la tazza rossa, prendi tutte le tazze",
+    ],
+)
+def test_an_exception_may_stand_before_the_verb(read, text):
+    understood = read(text)
+    assert texts(understood) == ["Taking(Theme=bluecup|cup1)"]
+    assert understood.doubts == ()
+
+
+@pytest.mark.parametrize(
+    "text", ["except for the red cup, take the blue cup", "take the milk. except for the red cup"]
+)
+def test_an_exception_of_nothing_is_not_understood(read, text):
+    assert any("red cup" in doubt for doubt in read(text).doubts)

@@ -251,6 +251,31 @@ def test_a_joint_without_limits_opens_nothing_and_a_ball_has_no_position_of_its_
     assert (gimbal.kind, gimbal.closed) == ("ball", None)
 
 
+BOX = '<geom type="box" size="{}" {}/>'
+HALF = '<geom type="box" size="1 1 .5" pos="0 0 {}"/>'
+SEEN = 'group="1" contype="0" conaffinity="0"'
+
+
+@pytest.mark.parametrize(
+    ("geoms", "groups"),
+    [
+        ((BOX.format("1 1 1", SEEN), BOX.format("1 1 1", "")), [1, 3]),
+        ((HALF.format(".5"), BOX.format(".9 1 1", SEEN), HALF.format("-.5")), [3, 1, 3]),
+        ((BOX.format("1 1 1", ""), BOX.format(".2 .2 .01", SEEN)), [0, 1]),  # a sticker
+        ((BOX.format("1 1 1", ""), BOX.format("1 1 1", 'group="1"')), [0, 1]),
+        ((BOX.format("1 1 1", ""), BOX.format("1 1 1", "contype='0' conaffinity='0' group='2'")), [0, 2]),
+        ((BOX.format("1 1 1", ""),), [0]),
+    ],
+)
+def test_colliding_geoms_that_visual_ones_of_robosuite_cover_are_hidden(geoms, groups):
+    ground = spec(f'<body name="box_1" pos="1 2 0" euler="0 0 30">{"".join(geoms)}</body>')
+    compiled = base_scene.prepare(ground)
+    number = compiled.model.body("box_1").id
+    assert compiled.model.geom_group[compiled.model.geom_bodyid == number].tolist() == groups
+    again = ground.compile()
+    assert again.geom_group[again.geom_bodyid == again.body("box_1").id].tolist() == groups
+
+
 def test_the_joints_of_a_robot_open_nothing_unless_a_text_declares_it():
     part = '<body><joint name="{}" range="-90 90"/><geom size="1"/></body>'
     parts = "".join(map(part.format, ("elbow", "power_button", "finger")))

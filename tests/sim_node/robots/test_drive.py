@@ -26,13 +26,15 @@ def test_it_drives_live_and_is_committed_where_it_stops(system):
         assert (robot.class_, robot.tracked, robot.live.source) == ("Robot", "sim", "sim")
         until(lambda: client.status(names=("robot1",)).in_agreement, "map and scene agree on it")
         before = {commit.seq for commit in client.history("robot1")}
-        said = client.drive("robot1", to=((7.4, 2.0), (7.0, 1.2)), yaw=0.0, wait=False).text
+        to = ((7.4, 2.0), (7.0, 1.2))  # at this speed it is on its way for many seconds
+        said = client.drive("robot1", to=to, yaw=0.0, speed=0.1, wait=False).text
         assert "on its way" in said
-        until(lambda: client.get("robot1").live.pose.position_m[1] < 1.7, "that it is on its way")
-        status = client.status()
+        moving = re.compile(r"robot1 is moving: [\d.]+ m from its committed pose")  # it turns first
+        status = until(
+            lambda: any(map(moving.fullmatch, (now := client.status(names=("robot1",))).displaced)) and now,
+            "that it is on its way",
+        )
         assert status.in_agreement is False
-        (said,) = (line for line in status.displaced if line.startswith("robot1"))
-        assert re.fullmatch(r"robot1 is moving: [\d.]+ m from its committed pose", said)
         assert not any("moving" in problem for problem in status.problems)
         driven = client.drive("robot1", to=((7.0, 1.0),), yaw=0.0)
         assert "is at (7.0" in driven.text

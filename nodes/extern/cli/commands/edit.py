@@ -170,6 +170,7 @@ def rename(client: Client, **fields: Any) -> None:
     """Rename an entity, with all references to it.
 
     Its body in the scene gets the new name, too. The history of the new name includes earlier commits.
+    NAME may also be the name or IRI of an individual that is not in space.
     """
     print_result(client.rename(**drop_unset(fields)), lines.format_change)
 

@@ -38,14 +38,15 @@ _WHY: Final[dict[Mood, str]] = {
     show_default=True,
     help="Maximum number of words.",
 )
+@click.option("--as-of", metavar="COMMIT|TIME", help=f"The map after a commit or at a time. {TIME}")
 @click.option("--format", "format", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @with_client
-def tell(client: Client, name: str | None, words: int, format: str) -> None:
+def tell(client: Client, name: str | None, words: int, as_of: str | None, format: str) -> None:
     """Describe the map, a place or an object in a short text.
 
     NAME is a name, or a label or class that only one entity has. Without it, the whole map is described.
     """
-    found = client.tell(name, words=words)
+    found = client.tell(name, words=words, as_of=as_of)
     if format == "json":
         print_json(found)
     else:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import os
+import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from semmap.nodes import bus
 from semmap.nodes.extern.cli.command import command
-from semmap.nodes.extern.cli.common import connect_option, identity_option, namespace_option
+from semmap.nodes.extern.cli.common import connect_option, identity_option, namespace_option, other_robots
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.runtime import extras
 from semmap.schemas import errors
@@ -115,22 +119,54 @@ def mcp(
         else None
     )
     try:
-        _check(client, changes)
-        _serve(Tools(client, change_tools(changes) if changes else ()), http)
+        with _withdrawing_requests(client, changes):
+            _check(client, changes, lambda: other_robots(where, identity, namespace))
+            _serve(Tools(client, change_tools(changes) if changes else ()), http)
     finally:
-        if changes is not None and client.connected is not None:
-            changes.withdraw_requests(client.connected)
         client.close()
 
 
-def _check(client: LazyClient, changes: Changes | None) -> None:
-    """Connect, and check the limits; print a note if the system is not running."""
+@contextlib.contextmanager
+def _withdrawing_requests(client: LazyClient, changes: Changes | None) -> Iterator[None]:
+    """Withdraw the pending requests of the agent at the end, also if SIGTERM ends the process.
+
+    An exception of the signal handler would not end it: a thread reads stdin until the host closes that.
+    """
+
+    def withdraw() -> None:
+        if changes is not None and client.connected is not None:
+            changes.withdraw_requests(client.connected)
+
+    def terminate(number: int, _: FrameType | None) -> None:
+        try:
+            withdraw()
+        finally:
+            signal.signal(number, signal.SIG_DFL)
+            signal.raise_signal(number)
+
+    before = signal.signal(signal.SIGTERM, terminate)
+    try:
+        yield
+    finally:
+        withdraw()
+        signal.signal(signal.SIGTERM, before)
+
+
+def _check(client: LazyClient, changes: Changes | None, others: Callable[[], tuple[str, ...]]) -> None:
+    """Connect, and check the limits; print a note if the system is not running, with the `others()` that are.
+
+    Raises NoAnswer if waiting does not help: the system rejects the client.
+    """
     try:
         connected = client()
         if changes is not None:
             changes.check_limits(connected)
+    except bus.ConnectionClosed:
+        raise
     except errors.NoAnswer as error:
-        print_escaped(f"note: {error.text}; the tools wait for it", file=sys.stderr)
+        there = others() if client.connected is not None else ()
+        hint = f"; available robots: {', '.join(there)}" if there else ""
+        print_escaped(f"note: {error.text}{hint}; the tools wait for it", file=sys.stderr)
 
 
 def _serve(tools: Tools, http: int | None) -> None:

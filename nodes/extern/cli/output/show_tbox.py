@@ -26,7 +26,9 @@ def report(found: TBoxReport) -> Iterator[str]:
     for iri in found.missing:
         yield _line("missing", f"{iri} (add --import {iri}=FILE)")
     for kind, count in found.outside_rl.items():
-        yield _line("ignored", f"{count} x {kind} (outside OWL 2 RL)")
+        # one direction of these has its effect
+        in_part = "in part, " if kind.endswith("in an equivalence") or kind == "disjoint union" else ""
+        yield _line("ignored", f"{count} x {kind} ({in_part}outside OWL 2 RL)")
     for kind, count in found.inert.items():
         yield _line("ignored", f"{count} x {kind} (stored, but not evaluated)")
     for note in found.left_out:

@@ -15,7 +15,7 @@ from semmap.nodes.drawing.palette import GREY, colour_of
 from semmap.nodes.drawing.surfaces import appearance_of
 from semmap.nodes.extern.web.scene.meshes import Appearance, linear, srgb, tinted
 from semmap.ontology.model_shapes import is_same_size
-from semmap.schemas.entities import Entity, Pose, Size
+from semmap.schemas.entities import Entity, Pose, Size, Vector
 from semmap.schemas.joints import JOINT_POSITIONS, positions_of
 from semmap.schemas.scenes import Body, Surface
 
@@ -47,6 +47,23 @@ class Drawable(Struct, frozen=True, gc=False):
             UNKNOWN_SIZE_M if self.model == BOX else self.size_m,
             self.joint_positions,
         )
+
+
+def middle_of(pose: Pose, size_m: Size) -> Vector:
+    """Return the centre of an object."""
+    x, y, z = pose.position_m
+    return (x, y, z + size_m[2] / 2.0)
+
+
+def top_of(pose: Pose, size_m: Size) -> Vector:
+    """Return the position of a label above an object."""
+    x, y, z = pose.position_m
+    return (x, y, z + size_m[2] + 0.05)
+
+
+def label_of(name: str, thing: Drawable) -> tuple[str, Vector]:
+    """Return the name of an object, with a question mark if it has no body, and its position."""
+    return (f"{name}?" if thing.appearance == "believed" else name, top_of(thing.pose, thing.size_m))
 
 
 Key = tuple[Appearance, str, Size, JointPositions]

@@ -14,7 +14,8 @@ from semmap.nodes.extern.web.page import Page
 from semmap.nodes.extern.web.panels.widgets.redraw import visibility_check
 from semmap.nodes.extern.web.proxy import PATH
 from semmap.nodes.extern.web.scene.assets import Assets
-from semmap.nodes.extern.web.scene.tab import SWITCHES, Switch, TabScene
+from semmap.nodes.extern.web.scene.switches import SWITCHES, Switch
+from semmap.nodes.extern.web.scene.tab import TabScene
 from semmap.nodes.extern.web.scene.viser_server import SceneServer
 
 _RETRY_S: Final = 2.0

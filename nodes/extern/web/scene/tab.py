@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 from collections.abc import Callable, Mapping
-from typing import Any, Final, Literal
+from typing import Any, Final
 
 import numpy as np
 from msgspec import structs
@@ -21,41 +21,27 @@ from semmap.nodes.extern.web.scene.annotations import (
     Rgb,
     dashed_line,
     join_segments,
-    line,
 )
 from semmap.nodes.extern.web.scene.assets import Assets
 from semmap.nodes.extern.web.scene.bodies import Bodies
 from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, fit_view, select_labels
-from semmap.nodes.extern.web.scene.drawables import BOX, Drawable, Key, drawable_of
+from semmap.nodes.extern.web.scene.drawables import BOX, Drawable, Key, label_of, middle_of, top_of
 from semmap.nodes.extern.web.scene.gizmo import Gizmo, Phase, place_on_support
-from semmap.nodes.extern.web.scene.map_overlay import difference_boxes, path_lines, relation_lines
+from semmap.nodes.extern.web.scene.map_overlay import difference_boxes, path_lines
 from semmap.nodes.extern.web.scene.picking import Solid, corners_of, edges_of, first_hit
+from semmap.nodes.extern.web.scene.relation_overlay import RelationOverlay
 from semmap.nodes.extern.web.scene.rooms import Rooms
 from semmap.nodes.extern.web.scene.sensor_overlay import SensorOverlay
+from semmap.nodes.extern.web.scene.switches import SWITCHED_ON, Switch
+from semmap.nodes.extern.web.scene.tab_drawables import TabDrawables
 from semmap.schemas import errors, keys
-from semmap.schemas.commands import Move, Relations
+from semmap.schemas.commands import Move
 from semmap.schemas.entities import Pose, Size, Vector
-from semmap.schemas.relations import Relation, ViewPoint
+from semmap.schemas.relations import ViewPoint
 from semmap.schemas.scenes import Body, SceneQuery
-
-Switch = Literal[
-    "names", "walls", "relations", "viewer-relative relations", "boxes", "observations", "cloud", "cameras"
-]
-SWITCHES: Final[dict[Switch, str]] = {
-    "names": "Names of entities and places",
-    "walls": "Walls of the world",
-    "relations": "Computed relations of the selected entity",
-    "viewer-relative relations": "Viewer-relative relations: left of, right of, in front of, behind",
-    "boxes": "Bounding boxes of all entities",
-    "observations": "Observations of perception",
-    "cloud": "Point cloud of perception",
-    "cameras": "Cameras and their images",
-}
-_ON: Final[frozenset[Switch]] = frozenset(("names", "walls", "relations"))
 
 _SELECTED: Final[Rgb] = (255, 120, 0)
 _BOX: Final[Rgb] = (120, 130, 150)
-_RELATION: Final[Rgb] = (0, 120, 200)
 _PATH: Final[Rgb] = (15, 118, 110)
 _CHANGED: Final[dict[Mark, Rgb]] = {
     "added": (0, 150, 70),
@@ -72,10 +58,6 @@ _MODIFIERS: Final = (None, "shift", "cmd/ctrl", "cmd/ctrl+shift")
 _POSE_DELAY_S: Final = 0.2
 """Time after which the new pose of a moved body has been received."""
 _NO_ROOM: Final = "{name}: no free space, the position overlaps {other}; {name} was moved back"
-_MEASURES: Final = 8
-"""Maximum number of relation labels, for the nearest entities."""
-_HANDLES: Final = "handles"
-"""A text about as wide as the gizmo, which labels must not cover."""
 _MARKED: Final = "changed "
 """Prefix of the keys of labels for differences."""
 _NAMED: Final = 50
@@ -91,20 +73,15 @@ class TabScene:
     def __init__(self, page: Page, assets: Assets, is_open: Callable[[int], bool]) -> None:
         """`is_open(client_id)` returns whether a viser client is connected, on any thread."""
         self.page = page
-        self.on: set[Switch] = set(_ON)
+        self.on: set[Switch] = set(SWITCHED_ON)
         self._assets = assets
         self._is_open = is_open
         self._loop = asyncio.get_running_loop()
         self._client: ClientHandle | None = None
         self._things: dict[str, Drawable] = {}
-        self._known: dict[str, tuple[tuple[object, ...], Drawable | None]] = {}
-        self._bodies_of: tuple[object, dict[str, Body]] = (None, {})
-        self._relations: tuple[Relation, ...] = ()
+        self._drawables = TabDrawables(page, assets)
         self._marked: dict[str, LabelText] = {}
         """Labels of entities that differ from the moment compared with, by name."""
-        self._measures: dict[str, LabelText] = {}
-        """Labels of the relation lines."""
-        self._request = 0
         self._dragging = ""
         self._picking: asyncio.Future[Place | None] | None = None
         self._labelling: asyncio.TimerHandle | None = None
@@ -135,6 +112,8 @@ class TabScene:
 
     def attach(self, client: ClientHandle) -> None:
         """Draw everything in a frame that has connected."""
+        if self._client is not None:
+            self._relations.close()
         self._client, scene = client, client.scene
         scene.configure_default_lights(cast_shadow=False)
         scene.configure_environment_map(None)
@@ -143,19 +122,20 @@ class TabScene:
         self._rooms = Rooms(scene)
         self._labels = Labels(scene, "/names", depth_test=False)
         self._strong_labels = Labels(scene, "/selected/names", scale=1.15)
-        self._line_labels = Labels(scene, "/relations/names", scale=0.95)
         self._outlines = Lines(scene, "/selected/outlines", width=3.5)
         self._boxes = Lines(scene, "/boxes", width=1.0)
-        self._relation_lines = Lines(scene, "/relations/lines", width=2.5)
         self._differences = Lines(scene, "/differences/lines", width=2.5)
         self._paths = Lines(scene, "/drives", width=3.0)
         self._difference_labels = Labels(scene, "/differences/names")
         self._dragged = Bodies(scene, self._glb_of, "/dragged")
         self._gizmo = Gizmo(scene, self._on_loop(self._on_drag), lambda: self._is_open(client.client_id))
         self._sensors = SensorOverlay(scene, self.page.live)
+        self._relations: RelationOverlay = RelationOverlay(
+            scene, self.page, self.on, lambda: self._things, lambda: self._view(client), self._label_soon
+        )
         self._listen(client)
         self._on_appearance_change()
-        self._known.clear()
+        self._drawables.clear()
         self._reset_camera(client)
         self._rooms.walls(self._assets.walls if "walls" in self.on else None)
         for switch in ("observations", "cloud", "cameras"):
@@ -168,6 +148,7 @@ class TabScene:
         """Detach a frame that has disconnected, and cancel picking and dragging."""
         if self._client is not None and self._client.client_id == client_id:
             self._client = None
+            self._relations.close()
             _cancel(self._drawing, self._labelling)
             self._drawing = self._labelling = None
             self._dragging = ""
@@ -253,51 +234,6 @@ class TabScene:
     def _glb_of(self, key: Key) -> bytes:
         return self._assets.glb(key)
 
-    def _bodies_by_name(self) -> dict[str, Body]:
-        """Return the bodies at the moment shown; there are none in the past."""
-        return self._present_bodies() if self.page.moment.is_now else {}
-
-    def _present_bodies(self) -> dict[str, Body]:
-        scene = self.page.live.scene
-        if self._bodies_of[0] is not scene:
-            self._bodies_of = (scene, {body.name: body for body in scene.bodies} if scene else {})
-        return self._bodies_of[1]
-
-    def _wanted(self) -> dict[str, Drawable]:
-        state, now = self.page.state, self.page.moment.is_now
-        bodies, known = self._bodies_by_name(), self._known
-        present = {} if now else self._present_bodies()
-        simulated = self.page.live.scene is not None
-        wanted: dict[str, Drawable] = {}
-        after: dict[str, tuple[tuple[object, ...], Drawable | None]] = {}
-        for name in [*state.entities, *(name for name in bodies if name not in state.entities)]:
-            entity, body, pose = state.entities.get(name), bodies.get(name), state.poses.get(name)
-            joint_positions = self.page.live.joint_positions.get(name) if now else None
-            before = known.get(name)
-            inputs = (entity, body, pose, joint_positions, present.get(name))
-            if before is not None and all(a is b for a, b in zip(before[0], inputs, strict=True)):
-                thing = before[1]
-            else:
-                surface_of = self._assets.surface_of
-                thing = drawable_of(
-                    entity,
-                    body,
-                    pose,
-                    surface_of,
-                    simulated=simulated,
-                    past=not now,
-                    joint_positions=joint_positions,
-                    present=present.get(name),
-                )
-            after[name] = (inputs, thing)
-            if thing is not None:
-                wanted[name] = thing
-        self._known = after
-        if self._dragging in wanted:
-            thing = wanted[self._dragging]
-            wanted[self._dragging] = structs.replace(thing, appearance="ghost")
-        return wanted
-
     def _draw_soon(self) -> None:
         """Draw after the panels; several changes until then are drawn together."""
         if self._client is None or self._is_deferred():
@@ -320,16 +256,19 @@ class TabScene:
         self._drawing = None
         if self._client is None:
             return
-        self._things = self._wanted()
+        self._things = self._drawables.create()
+        if self._dragging in self._things:
+            ghost = structs.replace(self._things[self._dragging], appearance="ghost")
+            self._things[self._dragging] = ghost
         with self._client.atomic():
             self._bodies.show(self._things)
             self._rooms.show(self.page.state.entities)
             self._mark()
-        self._request_relations()
+        self._relations.request()
 
     def refresh(self) -> None:
         """Draw with newly received models and walls."""
-        self._known.clear()
+        self._drawables.clear()
         if self._client is not None:
             self._rooms.walls(self._assets.walls if "walls" in self.on else None)
         self._draw_soon()
@@ -374,7 +313,7 @@ class TabScene:
         boxes = self._things.values() if "boxes" in self.on else ()
         self._boxes.show([(join_segments(edges_of(t.pose, t.size_m) for t in boxes), _BOX)])
         self._put_gizmo(selected)
-        self._draw_relations()
+        self._relations.draw()
         self._draw_differences()
         self._draw_paths()
         self._label()
@@ -401,8 +340,9 @@ class TabScene:
             pieces.append((edges_of(at, size_m), rgb))
             if found.before is not None and found.now is not None:
                 pieces.append((edges_of(found.now, size_m), rgb))
-                pieces.append((dashed_line(_middle(found.before, size_m), _middle(found.now, size_m)), rgb))
-            labels[found.name] = (found.text, _top(found.now or at, size_m))
+                middles = middle_of(found.before, size_m), middle_of(found.now, size_m)
+                pieces.append((dashed_line(*middles), rgb))
+            labels[found.name] = (found.text, top_of(found.now or at, size_m))
         self._differences.show(pieces)
         self._marked = labels
         self._label_soon()
@@ -427,11 +367,12 @@ class TabScene:
         self._labelling = None
         if self._client is None or self._is_stale:
             return
-        things = {name: self._named(name) for name in self._things if name in self.page.state.entities}
+        entities = self.page.state.entities
+        things = {name: label_of(name, thing) for name, thing in self._things.items() if name in entities}
         named = {**things, **self._marked}
         selected = {name: named[name] for name in self.page.selected[:_NAMED] if name in named}
         marked = {f"{_MARKED}{name}": text for name, text in self._marked.items() if name not in selected}
-        first = {**selected, **marked, **self._measures}
+        first = {**selected, **marked, **self._relations.labels}
         rooms, others = {}, {}
         if "names" in self.on:
             rooms = self._rooms.names
@@ -441,10 +382,6 @@ class TabScene:
         self._difference_labels.show({key: marked[key] for key in chosen if key in marked})
         self._labels.show({key: others[key] for key in chosen if key in others and key not in selected})
         self._strong_labels.show({**{key: rooms[key] for key in chosen if key in rooms}, **selected})
-
-    def _named(self, name: str) -> LabelText:
-        thing = self._things[name]
-        return (f"{name}?" if thing.appearance == "believed" else name, _top(thing.pose, thing.size_m))
 
     @staticmethod
     def _view(client: ClientHandle) -> View:
@@ -480,10 +417,10 @@ class TabScene:
 
     def _on_select(self) -> None:
         if self._client is not None and not self._is_deferred():
-            self._relations = ()
+            self._relations.clear()
             self._gizmo.remove()
             self._mark()
-            self._request_relations()
+            self._relations.request()
 
     async def pick_place(self) -> Place | None:
         """Return the position of the next click: x, y, z [m] and yaw [rad].
@@ -534,7 +471,7 @@ class TabScene:
             return
         is_movable = self.page.moment.is_now and self.page.is_allowed("move") and self._picking is None
         name = next(iter(selected)) if is_movable and len(selected) == 1 else ""
-        if name in self._bodies_by_name():
+        if name in self._drawables.bodies():
             self._gizmo.put(selected[name].pose, selected[name].size_m)
         else:
             self._gizmo.remove()
@@ -577,7 +514,7 @@ class TabScene:
         """Move the body to the pose where it was released; after a rejection it returns."""
         thing = self._things[name]
         before = self.page.state.poses.get(name, thing.pose)
-        body = self._bodies_by_name().get(name)
+        body = self._drawables.bodies().get(name)
         was_ghost = body is not None and body.ghost
         if is_still(before, pose):  # a click on the arrows
             self.cancel_interaction()
@@ -607,53 +544,6 @@ class TabScene:
             return None
         return next((body for body in scene.bodies if body.name == name and body.ghost), None)
 
-    # Relations
-
-    def _request_relations(self) -> None:
-        self._request += 1
-        one = self.page.selected[0] if len(self.page.selected) == 1 else ""
-        entity = self.page.state.entities.get(one)
-        if self.on & {"relations", "viewer-relative relations"} and entity is not None and not entity.place:
-            self.page.start_task(self._fetch_relations(one, self._request))
-        elif self._relations:
-            self._relations = ()
-            self._draw_relations()
-
-    async def _fetch_relations(self, name: str, request: int) -> None:
-        viewpoint = self.viewpoint() if "viewer-relative relations" in self.on else None
-        command = Relations(name=name, viewpoint=viewpoint, as_of=self.page.moment.commit)
-        try:
-            found = await self.page.live.ask(command)
-        except errors.SemmapError:
-            found = ()  # for example, it was just removed
-        if request == self._request and self._client is not None:
-            self._relations = found
-            self._draw_relations()
-
-    def _draw_relations(self) -> None:
-        lines = []
-        if len(self.page.selected) == 1:
-            middles = {name: _middle(thing.pose, thing.size_m) for name, thing in self._things.items()}
-            lines = relation_lines(self.page.selected[0], self._relations, middles)
-        self._relation_lines.show([(line(each.a, each.b), _RELATION) for each in lines])
-        written = {
-            f"{number} of {len(lines)}": (each.text, _between(each.a, each.b))
-            for number, each in enumerate(lines)
-        }
-        chosen: list[str] = []
-        if self._client is not None and written:
-            names = {name: self._named(name) for name in self.page.selected if name in self._things}
-            handles = {f"{name}'s handles": (_HANDLES, self._middle_of(name)) for name in names}
-            taken = {**handles, **names}
-            every = {**taken, **written}
-            chosen = select_labels(self._view(self._client), every, every, _MEASURES + len(taken))
-        self._measures = {key: written[key] for key in chosen if key in written}
-        self._line_labels.show(self._measures)
-        self._label_soon()
-
-    def _middle_of(self, name: str) -> Vector:
-        return _middle(self._things[name].pose, self._things[name].size_m)
-
     # Switches
 
     def switch(self, name: Switch, *, on: bool) -> None:
@@ -667,7 +557,7 @@ class TabScene:
             self._rooms.walls(self._assets.walls if on else None)
         else:
             self._mark()
-            self._request_relations()
+            self._relations.request()
 
 
 def _cancel(*handles: asyncio.TimerHandle | None) -> None:
@@ -685,17 +575,3 @@ def _reach_of(thing: Drawable) -> Size:
     """Return the size of a box around an object, including its open doors and drawers."""
     x, y, z = thing.size_m
     return (3.0 * x + y, 3.0 * y + x, 1.5 * z) if thing.joint_positions else thing.size_m
-
-
-def _middle(pose: Pose, size_m: Size) -> Vector:
-    x, y, z = pose.position_m
-    return (x, y, z + size_m[2] / 2.0)
-
-
-def _top(pose: Pose, size_m: Size) -> Vector:
-    x, y, z = pose.position_m
-    return (x, y, z + size_m[2] + 0.05)
-
-
-def _between(a: Vector, b: Vector) -> Vector:
-    return tuple(p + 0.6 * (q - p) for p, q in zip(a, b, strict=True))  # type: ignore[return-value]

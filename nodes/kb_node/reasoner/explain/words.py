@@ -121,8 +121,10 @@ class Words:
         """Return the verb phrase of a property."""
         found = self._verbs.get(prop)
         if found is None:
-            label = self._labels.get(prop)
-            found = self._verbs[prop] = _verb(label or _split_name(local_name(prop)), prop in self._data)
+            label = self._labels.get(prop) or _split_name(local_name(prop))
+            if label[1:] == label[1:].lower():  # "Has part" in the middle of a sentence
+                label = f"{label[:1].lower()}{label[1:]}"
+            found = self._verbs[prop] = _verb(label, prop in self._data)
         return found
 
     def predicate_phrase(

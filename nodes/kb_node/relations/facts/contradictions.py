@@ -9,10 +9,11 @@ from semmap.nodes.geometry.polygons import distance
 from semmap.nodes.kb_node.entities.alignments import shipped
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring import places, proximity, support_contact
+from semmap.nodes.kb_node.relations.measuring import overhead, places, proximity, support_contact
 from semmap.nodes.kb_node.relations.measuring.phrases import explain_location, format_length
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.nodes.kb_node.relations.support import find_supporters
 from semmap.ontology import vocabulary as v
 from semmap.schemas.explanations import Term, Triple
 from semmap.schemas.relations import PHRASES, Relation, RelationName
@@ -105,7 +106,7 @@ def _find_reason(space: Space, relation: RelationName, solid: Solid, other: Soli
         return _deny_above(solid, other, limits)
     if space.is_crowded(solid) and distance(solid.outline, other.outline) <= limits.gap_m:
         return None  # its support may not be among the compared objects
-    if other in _find_supporters(space, solid):
+    if other in find_supporters(space, solid):
         return None
     apart = proximity.gap(solid, other)
     if apart > limits.gap_m:
@@ -113,8 +114,7 @@ def _find_reason(space: Space, relation: RelationName, solid: Solid, other: Soli
     if relation == "isInside":
         share = _compute_share_within_box(solid, other, limits.gap_m)
         return f"{share:.0%} of its volume is within it" if share < limits.inside_share else None
-    carrier = space.spatial_relations(solid)
-    has_support = bool(carrier.supports) or carrier.container is not None
+    has_support = bool(space.spatial_relations(solid).supporters)
     if not other.supports or not (has_support or solid.bottom <= other.bottom + limits.gap_m):
         return None  # it may be attached or lean there
     made = support_contact.over(solid, other, limits)
@@ -134,24 +134,14 @@ def _deny_nearness(solid: Solid, other: Solid, limits: Thresholds) -> str | None
 
 
 def _deny_above(upper: Solid, lower: Solid, limits: Thresholds) -> str | None:
-    """Return why no part of a solid can be above the other one, or None."""
-    if (apart := distance(upper.outline, lower.outline)) > limits.gap_m:
+    """Return why no part of a solid, such as an open drawer, can be above the other one, or None."""
+    if overhead.beneath(lower, upper, limits) is not None:
+        return None
+    if (apart := proximity.gap_from_above(upper, lower)) > limits.gap_m:
         return f"seen from above they are {format_length(apart)} apart"
     if upper.top <= lower.bottom + limits.touch_m:
         return f"{upper.name} is below {lower.name}"
     return None
-
-
-def _find_supporters(space: Space, solid: Solid) -> set[Solid]:
-    """Return what a solid is on or inside, directly or not."""
-    found: set[Solid] = set()
-    waiting = [solid]
-    while waiting:
-        container, supports, _ = space.spatial_relations(waiting.pop())
-        below = {other for other, _ in (*filter(None, (container,)), *supports)} - found
-        found |= below
-        waiting += below
-    return found
 
 
 def _compute_share_within_box(inner: Solid, outer: Solid, margin_m: float) -> float:

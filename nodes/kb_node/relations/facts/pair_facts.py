@@ -56,8 +56,7 @@ def is_separate(space: Space, one: Solid, other: Solid) -> bool:
 
 
 def _is_on_or_in(space: Space, solid: Solid, other: Solid) -> bool:
-    container, supports, _ = space.spatial_relations(solid)
-    return other in (container and container[0], *(support for support, _ in supports))
+    return other in space.spatial_relations(solid).supporters
 
 
 def are_near(space: Space, one: Solid, other: Solid) -> bool:

@@ -110,18 +110,15 @@ def is_supported(space: Space, solid: Solid) -> bool:
     """Return whether anything holds an object: a support, the floor of its place, or a holder."""
     if solid.name in space.holders:
         return True
-    container, supports, place = space.spatial_relations(solid)
-    if container is not None or supports:
-        return True
-    return place is not None and abs(solid.bottom - place[0].bottom) <= space.limits.gap_m
+    return bool(space.spatial_relations(solid).supporters) or stands_on_floor(space, solid)
 
 
 def stands_on_floor(space: Space, solid: Solid) -> bool:
     """Return whether an object is in and on nothing but the floor of its place."""
-    container, supports, place = space.spatial_relations(solid)
-    if container is not None or supports or place is None:
+    found = space.spatial_relations(solid)
+    if found.supporters or found.place is None:
         return False
-    return abs(solid.bottom - place[0].bottom) <= space.limits.gap_m
+    return abs(solid.bottom - found.place[0].bottom) <= space.limits.gap_m
 
 
 def stands_on_ground(space: Space, solid: Solid) -> bool:

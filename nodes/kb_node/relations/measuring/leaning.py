@@ -159,8 +159,7 @@ def _find_base(space: Space, solid: Solid, other: Solid) -> list[Point]:
     """Return the hull of the areas that support a solid from below, except `other`; empty without any."""
     if solid.name in space.holders or not solid.parts:
         return []
-    container, supports, _ = space.spatial_relations(solid)
-    below = [support for support, _ in (*filter(None, (container,)), *supports) if support is not other]
+    below = [support for support in space.spatial_relations(solid).supporters if support is not other]
     points = [point for support in below for point in _list_meeting_points(space, solid, support)]
     if stands_on_ground(space, solid) or (below and not points):
         points += [(x, y) for x, y, _ in _find_feet(space, solid)]

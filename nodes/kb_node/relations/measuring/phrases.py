@@ -13,7 +13,7 @@ from semmap.schemas.joints import OPEN_FROM, Joint, in_words
 from semmap.schemas.relations import PHRASES, RelationName
 
 UNSUPPORTED = "has no known support"
-_LEVEL_M = 0.00005
+LEVEL_M = 0.00005
 """Smaller distances would be printed as 0.0 mm."""
 
 
@@ -33,7 +33,7 @@ def format_length(value: float) -> str:
 
 def format_height(gap_m: float) -> str:
     """Return the height of a bottom relative to a surface, such as "3.0 cm above"."""
-    if abs(gap_m) < _LEVEL_M:
+    if abs(gap_m) < LEVEL_M:
         return "level with"
     return f"{format_length(abs(gap_m))} {'above' if gap_m > 0.0 else 'below'}"
 

@@ -55,6 +55,11 @@ def gap(one: Solid, other: Solid) -> float:
     return math.hypot(distance(one.outline, other.outline), up)
 
 
+def gap_from_above(one: Solid, other: Solid) -> float:
+    """Return the horizontal distance of two solids, with the parts that stand open [m]."""
+    return min(distance(a, b) for a, _, _ in _list_pieces(one) for b, _, _ in _list_pieces(other))
+
+
 def _list_pieces(solid: Solid) -> Iterator[_Piece]:
     """Yield the box, and the parts that stand open."""
     yield solid.outline, solid.bottom, solid.top

@@ -14,12 +14,9 @@ from semmap.nodes.kb_node.relations.measuring import overhead, proximity
 from semmap.nodes.kb_node.relations.measuring.arrangement import find_between, measure_next_to
 from semmap.nodes.kb_node.relations.measuring.leaning import explain_leaning, measure_leaning
 from semmap.nodes.kb_node.relations.measuring.measures import Measure
-from semmap.nodes.kb_node.relations.measuring.phrases import describe_support, format_length
+from semmap.nodes.kb_node.relations.measuring.phrases import LEVEL_M, describe_support, format_length
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.schemas.relations import RELATIONS, RelationName
-
-_LEVEL_M = 0.00005
-"""Smaller distances would be printed as 0.0 mm."""
 
 
 class PairRelation(NamedTuple):
@@ -37,7 +34,7 @@ def _measure_touch(space: Space, one: Solid, other: Solid) -> Measure | None:
 
 def _explain_touch(space: Space, one: Solid, other: Solid, made: Measure | None) -> str:
     if made is not None and made.holds:
-        return f"they are {format_length(made.gap_m)} apart" if made.gap_m > _LEVEL_M else "they meet"
+        return f"they are {format_length(made.gap_m)} apart" if made.gap_m > LEVEL_M else "they meet"
     apart, limit = proximity.gap(one, other), format_length(space.limits.contact_m)
     if apart > space.limits.contact_m:
         return f"they are {format_length(apart)} apart (touches allows up to {limit})"
@@ -55,7 +52,7 @@ def _explain_under(space: Space, one: Solid, other: Solid, made: Measure | None)
     is_smaller = one.footprint < other.footprint
     over = f"which is over {made.share:.0%} of it" if is_smaller else f"{made.share:.0%} of which is over it"
     part = f"{other.name}, {over}"
-    if abs(made.gap_m) <= _LEVEL_M:
+    if abs(made.gap_m) <= LEVEL_M:
         return f"its top is level with the underside of {part}"
     if made.gap_m < 0.0:
         return f"its top is {format_length(-made.gap_m)} above the underside of {part}; they overlap"
@@ -74,7 +71,7 @@ def _explain_above(space: Space, one: Solid, other: Solid, made: Measure | None)
         f"{made.share:.0%} of which is under it" if is_smaller else f"which is under {made.share:.0%} of it"
     )
     part = f"{other.name}, {under}"
-    if abs(made.gap_m) <= _LEVEL_M:
+    if abs(made.gap_m) <= LEVEL_M:
         return f"its underside is level with the top of {part}"
     if made.gap_m < 0.0:
         return f"its underside is {format_length(-made.gap_m)} below the top of {part}; they overlap"

@@ -38,6 +38,11 @@ class SpatialRelations(NamedTuple):
     """Several if the object bridges or leans. The most important one comes first."""
     place: Found | None
 
+    @property
+    def supporters(self) -> list[Solid]:
+        """Return the container, if any, and the supports."""
+        return [solid for solid, _ in (*filter(None, (self.container,)), *self.supports)]
+
 
 class Space:
     """The solids of a map in a spatial index."""

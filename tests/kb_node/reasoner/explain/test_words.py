@@ -90,6 +90,13 @@ def test_a_property_is_a_verb_phrase(name, kind, rest):
     assert WORDS.verb_phrase(term(name)) == VerbPhrase(kind, rest)
 
 
+def test_the_label_of_a_property_begins_in_lower_case():
+    words = Words.of(triples(':p rdfs:label "Has part" . :q rdfs:label "URL" . :r rdfs:label "Is on" .'))
+    found = [words.verb_phrase(term(name)) for name in "pr"]
+    assert found == [VerbPhrase("has", "part"), VerbPhrase("is", "on")]
+    assert words.verb_phrase(term("q")).rest.endswith("URL")
+
+
 def test_labels_in_english_come_before_those_without_a_language_and_others_are_not_used():
     assert WORDS.cls(term("Cup")) == "cup"
     assert WORDS.cls(term("Mug")) == "mug"

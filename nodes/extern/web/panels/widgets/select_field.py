@@ -2,18 +2,31 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 from nicegui import ui
 from nicegui.events import GenericEventArguments
 
+_ENTER: Final = """(event) => {
+  const select = getElement(%d)?.$refs.qRef, typed = event.target.value?.trim().toLocaleLowerCase();
+  if (event.key !== "Enter" || !typed || !select || select.getOptionIndex() !== -1) return;
+  select.setOptionIndex(select.options.findIndex(({label}) => label.toLocaleLowerCase().includes(typed)));
+}"""
+"""Marks the first option that contains the typed text, before the field takes the marked one."""
+
 
 class SelectField(ui.select):
-    """Like `ui.select`, but the chosen option is identified by its label.
+    """Like `ui.select`, but the chosen option is identified by its label, and Enter takes the best match.
 
     The browser reports the index of an option. If options were added or removed since it drew them, that
     index would select another option.
     """
+
+    def __init__(self, *arguments: Any, **named: Any) -> None:
+        """Create it like `ui.select`."""
+        super().__init__(*arguments, **named)
+        if named.get("with_input") and "new_value_mode" not in named:
+            self.on("keydown", js_handler=_ENTER % self.id)
 
     def _event_args_to_value(self, e: GenericEventArguments) -> Any:
         if isinstance(e.args, list):
