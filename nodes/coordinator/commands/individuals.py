@@ -36,6 +36,10 @@ def rename_individual(view: MapView, was: Entity, command: Rename) -> KbCoroutin
         found: Described | None = yield from ask(Get(name=command.new))
     except errors.UnknownName:
         found = None
+    except errors.BadRequest:  # several individuals have it
+        raise errors.NameTaken(
+            f"several individuals have the name '{command.new}'; give another name"
+        ) from None
     if found is not None and found.name == command.new:
         raise errors.NameTaken(f"the name '{command.new}' is taken; see: semmap get {command.new}")
     reason = f"rename {was.name} to {command.new}"

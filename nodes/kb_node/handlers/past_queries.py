@@ -104,7 +104,8 @@ class PastQueryHandlers:
             try:
                 query = structs.replace(query, name=self._resolve_past(word))
             except errors.UnknownName:
-                term = self._map.individuals.find_term(word)
+                individuals = self._map.individuals
+                term = individuals.find_term(word) or individuals.parse_iri(word)  # also of a removed one
                 return self._aside.submit(
                     individual_history.list_commits, self._journal, self._past, query, limits, term
                 )

@@ -18,6 +18,7 @@ from semmap.schemas.explanations import Term, Triple
 
 _CHAIN: Final = v.iri(f"{v.OWL}propertyChainAxiom")
 _TRANSITIVE: Final = v.iri(f"{v.OWL}TransitiveProperty")
+_INVERSE: Final = v.iri(f"{v.OWL}inverseOf")
 _SWRL: Final = "http://www.w3.org/2003/11/swrl#"
 _HEAD: Final = v.iri(f"{_SWRL}head")
 _PREDICATE: Final = v.iri(f"{_SWRL}propertyPredicate")
@@ -40,6 +41,8 @@ class Reach(NamedTuple):
     """The properties whose values are targets of shapes."""
     chained: Relations
     """Transitive properties, and the members of property chains."""
+    follows_values: bool
+    """Whether paths may begin at the values of what follows by property chains."""
     concluded: frozenset[Term]
     """The properties in the heads of SWRL rules. What a rule compares may be anywhere in the map."""
 
@@ -48,17 +51,23 @@ class Reach(NamedTuple):
         """Return the reach of the shapes and axioms of a TBox."""
         values = {(s, p): o for s, p, o in tbox if p in (v.RDF_FIRST, v.RDF_REST, _PREDICATE)}
         chains = (read_list(o, values) for _, p, o in tbox if p == _CHAIN)
-        transitive = (s for s, p, o in tbox if p == v.RDF_TYPE and o == _TRANSITIVE)
+        transitive = {s for s, p, o in tbox if p == v.RDF_TYPE and o == _TRANSITIVE}
+        inverses = [(s, o) for s, p, o in tbox if p == _INVERSE]
+        # What follows from one of two inverse transitive properties also follows from the other.
+        mirrored = {end for ends in inverses if transitive.issuperset(ends) for end in ends}
+        linked = (transitive - mirrored).union(s for s, p, _ in tbox if p == _CHAIN)
         atoms = chain.from_iterable(read_list(o, values) for _, p, o in tbox if p == _HEAD)
         paths = find_property_paths(tbox)
+        forward, inverse = (Relations.of(each, tbox) for each in (paths.forward, paths.inverse))
         return cls(
             paths=paths,
-            forward=Relations.of(paths.forward, tbox),
-            inverse=Relations.of(paths.inverse, tbox),
+            forward=forward,
+            inverse=inverse,
             compared=Relations.of((o for _, p, o in tbox if p in COMPARISONS), tbox),
             closes_values=any(p == CLOSED for _, p, _ in tbox) and paths.length > 0,
             targeted=Relations.of((o for _, p, o in tbox if p == TARGETED_VALUES), tbox),
             chained=Relations.of(chain(chain.from_iterable(chains), transitive), tbox),
+            follows_values=bool(paths.inverse) or not forward.reverse.isdisjoint(linked),
             concluded=frozenset(values[atom, _PREDICATE] for atom in atoms if (atom, _PREDICATE) in values),
         )
 
@@ -114,7 +123,7 @@ class TouchedIndividuals:
         relations = [(s, o) for s, o in chained.select(facts) if not o.startswith('"')]
         back = PropertyPaths(forward=chained.properties, length=inf)
         subjects = back.find_starts(reclassified.union(s for s, _ in relations), self._holding)
-        if not (reach.paths.inverse or reach.targeted.properties):
+        if not (reach.follows_values or reach.targeted.properties):
             return subjects, set()
         on = PropertyPaths(inverse=chained.properties, length=inf)
         return subjects, on.find_starts(reclassified.union(o for _, o in relations), self._holding)
@@ -131,8 +140,9 @@ class TouchedIndividuals:
         if reach.closes_values:
             ends.update(s for s, _, _ in facts)
         steps = subjects.union(s for s, _ in reach.forward.select(facts))
-        if reach.paths.inverse:
-            steps |= values.union(o for _, o in reach.inverse.select(facts))
+        steps.update(o for _, o in reach.inverse.select(facts))
+        if reach.follows_values:
+            steps |= values
         before_a_step = reach.paths._replace(length=reach.paths.length - 1)  # the changed fact is one step
         return reach.paths.find_starts(_individuals(ends), self._holding) | before_a_step.find_starts(
             _individuals(steps), self._holding

@@ -19,7 +19,7 @@ _LEAST = 0.003
 _IMAGES = 1.0
 """Weight of the logarithm of what images say."""
 _UNKNOWN = 0.2
-"""Images know fewer things of no class than there are, so they are no evidence of one by themselves."""
+"""Images show fewer things of unknown class than there are, so by themselves they are weak evidence of one."""
 
 
 def with_image_votes(chances: Numbers, learnt: RecognitionModel, fits: ImageFits) -> Numbers:

@@ -71,6 +71,9 @@ def test_an_individual_is_renamed_with_what_refers_to_it(people, semantic_map):
     for taken in ("bob", "chair1"):
         with pytest.raises(errors.NameTaken, match=f"the name '{taken}' is taken"):
             people.change(c.Rename(name="anne", new=taken))
+    semantic_map.commit(transaction(4, turtle("<urn:x:twin> a <urn:P> . <urn:y:twin> a <urn:P> .")))
+    with pytest.raises(errors.NameTaken, match="several individuals have the name 'twin'; give another name"):
+        people.change(c.Rename(name="anne", new="twin"))
     with pytest.raises(errors.Refused, match="anne was defined by an operator"):
         people.change(c.Rename(name="anne", new="anna", source="perception"))
 

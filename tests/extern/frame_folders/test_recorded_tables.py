@@ -47,7 +47,7 @@ def tables() -> list[Table]:
 def pictured(cloud: Cloud) -> Table:
     assert cloud.colors is not None
     depth_m = np.nan_to_num(cloud.points_camera[..., 2])
-    return Table(cloud.colors, np.round(depth_m * 1000).astype(np.uint16), observe_clouds([cloud], shipped()))
+    return Table(cloud.colors, np.round(depth_m * 1000).astype(np.uint16), observe_clouds([cloud], with_images(shipped())))
 
 
 @pytest.mark.parametrize("kind", ["bag", "mcap", "tum"])

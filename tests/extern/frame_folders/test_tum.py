@@ -93,6 +93,17 @@ def test_what_cannot_be_done_is_reported_in_one_line(recording, tmp_path, capsys
     assert error.count("\n") == 1
 
 
+def test_a_recording_that_needs_too_much_memory_is_reported_in_one_line(recording, capsys, monkeypatch):
+    def fail(*_):
+        raise MemoryError
+
+    monkeypatch.setattr("semmap.nodes.extern.frame_folders.frames.write", fail)
+    assert execute(["frames", "desk", "out", "--intrinsics", "lens.json"]) == 2
+    assert capsys.readouterr().err == (
+        "semmap: desk needs more memory to read than this machine can give it\n"
+    )
+
+
 def test_intrinsics_of_another_resolution_are_noted(recording, tmp_path, capsys):
     (tmp_path / "small.json").write_text(json.dumps({"fx": 100, "fy": 100, "cx": WIDTH, "cy": HEIGHT}))
     assert execute(["frames", "desk", "out", "--intrinsics", "small.json"]) == 0

@@ -85,14 +85,15 @@ def test_what_refers_to_a_change_is_validated(enforcing):
             ":a dm:p :b . :b dm:s :c . :d dm:u :e . :e dm:bad 1 .",
             ":c dm:t :d .",
         ),
+        ("dm:reachedFrom", ":a dm:p 1 . :z dm:s :b . :c dm:u :a .", ":b dm:t :c ."),
         ("( dm:p dm:follows dm:bad )", ":a dm:p :b . :b dm:n 1 . :d dm:bad 1 .", ":d dm:m 1 ."),
     ],
 )
 def test_individuals_from_which_a_path_leads_to_a_change_are_validated(tmp_path, path, before, inserted):
     shapes = f":L sh:targetSubjectsOf dm:p , dm:q ; sh:property [ sh:path {path} ; sh:maxCount 0 ] ."
     rule = """
-dm:reaches owl:propertyChainAxiom ( dm:s dm:t dm:u ) . :x a swrl:Variable . :y a swrl:Variable .
-:n a swrl:Variable . [] a swrl:Imp ;
+dm:reaches owl:propertyChainAxiom ( dm:s dm:t dm:u ) ; owl:inverseOf dm:reachedFrom .
+:x a swrl:Variable . :y a swrl:Variable . :n a swrl:Variable . [] a swrl:Imp ;
     swrl:body ( [ a swrl:DatavaluedPropertyAtom ; swrl:propertyPredicate dm:n ; swrl:argument1 :x ;
             swrl:argument2 :n ]
         [ a swrl:DatavaluedPropertyAtom ; swrl:propertyPredicate dm:m ; swrl:argument1 :y ;

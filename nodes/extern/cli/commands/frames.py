@@ -61,8 +61,13 @@ def _or_folders(function: Callable[..., None]) -> Callable[..., None]:
                 raise errors.BadRequest("--format tree applies to the frame tree only, not to a recording")
             from semmap.nodes.runtime.isolated_process import limited_memory
 
-            with limited_memory():
-                _folders(Path(name), folder, as_json=format == "json", **options)
+            try:
+                with limited_memory():
+                    _folders(Path(name), folder, as_json=format == "json", **options)
+            except MemoryError:  # also of an image, or of a folder in the TUM format
+                raise errors.BadFile(
+                    f"{name} needs more memory to read than this machine can give it"
+                ) from None
             return
         if passed := list(drop_unset(options)):
             option = passed[0].replace("_", "-")

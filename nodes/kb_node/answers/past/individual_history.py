@@ -44,8 +44,8 @@ def list_commits(
 ) -> tuple[LoggedCommit, ...]:
     """Return the commits that changed what is asserted about an individual, newest last.
 
-    `term` is its IRI; None stands for the removed individuals with the name of the query. Raises UnknownName,
-    also for a name that no individual ever had, Refused, BadRequest.
+    `term` is its IRI, also that of a removed one; None stands for the removed individuals with the name of
+    the query. Raises UnknownName, also for a name that no individual ever had, Refused, BadRequest.
     """
     word = query.name or ""
     renames = list(_find_renames(journal)) if term is not None else []
@@ -144,20 +144,36 @@ def _to_value(term: Term) -> Value:
 def _find_renames(journal: Journal) -> Iterator[tuple[int, Term, Term]]:
     """Yield the commits that renamed an individual, with its earlier and its new IRI."""
     verbs = (Rename.VERB, Undo.VERB)
+    found: dict[int, tuple[Term, Term]] = {}
     for seq in [each.seq for each in journal.decode_partially(_Kind) if each.verb in verbs]:
         commit = journal.commit(seq)
-        before, after = (_by_subject(triples) for triples in (commit.retracted, commit.inserted))
-        subjects = {about: s for s, about in after.items()}
-        for earlier, about in before.items():
-            if (new := subjects.get(about)) is not None and new != earlier:
-                yield seq, earlier, new
+        if commit.verb == Rename.VERB:
+            renamed = find_rename(commit.retracted, commit.inserted)
+        else:
+            gone, come = ({s for s, _, _ in triples} for triples in (commit.retracted, commit.inserted))
+            undone = (found[each] for each in commit.undoes if each in found)
+            renamed = next(((new, old) for old, new in undone if new in gone and old in come), None)
+        if renamed is not None:
+            found[seq] = renamed
+            yield seq, *renamed
 
 
-def _by_subject(triples: Iterable[Triple]) -> dict[Term, frozenset[tuple[Term, Term]]]:
+def find_rename(retracted: Iterable[Triple], inserted: Iterable[Triple]) -> tuple[Term, Term] | None:
+    """Return the earlier and the new IRI of the one individual with the same statements under another IRI.
+
+    Statements about itself are the same if their value changes with the IRI.
+    """
+    before, after = _by_subject(retracted), _by_subject(inserted)
+    pairs = [(s, new) for s, about in before.items() for new in after if s != new and after[new] == about]
+    return pairs[0] if len(pairs) == 1 else None
+
+
+def _by_subject(triples: Iterable[Triple]) -> dict[Term, set[tuple[Term, Term]]]:
+    """Return properties and values by subject; the subject itself is the value ''."""
     found: dict[Term, set[tuple[Term, Term]]] = {}
     for s, p, o in triples:
-        found.setdefault(s, set()).add((p, o))
-    return {s: frozenset(about) for s, about in found.items()}
+        found.setdefault(s, set()).add((p, "" if o == s else o))
+    return found
 
 
 def _list_names(term: Term, renames: Iterable[tuple[int, Term, Term]]) -> list[tuple[int, Term]]:

@@ -10,9 +10,13 @@ from nicegui.events import GenericEventArguments
 _ENTER: Final = """(event) => {
   const select = getElement(%d)?.$refs.qRef, typed = event.target.value?.trim().toLocaleLowerCase();
   if (event.key !== "Enter" || !typed || !select || select.getOptionIndex() !== -1) return;
-  select.setOptionIndex(select.options.findIndex(({label}) => label.toLocaleLowerCase().includes(typed)));
+  const labels = select.options.map(({label}) => label.toLocaleLowerCase());
+  const fits = [(label) => label.split(" · ")[0] === typed, (label) => label.startsWith(typed),
+    (label) => label.includes(typed)];
+  select.setOptionIndex(fits.map((test) => labels.findIndex(test)).find((index) => index !== -1) ?? -1);
 }"""
-"""Marks the first option that contains the typed text, before the field takes the marked one."""
+"""Marks the best match before the field takes the marked option: a label that is the typed text, or
+else one that begins with it, or else one that contains it."""
 
 
 class SelectField(ui.select):
