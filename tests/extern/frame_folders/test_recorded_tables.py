@@ -12,6 +12,7 @@ from PIL import Image
 
 from semmap.nodes.extern.cli.app import execute
 from semmap.nodes.extern.ros.types import new
+from semmap.nodes.perception_node.image_features.image_evidence import with_images
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.files.cloud_files import read_cloud
 from semmap.nodes.perception_node.pipeline import FrameResult, observe_clouds
@@ -47,7 +48,11 @@ def tables() -> list[Table]:
 def pictured(cloud: Cloud) -> Table:
     assert cloud.colors is not None
     depth_m = np.nan_to_num(cloud.points_camera[..., 2])
-    return Table(cloud.colors, np.round(depth_m * 1000).astype(np.uint16), observe_clouds([cloud], with_images(shipped())))
+    return Table(
+        cloud.colors,
+        np.round(depth_m * 1000).astype(np.uint16),
+        observe_clouds([cloud], with_images(shipped())),
+    )
 
 
 @pytest.mark.parametrize("kind", ["bag", "mcap", "tum"])
