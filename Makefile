@@ -91,6 +91,7 @@ train-perception: setup  ## Learn anew what perception knows, from recorded scen
 	$(BIN)/python -m semmap.nodes.training.segmentation --recorded $${SEMMAP_DATA:-../shared/data}/mosd
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m semmap.nodes.training.recognition --foreign $${SEMMAP_DATA:-../shared/data}/foreign --parts dist/parts
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m semmap.nodes.training.recognition.learn_similarity --parts dist/parts
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m semmap.nodes.training.recognition.learn_images $${SEMMAP_DATA:-../shared/data}/foreign
 
 train-language: setup  ## Learn anew what commands mean, from the HuRIC corpus: a minute
 	$(BIN)/python -m semmap.nodes.training.language $${SEMMAP_DATA:-../shared/data}/huric

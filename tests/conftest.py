@@ -271,10 +271,7 @@ def _share(fixture: str, temporary: pytest.TempPathFactory, *words: str) -> Iter
 @contextlib.contextmanager
 def _begin(data: Path, abox: str, *words: str) -> Iterator[System]:
     """A system with the shipped flat, or with an empty map; it simulates the flat or the given world."""
-    if "--world" in words:
-        words = (*words, "--abox", abox)
-    else:
-        shutil.copytree(_begun(abox), data, dirs_exist_ok=True)
+    shutil.copytree(_begun(abox), data, dirs_exist_ok=True)
     with running(data, *words) as system:
         system.begun = abox
         yield system

@@ -119,6 +119,7 @@ def test_a_request_whose_client_has_gone_is_not_sent_again(empty_map, tmp_path):
         pid = empty_map.pid("kb_node")
         with empty_map.spawned("load", str(file)) as loading:
             until_at_work(empty_map)
+            os.kill(pid, signal.SIGSTOP)  # it does not commit the load meanwhile
             loading.kill()
             loading.wait()
             os.kill(pid, signal.SIGKILL)

@@ -125,7 +125,7 @@ def test_a_move_in_paused_time_is_committed_when_time_runs_again(system, client)
     said = system.cli("move", "chair9", "--at", "-2", "0.5", "0.05")
     assert said.startswith("put chair9 at (-2, 0.5, 0.05)")
     assert "note: time is paused: the map is updated when it runs again" in said
-    for words in (("open", "fridge9"), ("drive", "robot1", "--to", "7.4", "1.9")):
+    for words in (("open", "fridge9"), ("drive", "robot1", "--to", "7.4", "1.4")):
         assert "note: time is paused" in system.cli(*words)
     with client.commits(timeout=60.0) as commits:
         system.cli("pause", "--off")

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.perception.foreign import matched
-from benchmarks.perception.foreign_frames import Stood, Studio
 from benchmarks.perception.simulated import LEAST_PIXELS
 from benchmarks.perception.table import Row
 from semmap.nodes.perception_node.exemplar_views import exemplar_view_of, find_shown_thing
@@ -28,6 +27,7 @@ from semmap.nodes.perception_node.recognition.exemplars import Exemplar, with_ex
 from semmap.nodes.perception_node.views.segmented_view import segment_cloud
 from semmap.nodes.training.scenes.foreign_things import ForeignThing, foreign_things
 from semmap.nodes.training.scenes.placements import spread
+from semmap.nodes.training.scenes.textured_scenes import Stood, Studio
 
 TOGETHER = 20
 _DRAWN = 26

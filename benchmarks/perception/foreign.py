@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from benchmarks.perception.foreign_frames import Studio, distance_m, scenes
 from benchmarks.perception.simulated import LEAST_PIXELS, SAME_IOU
 from benchmarks.perception.table import Row
 from semmap.nodes.perception_node.input.projection import cloud_of
@@ -24,6 +23,7 @@ from semmap.nodes.perception_node.views.segmented_view import segment_cloud
 from semmap.nodes.training.recognition.__main__ import learn
 from semmap.nodes.training.recognition.gathering import Gathered, gather, read
 from semmap.nodes.training.scenes.foreign_things import ForeignThing, foreign_things
+from semmap.nodes.training.scenes.textured_scenes import Studio, distance_m, scenes
 
 FOLDS = 4
 _ALONE, _MIXED = 4, 60

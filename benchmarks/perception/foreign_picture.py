@@ -19,7 +19,6 @@ from PIL import Image, ImageDraw, ImageFont
 from scipy import ndimage
 
 from benchmarks.perception.foreign import matched, outcome
-from benchmarks.perception.foreign_frames import Stood, Studio
 from semmap.nodes.perception_node.input.projection import cloud_of
 from semmap.nodes.perception_node.pipeline import RecognitionModel, observe_views
 from semmap.nodes.perception_node.recognition.recognition_model import UNKNOWN, shipped
@@ -28,6 +27,7 @@ from semmap.nodes.training.recognition.__main__ import learn
 from semmap.nodes.training.recognition.gathering import read
 from semmap.nodes.training.scenes.foreign_things import ForeignThing, foreign_things
 from semmap.nodes.training.scenes.placements import spread
+from semmap.nodes.training.scenes.textured_scenes import Stood, Studio
 
 Picture = NDArray[np.uint8]
 Box = tuple[float, float, float, float]

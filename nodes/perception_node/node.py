@@ -29,6 +29,8 @@ from semmap.nodes.perception_node.fitting.fit_tracks import (
 )
 from semmap.nodes.perception_node.fitting.model_surfaces import shipped as shipped_surfaces
 from semmap.nodes.perception_node.fitting.worker import FitTo, FitWorker, Request
+from semmap.nodes.perception_node.image_features.image_evidence import with_images
+from semmap.nodes.perception_node.image_features.network import available as images_are_available
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.frame_worker import FrameWorker
 from semmap.nodes.perception_node.input.masks import Masks
@@ -158,6 +160,7 @@ class Perception:
             cloud = segmented_cloud(clouds, found)
             self._cloud.put(codec.encode(cloud), encoding=codec.encoding_of(cloud))
         without = "" if self._fits else "; no full poses without Open3D"
+        without += "" if images_are_available() else "; no image features without onnxruntime"
         self._node.describe(summary(clouds, len(seen.observations), took_s) + without)
 
     def _ask_for_fit(self, seen: Observations, clouds: Sequence[Cloud], found: FrameResult) -> None:
@@ -278,7 +281,7 @@ def summary(clouds: Sequence[Cloud], things: int, took_s: float) -> str:
 
 def run(config: PerceptionConfig) -> None:
     """Run the node until it is stopped. Raises BadFile if a model of perception cannot be read."""
-    learnt = shipped()
+    learnt = with_images(shipped(), live=True)
     exemplars = ExemplarStore(config.lessons, learnt)
     with open_node("perception_node", config.network) as node:
         observer = Observer(learnt, LabelMap(learnt, config.labels))

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from semmap.nodes.perception_node.image_features.image_votes import ImageFits
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.masks import Masks
 from semmap.nodes.perception_node.recognition.detector_labels import LabelMap
@@ -117,20 +118,18 @@ def observe_views(
         recalled
     )
     things, chances, members = join_parts(parts.things, parts.same_thing_logits, learnt, parts.join)
-    found = recognise(things, chances, learnt, labels)
+    fits = _image_fits(sights, parts.labels, members, learnt)
+    found = recognise(things, chances, learnt, labels, fits)
     kept = [n for n, one in enumerate(found) if isinstance(one, Observation)]
     observations = Observations(
         stamp_ns=max((sight.cloud.stamp_ns for sight in sights), default=0),
         views=tuple(_view(sight) for sight in sights),
         observations=tuple(one for one in found if isinstance(one, Observation)),
     )
-    numbers = np.zeros(len(parts.things) + 1, np.int32)
-    for number, n in enumerate(kept, 1):
-        numbers[np.array(members[n]) + 1] = number
     elsewhere = [rest for rest, thing in recalled if not thing]
     return FrameResult(
         observations,
-        tuple(numbers[label] for label in parts.labels),
+        tuple(_renumbered(label, [members[n] for n in kept]) for label in parts.labels),
         remembered=before.after(sights, [thing.segments for thing in things], elsewhere),
         things=tuple(things[n] for n in kept),
         dropped=tuple((things[n], one) for n, one in enumerate(found) if isinstance(one, Clutter)),
@@ -146,11 +145,43 @@ def recognise_segments(
     if not segments:
         return {}
     things = [thing_of([segment], sight.supports) for segment in segments]
-    found = recognise(things, leaf_probabilities(learnt, features_of(things)), learnt, labels)
+    fits = _image_fits([sight], [sight.labels], [[segment.label - 1] for segment in segments], learnt)
+    found = recognise(things, leaf_probabilities(learnt, features_of(things)), learnt, labels, fits)
     return {
         segment.label: one if isinstance(one, Observation) else None
         for segment, one in zip(segments, found, strict=True)
     }
+
+
+def _image_fits(
+    sights: Sequence[SegmentedView],
+    labels: Sequence[NDArray[np.int32]],
+    members: Sequence[Sequence[int]],
+    learnt: RecognitionModel,
+) -> ImageFits | None:
+    """Return what images of things say about them; `labels` and `members` as for `_renumbered`."""
+    images = learnt.images
+    views = [
+        (sight.cloud.colors, label)
+        for sight, label in zip(sights, labels, strict=True)
+        if sight.cloud.colors is not None and sight.cloud.organised
+    ]
+    if images is None or not views:
+        return None
+
+    def fits(things: Sequence[int]) -> NDArray[np.float64]:
+        shown = [(colors, _renumbered(label, members)) for colors, label in views]
+        return images.fits(shown, [thing + 1 for thing in things], learnt)
+
+    return fits
+
+
+def _renumbered(labels: NDArray[np.int32], members: Sequence[Sequence[int]]) -> NDArray[np.int32]:
+    """Return labels (H, W) of parts as numbers of things, from 1; `members`: the parts, from 0, of each."""
+    numbers = np.zeros(int(labels.max(initial=0)) + 1, np.int32)
+    for number, parts in enumerate(members, 1):
+        numbers[[part + 1 for part in parts if part + 1 < len(numbers)]] = number
+    return numbers[labels]
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,10 @@ import pytest
 import trimesh
 from PIL import Image
 
-from benchmarks.perception.foreign_frames import Studio, scenes, write_frame
+from benchmarks.perception.foreign_frames import write_frame
 from semmap.nodes.perception_node.input.files.frame_folders import read_frame
 from semmap.nodes.training.scenes.foreign_things import foreign_things
+from semmap.nodes.training.scenes.textured_scenes import Studio, scenes
 
 SIZE_M = (0.12, 0.08, 0.2)
 

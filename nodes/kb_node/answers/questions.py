@@ -117,9 +117,10 @@ def explain(reasoner: Reasoner, asked: StatementQuestion, *, recompute: bool = T
             if (further := why_excluded(near, first, words=reasoner.words)) is not None:
                 return _to_message(reasoner, further)
             holds = why_entailed(near, first, words=reasoner.words)
-        raise errors.Refused(
-            f"it holds: {holds.text}" if holds else f"it is not known that {clause}, but nothing excludes it"
-        )
+        if holds is None:
+            raise errors.Refused(f"it is not known that {clause}, but nothing excludes it")
+        message = _to_message(reasoner, holds)
+        raise errors.Refused(f"it holds: {message.text}", explanation=message)
     if (found := why(reasoner, asked)) is not None:
         return found
     if (different := why_different(reasoner, first, allow_recompute=recompute)) is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable
 from itertools import chain
 from math import inf
 from typing import Final, NamedTuple
@@ -89,6 +89,8 @@ class TouchedIndividuals:
         self._reasoner = reasoner
         self._reach = reach
         self._subjects = {s for s, _, _ in chain(commit.inserted, commit.retracted)}
+        self._by_value: dict[Term, list[Triple]] = {}
+        """The facts by value that have been looked up, since several steps need the same."""
         self._before = self._read_facts()
         self._reclassified = set[Term]()
 
@@ -98,6 +100,7 @@ class TouchedIndividuals:
 
     def find(self, commit: Commit, derived: DerivedChanges) -> set[Term]:
         """Return the individuals and values. The reasoner has the change, and the commit its entities."""
+        self._by_value.clear()
         after = self._read_facts()
         subjects, values = _ends(chain(commit.inserted, commit.retracted, *derived))
         core = subjects | self._reclassified | {v.iri(entity.iri) for entity in commit.changed}
@@ -170,8 +173,13 @@ class TouchedIndividuals:
         """Return the facts whose value is one of `terms`."""
         return {fact for term in terms for fact in self._holding(None, None, term)}
 
-    def _holding(self, s: Term | None, p: Term | None, o: Term | None) -> Iterator[Triple]:
-        return chain(self._reasoner.given(s, p, o), self._reasoner.inferred(s, p, o))
+    def _holding(self, s: Term | None, p: Term | None, o: Term | None) -> Iterable[Triple]:
+        given, inferred = self._reasoner.given, self._reasoner.inferred
+        if s is not None or p is not None or o is None:
+            return chain(given(s, p, o), inferred(s, p, o))
+        if (known := self._by_value.get(o)) is None:
+            known = self._by_value[o] = [*given(None, None, o), *inferred(None, None, o)]
+        return known
 
 
 def _ends(triples: Iterable[Triple]) -> tuple[set[Term], set[Term]]:

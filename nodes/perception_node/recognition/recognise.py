@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from semmap.nodes.perception_node.image_features.image_votes import ImageFits, with_image_votes
 from semmap.nodes.perception_node.recognition.detector_labels import (
     LabelMap,
     detector_class,
@@ -43,15 +44,21 @@ class Clutter(NamedTuple):
 
 
 def recognise(
-    things: Sequence[Thing], chances: Numbers, learnt: RecognitionModel, labels: LabelMap | None = None
+    things: Sequence[Thing],
+    chances: Numbers,
+    learnt: RecognitionModel,
+    labels: LabelMap | None = None,
+    fits: ImageFits | None = None,
 ) -> list[Observation | Clutter]:
     """Return an observation of each thing that is not clutter.
 
     A free-standing thing is not clutter, but of unknown class. `chances`: (N, K) the probabilities of the
-    leaves. `labels` maps labels of detectors to classes.
+    leaves. `labels` maps labels of detectors to classes. `fits`: what images of the things say.
     """
     labels = labels or LabelMap(learnt)
     chances = _no_clutter(things, reclassify_trimmed(things, chances, learnt), learnt)
+    if fits is not None:
+        chances = with_image_votes(chances, learnt, fits)
     chances = with_detector_labels(chances, things, learnt, labels)
     expected = expected_sizes(chances, learnt.sizes_m)
     detected = [detector_class(thing, learnt, labels) for thing in things]

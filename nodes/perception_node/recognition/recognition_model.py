@@ -21,6 +21,7 @@ from semmap.schemas.entities import Size
 from semmap.schemas.errors import BadFile
 
 if TYPE_CHECKING:
+    from semmap.nodes.perception_node.image_features.image_evidence import ImageEvidence
     from semmap.nodes.perception_node.recognition.exemplars import ExemplarMatcher
 
 SHIPPED = Path(__file__).with_name("recognition.npz")
@@ -56,7 +57,8 @@ class RecognitionModel:
     `weights`: (voters,) weights of the votes. `familiar`: scores (N, K + 1) of having the exact form of our
     model of a leaf, with "none" last. `joining`: whether two things are pieces of one, from
     `joining.pair_features`. `sides`: see `sides.completed`. `sure`: minimum probability of a reported class.
-    `story`: the training data. `exemplars`: things that were shown, whose leaves come last.
+    `story`: the training data. `exemplars`: things that were shown, whose leaves come last. `images`: what
+    images say, if their packages are installed.
     """
 
     classes: tuple[str, ...]
@@ -72,6 +74,7 @@ class RecognitionModel:
     sure: float
     story: str
     exemplars: ExemplarMatcher | None = None
+    images: ImageEvidence | None = None
 
     def class_of(self, leaf: str) -> str:
         """Return the class of a leaf; an exemplar's leaf has another name."""

@@ -135,14 +135,14 @@ def _own_in(scenes: int, seed: int) -> Samples:
 
 
 def _sampled(scenes: Iterable[Scene], rng: np.random.Generator) -> Samples:
-    shots = _photographed(scenes, rng)
+    shots = photographed(scenes, rng)
     samples = (samples_of(shot, items, number) for number, (shot, items) in enumerate(shots))
     return Samples.joined([found for found in samples if found is not None])
 
 
 def _neighbours_in(heaped: int, seed: int, foreign: Path | None) -> Pairs:
     rng = np.random.default_rng(seed)
-    shots = _photographed(heaps(heaped, _learnable(foreign), rng), rng)
+    shots = photographed(heaps(heaped, _learnable(foreign), rng), rng)
     return Pairs.joined([pairs for shot, items in shots for pairs in pairs_of(shot, items, rng)])
 
 
@@ -150,7 +150,8 @@ def _learnable(foreign: Path | None) -> list[ForeignThing]:
     return [thing for thing in (foreign_things(foreign) if foreign else []) if thing.learnable]
 
 
-def _photographed(scenes: Iterable[Scene], rng: np.random.Generator) -> Iterator[tuple[Shot, list[Item]]]:
+def photographed(scenes: Iterable[Scene], rng: np.random.Generator) -> Iterator[tuple[Shot, list[Item]]]:
+    """Yield the images of scenes, with floors and light that vary."""
     stage = Stage()
     for items, views in scenes:
         bodies = stage.show(items)

@@ -91,7 +91,7 @@ def test_an_action_is_sent_with_the_name_of_the_entity_that_is_checked_and_appro
 
 def test_one_approval_is_for_one_of_two_parallel_calls():
     own, client = actions(required=True), Recorder()
-    driving = a.Drive(name="r1", to=((1.0, 2.0),), reason="why")
+    driving = a.Drive(name="r1", to=((1.0, 2.0),), wait=True, reason="why")
     parallel = Recorder()
     client.meanwhile = lambda: own.drive(parallel, driving)
     with pytest.raises(errors.Busy, match="another call executes this action"):
@@ -103,7 +103,7 @@ def test_one_approval_is_for_one_of_two_parallel_calls():
 def executed_after(failure):
     """Return how many approvals a repeated drive needs after this failure, and the texts of the failure."""
     own, client = actions(required=True), Recorder(failures=[failure])
-    driving = a.Drive(name="r1", to=((1.0, 2.0),), reason="why")
+    driving = a.Drive(name="r1", to=((1.0, 2.0),), wait=True, reason="why")
     with pytest.raises(errors.SemmapError) as error:
         own.drive(client, driving)
     assert own.drive(client, driving).head["done"]

@@ -158,6 +158,13 @@ def test_a_negative_statement_is_explained(furnished):
         explain_relation(furnished, "chair1", "type", "Seat", negated=True)
 
 
+def test_a_computed_fact_that_is_denied_is_called_measured(furnished):
+    computed = (v.entity_iri("chair2"), v.IS_LOCATED_IN, v.entity_iri("kitchen1"))
+    furnished.reasoner.update_computed(add=[computed])
+    with pytest.raises(errors.Refused, match=r"it holds: chair2 is located in kitchen1 \(measured\)"):
+        explain_relation(furnished, "chair2", "isLocatedIn", "kitchen1", negated=True)
+
+
 @pytest.mark.parametrize(
     ("question", "possible", "text"),
     [

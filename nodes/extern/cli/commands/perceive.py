@@ -199,15 +199,16 @@ def _require_open3d() -> None:
 def _learnt(data: Path | None) -> RecognitionModel:
     """Return the trained classifiers, with the exemplars of a data folder."""
     from semmap.nodes.perception_node.exemplar_store import FILENAME, ExemplarStore
+    from semmap.nodes.perception_node.image_features.image_evidence import with_images
     from semmap.nodes.perception_node.recognition.recognition_model import shipped
 
     if data is None:
-        return shipped()
+        return with_images(shipped())
     if not (data / FILENAME).exists():
         raise errors.BadFile(
             f"no exemplars in {data}; to add one: semmap learn CLASS --frames DIR --data {data}"
         )
-    return ExemplarStore(data / FILENAME, shipped()).learnt
+    return with_images(ExemplarStore(data / FILENAME, shipped()).learnt)
 
 
 def _detector(masks: Path | None, label_map: Path | None, *, masks_only: bool) -> Detector | None:

@@ -1,0 +1,93 @@
+"""How well an image fits each class, and the file of what was learnt."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from semmap.nodes.perception_node.image_features.network import Outputs
+from semmap.nodes.perception_node.recognition.perceptron import log_softmax
+from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.schemas.errors import BadFile
+
+SHIPPED = Path(__file__).with_name("images.npz")
+
+_FLOOR = 0.01
+"""The least that an image says for a class, since most classes are not among those that it was trained on."""
+_RENDERED = 0.98
+"""From this probability on, an image is one of our renderings, whose surfaces tell nothing."""
+
+
+@dataclass(frozen=True)
+class ImageClassifier:
+    """A linear classifier of looks, and the classes that have them.
+
+    `leaves`: L classes of recognition. `weights`: (2 FEATURES, G) and `biases`: (G,) score the looks, the
+    last of which is that of our own renderings. `looks`: (G, L) and `imagenet`: (CLASSES, L), how far a
+    thing with a look or of a class of ImageNet may be of each class, from 0 to 1.
+    """
+
+    leaves: tuple[str, ...]
+    weights: Numbers
+    biases: Numbers
+    looks: Numbers
+    imagenet: Numbers
+    story: str
+
+    def __call__(self, whole: Outputs, alone: Outputs) -> Numbers:
+        """Return (N, L) how well images fit each leaf, all 1 if they tell nothing.
+
+        The images `alone` show the same things with grey surroundings.
+        """
+        look = np.exp(log_softmax(classifier_input(whole, alone) @ self.weights + self.biases))
+        rendered, others = look[:, -1:], look[:, :-1]
+        others = others / np.maximum(others.sum(axis=1, keepdims=True), 1e-9)
+        named = (_probabilities(whole) + _probabilities(alone)) / 2.0
+        fits = others @ self.looks[:-1] + named @ self.imagenet + _FLOOR
+        return np.where(rendered > _RENDERED, 1.0, fits)
+
+    @property
+    def least(self) -> float:
+        """Return how well an image fits a class that is not among the leaves."""
+        return _FLOOR
+
+
+def classifier_input(whole: Outputs, alone: Outputs) -> Numbers:
+    """Return (N, 2 FEATURES) the features of both images, each of unit length."""
+    parts = [outputs.features.astype(float) for outputs in (whole, alone)]
+    return np.concatenate([part / np.linalg.norm(part, axis=1, keepdims=True) for part in parts], axis=1)
+
+
+def _probabilities(outputs: Outputs) -> Numbers:
+    return np.exp(log_softmax(outputs.scores.astype(float)))
+
+
+def save(learnt: ImageClassifier, path: Path) -> None:
+    """Write the classifier as a compressed NumPy archive, with matrices in half precision."""
+    arrays = {name: getattr(learnt, name).astype(np.float16) for name in ("weights", "looks", "imagenet")}
+    text = json.dumps({"story": learnt.story, "leaves": learnt.leaves})
+    np.savez_compressed(path, description=np.array(text), biases=learnt.biases.astype(np.float32), **arrays)
+
+
+def load(path: Path = SHIPPED) -> ImageClassifier:
+    """Read a classifier that `save` wrote. Raises BadFile if it is invalid."""
+    try:
+        with np.load(path, allow_pickle=False) as arrays:
+            text = json.loads(str(arrays["description"]))
+            return ImageClassifier(
+                leaves=tuple(text["leaves"]),
+                story=text["story"],
+                **{name: arrays[name].astype(float) for name in ("weights", "biases", "looks", "imagenet")},
+            )
+    except (OSError, EOFError, ValueError, KeyError) as error:
+        raise BadFile(f"{path} is not a valid image classifier: {error}") from None
+
+
+@lru_cache(maxsize=1)
+def shipped() -> ImageClassifier:
+    """Return the classifier that ships with semmap."""
+    return load()
