@@ -19,7 +19,7 @@ _LEAST = 0.003
 _IMAGES = 1.0
 """Weight of the logarithm of what images say."""
 _UNKNOWN = 0.2
-"""Images show fewer things of unknown class than there are, so by themselves they are weak evidence of one."""
+"""Weight of `Object` in images: fewer things of unknown class were in the training than there are."""
 
 
 def with_image_votes(chances: Numbers, learnt: RecognitionModel, fits: ImageFits) -> Numbers:
