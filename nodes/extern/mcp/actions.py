@@ -91,10 +91,10 @@ class Actions:
                 raise
             moved = self._send_once(client, command, name)
         seq = moved.commit if moved.commit is not None else newest(client)
-        is_done = command.wait or (isinstance(command, commands.Drive) and command.stop)
+        is_done = moved.commit is not None or (isinstance(command, commands.Drive) and command.stop)
         head: dict[str, Any] = {
             "done": is_done,
-            **({} if is_done else {"then": "it is on its way; get has its position"}),
+            **({} if is_done else {"then": "the map has the new state when it has stopped"}),
             "name": moved.name,
             "text": attribute_text("; ".join((moved.text, *moved.notes)), "semmap"),
         }

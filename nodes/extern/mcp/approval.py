@@ -30,6 +30,8 @@ _MOST_WAITERS: Final = 2
 _LATER_S: Final = 30.0
 """The suggested time until a retry if there are too many pending requests [s]."""
 _MOST_REQUESTED: Final = 1000
+_ENDS_WITHIN_S: Final = 2.0
+"""The timeout of each withdrawal at the end; after one without a reply, no other is sent [s]."""
 
 
 class Approval:
@@ -42,7 +44,9 @@ class Approval:
         self._rate = Rate(per_min / 60.0, max(1.0, per_min))
         self._per_min = per_min
         self._waiters = threading.BoundedSemaphore(_MOST_WAITERS)
-        self._requested: dict[str, None] = {}
+        self._requested: dict[str, bool] = {}
+        """By name, whether the request may be pending."""
+        self._has_ended = threading.Event()
 
     def require(self, client: Client, name: str, summary: Summary) -> Request | None:
         """Request approval and wait for it a short time; return None if no approval is required.
@@ -63,16 +67,18 @@ class Approval:
             reason=summary.reason,
             follows=tuple(errors.shortened(fact, 900) for fact in summary.follows),
         )
+        self._require_not_ended()
         try:
             request = client.send(submit)
         except errors.Refused as error:  # too many pending requests; the proposal stays valid
             raise errors.Busy(error.text, again_s=_LATER_S) from None
-        self._requested[name] = None
+        self._requested[name] = request.decision == "waiting"
         while len(self._requested) > _MOST_REQUESTED:
             del self._requested[next(iter(self._requested))]
         if request.decision == "waiting" and self._waiters.acquire(blocking=False):
             try:
                 request = self._decided(client, submit)
+                self._requested[name] = request.decision == "waiting"
             finally:
                 self._waiters.release()
         if request.decision == "rejected":
@@ -80,10 +86,13 @@ class Approval:
         return request
 
     def withdraw_all(self, client: Client) -> None:
-        """Withdraw the pending requests: the agent that made them has ended."""
-        for name in tuple(self._requested):
-            with suppress(errors.SemmapError):
-                self._withdraw(client, Submit(id=name, source="agent", agent=self._agent, text="ended"))
+        """Withdraw the pending requests: the agent that made them has ended. No other is submitted later."""
+        self._has_ended.set()
+        with suppress(errors.NoAnswer):
+            for name in [name for name, is_pending in self._requested.items() if is_pending]:
+                with suppress(errors.BadRequest, errors.Refused, errors.Busy):
+                    submit = Submit(id=name, source="agent", agent=self._agent, text="ended")
+                    self._withdraw(client, submit, timeout_s=_ENDS_WITHIN_S)
 
     def _require_rate(self) -> None:
         if (wait_s := self._rate.wait_s()) > 0.0:
@@ -103,12 +112,18 @@ class Approval:
             if cancelled.wait(_AGAIN_S):
                 self._withdraw(client, submit)
                 require_not_cancelled()
+            self._require_not_ended()
         return request
 
-    def _withdraw(self, client: Client, submit: Submit) -> None:
+    def _require_not_ended(self) -> None:
+        if self._has_ended.is_set():
+            raise errors.Busy("the server has ended; nothing has changed", again_s=0.0)
+
+    def _withdraw(self, client: Client, submit: Submit, timeout_s: float = PATIENCE_S) -> None:
         """Withdraw a request. One that is decided already stays requested, so that a retry is not counted."""
         with suppress(errors.Refused):  # a restarted coordinator has no requests
-            if client.send(structs.replace(submit, withdraw=True)).decision != "withdrawn":
+            withdrawn = client.send(structs.replace(submit, withdraw=True), timeout_s=timeout_s)
+            if withdrawn.decision != "withdrawn":
                 return
         self._requested.pop(submit.id, None)
 

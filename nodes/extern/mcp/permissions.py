@@ -48,7 +48,10 @@ class Permissions:
         limits.require(allowed, [_touched(client, name, command, tried, classes) for name in tried.names])
 
     def require_action(self, client: Client, entity: Entity, path: Sequence[Point] = ()) -> None:
-        """Raise Refused for an action on an entity beyond the limits, or along a path out of the places."""
+        """Raise Refused for an action on an entity beyond the limits, or along a path out of the places.
+
+        Raises Busy if the path begins at an entity that moves and has no live pose.
+        """
         allowed = self.resolve(client)
         if allowed == Limits():
             return
@@ -59,6 +62,8 @@ class Permissions:
         limits.require(allowed, [own])
         if not path or not allowed.places:
             return
+        if entity.live is None and (moving := client.send(commands.Status(names=(entity.name,))).displaced):
+            raise errors.Busy(f"{moving[0]}; its path can be checked when it stands", again_s=2.0)
         pose = entity.pose if entity.live is None else entity.live.pose
         start = () if pose is None else (pose.position_m[:2],)
         outside = find_outside((*start, *path), client.floorplan(), _within(client, allowed.places))

@@ -32,6 +32,8 @@ class ClauseReader(MessageReader):
             if self._t.ends_sentence(i):
                 self._close(first_of_sentence, conditions)
                 self._keep_times(first_of_sentence, [] if has_time else times)
+                self.found.unused += (self._t.between(other.first, other.end) for other in excluded)
+                excluded = []
                 self._unused = len(self.found.unused)
                 first_of_sentence, conditions, times, negated = len(self.found.clauses), [], [], False
                 i += 1

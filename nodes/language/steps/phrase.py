@@ -81,8 +81,9 @@ class NounPhrase:
     def exclude(self, others: list[NounPhrase]) -> None:
         """Add an exception: the red one, or two of them."""
         for other in others:
-            if other.quantity is not None and not (other.key or other.places or other.determiner):
-                self.amount.all_but += other.quantity
+            is_counted = other.quantity is not None and not (other.places or other.determiner)
+            if is_counted and other.key in ("", self.key) and not other.attributes:
+                self.amount.all_but += other.quantity or 0
             else:
                 self.excluded.append(other)
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from semmap.nodes.extern.mcp import actions as actions_
 from semmap.nodes.extern.mcp import approval
 from semmap.nodes.extern.mcp import arguments as a
 from semmap.nodes.extern.mcp.actions import Actions
@@ -30,14 +31,14 @@ class Recorder:
         name = {"fridge": "fridge1"}.get(name, name)
         return SimpleNamespace(name=name, types=("Robot",), pose=None, live=None)
 
-    def send(self, command):
+    def send(self, command, **_):
         self.sent.append(command)
         if self.failures and isinstance(command, self.failures[0][0]):
             raise self.failures.pop(0)[1]
         if isinstance(command, Submit):
             self.meanwhile()
             return Request(number=1, agent="a", text="t", stamp_ns=1, decision=self.decision, by="ann")
-        return Moved(name=command.name, text="on its way", commit=7)
+        return Moved(name=command.name, text="on its way", commit=7 if command.wait else None)
 
 
 def actions(*, required=False):
@@ -47,7 +48,8 @@ def actions(*, required=False):
 
 @pytest.fixture(autouse=True)
 def newest(monkeypatch):
-    monkeypatch.setattr(approval, "newest", lambda client: 5)
+    for module in (approval, actions_):
+        monkeypatch.setattr(module, "newest", lambda client: 5)
 
 
 SIGNED: Any = {"source": "agent", "agent": "tester", "reason": "why"}
@@ -77,7 +79,7 @@ def test_an_action_is_sent_as_its_command(tool, arguments, command):
     assert client.sent == [command]
     assert reply.head["done"] == (command.wait or getattr(command, "stop", False))
     assert ("then" in reply.head) == (not reply.head["done"])
-    assert reply.last == 7
+    assert reply.last == (7 if command.wait else 5)
 
 
 def test_an_action_is_sent_with_the_name_of_the_entity_that_is_checked_and_approved():

@@ -29,7 +29,7 @@ class Recorder:
         by = {"source": "agent", "agent": "tester"}
         return [SimpleNamespace(seq=3, **by, changes=(), changed=(), removed=(), reason="")]
 
-    def send(self, command):
+    def send(self, command, **_):
         self.sent.append(command)
         if not isinstance(command, Submit):
             return Changed(names=("cup1",), text="undone", commit=None if command.dry_run else 9)
@@ -72,3 +72,24 @@ def test_a_cancelled_call_can_be_repeated_whatever_became_of_its_request(withdra
     else:
         with pytest.raises(errors.Busy, match="rate limit"):
             own.require(Recorder("approved"), "mcp-1", SUMMARY)
+
+
+def test_when_the_server_ends_only_pending_requests_are_withdrawn_and_none_is_made():
+    own, client = Approval("tester", per_min=60.0, required=True, patience_s=0.0), Recorder()
+    own.require(Recorder("approved"), "mcp-1", SUMMARY)
+    own.require(client, "mcp-2", SUMMARY)
+    client.sent.clear()
+    own.withdraw_all(client)
+    assert [(sent.id, sent.withdraw) for sent in client.sent] == [("mcp-2", True)]
+    with pytest.raises(errors.Busy, match="ended"):
+        own.require(client, "mcp-2", SUMMARY)
+
+
+def test_at_the_end_nothing_is_sent_after_a_withdrawal_without_a_reply():
+    own = Approval("tester", per_min=60.0, required=True, patience_s=0.0)
+    client = Recorder(withdrawn=errors.NoAnswer("no response on semmap/cmd"))
+    for name in ("mcp-1", "mcp-2"):
+        own.require(client, name, SUMMARY)
+    client.sent.clear()
+    own.withdraw_all(client)
+    assert len(client.sent) == 1

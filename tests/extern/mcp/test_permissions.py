@@ -61,13 +61,23 @@ def test_the_first_point_outside_is_returned():
     assert y == pytest.approx(1.0)
 
 
+def a_client(list=tuple, displaced=()):
+    """A client of a map with the three rooms; `displaced` are the reports on bodies that move."""
+    return SimpleNamespace(
+        list=list,
+        classes=tuple,
+        floorplan=lambda: PLAN,
+        send=lambda command: SimpleNamespace(displaced=displaced),
+    )
+
+
 def test_the_rooms_of_a_permitted_storey_are_permitted(monkeypatch):
     where = {"kitchen1": {"in": ["storey1"]}, "hall1": {"in": ["storey1"]}, "bath1": {"in": ["storey2"]}}
     monkeypatch.setattr(
         permissions.queries, "placed", lambda client, entities: where | {"r1": where["hall1"]}
     )
     storeys = [SimpleNamespace(name=name, place=True) for name in ("storey1", "storey2", *where)]
-    client = SimpleNamespace(list=lambda: storeys, classes=tuple, floorplan=lambda: PLAN)
+    client = a_client(list=lambda: storeys)
     robot = SimpleNamespace(name="r1", types=("Robot",), pose=Pose(position_m=(5.0, 1.0, 0.0)), live=None)
     own = Permissions(Limits(places=frozenset({"storey1"})))
     own.require_action(client, robot, ((1.0, 1.0),))
@@ -77,10 +87,20 @@ def test_the_rooms_of_a_permitted_storey_are_permitted(monkeypatch):
 
 def test_the_path_of_a_driving_robot_begins_at_its_live_pose(monkeypatch):
     monkeypatch.setattr(permissions.queries, "placed", lambda client, entities: {"r1": {"in": ["kitchen1"]}})
-    client = SimpleNamespace(list=tuple, classes=tuple, floorplan=lambda: PLAN)
+    client = a_client()
     committed, live = Pose(position_m=(1.0, 1.0, 0.0)), Pose(position_m=(5.0, 2.0, 0.0))
     robot = SimpleNamespace(name="r1", types=("Robot",), pose=committed, live=SimpleNamespace(pose=live))
     own = Permissions(Limits(places=frozenset({"kitchen1"})))
     monkeypatch.setattr(own, "resolve", lambda client: Limits(places=frozenset({"kitchen1"})))
     with pytest.raises(errors.Refused, match=r"leads through \(5.00, 2.00\)"):
         own.require_action(client, robot, ((2.0, 2.0),))
+
+
+def test_a_path_of_a_robot_that_moves_without_a_live_pose_is_not_checked_yet(monkeypatch):
+    monkeypatch.setattr(permissions.queries, "placed", lambda client, entities: {"r1": {"in": ["kitchen1"]}})
+    robot = SimpleNamespace(name="r1", types=("Robot",), pose=Pose(position_m=(1.0, 1.0, 0.0)), live=None)
+    own = Permissions(Limits(places=frozenset({"kitchen1"})))
+    monkeypatch.setattr(own, "resolve", lambda client: Limits(places=frozenset({"kitchen1"})))
+    own.require_action(a_client(), robot, ((2.0, 2.0),))
+    with pytest.raises(errors.Busy, match="r1 is moving"):
+        own.require_action(a_client(displaced=("r1 is moving: 1.2 m away",)), robot, ((2.0, 2.0),))

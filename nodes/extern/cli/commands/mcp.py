@@ -138,10 +138,10 @@ def _withdrawing_requests(client: LazyClient, changes: Changes | None) -> Iterat
             changes.withdraw_requests(client.connected)
 
     def terminate(number: int, _: FrameType | None) -> None:
+        signal.signal(number, signal.SIG_DFL)  # a second signal ends the process at once
         try:
             withdraw()
         finally:
-            signal.signal(number, signal.SIG_DFL)
             signal.raise_signal(number)
 
     before = signal.signal(signal.SIGTERM, terminate)
