@@ -265,7 +265,7 @@ def test_a_standing_query_follows_suppressed_facts(choosy):
     semantic_map, _ = choosy
     news = []
     standing = LocationQueries(semantic_map, news.append)
-    standing.watch(Watch(id="w", on="counter1"))
+    standing.watch(Watch(id="w", on="counter1", lease=3600.0))
     milk = v.iri(semantic_map.entity("milk1").iri)
     semantic_map.replace_tbox(Transaction(id="plain", source="operator"), home.household())
     standing.follow(semantic_map.seq, ())
