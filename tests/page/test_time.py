@@ -142,6 +142,7 @@ def test_the_history_of_selected_entities_opens_their_commits(tab, cup):
         return all(name in row for row in listed) and {str(added), str(moved), str(again)} <= seqs
 
     until(lists_its_commits, "only its commits are listed, and all of them")
+    settle(tab)  # computing the details of the past takes seconds, and the next moment waits for it
     table.get_by_text(str(moved), exact=True).click()
     until(lambda: caption(tab).startswith(f"Past: commit {moved} of "), "the page goes there")
 
