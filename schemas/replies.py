@@ -217,6 +217,11 @@ class Moved(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     commit: int | None = None
     notes: tuple[str, ...] = ()
 
+    @property
+    def is_final(self) -> bool:
+        """Whether the map follows no more: there is a commit, or a note why there will be none."""
+        return self.commit is not None or any(note.startswith("no commit: ") for note in self.notes)
+
 
 class Done(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The command succeeded."""

@@ -91,7 +91,7 @@ class Actions:
                 raise
             moved = self._send_once(client, command, name)
         seq = moved.commit if moved.commit is not None else newest(client)
-        is_done = moved.commit is not None or (isinstance(command, commands.Drive) and command.stop)
+        is_done = moved.is_final or (isinstance(command, commands.Drive) and command.stop)
         head: dict[str, Any] = {
             "done": is_done,
             **({} if is_done else {"then": "the map has the new state when it has stopped"}),

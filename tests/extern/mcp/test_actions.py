@@ -156,3 +156,17 @@ def test_a_rejected_action_is_not_sent_and_can_be_requested_again():
 def test_a_robot_is_stopped_without_approval():
     client = Recorder("waiting")
     assert actions(required=True).drive(client, a.Drive(name="r1", stop=True, reason="why")).head["done"]
+
+
+@pytest.mark.parametrize(
+    ("note", "is_done"),
+    [
+        ("no commit: fridge1 rests at its committed pose", True),
+        ("no commit yet: fridge1 is still moving; the map is updated when it rests", False),
+    ],
+)
+def test_an_action_without_a_commit_is_done_if_none_will_follow(note, is_done):
+    client = Recorder()
+    client.send = lambda command: Moved(name=command.name, text="open", notes=(note,))
+    reply = actions().open(client, a.Open(name="fridge1", reason="why"))
+    assert reply.head["done"] == is_done
