@@ -6,7 +6,8 @@ from click.testing import CliRunner
 from msgspec import structs
 
 from semmap.nodes.extern.cli.app import execute
-from semmap.nodes.extern.cli.commands.lifecycle import _settings_before, settings_options
+from semmap.nodes.extern.cli.system_options import settings_options
+from semmap.nodes.extern.cli.system_settings import _settings_before
 from semmap.nodes.supervisor.settings import JOURNAL, SETTINGS, Settings
 from semmap.ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from semmap.schemas import codec
