@@ -160,9 +160,7 @@ def test_a_dry_run_of_a_tbox_does_not_count_its_classes(extend, text):
 def test_only_an_operator_may_replace_the_tbox(source, what):
     for extend, does in ((False, what), (True, "extend the TBox")):
         with pytest.raises(errors.Refused, match=f"only an operator may {does}"):
-            next(
-                loading.load(MapView(), c.Load(content=ABOX, tbox=True, extend=extend, source=source))
-            )
+            next(loading.load(MapView(), c.Load(content=ABOX, tbox=True, extend=extend, source=source)))
 
 
 @pytest.mark.parametrize(("count", "words"), [(0, "0 classes"), (1, "1 class"), (2, "2 classes")])

@@ -55,7 +55,7 @@ def body(name="cup1", **fields):
         (BodyState(status="ghost", detail="overlaps box1"), ["cup1: ghost: overlaps box1"]),
         (BodyState(status="pending", detail="waits for table1"), ["cup1: pending: waits for table1"]),
         (BodyState(status="pending"), []),
-        (BodyState(status="resting"), []),
+        (BodyState(status="present"), []),
         (BodyState(status="none"), []),
     ],
 )
