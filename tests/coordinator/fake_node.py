@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
+from functools import partial
 from typing import Any
 from unittest.mock import MagicMock
 
@@ -108,7 +109,7 @@ class FakeStream:
         """Yield each key with a function that returns its message, or raises it."""
         samples, self.samples = self.samples, []
         for key, message in samples:
-            yield key, lambda message=message: _read(message)
+            yield key, partial(_read, message)
 
 
 def _read(message: Any) -> Any:
