@@ -15,9 +15,9 @@ from semmap.schemas.health import Health
 from semmap.schemas.live import LivePose
 from semmap.schemas.scenes import Poses, Scene, Spawned
 from tests.coordinator.conftest import new_dispatcher
-from tests.coordinator.fake_node import FakeNode, FakeStream
 from tests.coordinator.reconciler.test_reconciler import standing
 from tests.coordinator.reconciler.test_scene_report import body
+from tests.fake_node import FakeNode, FakeStream
 
 RUN = {"run": "r", "version": 1, "stamp_ns": 1, "sim_time_s": 0.0}
 

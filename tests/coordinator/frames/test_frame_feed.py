@@ -17,8 +17,8 @@ from semmap.schemas.entities import Pose
 from semmap.schemas.frames import FramePose
 from semmap.schemas.relations import Described
 from semmap.schemas.scenes import CameraPose
-from tests.coordinator.fake_node import FakeNode, FakeStream
 from tests.coordinator.reconciler.test_scene_report import body, entity
+from tests.fake_node import FakeNode, FakeStream
 
 PART = {"isDirectPartOf": "cart1"}
 

@@ -14,8 +14,8 @@ from semmap.schemas import codec, errors, keys
 from semmap.schemas.attachments import pose_text
 from semmap.schemas.entities import Pose
 from semmap.schemas.live import LivePose, LivePoses
-from tests.coordinator.fake_node import FakeNode, FakeStream
 from tests.coordinator.reconciler.test_scene_report import NOW, body, entity
+from tests.fake_node import FakeNode, FakeStream
 
 HOME = Pose(position_m=(0.0, 0.0, 0.0))
 

@@ -21,6 +21,7 @@ class FakeNode:
         self.followed: dict[str, list[Callable[[Any], None]]] = {}
         self.served: dict[str, Any] = {}
         self.repeated: list[Callable[[], None]] = []
+        self.periods_s: dict[int, float] = {}
         self.idle: list[Callable[[], None]] = []
         self.reports: list[str] = []
         self.details: list[str] = []
@@ -37,8 +38,12 @@ class FakeNode:
 
     follow_newest = follow
 
-    def every(self, period_s: float, handle: Callable[[], None]) -> None:
+    def every(self, period_s: float, handle: Callable[[], None]) -> Callable[[float], None]:
+        """Note repeated work; `periods_s` has its present period."""
+        number = len(self.repeated)
         self.repeated.append(handle)
+        self.periods_s[number] = period_s
+        return partial(self.periods_s.__setitem__, number)
 
     def when_idle(self, handle: Callable[[], None]) -> None:
         self.idle.append(handle)
@@ -70,8 +75,11 @@ class FakeNode:
     def ready(self, detail: str) -> None:
         self.details.append(f"ready: {detail}")
 
-    def describe(self, detail: str) -> None:
-        self.details.append(detail)
+    def describe(self, detail: str | Callable[[], str]) -> None:
+        self.details.append(detail if isinstance(detail, str) else detail())
+
+    def note(self, notes: tuple[str, ...]) -> None:
+        self.notes = notes
 
     def report(self, text: str) -> None:
         self.reports.append(text)
@@ -90,7 +98,7 @@ class FakeNode:
         return made
 
     def tick(self) -> None:
-        """Do all repeated work once."""
+        """Do all repeated work once; a node that is at long work calls this for its heartbeat."""
         for handle in self.repeated:
             handle()
 
