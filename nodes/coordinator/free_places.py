@@ -78,11 +78,9 @@ class FreePlaces:
         if len(self._searches) >= _MANY_SIZES and reach_m not in self._searches:
             self._searches.clear()
         search = self._searches.setdefault(reach_m, _Search(reach_m))
-        for spot in search.spots():
-            x, y = search.position(spot)
-            if self._is_free(x, y, reach_m):
-                return (round(x, 3) + 0.0, round(y, 3) + 0.0, DEFAULT_POSITION[2])
-        raise AssertionError("the rings are endless")
+        positions = map(search.position, search.spots())
+        x, y = next((x, y) for x, y in positions if self._is_free(x, y, reach_m))
+        return (round(x, 3) + 0.0, round(y, 3) + 0.0, DEFAULT_POSITION[2])
 
     def _catch_up(self, entities: Mapping[str, Entity]) -> None:
         changed, self._changed = self._changed, set()

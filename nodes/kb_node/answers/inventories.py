@@ -11,7 +11,6 @@ from semmap.nodes.kb_node.answers.map_states import MapState
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.relations.facts.place_facts import Fact
 from semmap.nodes.kb_node.relations.measuring import proximity
-from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.language import nouns
 from semmap.nodes.language.generation.inventory import How, Inventory, Place, Thing
 from semmap.nodes.language.vocabulary import to_words
@@ -74,10 +73,9 @@ class Inventories:
     def _places(self) -> Iterator[Place]:
         """Yield all places; their names distinguish them."""
         places = [entity for entity in self._state.entities() if entity.place]
-        space, parts = self._state.space(), _parts_said(places)
+        parts = _parts_said(places)
         for place in places:
-            within = parts.get(place.name) or _around(space, place.name)
-            yield Place(place.name, self.nouns.of(place), within)
+            yield Place(place.name, self.nouns.of(place), parts.get(place.name))
 
     def _thing(self, entity: Entity, left_out: Set[Fact]) -> Thing:
         at: tuple[How, str] | None = None
@@ -135,15 +133,6 @@ def _parts_said(entities: Iterable[Entity]) -> dict[str, str]:
         for part in stated if isinstance(stated, tuple) else (stated,):
             found.setdefault(str(part), entity.name)
     return found
-
-
-def _around(space: Space, name: str) -> str | None:
-    """Return the smallest place around a place, by extent."""
-    solid = space.solids.get(name)
-    if solid is None:
-        return None
-    place = space.spatial_relations(solid).place
-    return None if place is None or place[0].volume <= solid.volume else place[0].name
 
 
 class Nouns:

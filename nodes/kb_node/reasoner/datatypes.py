@@ -169,11 +169,8 @@ def _write_float(code: str) -> Callable[[bytes], str]:
             return "NaN"
         if number in (inf, -inf):
             return "INF" if number > 0 else "-INF"
-        for digits in range(1, 18):
-            text = f"{number:.{digits}g}"
-            if _packed(code, text) == bits:
-                return repr(float(text))
-        raise AssertionError(f"no text for {number}")
+        texts = (f"{number:.{digits}g}" for digits in range(1, 18))
+        return repr(float(next(text for text in texts if _packed(code, text) == bits)))
 
     return write
 

@@ -140,3 +140,17 @@ def test_parents_come_before_children_and_a_family_is_what_is_above_and_below():
     assert names == ["map", "cup1", "robot1", "robot1/lidar", "beam", "robot1_gripper"]
     assert [f.name for f in tree.frames("robot1/lidar")] == ["map", "robot1", "robot1/lidar", "beam"]
     assert [f.name for f in tree.frames("map")] == ["map"] or len(list(tree.frames("map"))) == len(names)
+
+
+def test_a_frame_is_missing_if_it_or_one_above_it_does_not_exist():
+    links = {
+        "robot1": Link("map", ORIGIN, "stream"),
+        "hand1": Link("robot1", ORIGIN, "stream"),
+        "lost1": Link("gone1", ORIGIN, "stream"),
+        "below1": Link("lost1", ORIGIN, "stream"),
+        "a": Link("b", ORIGIN, "stream"),
+        "b": Link("a", ORIGIN, "stream"),
+    }
+    tree = tree_of(links)
+    found = {name: tree.is_missing(name) for name in (*links, "map", "unknown1")}
+    assert {name for name, is_missing in found.items() if is_missing} == {"lost1", "below1", "unknown1"}

@@ -6,7 +6,14 @@ from semmap.nodes.kb_node.reasoner.datatypes import (
     canonical,
     contains,
     datatypes,
+    distinguishes_strings,
+    excludes,
+    includes,
+    includes_common,
+    is_datatype,
     is_ill_typed,
+    known,
+    length,
     order_key,
     value,
 )
@@ -202,3 +209,217 @@ def test_a_canonical_spelling_has_the_value(text_and_datatype):
     assert literal(term).text == text
     assert value(canonical(term)) == value(term) is not None
     assert canonical(canonical(term)) == canonical(term)
+
+
+BOUNDS = {
+    "long": (-9223372036854775808, 9223372036854775807),
+    "int": (-2147483648, 2147483647),
+    "short": (-32768, 32767),
+    "byte": (-128, 127),
+    "unsignedLong": (0, 18446744073709551615),
+    "unsignedInt": (0, 4294967295),
+    "unsignedShort": (0, 65535),
+    "unsignedByte": (0, 255),
+    "nonNegativeInteger": (0, None),
+    "positiveInteger": (1, None),
+    "nonPositiveInteger": (None, 0),
+    "negativeInteger": (None, -1),
+}
+
+
+@pytest.mark.parametrize(("name", "bounds"), BOUNDS.items(), ids=BOUNDS)
+def test_an_integer_type_has_its_bounds(name, bounds):
+    for bound, beyond in zip(bounds, (-1, 1), strict=True):
+        within = 10**30 * beyond if bound is None else bound
+        assert value(lit(str(within), f"xsd:{name}")) == value(lit(str(within), "xsd:integer"))
+        assert contains(iri(f"xsd:{name}"), lit(str(within), "xsd:integer"))
+        if bound is not None:
+            assert is_ill_typed(lit(str(bound + beyond), f"xsd:{name}"))
+            assert not contains(iri(f"xsd:{name}"), lit(str(bound + beyond), "xsd:integer"))
+
+
+@pytest.mark.parametrize(
+    ("wide", "narrow", "is_wider"),
+    [
+        ("xsd:integer", "xsd:byte", True),
+        ("xsd:byte", "xsd:integer", False),
+        ("xsd:long", "xsd:unsignedInt", True),
+        ("xsd:long", "xsd:unsignedLong", False),
+        ("xsd:nonNegativeInteger", "xsd:positiveInteger", True),
+        ("xsd:positiveInteger", "xsd:nonNegativeInteger", False),
+        ("xsd:nonPositiveInteger", "xsd:negativeInteger", True),
+        ("xsd:decimal", "xsd:int", True),
+        ("xsd:decimal", "owl:rational", False),
+        ("owl:real", "xsd:decimal", True),
+        ("owl:rational", "owl:real", True),
+        ("owl:real", "xsd:float", False),
+        ("xsd:string", "xsd:token", True),
+        ("xsd:token", "xsd:string", False),
+        ("xsd:Name", "xsd:NCName", True),
+        ("rdf:PlainLiteral", "xsd:language", True),
+        ("rdf:PlainLiteral", "rdf:langString", True),
+        ("rdf:PlainLiteral", "xsd:integer", False),
+        ("xsd:duration", "xsd:dayTimeDuration", True),
+        ("xsd:dayTimeDuration", "xsd:duration", False),
+        ("xsd:dateTime", "xsd:dateTimeStamp", True),
+        ("xsd:dateTimeStamp", "xsd:dateTime", False),
+        ("rdfs:Literal", "xsd:float", True),
+        ("xsd:float", "xsd:float", True),
+        ("xsd:float", "xsd:double", False),
+    ],
+)
+def test_which_datatypes_are_part_of_others(wide, narrow, is_wider):
+    assert includes(iri(wide), iri(narrow)) == is_wider
+    assert includes_common(iri(wide), [iri(narrow)]) == is_wider
+
+
+@pytest.mark.parametrize(
+    ("wide", "several", "is_wider"),
+    [
+        ("xsd:byte", ("xsd:nonNegativeInteger", "xsd:byte"), True),
+        ("xsd:unsignedByte", ("xsd:nonNegativeInteger", "xsd:byte"), True),
+        ("xsd:unsignedByte", ("xsd:nonPositiveInteger", "xsd:unsignedShort"), True),
+        ("xsd:byte", ("xsd:unsignedByte", "xsd:short"), False),
+        ("xsd:positiveInteger", ("xsd:nonNegativeInteger", "xsd:byte"), False),
+        ("xsd:token", ("xsd:string", "xsd:byte"), False),
+        ("xsd:byte", ("xsd:string", "xsd:token"), False),
+    ],
+)
+def test_the_common_values_of_datatypes(wide, several, is_wider):
+    assert includes_common(iri(wide), [iri(name) for name in several]) == is_wider
+
+
+@pytest.mark.parametrize(
+    ("text", "same"),
+    [
+        ("P1Y2M", "P14M"),
+        ("-P1Y2M", "-P14M"),
+        ("P1DT1H1M1.5S", "PT90061.5S"),
+        ("-P2DT3H", "-PT183600S"),
+        ("P0Y", "PT0S"),
+        ("P2Y3DT4M", "P24MT259440S"),
+    ],
+)
+def test_a_duration_is_months_and_seconds(text, same):
+    assert canonical(lit(text, "xsd:duration")) == lit(same, "xsd:duration")
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "same"),
+    [
+        ("dateTime", "2024-02-29T23:30:00-01:30", "2024-03-01T01:00:00Z"),
+        ("dateTime", "2026-01-01T00:10:00+00:20", "2025-12-31T23:50:00Z"),
+        ("dateTime", "2026-01-01T12:00:00.250", "2026-01-01T12:00:00.25"),
+        ("time", "00:10:00+00:20", "23:50:00Z"),
+        ("time", "23:50:01.5-00:20", "00:10:01.5Z"),
+        ("time", "01:02:03", "01:02:03"),
+        ("gYear", "2026-00:00", "2026Z"),
+        ("gYear", "2026+02:00", "2026+02:00"),
+        ("boolean", "0", "false"),
+        ("hexBinary", "0a", "0A"),
+        ("base64Binary", "YQ= =", "YQ=="),
+        ("float", "0.1", "0.1"),
+        ("float", "1e39", "INF"),
+        ("float", "-1e39", "-INF"),
+        ("double", "NaN", "NaN"),
+        ("double", "0.30000000000000004", "0.30000000000000004"),
+    ],
+)
+def test_the_spelling_of_times_binary_data_and_floats(kind, text, same):
+    assert canonical(lit(text, f"xsd:{kind}")) == lit(same, f"xsd:{kind}")
+
+
+@pytest.mark.parametrize(
+    ("kind", "text"),
+    [
+        ("dateTime", "2026-01-01T24:00:01Z"),
+        ("dateTime", "2026-01-01T24:01:00Z"),
+        ("dateTime", "2026-13-01T00:00:00Z"),
+        ("dateTime", "2026-01-01T00:00:00+14:01"),
+        ("time", "23:60:00"),
+        ("time", "23:59:60"),
+        ("time", "24:00:00.1"),
+        ("date", "2026-02-29"),
+        ("gMonthDay", "--04-31"),
+        ("gYear", "026"),
+        ("base64Binary", "YQ_="),
+    ],
+)
+def test_times_and_binary_data_outside_their_limits(kind, text):
+    assert is_ill_typed(lit(text, f"xsd:{kind}"))
+
+
+@pytest.mark.parametrize(
+    ("number", "same"),
+    [
+        ("1.50", '"1.5"^^' + iri("xsd:decimal")),
+        ("-0.05", '"-0.05"^^' + iri("xsd:decimal")),
+        ("100.0", '"100"^^' + iri("xsd:integer")),
+        ("0.125", '"0.125"^^' + iri("xsd:decimal")),
+    ],
+)
+def test_the_spelling_of_decimals(number, same):
+    assert canonical(lit(number, "xsd:decimal")) == same
+    assert canonical(lit("2/6", "owl:rational")) == '"1/3"^^' + iri("owl:rational")
+
+
+@pytest.mark.parametrize(
+    ("term", "count"),
+    [
+        ('"abc"', 3),
+        ('"abc"@en', 3),
+        (lit("0A0B", "xsd:hexBinary"), 2),
+        (lit("YWI=", "xsd:base64Binary"), 2),
+        (lit("urn:a", "xsd:anyURI"), 5),
+        (lit("12", "xsd:integer"), None),
+        (lit("x", "xsd:integer"), None),
+    ],
+)
+def test_texts_and_binary_data_have_a_length(term, count):
+    assert length(term) == count
+
+
+def test_which_datatypes_are_known_and_distinguish_texts():
+    assert is_datatype(iri("xsd:gDay"))
+    assert not is_datatype(iri("xsd:unknown"))
+    assert known() >= {iri("xsd:byte"), iri("xsd:token"), iri("rdf:langString"), iri("rdfs:Literal")}
+    assert distinguishes_strings(iri("xsd:token"))
+    assert not distinguishes_strings(iri("xsd:string"))
+    assert not distinguishes_strings(iri("xsd:integer"))
+
+
+def test_a_literal_is_excluded_only_if_its_datatype_is_known():
+    assert excludes(iri("xsd:byte"), lit("300", "xsd:integer"))
+    assert excludes(iri("xsd:byte"), lit("x", "xsd:integer"))
+    assert not excludes(iri("xsd:byte"), lit("3", "xsd:integer"))
+    assert not excludes(iri("xsd:byte"), '"3"^^<http://example.org/d>')
+
+
+@pytest.mark.parametrize(
+    ("term", "order"),
+    [
+        (lit("1.5", "xsd:double"), ("number", 1.5)),
+        (lit("P1Y", "xsd:duration"), ("months", 12)),
+        (lit("PT1M", "xsd:duration"), ("seconds", 60)),
+        (lit("P1YT1S", "xsd:duration"), None),
+        (lit("-0044", "xsd:gYear"), ("gYear ", -44)),
+        (lit("--03Z", "xsd:gMonth"), ("gMonth Z", "--03")),
+        (lit("true", "xsd:boolean"), None),
+    ],
+)
+def test_what_a_value_is_ordered_by(term, order):
+    assert order_key(term) == order
+
+
+def test_the_texts_of_string_types():
+    assert {d for d in map(str, datatypes('"en"')) if "XMLSchema" in d} == {
+        iri(f"xsd:{name}")
+        for name in ("string", "normalizedString", "token", "language", "NMTOKEN", "Name", "NCName")
+    }
+    assert {d for d in datatypes('"a b"') if "XMLSchema" in d} == {
+        iri(f"xsd:{name}") for name in ("string", "normalizedString", "token")
+    }
+    assert {d for d in datatypes('"1:a"') if "XMLSchema" in d} == {
+        iri(f"xsd:{name}") for name in ("string", "normalizedString", "token", "NMTOKEN")
+    }
+    assert datatypes("<urn:a>") == []

@@ -3,7 +3,13 @@ import re
 import numpy as np
 import pytest
 
-from semmap.nodes.perception_node.input.projection import check_intrinsics, cloud_of, is_pose
+from semmap.nodes.perception_node.input.projection import (
+    check_intrinsics,
+    cloud_of,
+    is_pose,
+    thinned,
+    thinning,
+)
 
 INTRINSICS = np.array([[100.0, 0.0, 2.0], [0.0, 100.0, 1.0], [0.0, 0.0, 1.0]])
 
@@ -97,3 +103,70 @@ def test_a_pose_is_a_rotation_and_a_position():
     assert is_pose(pose)
     for bad in (pose.T, 2 * pose, np.diag([1.0, 1.0, -1.0, 1.0]), np.zeros((4, 4)), np.full((4, 4), np.nan)):
         assert not is_pose(bad)
+
+
+@pytest.mark.parametrize(
+    ("k", "is_possible"),
+    [
+        ((64.0, 64.0, 320, 240), True),  # half the width is five focal lengths
+        ((63.9, 63.9, 320, 240), False),
+        ((64_000.0, 64_000.0, 320, 240), True),
+        ((64_010.0, 64_010.0, 320, 240), False),
+        ((525.0, 176.0, 320, 240), True),
+        ((525.0, 175.0, 320, 240), False),
+        ((176.0, 525.0, 320, 240), True),
+        ((175.0, 525.0, 320, 240), False),
+        ((200.0, 200.0, 1000, 240), True),
+        ((200.0, 200.0, 1001, 240), False),
+        ((200.0, 200.0, 320, -520), True),
+        ((200.0, 200.0, 320, -521), False),
+    ],
+)
+def test_a_pinhole_camera_has_limits(k, is_possible):
+    if is_possible:
+        check_intrinsics(pinhole(*k), 640, 480)
+    else:
+        with pytest.raises(ValueError, match="do not fit"):
+            check_intrinsics(pinhole(*k), 640, 480)
+
+
+@pytest.mark.parametrize(
+    ("k", "is_usual"),
+    [
+        ((128.0, 128.0, 320, 240), True),  # a fifth of the longer side
+        ((127.0, 127.0, 320, 240), False),
+        ((1920.0, 1920.0, 320, 240), True),
+        ((1921.0, 1921.0, 320, 240), False),
+        ((525.0, 525.0, 448, 240), True),
+        ((525.0, 525.0, 449, 240), False),
+        ((525.0, 525.0, 320, 144), True),
+        ((525.0, 525.0, 320, 143), False),
+    ],
+)
+def test_a_usual_camera_has_narrower_ones(k, is_usual):
+    assert (check_intrinsics(pinhole(*k), 640, 480) == "") == is_usual
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "step"),
+    [(640, 480, 1), (960, 480, 1), (961, 480, 2), (1920, 960, 2), (1921, 960, 3), (2, 2, 1)],
+)
+def test_a_large_image_is_thinned_until_it_has_few_pixels(width, height, step):
+    assert thinning(width, height) == step
+
+
+def test_a_thinned_image_has_the_rays_of_the_pixels_that_are_left():
+    depth = np.arange(1, 26, dtype=np.float32).reshape(5, 5)
+    rgb = np.arange(75, dtype=np.uint8).reshape(5, 5, 3)
+    whole = cloud_of(depth, rgb, INTRINSICS)
+    few = cloud_of(*thinned(depth, rgb, INTRINSICS, 2))
+    assert few.points_camera == pytest.approx(whole.points_camera[::2, ::2], abs=1e-5)
+    assert (few.colors == rgb[::2, ::2]).all()
+    assert thinned(depth, rgb, INTRINSICS, 1)[0] is depth
+
+
+def test_depth_is_valid_within_its_limits():
+    depth = np.array([[0.01, 0.011, 99.9, 100.0]], np.float32)
+    cloud = cloud_of(depth, None, INTRINSICS)
+    assert np.isfinite(cloud.points_camera[0, :, 2]).tolist() == [False, True, True, False]
+    assert (cloud.measured, cloud.organised) == (2, False)

@@ -93,3 +93,14 @@ def test_the_size_of_what_was_shown_is_known():
     assert knowing.usual_m[MUG.class_] == MUG.size_m
     assert knowing.usual_m["Cup"] == shipped().usual_m["Cup"]
     assert not any("#" in name for name in knowing.usual_m)
+
+
+@pytest.mark.parametrize(
+    ("alike", "chance"), [(1.0, 0.999), (0.9995, 0.999), (0.99, 0.99), (0.001, 0.001), (0.0009, 0.0)]
+)
+def test_nothing_is_certainly_an_exemplar_and_what_is_hardly_like_it_is_none(things, alike, chance):
+    knowing = with_exemplars(shipped(), [MUG], likely(alike))
+    votes = np.full((1, len(shipped().classes)), 1.0 / len(shipped().classes))
+    chances = knowing.exemplars.add_probabilities(features_of(things[:1]), votes)
+    assert chances[0, -1] == pytest.approx(chance)
+    assert chances.sum() == pytest.approx(1.0)

@@ -59,3 +59,46 @@ def test_when_all_of_it_is_seen_the_map_is_put_right_and_the_front_changes_nothi
     assert update.size == pytest.approx(OVEN.size_m)
     table.things = [seen("Object", *FRONT)]
     assert table.observe(20) == []
+
+
+def piece(width=0.6, depth=0.2, height=0.9, x=1.0, y=1.0):
+    return OrientedBox(at(x, y, 0.0), (width, depth, height))
+
+
+@pytest.mark.parametrize(
+    ("front", "is_one"),
+    [
+        (piece(depth=0.4), True),
+        (piece(depth=0.43), False),  # a little less than 1.4 times as deep
+        (piece(width=0.47), True),
+        (piece(width=0.46), False),  # more than a quarter narrower, as a logarithm
+        (piece(width=0.77), True),
+        (piece(width=0.78), False),
+        (piece(height=0.71), True),
+        (piece(height=0.70), False),
+        (piece(height=1.15), True),
+        (piece(height=1.16), False),
+        (piece(y=1.2), True),
+        (piece(y=1.28), True),
+        (piece(y=1.29), False),  # less than two thirds of it in the thing
+    ],
+)
+def test_the_limits_of_a_front(front, is_one):
+    assert is_front(front, OVEN) == is_one
+
+
+@pytest.mark.parametrize(
+    ("front", "thing", "is_one"),
+    [
+        (piece(0.4, 0.29, 0.4), piece(0.51, 0.51, 0.4), True),
+        (piece(0.4, 0.31, 0.4), piece(0.51, 0.51, 0.4), False),  # nearly as deep as wide
+        (piece(0.31, 0.1, 0.4), piece(0.31, 0.3, 0.4), True),
+        (piece(0.29, 0.1, 0.4), piece(0.29, 0.28, 0.4), False),  # its sides would have been seen
+        (piece(0.6, 0.1, 0.61), piece(0.6, 0.5, 0.61), True),
+        (piece(0.6, 0.1, 0.59), piece(0.6, 0.5, 0.59), False),  # its top would have been seen
+        (piece(0.5, 0.2, 0.9), piece(0.6, 0.74, 0.9), True),
+        (piece(0.5, 0.2, 0.9), piece(0.6, 0.76, 0.9), False),  # deeper than a thing with a front
+    ],
+)
+def test_which_things_have_a_front(front, thing, is_one):
+    assert is_front(front, thing) == is_one

@@ -1,3 +1,4 @@
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -71,3 +72,30 @@ def test_old_votes_are_forgotten_however_many_names_there_are():
     for number in range(1000):
         votes = votes.cast(f"a mug, frame {number}", 1.0)
     assert len(votes.weights) < 100
+
+
+@pytest.mark.parametrize(("probability", "belief"), [(0.4, "Cup"), (0.39, ANYTHING)])
+def test_a_class_is_believed_from_two_fifths_of_the_votes(probability, belief):
+    assert cast(("Cup", probability)).belief(CLASSES) == belief
+
+
+@pytest.mark.parametrize(("probability", "winner"), [(0.6, "Cup"), (0.59, None)])
+def test_a_clear_winner_has_three_fifths_of_the_votes(probability, winner):
+    assert cast(("Cup", probability)).clear_winner == winner
+    assert Votes().clear_winner is None
+
+
+def test_a_vote_loses_a_tenth_with_each_later_one():
+    votes = cast(("Cup", 0.8), ("Bottle", 0.5), ("Bottle", 0.5))
+    assert votes.weights == pytest.approx({"Cup": 0.8 * 0.81, "Bottle": 0.5 * 0.9 + 0.5})
+    assert votes.frames == pytest.approx(1.0 + 0.9 + 0.81)
+
+
+@pytest.mark.parametrize(("weight", "stays"), [(1.1e-4, True), (0.9e-4, False)])
+def test_a_vote_of_nearly_no_weight_is_dropped(weight, stays):
+    assert ("Cup" in Votes({"Cup": weight}, 1.0).cast("Bottle", 0.5).weights) == stays
+
+
+def test_of_equally_deep_classes_the_one_with_more_votes_is_believed():
+    assert cast(("Bottle", 0.9), ("Book", 0.9)).belief(CLASSES) == "Book"
+    assert cast(("Book", 0.9), ("Bottle", 0.9)).belief(CLASSES) == "Bottle"
