@@ -13,6 +13,7 @@ import click
 
 from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import print_error, print_json
+from semmap.nodes.extern.cli.detector_options import detector_options, require_detector
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.output.show import console
 from semmap.nodes.extern.cli.output.show_perceived import as_records, as_table, show_frame
@@ -79,10 +80,11 @@ def _path_option(name: str, metavar: str, help: str, *also: str) -> Callable[[An
     "FILE",
     "Masks of a detector (COCO, labelme, YOLO, label image, .npz); with --frames, their name in each folder.",
 )
+@detector_options
 @_path_option(
-    "--label-map", "FILE.json", 'With --masks: labels and their classes, as in {"coffee mug": "Cup"}.'
+    "--label-map", "FILE.json", 'Labels of the detector and their classes, as in {"coffee mug": "Cup"}.'
 )
-@click.option("--masks-only", is_flag=True, help="With --masks: report only the objects in the masks.")
+@click.option("--masks-only", is_flag=True, help="Report only the objects that the detector found.")
 @click.option("--fit", is_flag=True, help="Fit class models to the objects, for full poses (needs Open3D).")
 @_path_option("--data", "DIR", "Also use the exemplars in this data folder (semmap learn --data).")
 @click.option("--format", type=click.Choice(["table", "json"]), default="table", show_default=True)
@@ -100,6 +102,7 @@ def perceive(
     fit: bool,
     data: Path | None,
     format: str,
+    **model: Any,
 ) -> None:
     """Find the objects in point clouds, depth images or datasets.
 
@@ -110,7 +113,7 @@ def perceive(
     extras.require("semmap perceive", "perception")
     if fit:
         _require_open3d()
-    detector = _detector(masks, label_map, masks_only=masks_only)
+    detector = _detector(masks, label_map, masks_only=masks_only, each_core=frames is not None, **model)
     if frames is not None:
         if files or any(option is not None for option in (intrinsics, up, pose)):
             raise errors.BadRequest(
@@ -146,7 +149,8 @@ def perceive(
         for note in sight.notes:
             print_error(f"note: {file}: {note}")
         if detector is not None:
-            masks_found = detector.masks_of(detector.file, sight.labels.shape)
+            height, width = sight.labels.shape
+            masks_found = detector.masks_of(cloud, (height, width))
             if unknown_here := detector.labels.unknown([masks_found]):
                 print_error(wording.unknown_labels(unknown_here))
             sight = with_masks(sight, masks_found)
@@ -211,12 +215,29 @@ def _learnt(data: Path | None) -> RecognitionModel:
     return with_images(ExemplarStore(data / FILENAME, shipped()).learnt)
 
 
-def _detector(masks: Path | None, label_map: Path | None, *, masks_only: bool) -> Detector | None:
-    """Return the results of an external detector, if there are any."""
-    if masks is None:
+def _detector(
+    masks: Path | None,
+    label_map: Path | None,
+    *,
+    masks_only: bool,
+    each_core: bool,
+    detector: Path | None,
+    detector_names: Path | None,
+    detector_layout: str | None,
+    detector_score: float | None,
+) -> Detector | None:
+    """Return the results of a detector, or its model, if there are any.
+
+    `each_core`: frames are processed on all cores, and the model on one.
+    """
+    require_detector(detector, detector_names, detector_layout, detector_score)
+    if masks is not None and detector is not None:
+        raise errors.BadRequest("--masks and --detector exclude each other; remove one of them")
+    if masks is None and detector is None:
         if label_map is not None or masks_only:
-            raise errors.BadRequest("--label-map and --masks-only require --masks")
+            raise errors.BadRequest("--label-map and --masks-only require --masks or --detector")
         return None
+    from semmap.nodes.perception_node.detection.detector_model import LEAST_SCORE, DetectorModel
     from semmap.nodes.perception_node.detector import Detector
     from semmap.nodes.perception_node.recognition.detector_labels import LabelMap
     from semmap.nodes.perception_node.recognition.recognition_model import shipped
@@ -226,7 +247,13 @@ def _detector(masks: Path | None, label_map: Path | None, *, masks_only: bool) -
     if untrained := sorted({name for name in classes.values() if not labels.is_learnt(name)}):
         hint = errors.did_you_mean(untrained[0], shipped().ancestors)
         print_error(f"note: classes of the label map without training data: {wording.few(untrained)}{hint}")
-    return Detector(masks, labels, masks_only)
+    if detector is None:
+        return None if masks is None else Detector(masks, labels, masks_only)
+    least = LEAST_SCORE if detector_score is None else detector_score
+    threads = 1 if each_core else 0
+    model = DetectorModel(detector, detector_names, detector_layout or "", least, threads)
+    print_error(f"note: {model.file}: layout {model.layout}, {wording.counted(len(model.names), 'class')}")
+    return Detector(model, labels, masks_only)
 
 
 def _dataset(
