@@ -24,6 +24,10 @@ DETECTOR_LAYOUTS = (
     "rfdetr",
 )
 """Names of the layouts of a detector's outputs that perception decodes."""
+COCO: Final = "coco"
+"""Names the classes of COCO instead of a file with names."""
+LEAST_SCORE = 0.3
+"""Minimum score of a detection, by default."""
 
 
 class Observation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

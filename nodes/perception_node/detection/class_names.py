@@ -7,9 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from semmap.schemas.errors import BadFile
-
-COCO_WORD = "coco"
-"""Names the classes of COCO instead of a file."""
+from semmap.schemas.perception import COCO
 
 _COCO = (
     "person, bicycle, car, motorcycle, airplane, bus, train, truck, boat, traffic light, fire hydrant, stop"
@@ -68,7 +66,7 @@ def names_of(
         count = f"its {classes} classes" if classes else "its classes"
         raise BadFile(
             f"{file} does not name {count}; add --detector-names FILE.txt, one name per line, or"
-            f" --detector-names {COCO_WORD}"
+            f" --detector-names {COCO}"
         )
     if classes and len(named) not in (classes, classes - 1):
         raise BadFile(f"{file} has {classes} classes, but there are {len(named)} names; each class needs one")

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from semmap.nodes.perception_node.detection.class_names import (
-    COCO_WORD,
     coco_names,
     names_of,
     read_names,
@@ -23,9 +22,7 @@ from semmap.nodes.perception_node.detection.model_input import Bytes, Floats, Pl
 from semmap.nodes.perception_node.detection.selection import select
 from semmap.nodes.perception_node.input.masks import DetectorLabel, Masks
 from semmap.schemas.errors import BadFile
-
-LEAST_SCORE = 0.3
-"""Minimum score of a detection, by default."""
+from semmap.schemas.perception import COCO, LEAST_SCORE
 
 _USUAL_SIDE = 640
 """Width and height of an input that takes any size [pixel]."""
@@ -69,7 +66,7 @@ class DetectorModel:
         self.layout = self._layout.name
         given = None
         if names is not None:
-            given = coco_names(classes) if str(names) == COCO_WORD else read_names(names)
+            given = coco_names(classes) if str(names) == COCO else read_names(names)
         metadata = self._session.get_modelmeta().custom_metadata_map
         self.names = names_of(given, metadata, classes, self.file)
 

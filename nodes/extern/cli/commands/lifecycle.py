@@ -17,6 +17,7 @@ from semmap.nodes import bus
 from semmap.nodes.extern.cli.angles import ANGLE
 from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import ENDPOINT, json_option, print_error, print_result
+from semmap.nodes.extern.cli.detector_options import detector_options, detector_settings
 from semmap.nodes.extern.cli.ontology_options import (
     TBoxFile,
     import_option,
@@ -224,12 +225,13 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         show_default=True,
         help="What to do with perceived entities that are no longer observed.",
     )
+    @detector_options
     @click.option(
         "--label-map",
         type=click.Path(path_type=Path),
         default=None,
         metavar="FILE.json",
-        help='Labels of an external detector and their classes, as in {"coffee mug": "Cup"}.',
+        help='Labels of a detector and their classes, as in {"coffee mug": "Cup"}.',
     )
     @click.option(
         "--class-map",
@@ -354,6 +356,8 @@ def _settings(
     listen: str, connect: tuple[str, ...], reset_world: bool, window: bool, models: Path | None,
     camera_hz: float | None,
     camera_size: tuple[int, int], camera_noise: bool, perception: bool, when_gone: str,
+    detector: Path | None, detector_names: Path | None, detector_layout: str | None,
+    detector_score: float | None,
     label_map: Path | None, class_map: Path | None, no_sim: bool, no_record: bool, record_keep: str | None,
     only: str | None, single: bool, secure: Path | None,
     zenoh_config: Path | None, insecure: bool, namespace: str,
@@ -422,6 +426,9 @@ def _settings(
         "perception": perception,
         "when_gone": when_gone,
         "class_map": _class_map(class_map, before),
+        **detector_settings(
+            detector, detector_names, detector_layout, detector_score, perception=perception or single
+        ),
         "label_map": {} if label_map is None else read_label_map(label_map),
         "sim": not no_sim,
         "record": not no_record,

@@ -13,11 +13,11 @@ import click
 
 from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import print_error, print_json
-from semmap.nodes.extern.cli.detector_options import detector_options, require_detector
+from semmap.nodes.extern.cli.detector_options import detector_of, detector_options
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.output.show import console
 from semmap.nodes.extern.cli.output.show_perceived import as_records, as_table, show_frame
-from semmap.nodes.extern.files import read_label_map, write_atomically
+from semmap.nodes.extern.files import write_atomically
 from semmap.nodes.runtime import extras
 from semmap.schemas import errors, wording
 from semmap.schemas.perception import FrameRow
@@ -78,7 +78,7 @@ def _path_option(name: str, metavar: str, help: str, *also: str) -> Callable[[An
 @_path_option(
     "--masks",
     "FILE",
-    "Masks of a detector (COCO, labelme, YOLO, label image, .npz); with --frames, their name in each folder.",
+    "Masks of a detector (COCO, labelme, CVAT, YOLO, image, .npz); with --frames, their name in each folder.",
 )
 @detector_options
 @_path_option(
@@ -113,7 +113,7 @@ def perceive(
     extras.require("semmap perceive", "perception")
     if fit:
         _require_open3d()
-    detector = _detector(masks, label_map, masks_only=masks_only, each_core=frames is not None, **model)
+    detector = detector_of(masks, label_map, masks_only=masks_only, each_core=frames is not None, **model)
     if frames is not None:
         if files or any(option is not None for option in (intrinsics, up, pose)):
             raise errors.BadRequest(
@@ -213,47 +213,6 @@ def _learnt(data: Path | None) -> RecognitionModel:
             f"no exemplars in {data}; to add one: semmap learn CLASS --frames DIR --data {data}"
         )
     return with_images(ExemplarStore(data / FILENAME, shipped()).learnt)
-
-
-def _detector(
-    masks: Path | None,
-    label_map: Path | None,
-    *,
-    masks_only: bool,
-    each_core: bool,
-    detector: Path | None,
-    detector_names: Path | None,
-    detector_layout: str | None,
-    detector_score: float | None,
-) -> Detector | None:
-    """Return the results of a detector, or its model, if there are any.
-
-    `each_core`: frames are processed on all cores, and the model on one.
-    """
-    require_detector(detector, detector_names, detector_layout, detector_score)
-    if masks is not None and detector is not None:
-        raise errors.BadRequest("--masks and --detector exclude each other; remove one of them")
-    if masks is None and detector is None:
-        if label_map is not None or masks_only:
-            raise errors.BadRequest("--label-map and --masks-only require --masks or --detector")
-        return None
-    from semmap.nodes.perception_node.detection.detector_model import LEAST_SCORE, DetectorModel
-    from semmap.nodes.perception_node.detector import Detector
-    from semmap.nodes.perception_node.recognition.detector_labels import LabelMap
-    from semmap.nodes.perception_node.recognition.recognition_model import shipped
-
-    classes = read_label_map(label_map) if label_map is not None else {}
-    labels = LabelMap(shipped(), classes)
-    if untrained := sorted({name for name in classes.values() if not labels.is_learnt(name)}):
-        hint = errors.did_you_mean(untrained[0], shipped().ancestors)
-        print_error(f"note: classes of the label map without training data: {wording.few(untrained)}{hint}")
-    if detector is None:
-        return None if masks is None else Detector(masks, labels, masks_only)
-    least = LEAST_SCORE if detector_score is None else detector_score
-    threads = 1 if each_core else 0
-    model = DetectorModel(detector, detector_names, detector_layout or "", least, threads)
-    print_error(f"note: {model.file}: layout {model.layout}, {wording.counted(len(model.names), 'class')}")
-    return Detector(model, labels, masks_only)
 
 
 def _dataset(
