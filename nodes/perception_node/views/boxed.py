@@ -10,8 +10,9 @@ from semmap.nodes.perception_node.input.masks import Box, Masks
 FEWEST_POINTS = 20
 """A mask with fewer points on one surface is not used."""
 
-_WITHIN = 0.8
-"""A segment with this share of its pixels in a box belongs to it; of another one, only the pixels inside."""
+_WITHIN, _PARTLY = 0.8, 0.25
+"""A segment with the first share of its pixels in a box belongs to it; from the second on, those inside do:
+the segment may be of two things that touch. A table below a thing has less of its pixels there."""
 _FITS = 0.35
 """Minimum overlap of a box with the one around the segments in it, as a share of their union."""
 _GAIN = 0.1
@@ -39,8 +40,8 @@ def _pixels(free: NDArray[np.int32], sizes: NDArray[np.int64], box: Box) -> NDAr
     inside = np.zeros(free.shape, bool)
     inside[box[1] : box[3], box[0] : box[2]] = True
     counts = np.bincount(free[inside], minlength=len(sizes))
-    near = [int(n) for n in np.flatnonzero(counts >= FEWEST_POINTS) if n]
-    parts = {n: (free == n) & (inside | bool(counts[n] >= _WITHIN * sizes[n])) for n in near}
+    near = np.flatnonzero((counts >= FEWEST_POINTS) & (counts >= _PARTLY * sizes))
+    parts = {int(n): (free == n) & (inside | bool(counts[n] >= _WITHIN * sizes[n])) for n in near if n}
     around = {n: _box_around(part) for n, part in parts.items()}
     own, best = np.zeros(free.shape, bool), 0.0
     whole: Box | None = None

@@ -34,6 +34,10 @@ def test_of_a_segment_that_goes_on_outside_only_the_part_in_the_box_counts():
     assert own[:20, 40:60].all()
 
 
+def test_a_large_surface_below_or_behind_a_box_does_not_count():
+    assert not found((50, 2, 60, 12)).any()
+
+
 def test_a_box_without_a_segment_has_no_pixels():
     assert not found((40, 30, 70, 55)).any()
 
