@@ -84,7 +84,7 @@ drive-picture: setup  ## Draw what cameras saw in the drive that `make demo` has
 relations-picture: setup  ## Draw the situations of docs/relations.md
 	$(BIN)/python -m benchmarks.relations.picture docs/relations.png
 
-perceive-picture: setup  ## Draw what perception says of a simulated table, for docs/perception.md
+perceive-picture: setup  ## Draw the classes that perception reports of a simulated table
 	$(BIN)/python -m benchmarks.perception.perceive_picture docs/perceive.png
 
 foreign-picture: setup  ## Draw what foreign things are taken for by what learnt from all others in dist/parts

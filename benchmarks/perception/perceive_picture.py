@@ -1,4 +1,4 @@
-"""What `semmap perceive` says of a simulated table: `python -m benchmarks.perception.perceive_picture OUT.png`.
+"""A simulated table as perception sees it: `python -m benchmarks.perception.perceive_picture OUT.png`.
 
 The things are our own models at other sizes and in other colours, some of them touching; the depth has the
 noise of a Kinect. With `--frame DIR`, the frame is kept there, as `semmap perceive --frames DIR` reads it.
@@ -39,7 +39,7 @@ _THINGS = {
     "knife": (0.28, -0.36, 1.4, 1.0),
     "toaster": (-0.25, -0.24, 1.57, 0.6),
 }
-"""Model: x, y [m], yaw [rad], and its size relative to the model's; the toaster is small, between its neighbours."""
+"""Model: x, y [m], yaw [rad], and its size relative to the model's."""
 _COLOUR, _DARK = "white", "black"
 
 

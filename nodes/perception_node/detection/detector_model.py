@@ -56,7 +56,9 @@ class DetectorModel:
         self._least = least_score
         self._session = _session(path, threads or max(1, (os.cpu_count() or 1) // 2))
         self._lock = threading.Lock()
+        metadata = self._session.get_modelmeta().custom_metadata_map
         try:
+            _require_task(metadata.get("task", ""))
             self._image, self._type, self._size = _image_input(self._session.get_inputs())
             outputs = self._run(np.zeros((1, 3, *self._size), np.float32))
             self._layout = layout_of(outputs, self._size, layout)
@@ -67,7 +69,6 @@ class DetectorModel:
         given = None
         if names is not None:
             given = coco_names(classes) if str(names) == COCO else read_names(names)
-        metadata = self._session.get_modelmeta().custom_metadata_map
         self.names = names_of(given, metadata, classes, self.file)
 
     def __call__(self, colours: Bytes) -> Masks:
@@ -138,6 +139,12 @@ def _session(path: Path, threads: int) -> Any:
         return onnxruntime.InferenceSession(str(path), options, providers=there)
     except Exception as error:  # its classes are not public
         raise BadFile(f"{path} is not a valid ONNX model: {_one_line(error)}") from None
+
+
+def _require_task(task: str) -> None:
+    """Raise ValueError for a model that Ultralytics trained for another task, in the same layout."""
+    if task and task not in ("detect", "segment"):
+        raise ValueError(f"it was trained for the task '{task}'; use a model for detection or segmentation")
 
 
 def _image_input(inputs: list[Any]) -> tuple[str, Any, Size]:

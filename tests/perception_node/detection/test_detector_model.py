@@ -136,9 +136,26 @@ def test_a_segmenter_gives_masks_inside_of_its_boxes(tmp_path):
     assert abs(rows.max() + 1 - 240) <= 2
 
 
+def test_a_segmenter_may_select_its_things_itself(tmp_path):
+    rows = np.concatenate([yolo_nms(), queries(32)], axis=2)
+    rows[0, 0, 6] = 1.0
+    protos = np.full((1, 32, 160, 160), 5.0, np.float32)
+    layout, masks = found_by(write_model(tmp_path / "seg.onnx", {"output0": rows, "output1": protos}), "coco")
+    assert layout == "yolo-nms"
+    assert np.argwhere(masks.labels).min(axis=0).tolist() == [BOX[1], BOX[0]]
+    assert np.count_nonzero(masks.labels) == 100 * 60
+
+
+def test_a_model_for_another_task_is_rejected_though_its_shape_fits(tmp_path):
+    rows = {"output0": yolov8([(*PADDED, 1, 0.9)], classes=3)}
+    path = write_model(tmp_path / "m.onnx", rows, metadata={"names": "['a', 'b']", "task": "obb"})
+    with pytest.raises(BadFile, match="it was trained for the task 'obb'; use a model for detection"):
+        DetectorModel(path)
+
+
 def test_masks_of_rfdetr_cover_the_whole_input(tmp_path):
-    masks = np.full((1, 300, 160, 160), -5.0, np.float32)
-    masks[0, 7, :, 80:] = 5.0
+    masks = np.full((1, 300, 40, 40), -5.0, np.float32)
+    masks[0, 7, :, 20:] = 5.0
     outputs = {"dets": shares(), "labels": logits(91, 47), "masks": masks}
     _, found = found_by(write_model(tmp_path / "seg.onnx", outputs))
     rows, columns = np.nonzero(found.labels)
