@@ -1,6 +1,6 @@
 # Everything that one does daily. Needs Debian's python3 (3.11), python3-venv, make and git; no compiler.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-pure test-long test-flaky test-faults mutants lint format docs diagrams pictures schema shapes models relations-picture drive-picture foreign-picture train-perception wheel clean
+.PHONY: help setup demo test test-pure test-long test-flaky test-faults mutants lint format docs diagrams pictures schema shapes models relations-picture drive-picture foreign-picture perceive-picture train-perception wheel clean
 
 UV_VERSION := 0.13.8
 UV := .tools/bin/uv
@@ -83,6 +83,9 @@ drive-picture: setup  ## Draw what cameras saw in the drive that `make demo` has
 
 relations-picture: setup  ## Draw the situations of docs/relations.md
 	$(BIN)/python -m benchmarks.relations.picture docs/relations.png
+
+perceive-picture: setup  ## Draw the classes that perception reports of a simulated table
+	$(BIN)/python -m benchmarks.perception.perceive_picture docs/perceive.png
 
 foreign-picture: setup  ## Draw what foreign things are taken for by what learnt from all others in dist/parts
 	$(BIN)/python -m benchmarks.perception.foreign_picture docs/foreign.png --things $${SEMMAP_DATA:-../shared/data}/foreign --samples dist/parts

@@ -13,6 +13,23 @@ DISPLACED: Final = "something else is in its place"
 """The conflicts of an entity that perception observed to be absent, but may not remove."""
 
 
+DETECTOR_LAYOUTS = (
+    "yolov8",
+    "yolo-nms",
+    "yolov5",
+    "yolox",
+    "rtdetr",
+    "rtdetr-logits",
+    "rtdetr-ultralytics",
+    "rfdetr",
+)
+"""Names of the layouts of a detector's outputs that perception decodes."""
+COCO: Final = "coco"
+"""Names the classes of COCO instead of a file with names."""
+LEAST_SCORE = 0.3
+"""Minimum score of a detection, by default."""
+
+
 class Observation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One observation of an object.
 

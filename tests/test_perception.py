@@ -7,6 +7,7 @@ import os
 import re
 import signal
 
+import numpy as np
 import pytest
 
 from semmap.nodes import bus
@@ -24,6 +25,7 @@ from semmap.schemas.scenes import (
     Spawned,
 )
 from tests.conftest import running, until
+from tests.perception_node.detection.models import write_model, yolov8
 from tests.recorder.files import column
 
 TOP_Z = 0.74
@@ -91,6 +93,39 @@ def test_a_thing_put_on_the_table_is_known_moved_gone_and_recorded(tmp_path, mon
     assert column(recording, "/map/perception/cloud", "Points3D:positions")
     for camera in ("left", "right"):
         assert column(recording, f"/map/perception/cameras/{camera}", "EncodedImage:blob")
+
+
+@pytest.mark.long
+def test_a_detector_s_model_labels_things_in_its_own_words_and_they_are_found_by_them(tmp_path):
+    pytest.importorskip("onnxruntime")
+    world, model = tmp_path / "world.xml", tmp_path / "drill.onnx"
+    world.write_text(re.sub("<camera name=.right.*/>", "", WORLD))
+    names = {"names": "['power drill', 'container']"}
+    seen = [(*box_in_image(0.1, 0.05, 0.25), 0, 0.9), (*box_in_image(-0.25, 0.1, 0.25), 1, 0.9)]
+    write_model(model, {"output0": yolov8(seen, classes=2)}, metadata=names)
+    words = ("--world", world, "--truth", "perceived", "--perception", "--detector", model)
+    with running(tmp_path, *words) as system, system.client() as client:
+        put(client, "a_bottle", "bottle", 0.1, 0.05)
+        put(client, "another", "bottle", -0.25, 0.1)
+        drill = until(lambda: there(client, 0.1, 0.05), "it becomes an entity")
+        until(lambda: there(client, -0.25, 0.1), "the other, too")
+        assert drill.preferred_reference == "power drill"
+        assert [one.entity for one in client.find("the power drill").candidates] == [drill.name]
+        assert any("detector drill.onnx" in node.detail for node in client.status().nodes)
+
+
+def box_in_image(x, y, height_m):
+    """Middle and size of a bottle on the table in the left camera's image, padded to 640 x 640."""
+    right, up = np.array([0.707, -0.707, 0.0]), np.array([0.4, 0.4, 0.82])
+    right, up = right / np.linalg.norm(right), up / np.linalg.norm(up)
+    corners = np.array(
+        [(x + dx, y + dy, TOP_Z + z) for dx in (-0.04, 0.04) for dy in (-0.04, 0.04) for z in (0, height_m)]
+    ) - [-0.9, -0.9, 1.6]
+    focal = 240 / math.tan(math.radians(22.5))
+    depth = corners @ -np.cross(right, up)
+    columns, rows = 320 + focal * (corners @ right) / depth, 240 - focal * (corners @ up) / depth + 80
+    low, high = np.array([columns.min(), rows.min()]), np.array([columns.max(), rows.max()])
+    return (*((low + high) / 2), *(high - low))
 
 
 def there(client, x, y):

@@ -51,7 +51,7 @@ class ExemplarCommands:
             found = self._dispatcher.map.classes.spatial(word)
         except errors.UnknownClass as error:
             raise errors.UnknownClass(
-                f"{error.text}; to use a new class, first add it to the TBox: semmap load --tbox FILE"
+                f"{error.text}; to add it to the TBox, below Object: semmap learn --new-class"
             ) from None
         if found.place:
             raise errors.UnknownClass(f"'{found.name}' is a class of places; only objects can be learned")

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Literal
 
 from semmap.nodes.bus import Network
+from semmap.schemas.perception import LEAST_SCORE
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,16 @@ class TrackingConfig:
 
 
 @dataclass(frozen=True)
+class DetectorConfig:
+    """The model of a detector: the arguments of `DetectorModel`."""
+
+    model: Path
+    names: Path | None = None
+    layout: str = ""
+    least_score: float = LEAST_SCORE
+
+
+@dataclass(frozen=True)
 class PerceptionConfig:
     """Settings of the perception node."""
 
@@ -71,3 +82,5 @@ class PerceptionConfig:
     """Maps the labels of an external detector to classes. Class names need no entry."""
     lessons: Path | None = None
     """The file of exemplars. Without it, exemplars are lost at exit."""
+    detector: DetectorConfig | None = None
+    """A detector that runs on the colour images of all cameras without masks of an external one."""

@@ -19,7 +19,7 @@ from semmap.nodes.perception_node.fitting.model_surfaces import ClassSurfaces
 from semmap.nodes.perception_node.input.files.frame_folders import FileFrame, read_frame
 from semmap.nodes.perception_node.input.masks import Masks
 from semmap.nodes.perception_node.pipeline import FrameResult, RecognitionModel, observe_clouds
-from semmap.nodes.perception_node.views.masked import FEWEST_POINTS
+from semmap.nodes.perception_node.views.boxed import FEWEST_POINTS
 from semmap.schemas.errors import SemmapError
 from semmap.schemas.perception import DroppedInFrame, FrameRow, Observation, SeenInFrame
 
@@ -83,7 +83,7 @@ def _perceive_folder(
     frame = read_frame(folder)
     masks = None
     if detector is not None:
-        masks = detector.masks_of(folder / detector.file, frame.shape).thinned(frame.step)
+        masks = detector.masks_of(frame.cloud, frame.shape, frame.step, folder)
     seen = observe_clouds([frame.cloud], learnt, [masks], None if detector is None else detector.labels)
     labels = _whole(seen.labels[0], frame)
     boxes = _boxes(labels, len(seen.observations.observations))
@@ -125,9 +125,15 @@ def _unused_masks(seen: FrameResult, masks: Masks | None, frame: FileFrame) -> I
     boxes = _boxes(_whole(masks.labels, frame), len(masks.detector_labels))
     for number in seen.unused_masks[0]:
         label = masks.detector_labels[number - 1]
-        name = f"mask {number}" if label is None else f"mask {number} ('{label.label}')"
+        kind = "box" if masks.boxes else "mask"
+        name = f"{kind} {number}" if label is None else f"{kind} {number} ('{label.label}')"
+        fault = f"covers fewer than {FEWEST_POINTS} points of one surface"
+        if masks.boxes:
+            left, top, right, bottom = (frame.step * side for side in masks.boxes[number - 1])
+            boxes[number - 1] = left, top, min(right, frame.shape[1]), min(bottom, frame.shape[0])
+            fault = "has no segment that fits it: the thing is flat, hidden, or without depth"
         yield DroppedInFrame(
-            reason=f"{name} covers fewer than {FEWEST_POINTS} points of one surface",
+            reason=f"{name} {fault}",
             box_px=boxes[number - 1],
             points=int(np.count_nonzero((masks.labels == number) & (frame.cloud.points_camera[..., 2] > 0))),
         )

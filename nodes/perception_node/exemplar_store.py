@@ -127,8 +127,8 @@ def known_class(word: str, ancestors: Mapping[str, Sequence[str]]) -> str:
     if (found := plain.get(_plain(word))) is not None:
         return found
     raise BadRequest(
-        f"unknown class '{word}'{did_you_mean(word, ancestors)}; for a class of your own TBox,"
-        " start the system (semmap up --tbox FILE --perception) and omit --data"
+        f"unknown class '{word}'{did_you_mean(word, ancestors)}; to make a new class below Object, add"
+        " --new-class; for one of your own TBox, start the system (semmap up --tbox FILE) and omit --data"
     )
 
 

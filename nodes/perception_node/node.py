@@ -18,6 +18,7 @@ from msgspec import structs
 
 from semmap.nodes import bus
 from semmap.nodes.perception_node.config import PerceptionConfig
+from semmap.nodes.perception_node.detection.detector_model import DetectorModel
 from semmap.nodes.perception_node.exemplar_commands import ExemplarCommands
 from semmap.nodes.perception_node.exemplar_store import ExemplarStore
 from semmap.nodes.perception_node.fitting.fit import Fit, available
@@ -50,7 +51,7 @@ from semmap.nodes.runtime.map_replica import MapReplica
 from semmap.schemas import codec, errors, keys, wording
 from semmap.schemas.commands import Add, Command, LastSeen
 from semmap.schemas.commits import Effects
-from semmap.schemas.entities import Size
+from semmap.schemas.entities import ClassInfo, Size
 from semmap.schemas.errors import UnknownName
 from semmap.schemas.perception import Observations
 from semmap.schemas.replies import Sighting
@@ -80,16 +81,19 @@ class Perception:
         exemplars: ExemplarStore | None = None,
         taught: Callable[[RecognitionModel], None] = lambda _: None,
         fit: FitTo | None = None,
+        on_classes: Callable[[Sequence[ClassInfo]], None] = lambda _: None,
     ) -> None:
         """Register subscribers and start the worker threads.
 
         `look(clouds, masks)` processes the clouds of one moment and a detector's masks. `usual_m` are the
         typical sizes of classes. `taught` is called when the exemplars change. `fit` aligns the model of a
-        class with a thing; without it, there are no full poses.
+        class with a thing; without it, there are no full poses. `on_classes` is called with the classes of
+        each snapshot of the map.
         """
         self._node = node
         self._config = config
         self._usual_m = usual_m
+        self._on_classes = on_classes
         self._map = MapReplica[Effects]()
         self._classes = ClassHierarchy()
         self._tracks = Tracks()
@@ -161,6 +165,8 @@ class Perception:
             self._cloud.put(codec.encode(cloud), encoding=codec.encoding_of(cloud))
         without = "" if self._fits else "; no full poses without Open3D"
         without += "" if images_are_available() else "; no image features without onnxruntime"
+        if self._config.detector is not None:
+            without += f"; detector {self._config.detector.model.name}"
         self._node.describe(summary(clouds, len(seen.observations), took_s) + without)
 
     def _ask_for_fit(self, seen: Observations, clouds: Sequence[Cloud], found: FrameResult) -> None:
@@ -263,6 +269,7 @@ class Perception:
 
     def _on_map(self, begun: SnapshotLoaded) -> None:
         self._classes = hierarchy_of(begun.classes, self._usual_m)
+        self._on_classes(begun.classes)
         self._sent_commit = min(self._sent_commit, self._map.seq)
         self._node.ready("no camera frames yet")
 
@@ -283,10 +290,22 @@ def run(config: PerceptionConfig) -> None:
     """Run the node until it is stopped. Raises BadFile if a model of perception cannot be read."""
     learnt = with_images(shipped(), live=True)
     exemplars = ExemplarStore(config.lessons, learnt)
+    detector = None
+    if (of := config.detector) is not None:
+        detector = DetectorModel(of.model, of.names, of.layout, of.least_score)
     with open_node("perception_node", config.network) as node:
-        observer = Observer(learnt, LabelMap(learnt, config.labels))
+        observer = Observer(learnt, LabelMap(learnt, config.labels), detector)
         fit = FitToModels(shipped_surfaces()) if available() else None
-        perception = Perception(node, config, observer, learnt.usual_m, exemplars, observer.set_model, fit)
+        perception = Perception(
+            node,
+            config,
+            observer,
+            learnt.usual_m,
+            exemplars,
+            observer.set_model,
+            fit,
+            lambda classes: observer.set_labels(LabelMap(learnt, config.labels, classes)),
+        )
         try:
             node.run()
         finally:

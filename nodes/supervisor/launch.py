@@ -197,13 +197,20 @@ def _sim_node(settings: Settings) -> None:
 
 
 def _perception_node(settings: Settings) -> None:
-    from semmap.nodes.perception_node.config import PerceptionConfig, TrackingConfig
+    from semmap.nodes.perception_node.config import DetectorConfig, PerceptionConfig, TrackingConfig
     from semmap.nodes.perception_node.exemplar_store import FILENAME
     from semmap.nodes.perception_node.node import run
 
     tracking = TrackingConfig(when_gone=settings.when_gone)
     lessons = Path(settings.data) / FILENAME
-    run(PerceptionConfig(tracking, settings.network("perception_node"), settings.label_map, lessons))
+    detector = None
+    if settings.detector is not None:
+        names = None if settings.detector_names is None else Path(settings.detector_names)
+        detector = DetectorConfig(
+            Path(settings.detector), names, settings.detector_layout, settings.detector_score
+        )
+    network = settings.network("perception_node")
+    run(PerceptionConfig(tracking, network, settings.label_map, lessons, detector))
 
 
 def _recorder(settings: Settings) -> None:

@@ -16,6 +16,7 @@ from semmap.schemas.endpoints import ALL_ROBOTS, parse_endpoint, robot_name
 from semmap.schemas.entities import Metres, Name, Radians
 from semmap.schemas.errors import BadRequest
 from semmap.schemas.keys import ROUTER, WEB
+from semmap.schemas.perception import LEAST_SCORE
 
 _LIMIT = re.compile("[1-9][0-9]{0,5}(h|d|MB|GB)")
 ANY_PORT = "tcp/127.0.0.1:0"
@@ -103,7 +104,15 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     class_map: dict[str, str] = {}
     """Maps names of bodies of the world file to classes."""
     label_map: dict[str, str] = {}
-    """Maps labels of an external detector to classes."""
+    """Maps labels of a detector to classes."""
+    detector: str | None = None
+    """The file of a detector's model, which perception runs on colour images."""
+    detector_names: str | None = None
+    """The file with the names of its classes, or `coco`; None for those in the model."""
+    detector_layout: str = ""
+    """The layout of its outputs; empty to recognise it."""
+    detector_score: Annotated[float, Meta(ge=0.0, le=1.0)] = LEAST_SCORE
+    """The minimum score of its detections."""
     web: bool = False
     """Whether the web page runs beside the nodes."""
     web_port: Annotated[int, Meta(ge=0, le=65_535)] = 8080

@@ -55,7 +55,7 @@ def test_an_exemplar_is_forwarded_with_its_class_of_the_tbox(shown):
 @pytest.mark.parametrize(
     ("command", "error", "said"),
     [
-        (Learn(class_="Cupp", entity="cup1"), errors.UnknownClass, "did you mean Cup.*load --tbox FILE"),
+        (Learn(class_="Cupp", entity="cup1"), errors.UnknownClass, "did you mean Cup.*learn --new-class"),
         (Learn(class_="Kitchen", entity="cup1"), errors.UnknownClass, "is a class of places"),
         (Learn(class_="Pose", entity="cup1"), errors.UnknownClass, "not a spatial class"),
         (Learn(class_="Cup", entity="cup2"), errors.UnknownName, "no entity is named 'cup2'"),

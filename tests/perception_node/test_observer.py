@@ -1,8 +1,14 @@
 from dataclasses import replace
 
+import numpy as np
+import pytest
+
+from semmap.nodes.perception_node.detector import detected
+from semmap.nodes.perception_node.input.masks import DetectorLabel, Masks
 from semmap.nodes.perception_node.observer import Observer
 from semmap.nodes.perception_node.pipeline import observe_clouds
 from semmap.nodes.perception_node.recognition.recognition_model import shipped
+from semmap.schemas.errors import BadFile
 from tests.perception_node.scenes import shot
 
 
@@ -13,3 +19,32 @@ def test_cameras_that_stand_still_see_the_same_at_every_look():
     assert first.observations == second.observations == observe_clouds(clouds, shipped()).observations
     assert second.remembered.segments == ()
     assert not second.camera_moves
+
+
+class Model:
+    """A detector of spoons, which are everywhere."""
+
+    file = "spoons.onnx"
+
+    def __call__(self, colours):
+        height, width = colours.shape[:2]
+        return Masks(np.ones((height, width), np.int32), (DetectorLabel("spoon", 0.9),), alone=True)
+
+
+def test_a_model_runs_on_the_clouds_without_masks():
+    observer = Observer(shipped(), detector=Model())
+    clouds = list(shot().clouds)
+    own = Masks(np.zeros(clouds[0].points_camera.shape[:2], np.int32), (), alone=True)
+    both = observer(clouds).observations.observations
+    assert {one.labelled for one in both} == {True}
+    assert observer(clouds, [own, own]).observations.observations == ()
+
+
+def test_a_model_needs_an_image():
+    (cloud, _) = shot().clouds
+    with pytest.raises(BadFile, match=r"spoons.onnx needs a colour image, and the cloud has no colours"):
+        detected(Model(), replace(cloud, colors=None))
+    row = cloud.points_camera.reshape(1, -1, 3)
+    flat = replace(cloud, points_camera=row, colors=cloud.colors.reshape(1, -1, 3))
+    with pytest.raises(BadFile, match="has no rows and columns of an image; remove --detector"):
+        detected(Model(), flat)

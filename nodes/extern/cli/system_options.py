@@ -12,6 +12,7 @@ import click
 from semmap.nodes import bus
 from semmap.nodes.extern.cli.angles import ANGLE
 from semmap.nodes.extern.cli.common import ENDPOINT
+from semmap.nodes.extern.cli.detector_options import detector_options
 from semmap.nodes.extern.cli.ontology_options import TBoxFile, import_option, spatial_root_option
 from semmap.nodes.extern.cli.system_settings import complete_settings
 from semmap.schemas.endpoints import NAMESPACE_VARIABLE
@@ -203,12 +204,13 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         show_default=True,
         help="What to do with perceived entities that are no longer observed.",
     )
+    @detector_options
     @click.option(
         "--label-map",
         type=click.Path(path_type=Path),
         default=None,
         metavar="FILE.json",
-        help='Labels of an external detector and their classes, as in {"coffee mug": "Cup"}.',
+        help='Labels of a detector and their classes, as in {"coffee mug": "Cup"}.',
     )
     @click.option(
         "--class-map",

@@ -11,6 +11,7 @@ from msgspec import structs
 
 from semmap.nodes import bus
 from semmap.nodes.extern.cli.common import print_error
+from semmap.nodes.extern.cli.detector_options import detector_settings
 from semmap.nodes.extern.cli.ontology_options import require_there
 from semmap.nodes.extern.files import read_label_map
 from semmap.nodes.identity.register import Register
@@ -24,16 +25,16 @@ _ROBOTS = Path(__file__).parents[2] / "sim_node" / "robots"
 """The folder of the robot models that are included in semmap."""
 _PERCEPTION_HZ = 5.0
 """Default frame rate of the simulator's cameras with --perception [Hz]."""
-_DEFAULT_PORT = 8080
 
 
 def complete_settings(options: Mapping[str, Any], *, single: bool) -> Settings:
     """Return the settings that the options and their defaults define, with absolute paths to existing files.
 
-    An option that has the name of a setting is that setting, unless it is replaced here. Raises BadFile,
-    BadRequest, NoAnswer.
+    An option that is given and has the name of a setting is that setting, unless it is replaced here. Raises
+    BadFile, BadRequest, NoAnswer.
     """
-    given = {name: value for name, value in options.items() if name in Settings.__struct_fields__}
+    fields = Settings.__struct_fields__
+    given = {name: value for name, value in options.items() if name in fields and value is not None}
     folder = (options["data"] or default_data()).resolve()
     has_map = (folder / JOURNAL).exists() and not options["fresh"]
     _require_for_web(options, single=single)
@@ -51,9 +52,11 @@ def complete_settings(options: Mapping[str, Any], *, single: bool) -> Settings:
         "models": _folder(options["models"]),
         "camera_hz": _camera_hz(options["camera_hz"], perception=nodes["perception"]),
         "class_map": _class_map(options["class_map"], before),
+        **detector_settings(
+            *(options[f"detector{part}"] for part in ("", "_names", "_layout", "_score")),
+            perception=nodes["perception"] or single,
+        ),
         "label_map": {} if options["label_map"] is None else read_label_map(options["label_map"]),
-        "web_port": _DEFAULT_PORT if options["web_port"] is None else options["web_port"],
-        "web_as": options["web_as"] or "",
         **_network(options, single=single),
     }
     _require_protected(values, insecure=options["insecure"])

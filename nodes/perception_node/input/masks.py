@@ -13,6 +13,9 @@ from semmap.schemas.perception import MaskImage, MaskRun
 _MOST = 65_535
 """Maximum number of things in one image."""
 
+Box = tuple[int, int, int, int]
+"""First column and row of a box, and those after the last [pixel]."""
+
 
 @dataclass(frozen=True)
 class DetectorLabel:
@@ -27,12 +30,14 @@ class Masks:
     """The masks of one image.
 
     In `labels` (H, W), n is the n-th thing and 0 none; `detector_labels` are their labels. With `alone`,
-    there are no other things.
+    there are no other things. `boxes`: of a detector without masks, the box of each thing; then `labels`
+    are 0.
     """
 
     labels: NDArray[np.int32]
     detector_labels: tuple[DetectorLabel | None, ...]
     alone: bool = False
+    boxes: tuple[Box, ...] = ()
 
     def thinned(self, step: int) -> Masks:
         """Return the masks of every `step`-th row and column."""

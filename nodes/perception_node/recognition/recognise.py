@@ -12,6 +12,7 @@ import numpy as np
 from semmap.nodes.perception_node.image_features.image_votes import ImageFits, with_image_votes
 from semmap.nodes.perception_node.recognition.detector_labels import (
     LabelMap,
+    as_general,
     detector_class,
     unknown_label,
     with_detector_labels,
@@ -20,7 +21,12 @@ from semmap.nodes.perception_node.recognition.features import features_of
 from semmap.nodes.perception_node.recognition.free_standing import are_free_standing
 from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN, RecognitionModel
 from semmap.nodes.perception_node.recognition.sides import completed, side_features
-from semmap.nodes.perception_node.recognition.vote import choose_class, expected_sizes, leaf_probabilities
+from semmap.nodes.perception_node.recognition.vote import (
+    choose_class,
+    expected_sizes,
+    leaf_probabilities,
+    probability_of,
+)
 from semmap.nodes.perception_node.views.boxes import Box, Numbers, best_yaw, box_around, in_frame
 from semmap.nodes.perception_node.views.merged_thing import Thing
 from semmap.schemas.entities import Pose, orientation_from_yaw
@@ -59,13 +65,10 @@ def recognise(
     chances = _no_clutter(things, reclassify_trimmed(things, chances, learnt), learnt)
     if fits is not None:
         chances = with_image_votes(chances, learnt, fits)
-    chances = with_detector_labels(chances, things, learnt, labels)
+    own, chances = chances, with_detector_labels(chances, things, learnt, labels)
     expected = expected_sizes(chances, learnt.sizes_m)
-    detected = [detector_class(thing, learnt, labels) for thing in things]
-    words = [unknown_label(thing, labels) for thing in things]
-    return [
-        _observation(*row, learnt) for row in zip(things, chances, expected, detected, words, strict=True)
-    ]
+    rows = zip(things, chances, own, expected, strict=True)
+    return [_observation(*row, labels, learnt) for row in rows]
 
 
 def _no_clutter(things: Sequence[Thing], chances: Numbers, learnt: RecognitionModel) -> Numbers:
@@ -82,9 +85,9 @@ def _no_clutter(things: Sequence[Thing], chances: Numbers, learnt: RecognitionMo
 def _observation(
     thing: Thing,
     probabilities: Numbers,
+    own: Numbers,
     expected_m: Numbers,
-    detected: tuple[str, float] | None,
-    label: str | None,
+    labels: LabelMap,
     learnt: RecognitionModel,
 ) -> Observation | Clutter:
     chances = dict(zip(learnt.classes, probabilities.tolist(), strict=True))
@@ -93,17 +96,27 @@ def _observation(
         return Clutter(clutter)
     chances = {leaf: chance / (1.0 - clutter) for leaf, chance in chances.items()}
     class_, probability = choose_class(chances, learnt.ancestors, learnt.sure)
-    if detected is not None and detected[1] > (learnt.sure if class_ == UNKNOWN else probability):
+    ours = dict(zip(learnt.classes, own.tolist(), strict=True))
+    shares = chances
+    general = as_general(thing, class_, ours, learnt, labels)
+    if general != class_:
+        class_, probability = general, probability_of(general, chances, learnt.ancestors)
+        below = {leaf for leaf in chances if general in learnt.ancestors.get(leaf, ())}
+        shares = {leaf: min(p, ours[leaf]) if leaf in below else p for leaf, p in chances.items()}
+        shares[general] = probability
+    detected = detector_class(thing, learnt, labels)
+    if detected is not None and detected[1] > _least(class_, probability, detected[0], labels, learnt):
         class_, probability = detected
-    likely = sorted(chances, key=chances.__getitem__, reverse=True)[:_CANDIDATES]
+    label = unknown_label(thing, labels)
+    likely = max(chances, key=chances.__getitem__)
     box = completed(thing, side_features(thing, expected_m), learnt.sides)
-    box = _turned(box, bool(learnt.sideways[learnt.classes.index(likely[0])]))
+    box = _turned(box, bool(learnt.sideways[learnt.classes.index(likely)]))
     x, y, z = box.bottom_m.tolist()
     a, b, c = box.size_m.tolist()
     return Observation(
         class_=learnt.class_of(class_),
         probability=probability,
-        candidates=_candidates(chances, likely, learnt),
+        candidates=_candidates(shares, learnt),
         pose=Pose(position_m=(x, y, z), orientation_wxyz=orientation_from_yaw(box.yaw_rad)),
         size_m=(a, b, c),
         points=thing.count,
@@ -112,6 +125,13 @@ def _observation(
         label=label or "",
         labelled=label is not None,
     )
+
+
+def _least(
+    class_: str, probability: float, detected: str, labels: LabelMap, learnt: RecognitionModel
+) -> float:
+    """Return the score above which a detected class that was not learnt replaces ours."""
+    return learnt.sure if class_ in (UNKNOWN, *labels.ancestors_of(detected)) else probability
 
 
 def _as_shown(chances: Mapping[str, float], class_: str, learnt: RecognitionModel) -> bool:
@@ -124,12 +144,10 @@ def _as_shown(chances: Mapping[str, float], class_: str, learnt: RecognitionMode
     return shown > 0.0 and shown >= sum(chances[leaf] for leaf in of_it - exemplars)
 
 
-def _candidates(
-    chances: Mapping[str, float], likely: Sequence[str], learnt: RecognitionModel
-) -> dict[str, float]:
+def _candidates(chances: Mapping[str, float], learnt: RecognitionModel) -> dict[str, float]:
     """Return the likely leaves by class; an exemplar counts for its class."""
     found: dict[str, float] = {}
-    for leaf in likely:
+    for leaf in sorted(chances, key=chances.__getitem__, reverse=True)[:_CANDIDATES]:
         if chances[leaf] > _WORTH_SAYING:
             found[learnt.class_of(leaf)] = min(1.0, found.get(learnt.class_of(leaf), 0.0) + chances[leaf])
     return found

@@ -105,3 +105,10 @@ def choose_class(
     lowest = [name for name in certain if not any(name in ancestors.get(other, ()) for other in certain)]
     best = max(lowest, key=total.__getitem__, default=UNKNOWN)
     return best, min(1.0, total.get(best, 0.0))
+
+
+def probability_of(
+    class_: str, probabilities: Mapping[str, float], ancestors: Mapping[str, Sequence[str]]
+) -> float:
+    """Return the probability of a class from those of the leaves."""
+    return min(1.0, sum(p for leaf, p in probabilities.items() if class_ in (leaf, *ancestors.get(leaf, ()))))

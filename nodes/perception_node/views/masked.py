@@ -1,4 +1,4 @@
-"""Segments a cloud by the masks of an external detector, instead of or in addition to our segments."""
+"""Segments a cloud by the masks or boxes of a detector, instead of or in addition to our segments."""
 
 from __future__ import annotations
 
@@ -9,13 +9,11 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from semmap.nodes.perception_node.input.masks import DetectorLabel, Masks
+from semmap.nodes.perception_node.views.boxed import FEWEST_POINTS, segments_in_boxes
 from semmap.nodes.perception_node.views.segmented_view import SegmentedView, with_labels
 
 _GAP_M, _GAP_SHARE = 0.015, 0.012
 """Maximum depth step on one surface: in metres, and as a share of the depth."""
-FEWEST_POINTS = 20
-"""A mask with fewer points on one surface is not used."""
-
 _LEFT = 0.5
 """A segment or mask that is covered by more than this share counts as covered."""
 
@@ -23,7 +21,7 @@ _LEFT = 0.5
 def with_masks(sight: SegmentedView, masks: Masks) -> SegmentedView:
     """Return the view segmented by masks; elsewhere our segments remain, unless the masks are `alone`.
 
-    Raises ValueError for masks of another size.
+    A box without a mask stands for our segments that fill it. Raises ValueError for masks of another size.
     """
     if masks.labels.shape != sight.labels.shape:
         (h, w), (height, width) = masks.labels.shape, sight.labels.shape
@@ -32,23 +30,29 @@ def with_masks(sight: SegmentedView, masks: Masks) -> SegmentedView:
     labels, count = np.zeros_like(sight.labels), 0
     found: dict[int, DetectorLabel] = {}
     unused = []
-    present = set(np.unique(masks.labels).tolist())
+    carriers = set[int]()
+    boxed = segments_in_boxes(sight.labels, masks) if masks.boxes else None
+    given = masks.labels if boxed is None else boxed
+    present = set(np.unique(given).tolist())
     for number, label in enumerate(masks.detector_labels, 1):
         if label is None and number not in present:
             continue  # a label image may skip numbers
-        mask = masks.labels == number
-        clear = mask & (sight.planes == 0)
-        if np.count_nonzero(clear) < _LEFT * np.count_nonzero(mask):
-            clear = mask  # it lies flat on a plane, or is one
-        own = _of_one_surface(clear, depth_m)
+        own = given == number
+        if boxed is None:
+            clear = own & (sight.planes == 0)
+            if np.count_nonzero(clear) < _LEFT * np.count_nonzero(own):
+                clear = own  # it lies flat on a plane, or is one
+            own = _of_one_surface(clear, depth_m)
         if np.count_nonzero(own) < FEWEST_POINTS:
             unused.append(number)
             continue
         count += 1
         labels[own] = count
+        if any(_is_most(own, sight.labels == carrier) for carrier in sight.carriers):
+            carriers.add(count)
         if label is not None:
             found[count] = label
-    masked, carriers = count, set[int]()
+    masked = count
     if not masks.alone:
         for old in range(1, int(sight.labels.max(initial=0)) + 1):
             where = sight.labels == old
@@ -65,6 +69,12 @@ def with_masks(sight: SegmentedView, masks: Masks) -> SegmentedView:
         for segment in cut.segments
     )
     return replace(cut, carriers=frozenset(carriers), segments=named, unused_masks=tuple(unused))
+
+
+def _is_most(own: NDArray[np.bool_], carrier: NDArray[np.bool_]) -> bool:
+    """Return whether pixels are most of a piece of furniture on which things may stand."""
+    most = max(np.count_nonzero(own), np.count_nonzero(carrier))
+    return bool(np.count_nonzero(own & carrier) > _LEFT * most)
 
 
 def _of_one_surface(mask: NDArray[np.bool_], depth_m: NDArray[np.float32]) -> NDArray[np.bool_]:

@@ -8,11 +8,13 @@ import pytest
 
 from semmap.nodes.perception_node.recognition.detector_labels import (
     LabelMap,
+    as_general,
     detector_class,
     unknown_label,
     with_detector_labels,
 )
 from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN
+from semmap.schemas.entities import ClassInfo
 
 LEARNT = SimpleNamespace(
     classes=("Fork", "Spoon", "Book", UNKNOWN, CLUTTER),
@@ -141,3 +143,63 @@ def test_a_label_of_no_class_is_kept_in_one_line():
     assert unknown_label(thing(said("7", 0.9), said(" "), None), LABELS) is None
     assert unknown_label(thing(None), LABELS) is None
     assert len(unknown_label(thing(said("x" * 5000)), LABELS)) == 100
+
+
+def own_class(name, *ancestors, label="", spatial=True):
+    """Return a class of a TBox of one's own."""
+    return ClassInfo(
+        name=name,
+        iri=f"urn:{name}",
+        parents=ancestors[:1],
+        ancestors=ancestors,
+        labels={"en": label} if label else {},
+        spatial=spatial,
+        place=False,
+        fixed=False,
+        model="",
+    )
+
+
+OWN = LabelMap(
+    LEARNT,
+    tbox=[
+        own_class("PastaFork", "Fork", "Cutlery", "Object", label="spaghetti fork"),
+        own_class("PowerDrill", "Object", label="Power drill"),
+        own_class("Drilling", label="drilling", spatial=False),
+    ],
+)
+
+
+def test_classes_of_the_tbox_are_known_by_name_and_label():
+    names = ("power drill", "PowerDrill", "Spaghetti Fork", "fork", "drilling")
+    assert [OWN.class_of(name) for name in names] == ["PowerDrill", "PowerDrill", "PastaFork", "Fork", None]
+
+
+def test_a_class_of_one_s_own_is_evidence_for_the_class_above_it():
+    forks = with_detector_labels(CHANCES, [thing(said("Fork"))], LEARNT, OWN)
+    own = with_detector_labels(CHANCES, [thing(said("spaghetti fork"))], LEARNT, OWN)
+    assert own[0] == pytest.approx(forks[0])
+    drill = with_detector_labels(CHANCES, [thing(said("power drill"))], LEARNT, OWN)
+    assert drill[0] == pytest.approx(with_detector_labels(CHANCES, [thing()], LEARNT, OWN)[0])
+
+
+def test_common_labels_name_classes_that_are_known():
+    learnt = SimpleNamespace(classes=("Cup", UNKNOWN, CLUTTER), ancestors={"Cup": ("Object",)})
+    assert LabelMap(learnt).class_of("coffee mug") == "Cup"
+    assert LabelMap(learnt).class_of("refrigerator") is None
+
+
+@pytest.mark.parametrize(
+    ("label", "fork", "class_"),
+    [
+        ("cutlery", 0.6, "Cutlery"),  # our vote for a fork is not strong
+        ("cutlery", 0.8, "Fork"),
+        ("fork", 0.1, "Fork"),
+        ("object", 0.1, "Fork"),  # which says nothing
+        ("book", 0.1, "Fork"),
+        ("saucer", 0.1, "Fork"),
+    ],
+)
+def test_a_general_label_stays_general_without_strong_votes_below_it(label, fork, class_):
+    own = {"Fork": fork, "Spoon": 0.0, "Book": 1.0 - fork, UNKNOWN: 0.0, CLUTTER: 0.0}
+    assert as_general(thing(said(label)), "Fork", own, LEARNT, LABELS) == class_

@@ -90,3 +90,12 @@ def test_masks_of_another_size_are_refused():
     small = Masks(np.zeros((240, 320), np.int32), ())
     with pytest.raises(ValueError, match="320 x 240 pixels, the image 640 x 480"):
         with_masks(segment_cloud(shot().clouds[0]), small)
+
+
+def test_a_general_label_of_things_of_another_class_stays_general():
+    told = masks(0, names=dict.fromkeys(CLASSES, "Toy"), alone=True)
+    found = observe_clouds([shot().clouds[0]], shipped(), [told]).observations.observations
+    assert [one.class_ for one in found] == ["Toy"] * len(CLASSES)
+    for one in found:
+        assert one.candidates["Toy"] == pytest.approx(one.probability)
+        assert "Ball" not in one.candidates

@@ -18,12 +18,14 @@ from semmap.nodes.extern.cli.common import (
     print_error,
     print_json,
 )
+from semmap.nodes.extern.cli.new_class import ABOVE, class_name, declare_class, find_class
 from semmap.nodes.extern.cli.output import show
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.output.tables import table
 from semmap.nodes.extern.cli.shell_completion import class_names, entity_names
 from semmap.nodes.runtime import extras
 from semmap.schemas import errors
+from semmap.schemas.commands import Load
 from semmap.schemas.exemplars import LessonTold
 from semmap.schemas.wording import counted
 
@@ -69,12 +71,14 @@ def _where(function: Callable[..., None]) -> Callable[..., None]:
     metavar="X0 Y0 X1 Y1",
     help="With --frames: object in this box [pixel]. Default: the largest compact object.",
 )
+@click.option("--new-class", is_flag=True, help="Add CLASS to the TBox, below Object, if it is missing.")
 @_where
 def learn(
     class_: str,
     frames: Path | None,
     entity: str | None,
     box: tuple[int, int, int, int] | None,
+    new_class: bool,
     data: Path | None,
     format: str,
     **system: Any,
@@ -83,7 +87,8 @@ def learn(
 
     One frame is enough; more frames from other sides and distances improve recognition. The object must stand
     by itself on a table or the floor. CLASS is any object class of the TBox, including classes without
-    training data. No model is retrained: similar objects are assigned to CLASS in addition to known classes.
+    training data. With --new-class, "power drill" becomes a class below Object, in one commit, if the TBox
+    has none. No model is retrained: similar objects are assigned to CLASS in addition to known classes.
     """
     if (frames is None) == (entity is None):
         raise errors.BadRequest("use either --frames DIR or --entity NAME")
@@ -95,16 +100,16 @@ def learn(
     notes: tuple[str, ...] = ()
     shown = ""
     if data is not None:
-        book, class_ = _book(data), _known(class_)
+        book, (class_, ancestors) = _book(data), _known(class_, new=new_class)
     if frames is not None:
         views, notes = _read_views(frames, box)
         shown = f"{counted(len(views), 'frame')} in {frames}"
     if data is not None:
-        from semmap.nodes.perception_node.recognition.recognition_model import shipped
-
-        lesson = book.add(class_, shipped().ancestors[class_], views, shown)
+        lesson = book.add(class_, ancestors, views, shown)
     else:
         with _client(**system) as client:
+            if new_class:
+                class_ = _add_class(client, class_)
             lesson = _learn(client, class_, entity, views, shown)
     for note in notes:
         print_error(note)
@@ -185,11 +190,38 @@ def _book(data: Path) -> ExemplarStore:
     return ExemplarStore(data / FILENAME, shipped())
 
 
-def _known(class_: str) -> str:
+def _known(class_: str, *, new: bool) -> tuple[str, tuple[str, ...]]:
+    """Return a class and those above it, as known at training; a `new` one is below Object."""
     from semmap.nodes.perception_node.exemplar_store import known_class
     from semmap.nodes.perception_node.recognition.recognition_model import shipped
 
-    return known_class(class_, shipped().ancestors)
+    ancestors = shipped().ancestors
+    try:
+        found = known_class(class_, ancestors)
+    except errors.BadRequest:
+        if not new:
+            raise
+        return class_name(class_), (ABOVE,)
+    return found, tuple(ancestors[found])
+
+
+def _add_class(client: Client, words: str) -> str:
+    """Return the class that is called by these words, which is added to the TBox if it is missing."""
+    classes = client.classes()
+    if (known := find_class(words, classes)) is not None:
+        return known
+    made = declare_class(words, classes)
+    reply = client.send(
+        Load(
+            content=made.turtle.encode(),
+            filename=f"{made.name}.ttl",
+            tbox=True,
+            extend=True,
+            reason=f"learn the class {made.name}",
+        )
+    )
+    print_error(f"note: added the class {made.name} to the TBox, below {ABOVE} (commit {reply.commit})")
+    return made.name
 
 
 def _read_views(

@@ -13,10 +13,11 @@ import click
 
 from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import print_error, print_json
+from semmap.nodes.extern.cli.detector_options import detector_of, detector_options
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.output.show import console
 from semmap.nodes.extern.cli.output.show_perceived import as_records, as_table, show_frame
-from semmap.nodes.extern.files import read_label_map, write_atomically
+from semmap.nodes.extern.files import write_atomically
 from semmap.nodes.runtime import extras
 from semmap.schemas import errors, wording
 from semmap.schemas.perception import FrameRow
@@ -77,12 +78,13 @@ def _path_option(name: str, metavar: str, help: str, *also: str) -> Callable[[An
 @_path_option(
     "--masks",
     "FILE",
-    "Masks of a detector (COCO, labelme, YOLO, label image, .npz); with --frames, their name in each folder.",
+    "Masks of a detector (COCO, labelme, CVAT, YOLO, image, .npz); with --frames, their name in each folder.",
 )
+@detector_options
 @_path_option(
-    "--label-map", "FILE.json", 'With --masks: labels and their classes, as in {"coffee mug": "Cup"}.'
+    "--label-map", "FILE.json", 'Labels of the detector and their classes, as in {"coffee mug": "Cup"}.'
 )
-@click.option("--masks-only", is_flag=True, help="With --masks: report only the objects in the masks.")
+@click.option("--masks-only", is_flag=True, help="Report only the objects that the detector found.")
 @click.option("--fit", is_flag=True, help="Fit class models to the objects, for full poses (needs Open3D).")
 @_path_option("--data", "DIR", "Also use the exemplars in this data folder (semmap learn --data).")
 @click.option("--format", type=click.Choice(["table", "json"]), default="table", show_default=True)
@@ -100,6 +102,7 @@ def perceive(
     fit: bool,
     data: Path | None,
     format: str,
+    **model: Any,
 ) -> None:
     """Find the objects in point clouds, depth images or datasets.
 
@@ -110,7 +113,7 @@ def perceive(
     extras.require("semmap perceive", "perception")
     if fit:
         _require_open3d()
-    detector = _detector(masks, label_map, masks_only=masks_only)
+    detector = detector_of(masks, label_map, masks_only=masks_only, each_core=frames is not None, **model)
     if frames is not None:
         if files or any(option is not None for option in (intrinsics, up, pose)):
             raise errors.BadRequest(
@@ -146,7 +149,8 @@ def perceive(
         for note in sight.notes:
             print_error(f"note: {file}: {note}")
         if detector is not None:
-            masks_found = detector.masks_of(detector.file, sight.labels.shape)
+            height, width = sight.labels.shape
+            masks_found = detector.masks_of(cloud, (height, width))
             if unknown_here := detector.labels.unknown([masks_found]):
                 print_error(wording.unknown_labels(unknown_here))
             sight = with_masks(sight, masks_found)
@@ -209,24 +213,6 @@ def _learnt(data: Path | None) -> RecognitionModel:
             f"no exemplars in {data}; to add one: semmap learn CLASS --frames DIR --data {data}"
         )
     return with_images(ExemplarStore(data / FILENAME, shipped()).learnt)
-
-
-def _detector(masks: Path | None, label_map: Path | None, *, masks_only: bool) -> Detector | None:
-    """Return the results of an external detector, if there are any."""
-    if masks is None:
-        if label_map is not None or masks_only:
-            raise errors.BadRequest("--label-map and --masks-only require --masks")
-        return None
-    from semmap.nodes.perception_node.detector import Detector
-    from semmap.nodes.perception_node.recognition.detector_labels import LabelMap
-    from semmap.nodes.perception_node.recognition.recognition_model import shipped
-
-    classes = read_label_map(label_map) if label_map is not None else {}
-    labels = LabelMap(shipped(), classes)
-    if untrained := sorted({name for name in classes.values() if not labels.is_learnt(name)}):
-        hint = errors.did_you_mean(untrained[0], shipped().ancestors)
-        print_error(f"note: classes of the label map without training data: {wording.few(untrained)}{hint}")
-    return Detector(masks, labels, masks_only)
 
 
 def _dataset(

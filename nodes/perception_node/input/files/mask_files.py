@@ -1,4 +1,4 @@
-"""Masks in files: JSON of COCO or labelme, text of YOLO, label images, or a mask for each thing."""
+"""Masks in files: JSON of COCO or labelme, XML of CVAT, text of YOLO, label images, or arrays."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from semmap.nodes.perception_node.input.files.cvat_masks import cvat_runs
 from semmap.nodes.perception_node.input.files.mask_polygons import counts_of
 from semmap.nodes.perception_node.input.masks import (
     Masks,
@@ -34,13 +35,16 @@ _SURE = 0.5
 def read_masks(path: Path, height: int, width: int) -> Masks:
     """Return the masks in a file for an image of this size. Raises BadFile.
 
-    It is .json of COCO or labelme, .txt of YOLO with a `classes.txt` beside or above it, a label image (.png,
-    .npy), or boolean masks (N, H, W) as .npy, or as .npz with `masks` and optional `names` and `scores`.
+    It is .json of COCO or labelme, .xml of CVAT, .txt of YOLO with a `classes.txt` beside or above it, a
+    label image (.png, .npy), or boolean masks (N, H, W) as .npy, or as .npz with `masks` and optional `names`
+    and `scores`.
     """
     try:
         match path.suffix.lower():
             case ".json":
                 return masks_from_runs(_runs(path.read_bytes(), height, width), height, width)
+            case ".xml":
+                return masks_from_runs(cvat_runs(path.read_bytes(), height, width), height, width)
             case ".txt":
                 return masks_from_runs(_yolo_runs(path, height, width), height, width)
             case ".npz":
@@ -53,7 +57,7 @@ def read_masks(path: Path, height: int, width: int) -> Masks:
                 if numbers.dtype == bool:
                     return masks_from_stack(_stack(numbers, height, width))
             case other:
-                raise ValueError(f"masks are .json, .txt, .png, .npy or .npz files, not '{other}'")
+                raise ValueError(f"masks are .json, .xml, .txt, .png, .npy or .npz files, not '{other}'")
         if numbers.shape != (height, width) or numbers.dtype.kind not in "iu":
             across_first = (*numbers.shape[1::-1], *numbers.shape[2:])
             raise ValueError(

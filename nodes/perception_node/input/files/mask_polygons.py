@@ -20,6 +20,11 @@ def counts_of(polygons: Sequence[Any], height: int, width: int) -> list[int]:
     mask = np.zeros((height, width), dtype=bool)
     for polygon in polygons:
         mask |= _filled(_corners(polygon), height, width)
+    return counts_in(mask)
+
+
+def counts_in(mask: NDArray[np.bool_]) -> list[int]:
+    """Return the column-wise run lengths of a mask (H, W), the first of background."""
     column = np.concatenate([[False], mask.T.ravel(), [False]])
     changes = np.flatnonzero(column[1:] != column[:-1])
     return [int(run) for run in np.diff([0, *changes, mask.size])]

@@ -50,6 +50,17 @@ def test_what_was_shown_is_recognised_until_it_is_forgotten(here, capsys):
     assert classes(capsys, "--data", "map") == before
 
 
+def test_a_kind_that_no_class_names_becomes_a_class_below_object(here, capsys):
+    learn = ["learn", "power drill", "--frames", "shown", "--data", "map", "--box", *box_of(1)]
+    assert execute(learn) == 2
+    assert (
+        "unknown class 'power drill'; did you mean Power_Plug?; to make a new class below Object"
+        in capsys.readouterr().err
+    )
+    assert "learned Power_Drill from" in said(capsys, *learn, "--new-class")
+    assert classes(capsys, "--data", "map") == ["Power_Drill", "Power_Drill"]
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [

@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from semmap.nodes.extern.cli.app import execute
 from semmap.nodes.perception_node.fitting import fit
 from semmap.nodes.perception_node.views.segments import map_points
+from tests.perception_node.detection.models import write_model, yolov8
 from tests.perception_node.files.made import header
 from tests.perception_node.segmentation.scenes import boxes_on_table
 from tests.perception_node.segmentation.test_patches import SCENES
@@ -211,11 +212,49 @@ def test_masks_segment_a_frame_and_an_unknown_label_is_reported(tmp_path, capsys
     assert (found["class"], found["probability"]) == ("Boxx", 0.9)
 
 
+def test_a_model_of_a_detector_labels_the_segment_in_its_box(tmp_path, capsys):
+    pytest.importorskip("onnxruntime")
+    write_frame(tmp_path / "frames" / "first")
+    (height, width), (rows, columns) = SEEN.truth.shape, np.nonzero(SEEN.truth == 1)
+    ratio = min(640 / height, 640 / width)
+    top, left = (640 - round(height * ratio)) // 2, (640 - round(width * ratio)) // 2
+    low, high = (
+        (xs.min() * ratio + pad, (xs.max() + 1) * ratio + pad) for xs, pad in ((columns, left), (rows, top))
+    )
+    box = (sum(low) / 2, sum(high) / 2, low[1] - low[0], high[1] - high[0])
+    model = write_model(
+        tmp_path / "m.onnx", {"output0": yolov8([(*box, 0, 0.9)], classes=1)}, metadata={"names": "['spork']"}
+    )
+    out = tmp_path / "out.json"
+    words = ["perceive", "--frames", str(tmp_path / "frames"), "--json", str(out), "--detector", str(model)]
+    assert execute(words) == 0
+    error = capsys.readouterr().err
+    assert "note: m.onnx: layout yolov8, 1 class\n" in error
+    assert "mask labels without a class: spork" in error
+    (row,) = json.loads(out.read_text())
+    (found,) = [one for one in row["objects"] if one["label"] == "spork"]
+    assert found["box_px"] == pytest.approx(
+        [columns.min(), rows.min(), columns.max() + 1, rows.max() + 1], abs=6
+    )
+    pictures = [str(tmp_path / "frames" / "first" / name) for name in ("rgb.png", "depth.png")]
+    camera = str(tmp_path / "frames" / "first" / "camera.json")
+    more = ["--intrinsics", camera, "--detector", str(model), "--masks-only", "--format", "json"]
+    assert execute(["perceive", *pictures, *more]) == 0
+    ((found,),) = [one["objects"] for one in json.loads(capsys.readouterr().out)]
+    assert found["label"] == 1
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
         (["boxes.pcd", "--label-map", "map.json"], "require --masks"),
-        (["boxes.pcd", "--masks-only"], "require --masks"),
+        (["boxes.pcd", "--masks-only"], "require --masks or --detector"),
+        (
+            ["boxes.pcd", "--masks", "a.png", "--detector", "m.onnx"],
+            "--masks and --detector exclude each other",
+        ),
+        (["boxes.pcd", "--detector-names", "coco"], "--detector-names requires --detector MODEL.onnx"),
+        (["boxes.pcd", "--detector", "absent.onnx"], "there is no file absent.onnx"),
         (["boxes.pcd", "--masks", "missing.npy"], "missing.npy cannot be read"),
         (["boxes.pcd", "--masks", "small.npy"], "this one has 4 x 3 of int64"),
         (["boxes.pcd", "--masks", "small.npy", "--label-map", "small.npy"], "not a JSON object of labels"),
