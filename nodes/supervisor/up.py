@@ -222,6 +222,7 @@ class _Foreground:
             self._answered_s = time.monotonic()
         except errors.NoAnswer:
             if time.monotonic() - self._answered_s > _ANSWERS_WITHIN_S:
+                self._process.kill()  # it would not process a signal to terminate, either
                 raise errors.InternalError(
                     "supervisord: no response; it was ended with the nodes; restart with: semmap up"
                 ) from None
