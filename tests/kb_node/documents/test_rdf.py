@@ -233,5 +233,6 @@ def test_an_error_of_turtle_has_its_line_once():
     with pytest.raises(errors.BadFile) as caught:
         rdf.parse(b"hello world\n", "a.ttl", label_prefix="t")
     assert caught.value.text == (
-        "a.ttl is not valid Turtle: line 1 between columns 1 and 6: hello is not a valid subject or graph name"
+        "a.ttl is not valid Turtle: line 1 between columns 1 and 6: hello is not a valid subject or graph"
+        " name"
     )
