@@ -180,17 +180,24 @@ def shortened(text: str, most: int = LONGEST_TEXT) -> str:
     return text if len(text) <= most else f"{text[:most]} ... (and {len(text) - most:,} more characters)"
 
 
-SKIP_UNKNOWN = "; --skip-unknown leaves these out"
+SKIP_UNKNOWN = "; see: semmap classes; --skip-unknown leaves these out"
 _A_WORD = 4
 """The minimum length of a word that is searched as a part of others."""
-_FEW = 10
-_MANY = 30
+_FEW = 5
+"""The maximum number of entities in an error text."""
+_MANY = 3
+"""The maximum number of unknown classes or properties in an error text."""
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return `; did you mean A, B or C?` with the most similar names, or an empty text if there are none."""
     names = nearest(word, known)
     return f"; did you mean {enumerated(names)}?" if names else ""
+
+
+def suggestion(word: str, known: Iterable[str], listing: str) -> str:
+    """Return `; did you mean A, B or C?`, or `; see: semmap LISTING` if no name is similar."""
+    return did_you_mean(word, known) or f"; see: semmap {listing}"
 
 
 def nearest(word: str, known: Iterable[str]) -> list[str]:
@@ -250,11 +257,16 @@ def _unknown(
 ) -> str:
     known, few = list(known), max(1, _FEW // len(users))
     described = [
-        f"'{name}' (of {_some(whose, few)}{hints.get(name) or did_you_mean(name, known)})"
-        for name, whose in users.items()
+        f"'{name}' (of {_some(users[name], few)}{hints.get(name) or did_you_mean(name, known)})"
+        for name in list(users)[:_MANY]
     ]
-    return f"unknown {one if len(described) == 1 else many} {_some(described, _MANY)}"
+    return f"unknown {one if len(users) == 1 else many} {_listed(described, len(users))}"
 
 
 def _some(names: Sequence[str], few: int) -> str:
-    return ", ".join(names[:few]) + (f" and {len(names) - few} more" if len(names) > few else "")
+    return _listed(names[:few], len(names))
+
+
+def _listed(shown: Sequence[str], count: int) -> str:
+    """Return the first of `count` names, and the number of the others."""
+    return ", ".join(shown) + (f" and {count - len(shown)} more" if count > len(shown) else "")

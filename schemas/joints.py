@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import math
 from collections.abc import Iterable, Mapping
 from typing import Final, Literal
 
@@ -127,12 +129,10 @@ def positions_of(text: str) -> dict[str, float]:
     found = {}
     for word in text.split():
         name, equals, number = word.rpartition("=")
-        try:
-            found[name] = float(number)
-        except ValueError:
-            continue
-        if not (name and equals):
-            del found[name]
+        with contextlib.suppress(ValueError):
+            position = float(number)
+            if name and equals and math.isfinite(position):
+                found[name] = position
     return found
 
 

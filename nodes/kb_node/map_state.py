@@ -80,7 +80,9 @@ class MapState:
         """Return the entity of that name. Raises UnknownName with the most similar names."""
         if name in self.by_name:
             return self.by_name[name]
-        raise errors.UnknownName(f"no entity is named '{name}'{errors.did_you_mean(name, self.by_name)}")
+        raise errors.UnknownName(
+            f"no entity is named '{name}'{errors.suggestion(name, self.by_name, 'list')}"
+        )
 
     def resolve(self, word: str) -> Entity:
         """Return the entity of that name, or the only one with that label or class.

@@ -97,7 +97,8 @@ def read_yaml(text: str, name: str) -> MapDescription:
     resolution = _number(entries, "resolution", name)
     if not 0.0 < resolution <= _COARSEST_M:
         raise errors.BadFile(
-            f"{name}: invalid resolution {resolution:g}; it must be metres per pixel, over 0"
+            f"{name}: invalid resolution {resolution:g}; it must be metres per pixel, above 0 and"
+            f" up to {_COARSEST_M:g}"
         )
     origin = _origin(entries.get("origin", "[0, 0, 0]"), name)
     mode = entries.get("mode", "trinary").lower()

@@ -36,7 +36,8 @@ class ClassNames:
                 f"'{word}' is ambiguous: {enumerated(error.names)}; use one of these names"
             ) from None
         if name is None:
-            raise UnknownClass(f"unknown class '{word}'{self._index.did_you_mean(word)}")
+            hint = self._index.did_you_mean(word) or "; see: semmap classes"
+            raise UnknownClass(f"unknown class '{word}'{hint}")
         return self.by_name[name]
 
     def unknown(self, users: Mapping[str, Sequence[str]]) -> UnknownClass:

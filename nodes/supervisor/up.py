@@ -25,6 +25,7 @@ from semmap.nodes.runtime.web_token import new_token
 from semmap.nodes.supervisor import presence, registry
 from semmap.nodes.supervisor.control import FILES, LONGEST_STOP_S, SILENT_S, Supervisor
 from semmap.nodes.supervisor.notices import Notices
+from semmap.nodes.supervisor.readiness import NO_REPLY, missing
 from semmap.nodes.supervisor.settings import Replay, Settings
 from semmap.nodes.supervisor.watchdog import StoppedProcesses, Watchdog
 from semmap.ontology import EMPTY_WORLD, FLAT_WORLD
@@ -221,6 +222,7 @@ class _Foreground:
             self._answered_s = time.monotonic()
         except errors.NoAnswer:
             if time.monotonic() - self._answered_s > _ANSWERS_WITHIN_S:
+                self._process.kill()  # it would not process a signal to terminate, either
                 raise errors.InternalError(
                     "supervisord: no response; it was ended with the nodes; restart with: semmap up"
                 ) from None
@@ -268,27 +270,27 @@ class _Foreground:
             contextlib.suppress(errors.SemmapError, OSError),
             bus.open_session(self._network()) as session,
         ):
-            begun_s = time.monotonic()
+            begun_s = self._reported_s = time.monotonic()
             known_within_s = _KNOWN_WITHIN_S if "coordinator" in self._pids else _COMPLETE_WITHIN_S
             while not self._stopping and self._process.poll() is None:
                 waited_s = time.monotonic() - begun_s
                 try:
                     status = bus.ask(session, keys.CMD, Status.VERB, Status(), reply_type(Status))
                 except errors.NoAnswer:
+                    self._report_missing(NO_REPLY, waited_s, known_within_s)
                     if waited_s > known_within_s:
                         raise
                     time.sleep(_LOOK_S)
                     continue
-                known = {node.pid for node in status.nodes if node.state == "ready"}
                 keeps = status.truth != "perceived" and "sim_node" in self._pids
                 waits_for = status.pending if keeps else ()  # moving bodies are not waited for
-                is_known = known >= {pid for node, pid in self._pids.items() if node != keys.WEB}
-                is_known = is_known and not (keeps and status.in_agreement is None)
-                if waited_s > (_COMPLETE_WITHIN_S if is_known else known_within_s):
+                unknown = missing(status, self._pids, with_scene=keeps)
+                self._report_missing(unknown, waited_s, known_within_s)
+                if waited_s > (known_within_s if unknown else _COMPLETE_WITHIN_S):
                     for waited in waits_for:
                         self._say(f"{'scene':<{_COLUMN}} not complete yet: {waited}")
                     break
-                if is_known and not waits_for:
+                if not unknown and not waits_for:
                     break
                 for health in self._notices.wait(0.05):
                     self._on_health(health)
@@ -297,6 +299,17 @@ class _Foreground:
             self._report_truth(status.truth)
             self._report_models(session)
             self._report_robot_position(session)
+
+    def _report_missing(self, unknown: str, waited_s: float, until_s: float) -> None:
+        """Print regularly what the start waits for, and once if it is still missing when the wait ends."""
+        now_s = time.monotonic()
+        if not unknown:
+            return
+        if waited_s > until_s:
+            self._say(f"{'system':<{_COLUMN}} not complete yet: waiting for {unknown}; see: semmap status")
+        elif now_s - self._reported_s > SILENT_S:
+            self._reported_s = now_s
+            self._say(f"{'system':<{_COLUMN}} waiting for {unknown} ({now_s - self._begun_s:.0f} s)")
 
     def _report_truth(self, truth: str) -> None:
         """Warn if perception uses the simulator's cameras while the map defines the scene."""

@@ -47,6 +47,21 @@ def test_unknown_content_is_rejected(content):
         kind_of(content, "file.json")
 
 
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"\x89PNG\r\n\x1a\n", "x is not a map, but an image"),
+        (b"SQLite format 3\0", "x is not a map, but a database"),
+        (b"\x93NUMPY\x01\0", "x is not a map, but a NumPy array"),
+        (b"#ROSBAG V2.0\n", "x is not a map, but a recording; convert it with `semmap frames`"),
+    ],
+)
+def test_another_kind_of_file_is_named(content, said):
+    with pytest.raises(BadFile) as caught:
+        kind_of(content, "x")
+    assert caught.value.text == said
+
+
 def test_a_broken_json_file_is_reported():
     assert kind_of(b"[1, 2", "x.ttl") == "abox"
     for content in (b"[1, 2", b"{a:1}"):

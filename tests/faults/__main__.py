@@ -16,7 +16,14 @@ from tests.faults.table import Fault, Row, outcome
 
 
 def main(words: list[str]) -> int:
-    """Run the faults; returns 1 if a change was lost or doubled, or another guarantee was violated."""
+    """Run the faults; returns 1 if a change was lost or doubled, or another guarantee was violated.
+
+    With `--help`, or a word that is in no name, the names are printed instead.
+    """
+    names = [row.name for row in (*FAULTS, *CUTS)]
+    if any(not any(word in name for name in names) for word in words):
+        print(__doc__, *names, sep="\n")
+        return 0 if "--help" in words else 2
     chosen = [fault for fault in FAULTS if not words or any(word in fault.name for word in words)]
     cuts = [several for several in CUTS if not words or any(word in several.name for word in words)]
     rows = [_row(fault) for fault in chosen]

@@ -80,7 +80,7 @@ def test_grey_of_a_negated_image_is_what_its_thresholds_say():
         ("resolution: 0.05\n", "requires image: FILE and resolution: METRES"),
         ("hello\n", "invalid line 'hello'"),
         ("image: x\nresolution: nan\n", "resolution 'nan' is not a number"),
-        ("image: x\nresolution: 0\n", "metres per pixel, over 0"),
+        ("image: x\nresolution: 0\n", "metres per pixel, above 0 and up to"),
         ("image: x\nresolution: 0.1\norigin: [1]\n", "it must be .x, y, yaw."),
         ("image: x\nresolution: 0.1\norigin: [a, b, c]\n", "it must be .x, y, yaw."),
         ("image: x\nresolution: 0.1\nmode: odd\n", "invalid mode 'odd'"),

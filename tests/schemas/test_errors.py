@@ -72,11 +72,24 @@ def test_unknown_classes_are_reported_with_suggestions_and_individuals():
     text = errors.unknown_classes({"Chiar": ["c1"], "Xylophone": ["x1", "x2"]}, ["Chair", "Table"])
     assert text == (
         "unknown classes 'Chiar' (of c1; did you mean Chair?), 'Xylophone' (of x1, x2);"
-        " --skip-unknown leaves these out"
+        " see: semmap classes; --skip-unknown leaves these out"
     )
     many = errors.unknown_classes({"Chiar": [f"c{i}" for i in range(1000)]}, ["Table"])
     assert many.startswith("unknown class 'Chiar' (of c0, ")
-    assert "c9 and 990 more" in many
+    assert "c4 and 995 more" in many
+
+
+def test_of_many_unknown_classes_three_are_named():
+    text = errors.unknown_classes({f"Kind{i}": ["c"] for i in range(40)}, ["Table"])
+    assert text == (
+        "unknown classes 'Kind0' (of c), 'Kind1' (of c), 'Kind2' (of c) and 37 more; see: semmap classes;"
+        " --skip-unknown leaves these out"
+    )
+
+
+def test_without_a_similar_name_the_command_that_lists_them_is_suggested():
+    assert errors.suggestion("chiar", ["Chair"], "classes") == "; did you mean Chair?"
+    assert errors.suggestion("xylophone", ["Chair"], "classes") == "; see: semmap classes"
 
 
 def test_nothing_is_near_to_a_word_that_is_none():

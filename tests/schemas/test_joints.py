@@ -48,7 +48,7 @@ def test_positions_are_read_as_they_are_written():
 
 
 def test_malformed_positions_are_ignored():
-    assert joints.positions_of("door=wide =1 lid 2 flap=0.5") == {"flap": 0.5}
+    assert joints.positions_of("door=wide =1 lid 2 hatch=nan cover=-inf flap=0.5") == {"flap": 0.5}
 
 
 def test_the_most_exact_statement_counts():

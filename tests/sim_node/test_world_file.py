@@ -1,4 +1,5 @@
 import json
+import struct
 
 import numpy as np
 import pytest
@@ -128,6 +129,20 @@ def test_what_is_no_world_is_told(tmp_path, content):
 def test_a_missing_world_is_told(tmp_path):
     with pytest.raises(BadFile, match="cannot read"):
         open_world(tmp_path / "none.xml", Models())
+
+
+@pytest.mark.parametrize("folder", ["", "textures"])
+def test_a_texture_with_too_many_pixels_is_rejected_before_it_is_decoded(tmp_path, folder):
+    (tmp_path / folder).mkdir(exist_ok=True)
+    size = struct.pack(">4sII", b"IHDR", 30_000, 30_000)
+    (tmp_path / folder / "huge.png").write_bytes(b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + size)
+    path = tmp_path / "world.xml"
+    compiler = f'<compiler texturedir="{folder}"/>' if folder else ""
+    path.write_text(
+        f'<mujoco>{compiler}<asset><texture name="t" type="2d" file="huge.png"/></asset></mujoco>'
+    )
+    with pytest.raises(BadFile, match=r"huge\.png: the image has 30000 x 30000 pixels; the maximum is"):
+        open_world(path, Models())
 
 
 def test_mjcf_that_refers_to_what_it_does_not_have_is_refused_as_it_is_read(tmp_path):

@@ -23,6 +23,8 @@ from semmap.schemas.scenes import Body
 
 _NAMED: Final = frozenset(("name", "names", "to", "on", "in_", "next_to", "near", "leave", "frame"))
 """The fields of commands that name entities."""
+_FEW: Final = 3
+"""The maximum number of suggested names."""
 C = TypeVar("C", bound=Struct)
 
 
@@ -72,10 +74,26 @@ class MapView(map_replica.MapReplica[Effects]):
         return self._places.values()
 
     def entity(self, name: str) -> Entity:
-        """Return the entity of that name. Raises UnknownName with the nearest names."""
+        """Return the entity of that name. Raises UnknownName with names of that label, or similar ones."""
         if name in self.entities:
             return self.entities[name]
-        raise errors.UnknownName(f"no entity is named '{name}'{errors.did_you_mean(name, self.entities)}")
+        if labelled := self._labelled(name):
+            hint = f"; did you mean {errors.enumerated(labelled[:_FEW])}?"
+        else:
+            hint = errors.suggestion(name, self.entities, "list")
+        raise errors.UnknownName(f"no entity is named '{name}'{hint}")
+
+    def _labelled(self, label: str) -> list[str]:
+        """Return the names of the entities with a label or alias, in order; case is ignored."""
+        folded = label.casefold()
+        return sorted(
+            entity.name
+            for entity in self.entities.values()
+            if any(
+                folded == text.casefold()
+                for text in (entity.preferred_reference or "", *entity.alternative_references)
+            )
+        )
 
     def entities_of(self, class_name: str | None) -> tuple[Entity, ...]:
         """Return the entities, or those of a class (inferred ones included), sorted by name."""

@@ -12,6 +12,7 @@ from msgspec import json as _json
 
 from semmap.schemas import codec
 from semmap.schemas.errors import BadFile
+from semmap.schemas.file_kinds import other_kind
 from semmap.schemas.nesting import require_shallow
 from semmap.schemas.packing import beginning, unpacked
 
@@ -26,11 +27,16 @@ _BLANK = _BOM + b" \t\r\n"
 
 
 def kind_of(content: bytes, filename: str) -> Kind:
-    """Return the type of a file, packed or not. Raises BadFile for an empty file and for unknown JSON."""
+    """Return the type of a file, packed or not.
+
+    Raises BadFile for an empty file, for a file of another kind such as an image, and for unknown JSON.
+    """
     head = beginning(content, _HEAD, filename)
     start = head.lstrip(_BLANK) or unpacked(content, filename).lstrip(_BLANK)
     if not start:
         raise BadFile(f"{filename or 'the file'} is empty")
+    if kind := other_kind(head):
+        raise BadFile(f"{filename or 'the file'} is not a map, but {kind}")
     if start[:1] == b"<" and b"<huricExample" in head:
         return "huric"
     if _TRIG.match(start) and not filename.removesuffix(".gz").lower().endswith(_OF_JSON):

@@ -82,7 +82,9 @@ class LivePoses:
         entity = entities.get(name)
         try:
             if entity is None:
-                raise errors.UnknownName(f"no entity is named '{name}'{errors.did_you_mean(name, entities)}")
+                raise errors.UnknownName(
+                    f"no entity is named '{name}'{errors.suggestion(name, entities, 'list')}"
+                )
             if entity.tracked != "stream":
                 how = "is tracked from the simulator" if entity.tracked else "is not tracked"
                 raise errors.Refused(f"{name} {how}; to have it follow this stream: semmap track {name}")

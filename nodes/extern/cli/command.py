@@ -8,6 +8,8 @@ from typing import Any
 
 import click
 
+from semmap.nodes.extern.cli.usage_errors import unexpected_arguments
+
 _NUMBER = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(,-?[\d.]+)?")
 """A negative number, or a position that begins with one: `-1,2`."""
 
@@ -18,6 +20,16 @@ class Command(click.Command):
     def __init__(self, *args: Any, example: str = "", **options: Any) -> None:
         super().__init__(*args, **options)
         self.example = example
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse the arguments of a command line. Raises UsageError for unexpected ones."""
+        ctx.allow_extra_args = True
+        rest = super().parse_args(ctx, args)
+        if rest and not ctx.resilient_parsing:
+            if unknown := [word for word in rest if word.startswith("--") and word in args]:
+                raise click.NoSuchOption(unknown[0].partition("=")[0], ctx=ctx)
+            raise click.UsageError(unexpected_arguments(ctx, rest), ctx)
+        return rest
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the example below the options."""

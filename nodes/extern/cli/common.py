@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 
 import click
 
+from semmap.nodes.extern.cli import usage_errors
 from semmap.nodes.extern.cli.output.printable import escaped_json, print_escaped
 from semmap.nodes.extern.cli.shell_completion import entity_names
 from semmap.schemas import errors
@@ -188,16 +189,16 @@ def run_arguments(app: click.Command, words: list[str], client: Client | None = 
     except click.exceptions.NoArgsIsHelpError as error:
         print(error.format_message())
     except click.NoSuchOption as error:
-        report(_MISUSE, f"{where}{_unknown_option(error)}")
+        report(_MISUSE, f"{where}{usage_errors.unknown_option(error)}")
         return 2
     except click.BadOptionUsage as error:
-        report(_MISUSE, f"{where}{_missing_values(error, app, words[0])}")
+        report(_MISUSE, f"{where}{usage_errors.missing_values(error, app, words[0])}")
         return 2
     except click.MissingParameter as error:
-        report(_MISUSE, f"{where}{_missing_parameter(error)}")
+        report(_MISUSE, f"{where}{usage_errors.missing_parameter(error)}")
         return 2
     except click.ClickException as error:
-        report(_MISUSE, f"{where}{_one_line(error)}")
+        report(_MISUSE, f"{where}{usage_errors.one_line(error)}")
         return 2
     except (click.Abort, KeyboardInterrupt):
         return 130
@@ -384,63 +385,3 @@ def print_error(text: str) -> None:
 def _strip_prefix(text: str) -> str:
     """Remove the prefix of decoding errors: a user of the command line did not write a message."""
     return text.removeprefix("malformed message: ")
-
-
-def _missing_values(error: click.BadOptionUsage, app: click.Command, name: str) -> str:
-    """Return the error text for an option with too few values. Click does not report the command."""
-    command = app.get_command(click.Context(app), name) if isinstance(app, click.Group) else app
-    for option in command.params if command is not None else ():
-        if option.nargs > 1 and error.option_name in option.opts:
-            values = f"{error.option_name} {option.metavar}"
-            return f"{error.option_name} requires {option.nargs} values, separated by spaces: {values}"
-    return _one_line(error)
-
-
-def _choices_of(choice: click.Choice[Any]) -> str:
-    return ", ".join(map(str, choice.choices))
-
-
-def _missing_parameter(error: click.MissingParameter) -> str:
-    """Return the error text for a missing argument or option, with the next step."""
-    parameter, ctx = error.param, error.ctx
-    if parameter is None or ctx is None:
-        return _one_line(error)
-    if isinstance(parameter, click.Option):
-        if isinstance(parameter.type, click.Choice):
-            return f"missing option {parameter.opts[0]}; choose from: {_choices_of(parameter.type)}"
-        option = " ".join(filter(None, (parameter.opts[0], parameter.metavar)))
-        return f"missing option {option}; see: {ctx.command_path} --help"
-    name = parameter.human_readable_name.removesuffix("...")
-    if isinstance(parameter.type, click.Choice):
-        return f"missing argument {name}; choose from: {_choices_of(parameter.type)}"
-    formatter = click.HelpFormatter(width=1000)
-    ctx.command.format_usage(ctx, formatter)
-    return f"missing argument {name}; usage: {formatter.getvalue().strip().removeprefix('Usage: ')}"
-
-
-def _one_line(error: click.ClickException) -> str:
-    """Return the message of an error of click without its capital letter and full stop."""
-    text = error.format_message()
-    return f"{text[:1].lower()}{text[1:]}".rstrip(".")
-
-
-_OPTION_SYNONYMS: Final = {
-    "-n": "--limit", "--last": "--limit", "--count": "--limit", "--max": "--limit", "--top": "--limit",
-    "--position": "--at", "--pos": "--at", "--pose": "--at", "--endpoint": "--connect", "--label": "--ref",
-    "--alias": "--alt", "--port": "--web-port", "-v": "--version",
-}  # fmt: skip
-"""Option names of other tools, and the options that correspond to them."""
-
-
-def _unknown_option(error: click.NoSuchOption) -> str:
-    """Return the error text for an unknown option, with a suggestion: `--format json` for `--json`."""
-    text = f"unknown option '{error.option_name}'"
-    options = [p for p in error.ctx.command.params if isinstance(p, click.Option)] if error.ctx else []
-    word = error.option_name.lstrip("-")
-    for option in options:
-        if _OPTION_SYNONYMS.get(error.option_name) in option.opts:
-            return f"{text}; did you mean {option.opts[0]}?"
-        if isinstance(option.type, click.Choice) and word in option.type.choices:
-            return f"{text}; did you mean {option.opts[0]} {word}?"
-    names = [name for option in options for name in (*option.opts, *option.secondary_opts)]
-    return text + (errors.did_you_mean(error.option_name, names) or "; see: --help")

@@ -70,7 +70,9 @@ def resolve_classes(words: Collection[str], known: Mapping[str, str]) -> frozens
     found = {word: known.get(word.casefold().replace("_", "")) for word in words}
     for word, name in found.items():
         if name is None:
-            raise errors.UnknownClass(f"unknown class '{word}'{errors.did_you_mean(word, known.values())}")
+            raise errors.UnknownClass(
+                f"unknown class '{word}'{errors.suggestion(word, known.values(), 'classes')}"
+            )
     return frozenset(name for name in found.values() if name is not None)
 
 

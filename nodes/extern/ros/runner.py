@@ -41,11 +41,19 @@ class RosConfig(Struct, frozen=True, kw_only=True):
 
 
 def run(
-    session: bus.Session, commands: str, config: RosConfig, tell: Callable[[str], None] = lambda _: None
+    session: bus.Session,
+    commands: str,
+    config: RosConfig,
+    tell: Callable[[str], None] = lambda _: None,
+    connected: Callable[[], None] = lambda: None,
 ) -> None:
-    """Run the bridge until stopped. Raises NoAnswer without a ROS router, BadRequest for a wrong endpoint."""
+    """Run the bridge until stopped; `connected` is called once, when it has found the ROS router.
+
+    Raises NoAnswer without a ROS router, BadRequest for a wrong endpoint.
+    """
     node = Node(keys.ROS, session, commands)
     with ros_session(config.router) as other, _stop_on_signals(node.stop):
+        connected()
         ros = RosNode(other, config.name, config.domain)
         Bridge(
             node,

@@ -41,7 +41,8 @@ def resolve_class(semantic_map: SemanticMap, word: str) -> Term:
     except Ambiguous as error:
         raise errors.UnknownClass(f"'{word}' is ambiguous: {error}; say which class") from None
     if name is None:
-        raise errors.UnknownClass(f"unknown class '{word}'{classes.index.did_you_mean(word)}")
+        hint = classes.index.did_you_mean(word) or "; see: semmap classes"
+        raise errors.UnknownClass(f"unknown class '{word}'{hint}")
     return classes.iris[name]
 
 

@@ -215,12 +215,17 @@ def _labelled(triple: Triple, label_prefix: str) -> Triple:
     return s, p, o
 
 
+_REPEATED_LINE = re.compile(r"^(line (\d+) .*) \(line \2\)$")
+"""A reason of Oxigraph that begins with the line which Python adds at its end."""
+
+
 def _reason(error: Exception) -> str:
     if "LoadDocumentCallback" in str(error):
         return (
             "its @context is remote, and nothing is fetched from the network; include the context in the file"
         )
-    return str(error).replace("\n", " ")
+    reason = str(error).replace("\n", " ").removeprefix("Parser error at ")
+    return _REPEATED_LINE.sub(r"\1", reason)
 
 
 def _require_shallow(content: bytes, syntax: _Syntax) -> None:

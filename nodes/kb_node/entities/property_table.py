@@ -37,6 +37,16 @@ STRUCTURAL: Mapping[Term, str] = {
     v.RDF_TYPE: "update {name} --class CLASS",
 }
 """Properties with command options of their own."""
+_FIELDS: Mapping[str, str] = {
+    **dict.fromkeys(("label", "ref", "preflabel"), "update {name} --ref TEXT"),
+    **dict.fromkeys(("alias", "alt", "altlabel"), "update {name} --alt TEXT"),
+    **dict.fromkeys(("at", "pose", "position", "location"), "update {name} --at X Y Z"),
+    **dict.fromkeys(("yaw", "rotation", "orientation"), "update {name} --yaw ANGLE"),
+    "size": "update {name} --size X Y Z",
+    "extent": "update {name} --extent WKT",
+    "name": "rename {name} NEW",
+}
+"""Words for what is not a property, in lower case, with the commands that change it."""
 _TYPE = frozenset(("type", "class"))
 _TEXT = frozenset((v.XSD_STRING,))
 _OF_A_STAR = frozenset((v.LEXICAL_REFERENCE, *v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ, *v.SIZE_XYZ))
@@ -148,6 +158,8 @@ class PropertyTable:
             raise errors.BadRequest(f"{v.local_name(p)} is changed with: semmap {how}")
         if p in self.by_iri:
             return self.by_iri[p]
+        if p is None and (how := _FIELDS.get(_fold(word), "")):
+            raise errors.BadRequest(f"{word} is changed with: semmap {how.format(name=name)}")
         hint = self._names.did_you_mean(word, self.by_iri.__contains__) or "; see: semmap properties"
         raise errors.BadRequest(f"unknown property '{word}'{hint}")
 

@@ -139,8 +139,16 @@ def _range_error(name: str, text: str, data_range: DataRange | None) -> errors.B
     if isinstance(data_range, Datatype):
         kind = f"xsd:{data_range.text}" if data_range.term.startswith(_XSD) else data_range.text
         takes = f"a literal of {kind}" if is_literal else _SAID.get(data_range.term) or kind
+    elif not is_literal and len(data_range.datatypes) == 1:  # "a number from 0 to 1" for a float
+        takes = _in_words(data_range.datatypes[0], data_range.text) or takes
     given = text if is_literal else f"'{text}'"
     return errors.BadRequest(f"{name} takes {takes}, not {given}")
+
+
+def _in_words(datatype: Term, text: str) -> str:
+    """Return the text of a restricted datatype with its name in words, or "" if it does not begin with it."""
+    said, name = _SAID.get(datatype), Datatype(datatype).text
+    return f"{said}{text.removeprefix(name)}" if said and text.startswith(f"{name} ") else ""
 
 
 def _text(text: str) -> Term:

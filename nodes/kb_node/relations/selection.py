@@ -198,7 +198,7 @@ def resolve_word(candidates: Sequence[Entity], word: str) -> frozenset[str]:
     all_words = sorted(set(chain.from_iterable(words)))
     known = {word.casefold(): word for word in all_words}.values()  # of Table and table, table
     raise errors.UnknownName(
-        f"no entity has the name, label or class '{word}'{errors.did_you_mean(word, known)}"
+        f"no entity has the name, label or class '{word}'{errors.suggestion(word, known, 'list')}"
     )
 
 

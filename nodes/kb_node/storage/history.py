@@ -149,7 +149,7 @@ class HistoryReader:
         classes = {t for entity in there for t in entity.types}.union(known)
         if class_name not in classes:
             raise errors.UnknownClass(
-                f"unknown class '{class_name}'{errors.did_you_mean(class_name, classes)}"
+                f"unknown class '{class_name}'{errors.suggestion(class_name, classes, 'classes')}"
             )
         return tuple(entity for entity in there if class_name in entity.types)
 
@@ -253,7 +253,7 @@ class HistoryReader:
             known = [there for there, _ in self._journal.last_touches(self._journal.last)]
             since = f" since commit {seq}, which the history begins with" if (seq := self._compacted) else ""
             raise errors.UnknownName(
-                f"no entity was ever named '{name}'{since}{errors.did_you_mean(name, known)}"
+                f"no entity was ever named '{name}'{since}{errors.suggestion(name, known, 'list')}"
             )
 
     @property

@@ -15,6 +15,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from semmap.nodes.runtime.pictures import require_small_png
 from semmap.nodes.sim_node.bodies import BodyRecord, Floats, pose_of
 from semmap.nodes.sim_node.body_classes import ROBOT, BodyClasses, Found
 from semmap.nodes.sim_node.physics.build import COLLISION_GROUP, IMPEDANCE
@@ -95,6 +96,7 @@ def read_mjcf(path: Path, *, compiles: bool = True) -> mujoco.MjSpec:
         with suppress(NotWellFormed, OSError):  # which MuJoCo reports
             require_shallow_xml(path.read_bytes())
         spec = mujoco.MjSpec.from_file(str(path))
+        _require_small_textures(spec, path.parent)
         if compiles:  # not a copy, which drops references to missing names
             mujoco.MjSpec.from_file(str(path)).compile()
     except (ValueError, OSError, mujoco.FatalError) as error:
@@ -103,6 +105,18 @@ def read_mjcf(path: Path, *, compiles: bool = True) -> mujoco.MjSpec:
             reason += '; set the limit in the file: <size memory="200M"/>'
         raise BadFile(f"cannot compile world file {path}: {reason}") from None
     return spec
+
+
+def _require_small_textures(spec: mujoco.MjSpec, folder: Path) -> None:
+    """Raise ValueError for a texture or height field with too many pixels: MuJoCo would decode it."""
+    named = [file for texture in spec.textures for file in (texture.file, *texture.cubefiles)]
+    for file in filter(None, (*named, *(field.file for field in spec.hfields))):
+        for there in (folder / file, folder / spec.texturedir / file, folder / spec.meshdir / file):
+            if there.is_file():
+                try:
+                    require_small_png(there)
+                except ValueError as error:
+                    raise ValueError(f"{there.name}: {error}") from None
 
 
 class Compiled(NamedTuple):

@@ -54,7 +54,19 @@ def test_the_values_of_an_option_are_named(capsys, words, said):
         ),
         (["completion"], "missing argument SHELL; choose from: bash, zsh, fish"),
         (["list", "-n", "3"], "unknown option '-n'; did you mean --limit?"),
-        (["list", "x"], "got unexpected extra argument (x)"),
+        (["list", "Cup"], "unexpected argument 'Cup'; did you mean --class Cup?"),
+        (["move", "cup1", "2", "1", "0"], "unexpected arguments '2' '1' '0'; did you mean --at 2 1 0?"),
+        (
+            ["find", "the", "cup"],
+            "unexpected argument 'cup'; a text with spaces must be quoted: semmap find 'the cup'",
+        ),
+        (
+            ["get", "cup1", "cup2"],
+            "unexpected argument 'cup2'; a value with spaces must be quoted;"
+            " usage: semmap get [OPTIONS] NAME",
+        ),
+        (["move", "cup1", "--to", "2", "1", "0"], "unknown option '--to'; did you mean --at?"),
+        (["undo", "cup1"], "invalid value for COMMIT: 'cup1' is not a valid integer"),
     ],
 )
 def test_an_error_of_usage_names_the_next_step(capsys, words, said):

@@ -65,7 +65,7 @@ def test_a_command_imports_only_what_it_needs(words, needless):
         (("list", "--json"), "unknown option '--json'; did you mean --format json?"),
         (("sparql", "ASK {}", "--csv"), "unknown option '--csv'; did you mean --format csv?"),
         (("list", "--clas"), "unknown option '--clas'; did you mean --class?"),
-        (("status", "--xyz"), "unknown option '--xyz'; see: --help"),
+        (("status", "--xyz"), "unknown option '--xyz'; see: semmap status --help"),
     ],
 )
 def test_an_unknown_option_says_which_one_may_be_meant(words, said, capsys):

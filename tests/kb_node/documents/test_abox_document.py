@@ -32,7 +32,7 @@ def test_all_unknown_classes_are_named(classes):
         abox_document.filter_document(triples, classes, skip_unknown=False)
     assert caught.value.text == (
         "unknown classes 'Chiar' (of c; did you mean Chair?), 'Xylophone' (of x, y);"
-        " --skip-unknown leaves these out"
+        " see: semmap classes; --skip-unknown leaves these out"
     )
 
 
@@ -55,7 +55,7 @@ def test_a_class_in_a_wrong_namespace_is_suggested_in_the_right_one(classes, nam
         abox_document.filter_document(turtle(f":c a <{namespace}Chair> ."), classes, skip_unknown=False)
     assert caught.value.text == (
         f"unknown class '<{namespace}Chair>' (of c; did you mean <{v.TBOX}Chair> (prefix dm:)?);"
-        " --skip-unknown leaves these out"
+        " see: semmap classes; --skip-unknown leaves these out"
     )
 
 
@@ -64,8 +64,9 @@ def test_of_many_classes_in_a_wrong_namespace_one_is_named(classes):
     with pytest.raises(errors.UnknownClass) as caught:
         abox_document.filter_document(triples, classes, skip_unknown=False)
     assert caught.value.text == (
-        f"unknown classes '<{v.ABOX}Chair>' (of c, d, k; did you mean <{v.TBOX}Chair> (prefix dm:), and so"
-        " for 2 more classes?), 'Xylophone' (of x); --skip-unknown leaves these out"
+        f"unknown classes '<{v.ABOX}Chair>' (of c, d and 1 more; did you mean <{v.TBOX}Chair> (prefix dm:),"
+        " and so for 2 more classes?), 'Xylophone' (of x); see: semmap classes;"
+        " --skip-unknown leaves these out"
     )
     _, words, _ = abox_document.filter_document(triples, classes, skip_unknown=True)
     assert len(words) == 4

@@ -227,3 +227,12 @@ def test_a_word_that_exceeds_the_buffer_is_reported_as_an_error_of_the_file(synt
         errors.BadFile, match=f"not valid {syntax}: it has a word or a text of more than 16 MB"
     ):
         rdf.parse(document % (b"a" * (17 << 20)), "big")
+
+
+def test_an_error_of_turtle_has_its_line_once():
+    with pytest.raises(errors.BadFile) as caught:
+        rdf.parse(b"hello world\n", "a.ttl", label_prefix="t")
+    assert caught.value.text == (
+        "a.ttl is not valid Turtle: line 1 between columns 1 and 6: hello is not a valid subject or graph"
+        " name"
+    )

@@ -35,6 +35,9 @@ def test_a_property_is_found_by_its_names(stateful_map, word):
         ("hasPreferredReference", "--ref TEXT"),
         ("hasAlternativeReference", "--alt TEXT"),
         ("type", "--class CLASS"),
+        ("label", "label is changed with: semmap update chair1 --ref TEXT"),
+        ("position", "--at X Y Z"),
+        ("size", "--size X Y Z"),
         ("lexicalReference", "unknown property"),
     ],
 )

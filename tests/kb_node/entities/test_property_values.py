@@ -7,6 +7,7 @@ from semmap.nodes.kb_node.reasoner.data_ranges import read_common
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
+from tests.kb_node import home
 from tests.kb_node.home import turtle
 
 INTEGER, DECIMAL, DOUBLE, BYTE, TIME = (
@@ -119,7 +120,7 @@ def test_a_datatype_without_a_definition_and_a_language_are_kept():
     ("name", "text", "said"),
     [
         ("xsd:time", "noon", "p takes xsd:time, not 'noon'"),
-        ("percent", "-5", "p takes an integer from 0 to 100, not '-5'"),
+        ("percent", "-5", "p takes a whole number from 0 to 100, not '-5'"),
         (
             "percent",
             '"300"^^<http://www.w3.org/2001/XMLSchema#int>',
@@ -162,3 +163,22 @@ def test_values_are_compared_by_value():
     assert not is_same_value(v.dm("a"), v.literal("a"))
     assert to_json_value(v.dm("color_red")) == "color_red"
     assert to_json_value('"x"^^<http://www.w3.org/2001/XMLSchema#integer>') == "x"
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("mass", "-3", "mass takes a number from 0 to 1e9, not '-3'"),
+        ("mass", "NaN", "mass takes a number from 0 to 1e9, not 'NaN'"),
+        ("mass", "INF", "mass takes a number from 0 to 1e9, not 'INF'"),
+        ("openness", "1.5", "openness takes a number from 0 to 1, not '1.5'"),
+        ("openness", "-0.5", "openness takes a number from 0 to 1, not '-0.5'"),
+    ],
+)
+def test_an_impossible_quantity_of_the_household_is_rejected(name, text, said):
+    match = Facts(dict.fromkeys(home.household())).match
+    data_range = read_common([o for _, _, o in match(v.dm(name), v.RDFS_RANGE, None)], match)
+    assert literal(name, data_range, "0.5") == v.literal("0.5", v.XSD_FLOAT)
+    with pytest.raises(errors.BadRequest) as caught:
+        literal(name, data_range, text)
+    assert caught.value.text == said

@@ -68,7 +68,11 @@ _describing = _options(
     click.option("--ref", metavar="TEXT", help="Label (skos:prefLabel)."),
     click.option("--alt", multiple=True, metavar="TEXT", help="Alias (skos:altLabel); may be repeated."),
     click.option("--confidence", type=float, metavar="P", help="Confidence, 0 to 1."),
-    click.option("--wait", is_flag=True, help="Wait until its body is in the scene."),
+    click.option(
+        "--wait/--no-wait",
+        default=False,
+        help="Wait until its body is in the scene, or return immediately.  [default: no-wait]",
+    ),
     _id,
 )
 

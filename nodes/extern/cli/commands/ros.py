@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from semmap.nodes.extern.cli.command import command
-from semmap.nodes.extern.cli.common import TIME, json_option, print_file, with_client
+from semmap.nodes.extern.cli.common import ENDPOINT, TIME, json_option, print_file, with_client
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.runtime import extras
 from semmap.schemas import errors, wording
@@ -34,6 +34,7 @@ def _with_its_extra(function: Callable[..., None]) -> Callable[..., None]:
 @command(example="semmap ros --router tcp/127.0.0.1:7447 --domain 0")
 @click.option(
     "--router",
+    type=ENDPOINT,
     default="tcp/127.0.0.1:7447",
     show_default=True,
     metavar="EP",
@@ -98,8 +99,13 @@ def ros(
         cameras=tuple(map(parse_camera, cameras)),
         detections=detections,
     )
-    print_escaped(f"publishing to ROS at {router}, domain {domain}; press Ctrl-C to stop")
-    run(client.session, client.prefix, config, lambda text: print_escaped(text, file=sys.stderr))
+    run(
+        client.session,
+        client.prefix,
+        config,
+        lambda text: print_escaped(text, file=sys.stderr),
+        lambda: print_escaped(f"publishing to ROS at {router}, domain {domain}; press Ctrl-C to stop"),
+    )
 
 
 @command(example="semmap mcap morning.mcap --since 08:00 --until 09:00")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from semmap.schemas.file_kinds import other_kind
 from semmap.schemas.packing import PACKED_FROM
 
 LARGEST: Final = 200 << 20
@@ -11,18 +12,6 @@ LARGEST: Final = 200 << 20
 BEGINNING: Final = 4096
 """Number of bytes that are checked."""
 
-_KINDS: Final = (
-    (b"%PDF-", "a PDF document"),
-    (b"PK\x03\x04", "a ZIP archive (or an office document)"),
-    (b"\x7fELF", "a program"),
-    (b"MZ", "a program"),
-    (b"\x89PNG", "an image"),
-    (b"\xff\xd8\xff", "an image"),
-    (b"GIF8", "an image"),
-    (b"SQLite format 3", "a database"),
-    (b"RRF2", "a recording; open it with `semmap replay`"),
-    (b"glTF", "a 3-D model"),
-)
 _GZIP: Final = b"\x1f\x8b"
 FORMATS: Final = (
     "RDF in any syntax, OWL (functional, Manchester or XML), a scene in JSON or a HuRIC map, "
@@ -36,9 +25,8 @@ def check_upload(filename: str, size: int, beginning: bytes) -> str:
         return f"{filename}: the file is empty"
     if size > LARGEST:
         return size_error(filename, size)
-    for magic, kind in _KINDS:
-        if beginning.startswith(magic):
-            return f"{filename}: unsupported format, the file is {kind}; supported formats: {FORMATS}"
+    if kind := other_kind(beginning):
+        return f"{filename}: unsupported format, the file is {kind}; supported formats: {FORMATS}"
     if b"\0" in beginning and not beginning.startswith((_GZIP, b"\xff\xfe", b"\xfe\xff")):
         return f"{filename}: unsupported binary format; supported formats: {FORMATS}"
     return ""
