@@ -92,7 +92,7 @@ def test_properties_of_an_individual_are_set_and_unset(people):
 
 
 def test_an_individual_has_no_pose_to_change_and_one_of_the_tbox_cannot_be_changed(people):
-    with pytest.raises(errors.Refused, match="anna is not in space, so only its properties"):
+    with pytest.raises(errors.Refused, match="anna is not in space, so only its class"):
         people.commit(transaction(2, edit=[edit("anna", at=(0.0, 0.0, 0.0))]))
     assert people.described("color_red").name == "color_red"
     with pytest.raises(errors.Refused, match="part of the TBox"):
