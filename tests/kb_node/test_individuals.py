@@ -119,6 +119,15 @@ def test_names_follow_commits_reverted_ones_and_individuals_that_get_a_place(peo
     assert names(people) == ["anna", "untyped"]
 
 
+def test_entities_are_listed_by_a_class_that_only_the_map_declares(people):
+    own = "<urn:x#Jig> a owl:Class ; rdfs:subClassOf dm:Chair . <urn:x#jig1> a <urn:x#Jig> ."
+    people.commit(transaction(2, turtle(own)))
+    for word in ("Jig", "urn:x#Jig"):
+        assert [e.name for e in CurrentState(people).entities(Entities(class_=word))] == ["jig1"]
+    with pytest.raises(errors.UnknownClass):
+        CurrentState(people).entities(Entities(class_="Jigs"))
+
+
 def test_equal_individuals_are_one(people):
     people.commit(transaction(2, turtle("<http://example.org/people/anna> owl:sameAs <urn:x:annie> .")))
     (anna, *_) = people.individuals.list()

@@ -37,6 +37,7 @@ STRUCTURAL: Mapping[Term, str] = {
     v.RDF_TYPE: "update {name} --class CLASS",
 }
 """Properties with command options of their own."""
+_EQUALITY = frozenset((v.OWL_SAME_AS, v.iri(f"{v.OWL}differentFrom")))
 _TYPE = frozenset(("type", "class"))
 _TEXT = frozenset((v.XSD_STRING,))
 _OF_A_STAR = frozenset((v.LEXICAL_REFERENCE, *v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ, *v.SIZE_XYZ))
@@ -148,6 +149,11 @@ class PropertyTable:
             raise errors.BadRequest(f"{v.local_name(p)} is changed with: semmap {how}")
         if p in self.by_iri:
             return self.by_iri[p]
+        if p in _EQUALITY or _fold(word) in ("sameas", "differentfrom"):
+            raise errors.BadRequest(
+                f"'{word}' is not changed by commands, but by files: semmap load FILE.ttl with the statement"
+                f" <IRI of {name}> owl:{word.rpartition(':')[2]} <IRI>"
+            )
         hint = self._names.did_you_mean(word, self.by_iri.__contains__) or "; see: semmap properties"
         raise errors.BadRequest(f"unknown property '{word}'{hint}")
 
