@@ -227,6 +227,9 @@ class Update(Command[Changed], frozen=True, tag="update"):
     objects in `leave`, and what is on them, do not move. `extent` and `frame` are as for `add`; a place with
     an extent is moved by setting a new one. `on`, `in` and `next_to` are as for `add`, but without an angle
     it keeps its orientation.
+
+    Of an individual that is not in space, given by its name or IRI, only the class, the labels and the
+    properties can be updated.
     """
 
     ROLES: ClassVar[Roles] = OBSERVERS

@@ -18,6 +18,7 @@ from semmap.nodes.coordinator.health_view import HealthView
 from semmap.nodes.coordinator.kb_client import KbClient
 from semmap.nodes.coordinator.live.feed import LiveFeed
 from semmap.nodes.coordinator.reconciler.reconciler import Reconciler
+from semmap.nodes.runtime.class_names import AmbiguousClass
 from semmap.nodes.runtime.futures import then
 from semmap.nodes.runtime.version import version
 from semmap.ontology.model_shapes import own_size_m
@@ -25,7 +26,6 @@ from semmap.schemas import bridge, errors
 from semmap.schemas import commands as c
 from semmap.schemas.attachments import holder_of
 from semmap.schemas.entities import Entity, Size
-from semmap.schemas.moments import When
 from semmap.schemas.relations import Described
 from semmap.schemas.replies import SystemStatus
 
@@ -63,8 +63,9 @@ class LocalQueries:
         """Return the entities of a class, with the state of their bodies."""
         if query.all:
             return self._list_all(query)
-        class_ = None if query.class_ is None else self._class_name(query.class_, query.as_of)
-        if query.as_of is not None or query.where is not None:
+        class_ = None if query.class_ is None else self._class_name(query.class_)
+        is_of_tbox = class_ is None or class_ in self._dispatcher.map.classes.by_name
+        if query.as_of is not None or query.where is not None or not is_of_tbox:
             asked = bridge.Entities(class_=class_, as_of=query.as_of, where=query.where)
             found = self._kb.ask_later(asked, patience_s=bus.RESTART_S)
             seen = with_size if query.as_of is not None else self._with_body
@@ -124,13 +125,13 @@ class LocalQueries:
             return formats.legacy(entities, iris)
         return entities
 
-    def _class_name(self, word: str, as_of: When | None) -> str:
-        """Return the name of a class. A class of the past may no longer exist: it is passed on as given."""
+    def _class_name(self, word: str) -> str:
+        """Return the name of a class; the word for a class of the past, or one that only the map declares."""
         try:
             return self._dispatcher.map.classes.find(word).name
+        except AmbiguousClass:
+            raise
         except errors.UnknownClass:
-            if as_of is None:
-                raise
             return word
 
     def _with_body(self, entity: E) -> E:

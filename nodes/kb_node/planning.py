@@ -130,7 +130,7 @@ def _expand_intents(
     for one in state.with_progress(edit):
         entity = state.described(one.name)
         if not entity.in_space:
-            _require_only_properties(entity, one)
+            _require_no_place(entity, one)
         draft.edit(entity, one)
         if one.carry:
             load = state.places.load_edits(one, edit)
@@ -145,10 +145,11 @@ def _expand_intents(
     return [*transaction.retract, *draft.retract], [*transaction.insert, *draft.insert], notes
 
 
-def _require_only_properties(individual: Entity, edit: Edit) -> None:
-    """Raise Refused if an edit changes more than properties and the name of an individual not in space."""
-    if structs.replace(edit, set=(), unset=(), only_if=(), rename=None) != Edit(name=edit.name):
+def _require_no_place(individual: Entity, edit: Edit) -> None:
+    """Raise Refused if an edit gives an individual that is not in space what only entities have."""
+    properties = structs.replace(edit, set=(), unset=(), only_if=())
+    if structs.replace(properties, rename=None, class_iri=None, ref=None, alt=None) != Edit(name=edit.name):
         raise errors.Refused(
-            f"{individual.name} is not in space, so only its properties and its name can be changed;"
-            f" see: semmap set {individual.name} PROPERTY VALUE"
+            f"{individual.name} is not in space, so only its class, labels, properties and name can be"
+            f" changed; see: semmap set {individual.name} PROPERTY VALUE"
         )

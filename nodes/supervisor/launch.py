@@ -83,6 +83,7 @@ def seed(settings: Settings) -> None:
         skip_unknown=settings.skip_unknown,
         tbox_from_abox=settings.tbox_from_abox,
         fresh=settings.fresh,
+        enforce_shapes=settings.enforce_shapes,
     )
     print(summary)
 

@@ -116,9 +116,10 @@ def test_what_is_not_in_space_has_no_body_and_is_returned_by_the_knowledge_base(
     assert [query.name for query in here.asked] == ["anna"]
 
 
-def test_an_unknown_class_is_an_error_of_the_present():
-    with pytest.raises(errors.UnknownClass, match="no class is named 'mug'"):
-        Here().listed(class_="mug")
+def test_a_class_that_only_the_map_may_declare_is_left_to_the_knowledge_base():
+    here = Here()
+    here.listed(class_="mug")
+    assert here.asked == [bridge.Entities(class_="mug")]
 
 
 def test_an_entity_is_returned_from_the_present_or_the_past():

@@ -92,7 +92,7 @@ def test_properties_of_an_individual_are_set_and_unset(people):
 
 
 def test_an_individual_has_no_pose_to_change_and_one_of_the_tbox_cannot_be_changed(people):
-    with pytest.raises(errors.Refused, match="anna is not in space, so only its properties"):
+    with pytest.raises(errors.Refused, match="anna is not in space, so only its class"):
         people.commit(transaction(2, edit=[edit("anna", at=(0.0, 0.0, 0.0))]))
     assert people.described("color_red").name == "color_red"
     with pytest.raises(errors.Refused, match="part of the TBox"):
@@ -117,6 +117,15 @@ def test_names_follow_commits_reverted_ones_and_individuals_that_get_a_place(peo
     assert names(people) == ["anna", "untyped"]
     people.commit(transaction(5, chair("chair7")))
     assert names(people) == ["anna", "untyped"]
+
+
+def test_entities_are_listed_by_a_class_that_only_the_map_declares(people):
+    own = "<urn:x#Jig> a owl:Class ; rdfs:subClassOf dm:Chair . <urn:x#jig1> a <urn:x#Jig> ."
+    people.commit(transaction(2, turtle(own)))
+    for word in ("Jig", "urn:x#Jig"):
+        assert [e.name for e in CurrentState(people).entities(Entities(class_=word))] == ["jig1"]
+    with pytest.raises(errors.UnknownClass):
+        CurrentState(people).entities(Entities(class_="Jigs"))
 
 
 def test_equal_individuals_are_one(people):

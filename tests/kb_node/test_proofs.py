@@ -42,6 +42,13 @@ def test_a_proof_is_complete_after_encoding(reasoner):
     assert [getattr(arrived, field) for field in rest] == [getattr(proof, field) for field in rest]
 
 
+def test_nameless_individuals_are_numbered_in_texts():
+    text = "_:f19b has x 1 (asserted), a1 has position _:c3-d.e (asserted), and _:f19b is one."
+    assert proofs.number_nameless(text) == (
+        "[1] has x 1 (asserted), a1 has position [2] (asserted), and [1] is one."
+    )
+
+
 def test_a_refutation_keeps_its_assumption(reasoner):
     assert crossed(proofs.to_message(refute(reasoner, FOOD1))).supposed == FOOD1
 

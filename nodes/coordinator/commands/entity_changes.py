@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from msgspec import structs
+
 from semmap.nodes.coordinator.access.authority import is_placing, require_authority
 from semmap.nodes.coordinator.commands import attachment_rules, individuals, transactions
 from semmap.nodes.coordinator.commands.commit import commit, make_reply, new_id, reload_map
@@ -88,7 +90,12 @@ def _add(view: MapView, command: Add, found: ClassInfo) -> KbCoroutine[Changed]:
 
 @handles(Update)
 def update(view: MapView, command: Update) -> KbCoroutine[Changed]:
-    """Change an entity; omitted fields keep their values."""
+    """Change an entity, or an individual that is not in space; omitted fields keep their values."""
+    if command.name not in view.entities:
+        known = yield from individuals.find_individual(view, command.name)
+        if not known.in_space:
+            return (yield from individuals.update_individual(view, known, command))
+        command = structs.replace(command, name=known.name)
     entity, found = resolve_update(view, command)
     command, where, notes = yield from place(view, command, entity.name, found)
     made = yield from commit(view, transactions.update(command, entity, found))

@@ -3,17 +3,30 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from typing import Final
 
+from msgspec import structs
+
+from semmap.nodes.coordinator.access.authority import require_authority
 from semmap.nodes.coordinator.commands import transactions
 from semmap.nodes.coordinator.commands.commit import commit, make_reply
 from semmap.nodes.coordinator.commands.map_view import MapView
 from semmap.nodes.coordinator.kb_coroutines import KbCoroutine, ask
 from semmap.schemas import changes, errors
-from semmap.schemas.commands import Get, Rename
+from semmap.schemas.commands import Get, Rename, Update
 from semmap.schemas.commits import Edit, Transaction
 from semmap.schemas.entities import Entity
 from semmap.schemas.relations import Described
 from semmap.schemas.replies import Changed
+
+_OF_SPACE: Final = {
+    name: getattr(Update(name="_"), name)
+    for name in (
+        *("at", "yaw", "orientation", "frame", "size", "extent", "on", "in_", "next_to"),
+        *("carry", "leave", "conflict", "wait"),
+    )
+}
+"""The fields of an update that only entities have, with their defaults."""
 
 
 def find_individual(view: MapView, word: str) -> KbCoroutine[Entity]:
@@ -48,8 +61,32 @@ def rename_individual(view: MapView, was: Entity, command: Rename) -> KbCoroutin
     return make_reply(made, f"renamed {was.name} to {command.new}", names=(command.new,))
 
 
+def update_individual(view: MapView, was: Entity, command: Update) -> KbCoroutine[Changed]:
+    """Commit a new class, labels and properties of an individual.
+
+    Raises Refused for a pose, a size and the like, and for a class of things in space.
+    """
+    if given := [name for name, usual in _OF_SPACE.items() if getattr(command, name) != usual]:
+        options = " ".join(f"--{name.rstrip('_').replace('_', '-')}" for name in given)
+        raise errors.Refused(
+            f"{was.name} is not in space, so only its class, labels and properties can be updated;"
+            f" remove {options}"
+        )
+    found = None if command.class_ is None else view.classes.find(command.class_)
+    if found is not None and found.spatial:
+        raise errors.Refused(
+            f"{was.name} is not in space, and {found.name} is a class of things in space; for a new entity of"
+            f" it: semmap add {found.name}"
+        )
+    if (command.class_, command.ref, command.alt) != (None, None, None):
+        require_authority(command, [was])
+    made = yield from change_individual(view, was, transactions.update(command, was, found))
+    notes = view.classes.note(command.class_ or "", found) if found is not None else ()
+    return structs.replace(made, notes=(*made.notes, *notes))
+
+
 def change_individual(view: MapView, was: Entity, transaction: Transaction) -> KbCoroutine[Changed]:
-    """Commit a change of properties of an individual, and return what has changed."""
+    """Commit a change of an individual, and return what has changed."""
     given = f"<{was.iri}>"
     made = yield from commit(view, transactions.for_name(transaction, given))
     if made is None:

@@ -67,7 +67,7 @@ def described(found: Described) -> tuple[dict[str, Any], list[dict[str, Any]]]:
         head["body"] = found.body.status
     head |= {kind: True for kind in ("place", "fixed") if getattr(found, kind)}
     if not found.in_space:
-        return head | {"in_space": False}, list(_facts(found))
+        head["in_space"] = False
     head["changed"] = {
         "commit": found.provenance.commit,
         "by": format_author(found.provenance.source, found.provenance.agent),

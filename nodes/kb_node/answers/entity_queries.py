@@ -77,7 +77,7 @@ class CurrentState:
         """
         if query.all:
             return self._with_individuals(query)
-        found = answers.find_entities(self._map, query.class_)
+        found = self._find_entities(query.class_)
         if query.where is None:
             return found
         return tuple(
@@ -90,13 +90,28 @@ class CurrentState:
             )
         )
 
+    def _find_entities(self, class_name: str | None) -> tuple[Entity, ...]:
+        """Return the entities of a class of the TBox, or of one that only the map declares."""
+        try:
+            return answers.find_entities(self._map, class_name)
+        except errors.UnknownClass:
+            declared = (s for s, _, _ in self._map.reasoner.asserted(None, v.RDF_TYPE, v.OWL_CLASS))
+            own = [c for c in declared if class_name in (v.local_name(c), v.bare(c))]
+            if not own:
+                raise
+            found = (
+                self._map.find_by_individual(one) for c in own for one in self._map.reasoner.instances(c)
+            )
+            by_name = {entity.name: entity for entity in found if entity is not None}
+            return tuple(by_name[name] for name in sorted(by_name))
+
     def _with_individuals(self, query: Entities) -> tuple[Entity, ...]:
         """Return the entities of a class (or all), then the individuals of that class not in space."""
         individuals, entities = self._map.individuals.list(), tuple[Entity, ...]()
         if query.class_ is not None:
             individuals = tuple(one for one in individuals if query.class_ in one.types)
         try:
-            entities = answers.find_entities(self._map, query.class_)
+            entities = self._find_entities(query.class_)
         except errors.UnknownClass:  # it may be a class that only the map uses
             if not individuals:
                 raise

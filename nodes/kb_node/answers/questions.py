@@ -76,6 +76,7 @@ def copy_reasoner(held: GivenFacts, names: Mapping[Term, str]) -> Reasoner:
     """Return a reasoner for another thread; `names` distinguish classes with equal local names."""
     reasoner = Reasoner.of(held)
     reasoner.words.disambiguate(names)
+    reasoner.words.name_individual = v.entity_name
     return reasoner
 
 

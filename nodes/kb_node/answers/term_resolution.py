@@ -84,7 +84,9 @@ def resolve_individual(semantic_map: SemanticMap, word: str) -> Term:
             raise errors.BadRequest(f"'{word}' is ambiguous: {errors.enumerated(names)}; say which")
         if there:
             return there.pop()
-    return v.iri(semantic_map.resolve(composed(word)).iri)
+    iri = v.iri(semantic_map.resolve(composed(word)).iri)
+    same = (one for one in reasoner.equals(iri) if v.entity_name(one) == composed(word))
+    return next(same, iri)  # the individual of that name, of those that the entity is
 
 
 def resolve_end(semantic_map: SemanticMap, predicate: Term, word: str) -> Term:

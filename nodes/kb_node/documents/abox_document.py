@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import chain, count
 from operator import itemgetter
@@ -31,6 +32,9 @@ _TBOX = f"<{v.TBOX}"
 _OF_STARS = (v.COORDINATES, v.THREE_DIM_SIZE, v.PREFERRED_REFERENCE, v.ALTERNATIVE_REFERENCE)
 """Classes of the individuals that describe an entity. semmap writes them with any TBox."""
 _FEW = 5
+_DESCRIBING = (v.RDF_TYPE, v.OWL_SAME_AS, v.RDFS_LABEL, v.SKOS_PREF_LABEL)
+"""Properties of an individual that is not merely a misspelt name."""
+_NAMELESS = re.compile(r"_:\S+")
 _DEPTH = 8
 """Depth to which the parts of a blank node are compared."""
 _WHOLES = (v.COORDINATE_XYZ, v.ORIENTATION_WXYZ, v.SIZE_XYZ)
@@ -206,9 +210,13 @@ def find_undescribed(
     relations = {s for s, _, _ in reasoner.asserted(None, v.RDF_TYPE, v.OWL_OBJECT_PROPERTY)}
     by_property = entity_triples.group_by_property(triples)
     related = {o for p in relations & by_property.keys() for _, _, o in by_property[p]}
-    related.difference_update(map(itemgetter(0), by_property.get(v.RDF_TYPE, ())))
+    for p in _DESCRIBING:
+        related.difference_update(map(itemgetter(0), by_property.get(p, ())))
+    related.difference_update(map(itemgetter(2), by_property.get(v.OWL_SAME_AS, ())))
     named = (o for o in related if o.startswith("<"))
-    strange = {o for o in named if not any(map(stays, reasoner.asserted(o, v.RDF_TYPE, None)))}
+    strange = {
+        o for o in named if not any(stays(t) for p in _DESCRIBING for t in reasoner.asserted(o, p, None))
+    }
     found: dict[Term, Triple] = {}
     for triple in triples if strange else ():
         if triple[2] in strange and triple[1] in relations:
@@ -219,7 +227,8 @@ def find_undescribed(
 def undescribed_note(found: Mapping[Term, Triple]) -> str:
     """Return one sentence on the undescribed individuals."""
     few = ", ".join(
-        f"{_display_name(term)} ({v.to_words(triple)})" for term, triple in [*found.items()][:_FEW]
+        f"{_display_name(term)} ({_NAMELESS.sub('a nameless individual', v.to_words(triple))})"
+        for term, triple in [*found.items()][:_FEW]
     )
     more = f" and {len(found) - _FEW} more" if len(found) > _FEW else ""
     return f"referenced but not described: {few}{more}"

@@ -112,7 +112,7 @@ class Alignment(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     def entry_properties(self) -> frozenset[Term]:
         """The properties of an entity itself from which its pose, size or name is found."""
         poses = {words.path[0] if words.path else words.position for words in self.pose}
-        sizes = {words.path[0] if words.path else words.x for words in self.size}
+        sizes = {p for words in self.size for p in (words.path[:1] or (words.x, words.y, words.z))}
         return frozenset((*poses, *sizes, *self.names, v.RDFS_LABEL))
 
 

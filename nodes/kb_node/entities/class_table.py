@@ -59,6 +59,7 @@ class ClassTable:
         self.prefixed: dict[Term, str] = {c: prefixes.prefixed(c, self.prefixes) for c in self.names}
         """Class to name with its prefix, which is always unambiguous."""
         reasoner.words.disambiguate(self.prefixed)
+        reasoner.words.name_individual = v.entity_name
         self.alignments: tuple[Alignment, ...] = alignments.find_for_namespaces(self.prefixes.values())
         """The alignments that apply to the TBox."""
         self.edges = frozenset(entity_triples.DESCRIPTION_PROPERTIES).union(

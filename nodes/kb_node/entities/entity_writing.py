@@ -126,7 +126,7 @@ class Draft:
             for one, nodes in self._holders(entity, v.HAS_POSITION, aligned_values.find_poses):
                 self._place(one, nodes, pose, size_m)
         if edit.class_iri is not None and v.iri(edit.class_iri) != self._classes.iris.get(entity.class_):
-            class_iri = self._class(edit.class_iri)
+            class_iri = self._class(edit.class_iri, in_space=entity.in_space)
             self._retract(
                 (iri, v.RDF_TYPE, o) for o in asserted.get(v.RDF_TYPE, ()) if o != v.OWL_NAMED_INDIVIDUAL
             )
@@ -415,14 +415,16 @@ class Draft:
     def _is_described(self, term: Term) -> bool:
         return any(t not in self.retract for t in self._reasoner.asserted(term))
 
-    def _class(self, iri: str) -> Term:
-        """Return the term of a class, one object for all entities of it.
+    def _class(self, iri: str, *, in_space: bool = True) -> Term:
+        """Return the term of a class of things in space, or of others; one object for all entities of it.
 
         Raises UnknownClass, because the TBox may have been replaced since the class was looked up.
         """
         if (term := self._known_classes.get(iri)) is None:
-            if (term := v.iri(iri)) not in self._classes.spatial:
-                raise errors.UnknownClass(f"the TBox has no spatial class <{iri}>")
+            term = v.iri(iri)
+            if term not in self._classes.names or (term in self._classes.spatial) != in_space:
+                kind = "spatial" if in_space else "non-spatial"
+                raise errors.UnknownClass(f"the TBox has no {kind} class <{iri}>")
             self._known_classes[iri] = term
         return term
 

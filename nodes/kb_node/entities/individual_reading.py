@@ -32,7 +32,9 @@ _OF_SCHEMAS: Final = frozenset(
     )
 )
 """Properties of classes and properties."""
-_UNKNOWN: Final = Provenance(commit=0, stamp_ns=0, source="file", reason="not in space: not dated")
+_UNKNOWN: Final = Provenance(
+    commit=0, stamp_ns=0, source="file", reason="not in space: only get returns its commits"
+)
 _MAX_PATH: Final = 8
 
 
@@ -66,7 +68,7 @@ def read_individual(reasoner: Reasoner, classes: ClassTable, iri: Term) -> Entit
     """Return an individual that is not in space, with all its asserted properties.
 
     Its class is the most specific asserted one. A class that the TBox does not declare has the last part of
-    its IRI as name. The provenance is not that of a commit, because commits are dated by entity only.
+    its IRI as name. It has no provenance, because its commits must be searched for.
     """
     about = equal_individuals.about_entity(reasoner, iri)
     asserted = about(iri)

@@ -17,7 +17,7 @@ from semmap.nodes.kb_node.answers.descriptions import Descriptions, describe_pas
 from semmap.nodes.kb_node.answers.entity_search import EntitySearch, describe_missing, find_past
 from semmap.nodes.kb_node.answers.live_poses import LiveEntities
 from semmap.nodes.kb_node.answers.location_queries import LocationQueries
-from semmap.nodes.kb_node.answers.past import fact_intervals, past_map
+from semmap.nodes.kb_node.answers.past import fact_intervals, individual_dates, past_map
 from semmap.nodes.kb_node.answers.past.trail_recording import TrailRecorder
 from semmap.nodes.kb_node.answers.route_planning import RoutePlanning
 from semmap.nodes.kb_node.answers.sightings import Sightings
@@ -36,6 +36,7 @@ from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.storage import history, trail_file
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.runtime.fair_queue import FairPool
+from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.bridge import Entities, FindRoom, LoadOf, PlanOf, Room, WayOf
 from semmap.schemas.calls import Handler, by_verb
@@ -194,12 +195,18 @@ class QueryHandlers:
 
     def on_get(self, query: Get) -> Described | Future[Described]:
         """Return one entity, now or in the past."""
-        if query.as_of is None:
-            if not query.where:
-                return self._now.entity(query)
+        if query.as_of is not None:
+            return self._aside.submit(self._then.entity, query)
+        if not query.where:
+            found = self._now.entity(query)
+        else:
             with self.live.applied():
-                return self._now.entity(query)
-        return self._aside.submit(self._then.entity, query)
+                found = self._now.entity(query)
+        if found.in_space:
+            return found
+        described = individual_dates.find_described(self._map.reasoner, v.iri(found.iri))
+        dates = partial(individual_dates.find_dates, self._journal, described, self._map.seq)
+        return self._aside.submit(lambda: dates().of(found))
 
     def on_infer(self, query: Infer) -> Inferred | Future[Inferred]:
         """Return the inferred facts about an entity, or about all in another thread."""

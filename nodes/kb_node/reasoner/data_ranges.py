@@ -96,7 +96,7 @@ class Enumeration(DataRange):
     def __init__(self, members: Sequence[Term]) -> None:
         self._members = members
         self.datatypes = tuple(dict.fromkeys(f"<{literal(term).datatype}>" for term in members))
-        names = [f'"{literal(term).text}"' for term in members[:_SHOWN]]
+        names = [_quoted(term) for term in members[:_SHOWN]]
         more = f" and {len(members) - _SHOWN} more" if len(members) > _SHOWN else ""
         self.text = f"one of {', '.join(names)}{more}"
 
@@ -290,6 +290,7 @@ _LENGTHS: Final[dict[Term, Callable[[int, int], bool]]] = {
     iri("xsd:minLength"): lambda length, bound: length >= bound,
     iri("xsd:maxLength"): lambda length, bound: length <= bound,
 }
+_STRINGS: Final = frozenset(iri(name)[1:-1] for name in ("xsd:string", "rdf:langString", "rdf:PlainLiteral"))
 _PATTERN: Final = iri("xsd:pattern")
 _LANGUAGE: Final = iri("rdf:langRange")
 _WORDS: Final = {
@@ -307,16 +308,30 @@ _WORDS: Final = {
 }
 FACETS: Final = frozenset(_WORDS)
 """The predicates of facets. Those about digits are not checked; OWL 2 does not have them."""
-_BETWEEN: Final = (iri("xsd:minInclusive"), iri("xsd:maxInclusive"))
+_PAIRS: Final = {
+    (iri("xsd:minInclusive"), iri("xsd:maxInclusive")): "from {} to {}",
+    (iri("xsd:minInclusive"), iri("xsd:maxExclusive")): "of at least {} and below {}",
+    (iri("xsd:minExclusive"), iri("xsd:maxInclusive")): "above {} and at most {}",
+    (iri("xsd:minExclusive"), iri("xsd:maxExclusive")): "above {} and below {}",
+    (iri("xsd:minLength"), iri("xsd:maxLength")): "of {} to {} characters",
+}
+"""Facets that are described together."""
 _ESCAPES: Final = {"i": "[_:A-Za-z]", "c": r"[\w.:-]", "I": "[^_:A-Za-z]", "C": r"[^\w.:-]"}
 _TOKEN: Final = re.compile(r"\\(.)|(\[)|(\])|([\^$])", re.DOTALL)
 
 
+def _quoted(term: Term) -> str:
+    """Return the text of a literal, in quotation marks if it is a string."""
+    text, datatype, _ = literal(term)
+    return f'"{text}"' if datatype in _STRINGS else text
+
+
 def _facet_words(facets: Sequence[tuple[Term, Term]]) -> Iterator[str]:
     bounds = {facet: literal(value).text for facet, value in facets}
-    if len(bounds) == len(facets) and bounds.keys() >= set(_BETWEEN):
-        low, high = (bounds.pop(facet) for facet in _BETWEEN)
-        yield f"from {low} to {high}"
+    if len(bounds) == len(facets):
+        for pair, words in _PAIRS.items():
+            if bounds.keys() >= set(pair):
+                yield words.format(*(bounds.pop(facet) for facet in pair))
         facets = [(facet, value) for facet, value in facets if facet in bounds]
     for facet, value in facets:
         yield _WORDS.get(facet, "with a facet {}").format(literal(value).text)

@@ -14,6 +14,8 @@ from semmap.nodes.kb_node.documents.tbox import map_declarations, tbox_declarati
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.shacl import violations
+from semmap.nodes.kb_node.shacl.enforcement import ShapeEnforcement
 from semmap.nodes.kb_node.sparql.triples.disk_stores import forget
 from semmap.nodes.kb_node.storage import body_shapes, closure_cache
 from semmap.nodes.kb_node.storage.existing_map import describe_existing_map
@@ -38,14 +40,16 @@ def seed(
     skip_unknown: bool = False,
     tbox_from_abox: bool = False,
     fresh: bool = False,
+    enforce_shapes: bool = False,
 ) -> str:
     """Create the journal of folder `data` from a TBox and an ABox file, and return a summary.
 
     The TBox may consist of several files and folders. `imports` maps imported ontologies to files.
     `spatial_root` names the classes of spatial things, if they cannot be detected. With `skip_unknown`, the
     individuals of unknown classes are left out. With `tbox_from_abox`, the classes and properties that the
-    ABox file declares become part of the TBox. An existing journal is kept and used, unless `fresh`: then it
-    is moved to `data/kept/<time>/`. Raises BadFile, UnknownClass or Inconsistent, with existing data
+    ABox file declares become part of the TBox. With `enforce_shapes`, files that violate a SHACL shape of the
+    TBox, or whose shapes are invalid, are rejected. An existing journal is kept and used, unless `fresh`:
+    then it is moved to `data/kept/<time>/`. Raises BadFile, UnknownClass or Inconsistent, with existing data
     unchanged.
     """
     path = data / FILENAME
@@ -110,7 +114,7 @@ def seed(
         data.mkdir(parents=True, exist_ok=True)
         require_unused(path)
         new = path.with_name(f"new-{FILENAME}")
-        semantic_map = _make(new, tbox_triples, reasoner, transaction)
+        semantic_map = _make(new, tbox_triples, reasoner, transaction, enforce_shapes=enforce_shapes)
         install_journal(new, path)
         closure_cache.save(closed, tbox_triples, data)
     except (errors.Inconsistent, errors.BadRequest) as error:
@@ -121,7 +125,14 @@ def seed(
     return "; note: ".join((f"{wording.entities(len(semantic_map))}{source}", *notes))
 
 
-def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Transaction) -> SemanticMap:
+def _make(
+    path: Path,
+    tbox: list[Triple],
+    reasoner: Reasoner,
+    transaction: Transaction,
+    *,
+    enforce_shapes: bool = False,
+) -> SemanticMap:
     """Create a journal at `path` with one commit, and return its map. The journal is closed.
 
     Nothing is left after an error.
@@ -132,6 +143,8 @@ def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Trans
         try:
             semantic_map = SemanticMap(journal, reasoner=reasoner)
             semantic_map.commit(transaction)
+            if enforce_shapes:
+                _require_valid(semantic_map)
             semantic_map.checkpoint()
         finally:
             journal.close()
@@ -139,6 +152,19 @@ def _make(path: Path, tbox: list[Triple], reasoner: Reasoner, transaction: Trans
         delete_journal(path)
         raise
     return semantic_map
+
+
+def _require_valid(semantic_map: SemanticMap) -> None:
+    """Raise BadFile if a shape of the TBox is invalid, or the map violates one."""
+    semantic_map.derive_all()
+    with limited():
+        enforcement = ShapeEnforcement(semantic_map.tbox)
+        found = enforcement.find_violations(None, semantic_map.reasoner)
+    if found:
+        raise errors.BadFile(
+            f"{violations.describe_rejection(found, semantic_map)}; to start with them and repair the map:"
+            " without --enforce-shapes"
+        )
 
 
 def require_unused(path: Path) -> None:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from semmap.nodes.sim_node.bodies import BodyIndex, BodyRecord, Floats, Ints
 
@@ -28,7 +31,8 @@ class Obstacles:
     """The colliding geoms of a scene at one moment. Rows are those of the index; `GROUND` is the world.
 
     `standing` (N,) marks bodies that are obstacles. Attached bodies are not, since they move with their
-    holder.
+    holder. A body of the index that is nested in another, such as a book that a world file fixes to a table,
+    is an obstacle of its own, but moves with the whole. Boxes, footprints and volumes include such parts.
     """
 
     def __init__(
@@ -38,9 +42,9 @@ class Obstacles:
         self._records = [records[name] for name in index.names]
         self.standing = np.array([not (r.ghost or r.held_by) for r in self._records], dtype=bool)
         self._bottoms = index.poses(data)[:, :3]
-        rows = np.full(model.nbody, GROUND)
-        rows[index.body] = np.arange(len(index.names))
-        self._owner = rows[model.body_rootid][model.geom_bodyid]  # a part belongs to its parent
+        owner = _find_owners(model, index)
+        self._owner = owner[model.geom_bodyid]
+        self._parts, self._whole = _find_parts(owner[model.body_parentid[index.body]])
         felt = (model.geom_contype | model.geom_conaffinity) != 0
         for row, record in enumerate(self._records):
             if record.ghost:
@@ -54,6 +58,12 @@ class Obstacles:
         self._starts = np.searchsorted(owners, np.arange(-1, len(self._records)))
         self._ends = np.searchsorted(owners, np.arange(-1, len(self._records)), side="right")
         self.body_low, self.body_high = self._body_boxes()
+        own_size = self.body_high - self.body_low
+        self._own_footprint, self._own_volume = own_size[:, :2], np.prod(own_size, axis=1)
+        for whole, parts in self._parts.items():
+            members = [whole, *parts]
+            self.body_low[whole] = self.body_low[members].min(axis=0)
+            self.body_high[whole] = self.body_high[members].max(axis=0)
         self.footprint = self.body_high[:, :2] - self.body_low[:, :2]
         self.volume = np.prod(self.body_high - self.body_low, axis=1)
 
@@ -71,7 +81,20 @@ class Obstacles:
         return low, high
 
     def _slice(self, row: int) -> slice:
+        """Return the colliding geoms of a body without its parts."""
         return slice(int(self._starts[row + 1]), int(self._ends[row + 1]))
+
+    def _geoms(self, row: int) -> slice | Ints:
+        """Return the colliding geoms of a body and its parts."""
+        if row not in self._parts:
+            return self._slice(row)
+        members = (self._slice(member) for member in (row, *self._parts[row]))
+        return np.concatenate([np.arange(geoms.start, geoms.stop) for geoms in members])
+
+    def _list_standing(self) -> NDArray[np.bool_]:
+        """Return (N,) which bodies are obstacles; parts are if their whole is."""
+        standing: NDArray[np.bool_] = self.standing & self.standing[self._whole]
+        return standing
 
     def _body_boxes(self) -> tuple[Floats, Floats]:
         count = len(self._records)
@@ -88,20 +111,23 @@ class Obstacles:
         return self._records[row].fixed
 
     def raise_(self, row: int, rise_m: float) -> None:
-        """Raise one body, only in this object."""
-        here = self._slice(row)
+        """Raise one body with its parts, only in this object."""
+        here, members = self._geoms(row), [row, *self._parts.get(row, ())]
         self._data.geom_xpos[self._felt[here], 2] += rise_m
-        for corner in (self._low[here], self._high[here]):
-            corner[:, 2] += rise_m
-        self._bottoms[row, 2] += rise_m
-        self.body_low[row, 2] += rise_m
-        self.body_high[row, 2] += rise_m
+        for corners in (self._low, self._high):
+            corners[here, 2] += rise_m
+        for heights in (self._bottoms, self.body_low, self.body_high):
+            heights[members, 2] += rise_m
 
     def hits(self, row: int, depth_m: float = TOLERANCE_M) -> list[int]:
-        """Return the standing rows (and the ground) that the body overlaps by more than `depth_m`."""
-        rows = [other for other in self.touched(row, -depth_m) if other != row and self.standing[other]]
+        """Return the standing rows (and the ground) that the body overlaps by more than `depth_m`.
+
+        Parts of the same whole do not count.
+        """
+        standing = self._list_standing() & (self._whole != self._whole[row])
+        rows = [other for other in self.touched(row, -depth_m) if standing[other]]
         if self._records[row].fixed:
-            rows = [other for other in rows if not self._records[other].fixed]
+            rows = [other for other in rows if not self._records[self._whole[other]].fixed]
             ground: list[int] = []
         else:
             ground = [GROUND]
@@ -116,7 +142,7 @@ class Obstacles:
         return np.flatnonzero(near).tolist()
 
     def _touches(self, row: int, other: int, depth_m: float) -> bool:
-        mine, theirs = self._slice(row), self._slice(other)
+        mine, theirs = self._geoms(row), self._slice(other)
         overlap = (self._low[mine, None] + depth_m < self._high[None, theirs]) & (
             self._high[mine, None] - depth_m > self._low[None, theirs]
         )
@@ -136,7 +162,7 @@ class Obstacles:
 
     def carries(self, support: int, row: int) -> bool:
         """Return whether a body may be lifted onto another: it fits on top, and is much smaller or squat."""
-        return self._fits(row, self.footprint[support], float(self.volume[support]))
+        return self._fits(row, self._own_footprint[support], float(self._own_volume[support]))
 
     def _fits(self, row: int, footprint: Floats, volume: float) -> bool:
         fits = bool((np.sort(self.footprint[row]) <= 1.05 * np.sort(footprint)).all())
@@ -153,10 +179,10 @@ class Obstacles:
         return [other for other in self._at_spot(row) if self._belongs_on(other, row)]
 
     def _at_spot(self, row: int) -> list[int]:
-        near = self.standing.copy()
+        near = self._list_standing() & (self._whole != self._whole[row])
         for axis in range(3):
             near &= np.abs(self._bottoms[:, axis] - self._bottoms[row, axis]) < SAME_SPOT_M
-        return [other for other in np.flatnonzero(near).tolist() if other != row]
+        return np.flatnonzero(near).tolist()
 
     def _belongs_on(self, row: int, support: int) -> bool:
         tall = self.body_high[support, 2] - self.body_low[support, 2] > LOW_M
@@ -170,7 +196,8 @@ class Obstacles:
         """
         x, y = ((self.body_low[row] + self.body_high[row]) / 2.0)[:2]
         owners = self._owner[self._felt]
-        standing = np.where(owners >= 0, self.standing[owners], True) & (owners != row)
+        is_other = self._list_standing() & (self._whole != self._whole[row])
+        standing = np.where(owners >= 0, is_other[owners], True)
         under = (
             (self._low[:, 0] <= x)
             & (x <= self._high[:, 0])
@@ -194,3 +221,27 @@ class Obstacles:
         if np.isinf(extent).any():
             return True  # the floor carries everything
         return self._fits(row, extent[:2], float(extent[0] * extent[1] * self._high[geom, 2]))
+
+
+def _find_owners(model: mujoco.MjModel, index: BodyIndex) -> Ints:
+    """Return (nbody,) for each body of `model` the row of the body of the index that it is or is part of."""
+    rows = np.full(model.nbody, GROUND)
+    rows[index.body] = np.arange(len(index.names))
+    there = np.arange(model.nbody)
+    while (is_open := (rows[there] == GROUND) & (there > 0)).any():
+        there[is_open] = model.body_parentid[there[is_open]]
+    return rows[there]
+
+
+def _find_parts(above: Ints) -> tuple[Mapping[int, Sequence[int]], Ints]:
+    """Return the rows of the parts of each body, also of parts of parts, and (N,) the whole of each body.
+
+    `above` (N,) are the rows of the bodies in which they are nested. A body that is no part is its own whole.
+    """
+    parts: dict[int, list[int]] = {}
+    wholes = np.arange(len(above))
+    for row in np.flatnonzero(above != GROUND).tolist():
+        while above[wholes[row]] != GROUND:
+            wholes[row] = above[wholes[row]]
+            parts.setdefault(int(wholes[row]), []).append(row)
+    return parts, wholes

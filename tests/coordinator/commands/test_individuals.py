@@ -62,6 +62,36 @@ def test_a_property_that_only_the_map_uses_is_not_set(people, semantic_map):
         people.change(c.Set(name="chair1", property="hasPosition", values=("x",)))
 
 
+def test_class_labels_and_properties_are_updated(people, semantic_map):
+    made = people.change(
+        c.Update(name="anna", class_="Property", ref="Anna", alt=("A.",), set=("isOpen=true",))
+    )
+    assert made.text.startswith("anna: ")
+    now = semantic_map.described("anna")
+    assert (now.class_, now.preferred_reference, now.alternative_references) == ("Property", "Anna", ("A.",))
+    assert now.properties["isOpen"] is True
+    again = people.change(c.Update(name=ANNA, ref="Anna"))
+    assert (again.text, again.commit) == ("anna: unchanged: already up to date", None)
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"at": (0.0, 0.0, 0.0), "next_to": "chair1"}, "properties can be updated; remove --at --next-to"),
+        ({"class_": "Chair"}, "Chair is a class of things in space; for a new entity of it: semmap add"),
+        ({"ref": "x", "source": "perception"}, "anna was defined by an operator"),
+    ],
+)
+def test_an_update_gives_an_individual_no_place(people, fields, message):
+    with pytest.raises(errors.Refused, match=message):
+        people.change(c.Update(name="anna", **fields))
+
+
+def test_an_entity_is_updated_by_its_iri(people, semantic_map):
+    people.change(c.Update(name=semantic_map.entity("chair1").iri, ref="stool"))
+    assert semantic_map.entity("chair1").preferred_reference == "stool"
+
+
 def test_an_individual_is_renamed_with_what_refers_to_it(people, semantic_map):
     semantic_map.commit(transaction(3, turtle(f"<urn:x:bob> <urn:knows> <{ANNA}> .")))
     made = people.change(c.Rename(name="anna", new="anne"))

@@ -290,3 +290,13 @@ def test_ambiguous_class_names_have_prefixes_in_sentences(tmp_path):
     asked = questions.parse_explain(semantic_map, Explain(name="a", predicate="type", value="lab:Seat"))
     assert questions.explain(copied, asked).text == "a is a lab:Seat (asserted)."
     home.close(semantic_map)
+
+
+def test_sentences_have_the_names_of_the_map_and_the_individual_that_was_named(tmp_path):
+    semantic_map = home.new_map(tmp_path)
+    same = "<urn:x#4711> a dm:Chair . <urn:x#m1> owl:sameAs <urn:x#m2> . <urn:x#m2> owl:sameAs <urn:x#4711> ."
+    semantic_map.commit(transaction(1, turtle(same)))
+    assert explain_relation(semantic_map, "_4711", "type", "Seat").text.startswith("_4711 is a Seat, because")
+    said = explain_relation(semantic_map, "m1", "sameAs", "_4711").text
+    assert said.startswith("m1 is the same as _4711, because m1 is the same as m2 (asserted)")
+    home.close(semantic_map)

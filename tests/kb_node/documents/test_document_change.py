@@ -73,6 +73,21 @@ def test_undescribed_individuals_are_noted(semantic_map):
     ]
 
 
+@pytest.mark.parametrize(
+    "described", [":k a dm:Kitchen", ':k rdfs:label "kitchen"', ":k owl:sameAs :b", ":b owl:sameAs :k"]
+)
+def test_a_label_and_an_equal_individual_are_descriptions(semantic_map, described):
+    text = f":a a dm:Chair ; dm:isLocatedIn :k . :b a dm:Kitchen . {described} ."
+    _, filtered, _ = document_change.make_document_transaction(semantic_map, document(), turtle(text))
+    assert filtered.notes == []
+
+
+def test_a_nameless_individual_is_no_label_in_the_note(semantic_map):
+    text = ":b a dm:Kitchen ; dm:p [ dm:isLocatedIn :kitchn ] ."
+    _, filtered, _ = document_change.make_document_transaction(semantic_map, document(), turtle(text))
+    assert any("kitchn (a nameless individual isLocatedIn kitchn)" in note for note in filtered.notes)
+
+
 def test_undescribed_individuals_are_rejected_if_the_load_is_strict(semantic_map):
     many = "".join(f":a{i} a dm:Chair ; dm:isLocatedIn :k{i} ." for i in range(7))
     with pytest.raises(errors.UnknownName) as caught:

@@ -67,6 +67,12 @@ def test_triples_that_are_not_axioms_are_counted(syntax):
     assert document.notes == ("left out: 2 triples that OWL cannot express (first: 1 and rest: 1)",)
 
 
+@pytest.mark.parametrize("syntax", SYNTAXES)
+def test_the_header_of_another_ontology_is_no_loss(syntax):
+    _, document = exported("<http://e.org/one> a owl:Ontology . <http://e.org/two> a owl:Ontology .", syntax)
+    assert (document.lost, document.notes) == (0, ())
+
+
 def test_language_tags_have_their_usual_case():
     _, document = exported(':a rdfs:label "x"@en-GB .', "functional")
     assert b'"x"@en-GB' in document.content

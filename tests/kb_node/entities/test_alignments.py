@@ -91,7 +91,7 @@ def test_poses_and_sizes_are_found_along_paths(read):
 
 def test_the_entry_properties_are_those_of_the_entity_itself(read):
     assert read.entry_properties == {
-        *(a("at"), b("direct"), a("shape"), b("depth")),
+        *(a("at"), b("direct"), a("shape"), b("depth"), b("width"), b("height")),
         *(b("name"), v.RDFS_LABEL),
     }
 

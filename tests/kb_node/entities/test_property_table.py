@@ -39,6 +39,10 @@ def test_a_property_is_found_by_its_names(stateful_map, word):
         ("position", "--at X Y Z"),
         ("size", "--size X Y Z"),
         ("lexicalReference", "unknown property"),
+        (
+            "sameAs",
+            "'sameAs' is not changed by commands, but by files: semmap load FILE.ttl with the statement",
+        ),
     ],
 )
 def test_an_unknown_property_is_reported_with_hints(stateful_map, word, said):

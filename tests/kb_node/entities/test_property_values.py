@@ -126,7 +126,7 @@ def test_a_datatype_without_a_definition_and_a_language_are_kept():
             '"300"^^<http://www.w3.org/2001/XMLSchema#int>',
             'p takes an integer from 0 to 100, not "300"^^',
         ),
-        ("level", "mid", """p takes one of "low", "2", not 'mid'"""),
+        ("level", "mid", """p takes one of "low", 2, not 'mid'"""),
         ("number", "many", "p takes an integer or float, not 'many'"),
         ("noByte", "3", "p takes anything but byte, not '3'"),
         ("langString", "Regal", "p takes a text with its language, such as Tasse@de, not 'Regal'"),

@@ -104,13 +104,23 @@ def test_facets_decide_membership():
     ("data_range", "value", "said"),
     [
         (PERCENT, "300", "300 (integer) is not a value of integer from 0 to 100"),
-        (LEVEL, "'mid'", '"mid" (string) is not one of "low", "high", "3"'),
-        (one_of(1, 2, 3, 4, 5), "9", '9 (integer) is not one of "1", "2", "3", "4", "5":'),
-        (one_of(1, 2, 3, 4, 5, 6, 7), "9", '9 (integer) is not one of "1", "2", "3", "4", "5" and 2 more:'),
+        (LEVEL, "'mid'", '"mid" (string) is not one of "low", "high", 3'),
+        (one_of(1, 2, 3, 4, 5), "9", "9 (integer) is not one of 1, 2, 3, 4, 5:"),
+        (one_of(1, 2, 3, 4, 5, 6, 7), "9", "9 (integer) is not one of 1, 2, 3, 4, 5 and 2 more:"),
         (
             restricted("xsd:string", "xsd:maxLength 2"),
             "'abc'",
             '"abc" is not a value of string of at most 2 characters',
+        ),
+        (
+            restricted("xsd:string", "xsd:minLength 3", "xsd:maxLength 8"),
+            "'ab'",
+            '"ab" is not a value of string of 3 to 8 characters',
+        ),
+        (
+            restricted("xsd:integer", "xsd:minInclusive 0", "xsd:maxExclusive 9"),
+            "9",
+            "9 (integer) is not a value of integer of at least 0 and below 9",
         ),
         (
             "[ a rdfs:Datatype ; owl:datatypeComplementOf xsd:byte ]",

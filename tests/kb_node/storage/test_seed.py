@@ -156,6 +156,33 @@ def test_declarations_of_the_abox_file_become_part_of_the_tbox_on_request(data, 
     )
 
 
+SHAPE = """
+@prefix sh: <http://www.w3.org/ns/shacl#> .
+[] a sh:NodeShape ; sh:targetClass dm:Seat ;
+    sh:property [
+        sh:path ( dm:hasPosition dm:lexicalReference ) ; PATTERN sh:minCount 1 ; sh:message "no label"
+    ] .
+"""
+
+
+def test_files_that_violate_a_shape_are_rejected_on_request(data, files):
+    files[0].write_text(TBOX_TURTLE + SHAPE.replace("PATTERN", ""))
+    with pytest.raises(
+        errors.BadFile, match=r"my abox.ttl: chair1: no label; .*required by the shapes of the "
+    ):
+        seed(data, *files, enforce_shapes=True)
+    assert contents(data) == {}
+    assert seed(data, *files) == "1 entity from my abox.ttl"
+    files[1].write_text(ABOX.replace("dm:Coordinates", 'dm:Coordinates ; dm:lexicalReference "x"'))
+    assert seed(data, *files, fresh=True, enforce_shapes=True) == "1 entity from my abox.ttl"
+
+
+def test_an_invalid_shape_is_rejected_on_request(data, files):
+    files[0].write_text(TBOX_TURTLE + SHAPE.replace("PATTERN", 'sh:pattern "(" ;'))
+    with pytest.raises(errors.BadFile, match="invalid SHACL shape"):
+        seed(data, *files, enforce_shapes=True)
+
+
 def test_a_write_error_does_not_blame_the_files(data, files, monkeypatch):
     def refuse(path, tbox):
         raise errors.Refused(f"cannot create a journal at {path}: disk full")

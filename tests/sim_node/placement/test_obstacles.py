@@ -1,12 +1,15 @@
 """Overlap and support of boxes of known sizes in a static scene."""
 
+import mujoco
 import numpy as np
 import pytest
 
+from semmap.nodes.sim_node.body_classes import BodyClasses
 from semmap.nodes.sim_node.models.library import build
 from semmap.nodes.sim_node.order_validation import validate_spawn
 from semmap.nodes.sim_node.placement.obstacles import GROUND
 from semmap.nodes.sim_node.world import World
+from tests.household import household_classes
 from tests.sim_node.orders import order, pose
 
 BOX = (0.4, 0.4, 0.4)
@@ -203,3 +206,32 @@ def test_a_ghost_has_the_box_of_its_geometry_that_would_collide(masks, has_box):
     here, row = obstacles(("a", ((1.0, 2.0, 0.5), BOX)), a={"ghost": True, "masks": [masks]})
     assert np.isfinite(here.body_low[row["a"]]).all() == has_box
     assert not here.standing[row["a"]]
+
+
+TABLE_WITH_A_BOOK = """<mujoco><worldbody><geom type="plane" size="0 0 .1"/>
+<body name="table1" pos="0 0 .35"><freejoint/><geom type="box" size=".6 .4 .35"/>
+  <body name="book1" pos=".2 0 .36"><geom type="box" size=".1 .08 .01"/></body>
+</body>
+<body name="tray1" pos=".2 0 .715"><freejoint/><geom type="box" size=".2 .2 .01"/></body>
+<body name="cup1" pos=".2 0 .74"><freejoint/><geom type="cylinder" size=".04 .04"/></body>
+</worldbody></mujoco>"""
+
+
+def test_a_part_that_is_a_body_is_an_obstacle_of_its_own_and_moves_with_the_whole():
+    world = World(mujoco.MjSpec.from_string(TABLE_WITH_A_BOOK), classes=BodyClasses(household_classes()))
+    engine = world._engine
+    mujoco.mj_kinematics(engine.model, engine.data)
+    here, row = engine.obstacles(), engine.index.row
+    table, book, tray, cup = (row[name] for name in ("table1", "book1", "tray1", "cup1"))
+    assert here.body_high[table, 2] == pytest.approx(0.72)
+    assert here.hits(tray) == [book, cup]
+    assert here.hits(table) == [tray, cup]  # with the book, not into it
+    assert [owner for _, owner in here.surfaces(cup)] == [book, tray]
+    assert here.carries(table, tray)
+    assert not here.carries(book, tray)  # which is larger
+    here.raise_(table, 1.0)
+    assert here.body_low[book, 2] == pytest.approx(1.7)
+    assert here.hits(tray) == [cup]
+    here.raise_(table, -1.0)
+    here.standing[table] = False
+    assert here.hits(tray) == [cup]

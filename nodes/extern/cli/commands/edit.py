@@ -119,7 +119,11 @@ def add(client: Client, **fields: Any) -> None:
 @json_option
 @with_client
 def update(client: Client, **fields: Any) -> None:
-    """Change an entity; omitted fields keep their values."""
+    """Change an entity; omitted fields keep their values.
+
+    NAME may also be the name or IRI of an individual that is not in space: then its class, its labels and its
+    properties can be changed.
+    """
     print_result(client.update(**drop_unset(fields)), lines.format_change)
 
 

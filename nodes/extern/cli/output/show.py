@@ -160,6 +160,9 @@ def _individual_card(e: Described, properties: Iterable[PropertyInfo]) -> Table:
         **_stated(e, {p.name: p for p in properties}),
         "referred to by": "; ".join(f"{p}: {wording.few(names)}" for p, names in e.referred_by.items())
         or "-",
+        "last change": provenance_text(e.provenance),
+        "class set": provenance_text(e.shape_provenance),
+        "label set": provenance_text(e.reference_provenance),
     }
     return card(rows)
 

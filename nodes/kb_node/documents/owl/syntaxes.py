@@ -39,6 +39,11 @@ _PREFIXES: dict[OwlSyntax, re.Pattern[str]] = {
     "manchester": re.compile(r"^\s*Prefix:\s+([\w.-]*):\s+<([^>\s]*)>", re.MULTILINE),
     "owlxml": re.compile(r"""<Prefix\s+name=["']([\w.-]*)["']\s+IRI=["']([^"'\s]*)["']"""),
 }
+_ABBREVIATED = (
+    (r"""(?<=\s)abbreviatedIRI(\s*=\s*["']){}:""", r"IRI\1{}"),
+    (r"<((?:\w+:)?)AbbreviatedIRI>[ \t]*{}:([^<\s]*)[ \t]*</\1AbbreviatedIRI>", r"<\1IRI>{}\2</\1IRI>"),
+)
+"""Patterns of names with a prefix in OWL/XML, and the same as whole IRIs."""
 _LINE = re.compile(r"line_col: \w+\(\((\d+), (\d+)\)")
 _BYTE = re.compile(r"Byte(?:Position|Span)\((\d+)")
 _EXPECTED = re.compile(r"positives: \[([^\]]*)\]")
@@ -107,21 +112,38 @@ def _with_prefixes(text: str, syntax: OwlSyntax) -> str:
 
 
 def _prepared_xml(text: str) -> str:
-    """Return OWL/XML with expanded entities, on the same lines. Raises ValueError for an unknown prefix."""
+    """Return OWL/XML with expanded entities and standard prefixes, on the same lines.
+
+    Raises ValueError for an unknown prefix.
+    """
     entities: dict[str, str] = {}
-    prefixes = set(_STANDARD)
+    declared = set[str]()
+    words: list[str] = []
+    """The texts in the current element."""
     parser = expat.ParserCreate(namespace_separator=" ")
 
-    def see(element: str, attributes: dict[str, str]) -> None:
-        if element == f"{v.OWL} Prefix":
-            prefixes.add(attributes.get("name", ""))
-        name = attributes.get("abbreviatedIRI", ":")
-        if name != ":" and name.partition(":")[0] not in prefixes:
+    def require_declared(name: str) -> None:
+        if ":" in name and name.partition(":")[0] not in declared | _STANDARD.keys():
             raise ValueError(f"line {parser.CurrentLineNumber}: undefined prefix ({name})")
 
+    def begin(element: str, attributes: dict[str, str]) -> None:
+        words.clear()
+        if element == f"{v.OWL} Prefix":
+            declared.add(attributes.get("name", ""))
+        if (name := attributes.get("abbreviatedIRI", ":")) != ":":
+            require_declared(name)
+
+    def end(element: str) -> None:
+        if element == f"{v.OWL} AbbreviatedIRI":
+            require_declared("".join(words).strip())
+
     parser.EntityDeclHandler = lambda name, _, value, *where: entities.setdefault(name, value or "")
-    parser.StartElementHandler = see
+    parser.StartElementHandler, parser.EndElementHandler = begin, end
+    parser.CharacterDataHandler = words.append
     parser.Parse(text.encode(), True)
+    for name in _STANDARD.keys() - declared:  # those that py-horned-owl does not know, either
+        for pattern, whole in _ABBREVIATED:
+            text = re.sub(pattern.replace("{}", name), whole.replace("{}", _STANDARD[name]), text)
     if not entities:
         return text
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
 from typing import Final, Literal, NamedTuple
 
@@ -23,6 +23,11 @@ _LINKS: Final = frozenset(
     {"of", "in", "on", "at", "to", "by", "from", "with", "for", "near", "inside", "under"}
 )
 """A name without a verb that ends in one of these words gets an "is": `partOf` is "is part of"."""
+_PREPOSITIONS: Final = _LINKS | {
+    *("about", "above", "across", "after", "against", "along", "around", "as", "before", "behind", "below"),
+    *("beside", "between", "into", "like", "onto", "out", "over", "through", "up", "upon", "within"),
+}
+"""Last words of a verb phrase that are not a noun: "contains zone" is "contains it as zone"."""
 _NO_VERB: Final = ("ss", "us", "is", "as", "os")
 """Endings in s of words that are not verbs."""
 _PLAIN_VALUES: Final = frozenset(
@@ -64,7 +69,12 @@ class VerbPhrase(NamedTuple):
 
     def with_pronoun(self, object_: str) -> str:
         """Return the phrase with a pronoun as object: "has another as part", "is on it"."""
-        return f"has {object_} as {self.rest}" if self.kind == "has" else self.with_object(object_)
+        verb, _, rest = self.rest.partition(" ")
+        if self.kind == "has":
+            return f"has {object_} as {self.rest}"
+        if self.kind == "does" and rest and rest.rpartition(" ")[2] not in _PREPOSITIONS:
+            return f"{verb} {object_} as {rest}"
+        return self.with_object(object_)
 
     def with_count(self, number: str, kind: str = "") -> str:
         """Return the phrase with a number: "is on at most one table", "has at most one color"."""
@@ -85,6 +95,8 @@ class Words:
         self._labels = dict(labels)
         self._data = data_properties
         self._verbs: dict[Term, VerbPhrase] = {}
+        self.name_individual: Callable[[Term], str] = local_name
+        """Returns the name of an individual with an IRI."""
 
     @classmethod
     def of(cls, triples: Iterable[Triple]) -> Words:
@@ -111,7 +123,7 @@ class Words:
             text, datatype, _ = literal(term)
             is_plain = datatype in _PLAIN_VALUES and not _LETTERS.match(text)
             return text if is_plain else f'"{text}"'
-        return local_name(term) if is_named(term) else term[2:]
+        return self.name_individual(term) if is_named(term) else term
 
     def cls(self, term: Term) -> str:
         """Return the label of a class, or its local name."""

@@ -8,7 +8,7 @@ compared with the commits. A compacted journal starts with a snapshot.
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TypeVar
@@ -26,6 +26,7 @@ from semmap.nodes.kb_node.storage.journal.sqlite_file import NEW_MAP_HINT, Journ
 from semmap.nodes.kb_node.storage.journal.stamps import Stamps
 from semmap.schemas import errors
 from semmap.schemas.commits import Commit
+from semmap.schemas.entities import Probability, Provenance, Source
 
 T = TypeVar("T")
 
@@ -219,10 +220,26 @@ class Journal:
         """Return the fields of `kind` of all commits, in order. Raises Damaged at the first damaged one."""
         return (body_encoding.decode(row.body, kind) for row in self.rows())
 
+    def find_contained(self, patterns: Collection[bytes], until: int) -> Iterator[tuple[int, set[bytes]]]:
+        """Yield the commits up to `until` that contain some of the patterns, with these, newest first.
+
+        The patterns are parts of the MessagePack of a commit, which is searched without decoding it.
+        """
+        for seq, body in rows.read_newest_first(self.file, until=until):
+            if found := body_encoding.find_contained(body, patterns):
+                yield seq, found
+
     def commit(self, seq: int) -> Commit:
         """Return an existing commit. Raises Damaged."""
         for row in self.rows(seq - 1, size=1):
             return decode_row(row)
+        raise Damaged(self.path, seq)
+
+    def commit_provenance(self, seq: int) -> Provenance:
+        """Return the provenance of an existing commit, without decoding its triples. Raises Damaged."""
+        for row in self.rows(seq - 1, size=1):
+            found: _Attribution = body_encoding.decode(row.body, _Attribution)
+            return Provenance(commit=seq, **structs.asdict(found))
         raise Damaged(self.path, seq)
 
     def commit_of(self, command_id: str) -> Commit | None:
@@ -299,6 +316,16 @@ class Journal:
         """Yield the stored commits after `after`. Raises Damaged at the first damaged one."""
         seq = self.beginning.seq if after is None else after
         return rows.read_intact_rows(self.file, after=seq, before=self.digest(seq), size=size)
+
+
+class _Attribution(Struct):
+    """The part of a commit with its author."""
+
+    stamp_ns: int
+    source: Source
+    agent: str = ""
+    reason: str = ""
+    confidence: Probability | None = None
 
 
 class _Undoing(Struct):

@@ -54,3 +54,15 @@ def read_page(file: JournalFile, after: int, size: int = PAGE) -> list[Row]:
         if size == 1:
             raise Damaged(file.path, after + 1) from None
         return read_page(file, after, 1)
+
+
+def read_newest_first(file: JournalFile, *, until: int, size: int = PAGE) -> Iterator[tuple[int, bytes]]:
+    """Yield the numbers and bodies of the commits up to `until`, newest first. They are not verified."""
+    query = "SELECT seq, body FROM commits WHERE seq <= ? ORDER BY seq DESC LIMIT ?"
+    while True:
+        with file.reading() as db:
+            page = db.execute(query, (until, size)).fetchall()
+        if not page:
+            return
+        yield from page
+        until = page[-1][0] - 1

@@ -160,6 +160,10 @@ def test_the_syntax_is_recognised_by_the_content(content, syntax):
         (OWL_XML.replace("FunctionalData", "FunctionalDat"), "line 32: Unexpected tag: found FunctionalDat"),
         (OWL_XML.replace('":Drink"', '"z:Drink"'), "line 14: undefined prefix (z:Drink)"),
         (
+            OWL_XML.replace("<IRI>#Fridge</IRI>", "<AbbreviatedIRI> z:Fridge</AbbreviatedIRI>"),
+            "line 19: undefined prefix (z:Fridge)",
+        ),
+        (
             OWL_XML.replace('"http://k.org/kitchen">', 'SYSTEM "file:///etc/passwd">'),
             "is not allowed",
         ),
@@ -170,6 +174,17 @@ def test_an_error_has_its_line(content, text):
         rdf.parse(content.encode(), "f")
     assert text in caught.value.text
     assert "\n" not in caught.value.text
+
+
+def test_the_standard_prefixes_of_owl_xml_need_no_declaration():
+    declaration = '<Prefix name="rdfs" IRI="http://www.w3.org/2000/01/rdf-schema#"/>'
+    assert declaration in OWL_XML
+    iri = OWL_XML.replace("<IRI>#Fridge</IRI>", f"<IRI>{v.RDFS}label</IRI>")
+    name = iri.replace(declaration, "").replace(
+        f"<IRI>{v.RDFS}label</IRI>", "<AbbreviatedIRI> rdfs:label </AbbreviatedIRI>"
+    )
+    read, expected = (rdf.parse(text.encode(), "f", label_prefix="x") for text in (name, iri))
+    assert set(read) == set(expected)
 
 
 def test_text_that_looks_like_a_keyword_is_not_changed():

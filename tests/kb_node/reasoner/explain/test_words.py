@@ -50,6 +50,22 @@ def value(text, kind):
             "supports one cup",
             "support",
         ),
+        (
+            VerbPhrase("does", "contains zone"),
+            "contains zone x",
+            "does not contain zone x",
+            "contains x as zone",
+            "contains zone one cup",
+            "contain zone",
+        ),
+        (
+            VerbPhrase("does", "stands on"),
+            "stands on x",
+            "does not stand on x",
+            "stands on x",
+            "stands on one cup",
+            "stand on",
+        ),
     ],
 )
 def test_each_kind_of_verb_phrase_in_each_position(phrase, object_, negation, pronoun, count, plural):
@@ -116,7 +132,7 @@ def test_only_classes_with_equal_labels_get_other_names():
     [
         (term("cup1"), "cup1"),
         ("<http://example.org/a#b/>", "b"),
-        ("_:b1", "b1"),
+        ("_:b1", "_:b1"),
         ('"red"', '"red"'),
         ('"rot"@de', '"rot"'),
         (value("1.5", "float"), "1.5"),
