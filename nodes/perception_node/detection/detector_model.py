@@ -120,7 +120,7 @@ class DetectorModel:
         decode = self._layout.arrange(outputs, self._size)
         if decode is None:
             raise ValueError(f"its outputs are no longer of the layout {self._layout.name}")
-        return decode(self._size)
+        return decode()
 
 
 def _session(path: Path, threads: int) -> Any:
