@@ -96,7 +96,9 @@ def detector_of(
     least = LEAST_SCORE if detector_score is None else detector_score
     threads = 1 if each_core else 0
     model = DetectorModel(detector, detector_names, detector_layout or "", least, threads)
-    print_error(f"note: {model.file}: layout {model.layout}, {wording.counted(len(model.names), 'class')}")
+    print_error(
+        f"note: {model.file}: layout {model.layout}, {wording.counted(len(model.names), 'class name')}"
+    )
     return Detector(model, labels, masks_only)
 
 

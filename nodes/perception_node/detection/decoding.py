@@ -45,7 +45,7 @@ def of_rows(boxes: Floats, scores: Floats, masks: Callable[[Indices], Floats] | 
     return Candidates(boxes, best, kinds, scores.shape[1], masks)
 
 
-def decode_yolov8(predictions: Floats, size: Size, protos: Floats | None) -> Candidates:
+def decode_yolov8(predictions: Floats, protos: Floats | None) -> Candidates:
     """Return those of YOLOv8 and 11 (1, 4 + C, A); with `protos` (1, M, h, w), M weights follow."""
     rows = predictions[0].T
     weights = 0 if protos is None else protos.shape[1]
@@ -54,14 +54,14 @@ def decode_yolov8(predictions: Floats, size: Size, protos: Floats | None) -> Can
     return of_rows(corners_of(rows[:, :4]), rows[:, 4:end], masks)
 
 
-def decode_yolo_nms(predictions: Floats, size: Size, protos: Floats | None) -> Candidates:
+def decode_yolo_nms(predictions: Floats, protos: Floats | None) -> Candidates:
     """Return those of a YOLO that selects boxes itself (1, N, 6): corners, score, class, and mask weights."""
     rows = predictions[0]
     masks = None if protos is None else _of_protos(rows[:, 6:], protos[0])
     return Candidates(rows[:, :4], rows[:, 4], rows[:, 5].astype(np.int64), 0, masks)
 
 
-def decode_yolov5(predictions: Floats, size: Size) -> Candidates:
+def decode_yolov5(predictions: Floats) -> Candidates:
     """Return those of YOLOv5 and 7 (1, 3 A, 5 + C): box, objectness, and scores of the classes."""
     rows = predictions[0]
     return of_rows(corners_of(rows[:, :4]), rows[:, 4:5] * rows[:, 5:])
@@ -84,7 +84,7 @@ def decode_yolox(predictions: Floats, size: Size) -> Candidates:
     return of_rows(corners_of(boxes), rows[:, 4:5] * rows[:, 5:])
 
 
-def decode_selected(labels: NDArray[Any], boxes: Floats, scores: Floats, size: Size) -> Candidates:
+def decode_selected(labels: NDArray[Any], boxes: Floats, scores: Floats) -> Candidates:
     """Return those of RT-DETR with its post-processing: labels (1, N), corners (1, N, 4), scores (1, N)."""
     return Candidates(boxes[0], scores[0], labels[0].astype(np.int64), 0)
 

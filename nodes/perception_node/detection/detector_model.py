@@ -20,7 +20,7 @@ from semmap.nodes.perception_node.detection.decoding import Candidates, Size
 from semmap.nodes.perception_node.detection.layouts import Outputs, as_floats, layout_of
 from semmap.nodes.perception_node.detection.model_input import Bytes, Floats, Placement
 from semmap.nodes.perception_node.detection.selection import select
-from semmap.nodes.perception_node.input.masks import DetectorLabel, Masks
+from semmap.nodes.perception_node.input.masks import Box, DetectorLabel, Masks
 from semmap.schemas.errors import BadFile
 from semmap.schemas.perception import COCO, LEAST_SCORE
 
@@ -93,9 +93,10 @@ class DetectorModel:
         if found.masks is None:
             return Masks(numbers, labels, boxes=boxes)
         for number, mask in reversed(list(enumerate(found.masks(rows), 1))):  # the best score is last
-            top, bottom, left, right = _slice(boxes[number - 1])
-            inside = _resized(mask, placement, self._size, height, width)[top:bottom, left:right] > 0.0
-            numbers[top:bottom, left:right][inside] = number
+            left, top, right, bottom = boxes[number - 1]
+            if left < right and top < bottom:
+                inside = _resized(mask, placement, self._size, boxes[number - 1]) > 0.0
+                numbers[top:bottom, left:right][inside] = number
         return Masks(numbers, labels)
 
     def _name(self, kind: int) -> str:
@@ -119,7 +120,7 @@ class DetectorModel:
         decode = self._layout.arrange(outputs, self._size)
         if decode is None:
             raise ValueError(f"its outputs are no longer of the layout {self._layout.name}")
-        return decode(self._size)
+        return decode()
 
 
 def _session(path: Path, threads: int) -> Any:
@@ -166,7 +167,7 @@ def _image_input(inputs: list[Any]) -> tuple[str, Any, Size]:
     return images[0].name, _TYPES[images[0].type], (height, width)
 
 
-def _pixel_boxes(corners: Floats, height: int, width: int) -> tuple[tuple[int, int, int, int], ...]:
+def _pixel_boxes(corners: Floats, height: int, width: int) -> tuple[Box, ...]:
     """Return first column and row of each box, and those after the last, inside the image."""
     low = np.floor(np.clip(corners[:, :2], 0, (width, height))).astype(int)
     high = np.ceil(np.clip(corners[:, 2:], 0, (width, height))).astype(int)
@@ -175,19 +176,16 @@ def _pixel_boxes(corners: Floats, height: int, width: int) -> tuple[tuple[int, i
     )
 
 
-def _slice(box: tuple[int, int, int, int]) -> tuple[int, int, int, int]:
-    left, top, right, bottom = box
-    return top, bottom, left, right
-
-
-def _resized(mask: Floats, placement: Placement, size: Size, height: int, width: int) -> Floats:
-    """Return a mask of the whole input at the resolution of the image (`height`, `width`)."""
-    across, down = mask.shape[1] / size[1], mask.shape[0] / size[0]
-    left, top = placement.offset
-    right, bottom = left + width * placement.scale[0], top + height * placement.scale[1]
-    part = (left * across, top * down, min(right * across, mask.shape[1]), min(bottom * down, mask.shape[0]))
+def _resized(mask: Floats, placement: Placement, size: Size, box: Box) -> Floats:
+    """Return the part of a mask of the whole input that is in a box of the image, in the image's pixels."""
+    (across, down), (first, upper) = placement.scale, placement.offset
+    width, height = mask.shape[1] / size[1], mask.shape[0] / size[0]
+    left, right = ((side * across + first) * width for side in box[::2])
+    top, bottom = ((side * down + upper) * height for side in box[1::2])
+    part = left, top, min(right, mask.shape[1]), min(bottom, mask.shape[0])
     whole = Image.fromarray(np.ascontiguousarray(mask, np.float32))
-    return np.asarray(whole.resize((width, height), Image.Resampling.BILINEAR, box=part))
+    pixels = box[2] - box[0], box[3] - box[1]
+    return np.asarray(whole.resize(pixels, Image.Resampling.BILINEAR, box=part))
 
 
 def _one_line(error: Exception) -> str:

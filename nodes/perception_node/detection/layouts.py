@@ -17,7 +17,7 @@ from semmap.schemas.wording import few
 
 Outputs = Mapping[str, NDArray[Any]]
 """The outputs of a model by name, in its order."""
-Decode = Callable[[Size], Candidates]
+Decode = Callable[[], Candidates]
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def _yolov8(outputs: Outputs, size: Size) -> Decode | None:
         case [(1, rows, cells)]:
             weights = 0 if protos is None else protos.shape[1]
             if rows > 4 + weights and _grid(cells, size):
-                return lambda size: decoding.decode_yolov8(flat[0], size, protos)
+                return lambda: decoding.decode_yolov8(flat[0], protos)
     return None
 
 
@@ -88,7 +88,7 @@ def _yolo_nms(outputs: Outputs, size: Size) -> Decode | None:
         case [(1, rows, columns)] if columns == 6 + (0 if protos is None else protos.shape[1]):
             if _grid(rows, size) or _grid(rows // 3, size):
                 return None
-            return lambda size: decoding.decode_yolo_nms(flat[0], size, protos)
+            return lambda: decoding.decode_yolo_nms(flat[0], protos)
     return None
 
 
@@ -97,7 +97,7 @@ def _yolov5(outputs: Outputs, size: Size) -> Decode | None:
     match [values.shape for values in flat]:
         case [(1, cells, columns)] if protos is None and columns > 5:
             if cells % 3 == 0 and _grid(cells // 3, size):
-                return lambda size: decoding.decode_yolov5(flat[0], size)
+                return lambda: decoding.decode_yolov5(flat[0])
     return None
 
 
@@ -105,7 +105,7 @@ def _yolox(outputs: Outputs, size: Size) -> Decode | None:
     flat, protos = _split(outputs)
     match [values.shape for values in flat]:
         case [(1, cells, columns)] if protos is None and columns > 5 and _grid(cells, size):
-            return lambda size: decoding.decode_yolox(flat[0], size)
+            return lambda: decoding.decode_yolox(flat[0], size)
     return None
 
 
@@ -120,7 +120,7 @@ def _rtdetr(outputs: Outputs, size: Size) -> Decode | None:
     if label not in rows or any(values.shape != boxes[0].shape[:2] for values in rows.values()):
         return None
     score = next(name for name in rows if name != label)
-    return lambda size: decoding.decode_selected(rows[label], boxes[0], rows[score], size)
+    return lambda: decoding.decode_selected(rows[label], boxes[0], rows[score])
 
 
 def _boxes_and_logits(outputs: Outputs, size: Size) -> Decode | None:
@@ -135,7 +135,7 @@ def _boxes_and_logits(outputs: Outputs, size: Size) -> Decode | None:
         return None
     if masks is not None and masks.shape[1] != queries:
         return None
-    return lambda size: decoding.decode_shares(boxes, sigmoid(logits), size, masks)
+    return lambda: decoding.decode_shares(boxes, sigmoid(logits), size, masks)
 
 
 def _ultralytics_rtdetr(outputs: Outputs, size: Size) -> Decode | None:
@@ -145,7 +145,7 @@ def _ultralytics_rtdetr(outputs: Outputs, size: Size) -> Decode | None:
             if any(_grid(count, size) for count in (queries, queries // 3, columns)):
                 return None
             values = flat[0]
-            return lambda size: decoding.decode_shares(values[..., :4], values[..., 4:], size)
+            return lambda: decoding.decode_shares(values[..., :4], values[..., 4:], size)
     return None
 
 

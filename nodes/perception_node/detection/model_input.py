@@ -54,12 +54,16 @@ class InputFormat:
         resized = Image.fromarray(colours).resize((across, down), Image.Resampling.BILINEAR)
         canvas = np.full((height, width, 3), _GREY, np.uint8)
         canvas[top : top + down, left : left + across] = np.asarray(resized)
-        values = canvas.astype(np.float32) / np.float32(self.divisor)
-        values -= np.array(self.mean, np.float32)
-        values /= np.array(self.deviation, np.float32)
-        planes = values[..., :: -1 if self.bgr else 1].transpose(2, 0, 1)
-        placement = Placement((across / columns, down / rows), (left, top))
-        return np.ascontiguousarray(planes[None], np.float32), placement
+        planes = np.ascontiguousarray(canvas.transpose(2, 0, 1)[:: -1 if self.bgr else 1])
+        values = planes.astype(np.float32)[None]
+        mean, deviation = (
+            np.array(of[:: -1 if self.bgr else 1], np.float32)[:, None, None]
+            for of in (self.mean, self.deviation)
+        )
+        values *= 1.0 / (self.divisor * deviation)
+        if any(self.mean):
+            values -= mean / deviation
+        return values, Placement((across / columns, down / rows), (left, top))
 
 
 YOLO = InputFormat("centre")

@@ -62,7 +62,7 @@ class LabelMap:
         `tbox`: the classes of the map. Without them, those known at training are used.
         """
         own = [row for row in tbox if row.spatial]
-        self._ancestors = {row.name: row.ancestors for row in own}
+        self._ancestors = {**learnt.ancestors, **{row.name: row.ancestors for row in own}}
         learnt_names = {name for name in (*learnt.classes, *learnt.ancestors) if name}
         known = {_plain(word): name for word, name in _COMMON.items() if name in learnt_names}
         known |= {_plain(name): name for name in sorted(learnt_names)}
@@ -76,7 +76,7 @@ class LabelMap:
         return self._classes.get(_plain(label)) or self._known.get(_plain(label))
 
     def ancestors_of(self, class_: str) -> tuple[str, ...]:
-        """Return the superclasses in the TBox of a class; empty for one that is not there."""
+        """Return the superclasses of a class; empty for an unknown one."""
         return self._ancestors.get(class_, ())
 
     def is_learnt(self, class_: str) -> bool:

@@ -183,6 +183,15 @@ def test_a_class_of_one_s_own_is_evidence_for_the_class_above_it():
     assert drill[0] == pytest.approx(with_detector_labels(CHANCES, [thing()], LEARNT, OWN)[0])
 
 
+def test_a_class_of_the_taxonomy_without_models_is_evidence_for_the_class_above_it_without_a_tbox():
+    ancestors = {**LEARNT.ancestors, "Dessert_Fork": ("Fork", "Cutlery", "Object")}
+    learnt = SimpleNamespace(classes=LEARNT.classes, ancestors=ancestors)
+    labels = LabelMap(learnt)
+    one = thing(said("dessert fork"))
+    assert with_detector_labels(CHANCES, [one], learnt, labels)[0] == pytest.approx(named(said("Fork")))
+    assert labels.ancestors_of("Dessert_Fork") == ("Fork", "Cutlery", "Object")
+
+
 def test_common_labels_name_classes_that_are_known():
     learnt = SimpleNamespace(classes=("Cup", UNKNOWN, CLUTTER), ancestors={"Cup": ("Object",)})
     assert LabelMap(learnt).class_of("coffee mug") == "Cup"

@@ -229,7 +229,7 @@ def test_a_model_of_a_detector_labels_the_segment_in_its_box(tmp_path, capsys):
     words = ["perceive", "--frames", str(tmp_path / "frames"), "--json", str(out), "--detector", str(model)]
     assert execute(words) == 0
     error = capsys.readouterr().err
-    assert "note: m.onnx: layout yolov8, 1 class\n" in error
+    assert "note: m.onnx: layout yolov8, 1 class name\n" in error
     assert "mask labels without a class: spork" in error
     (row,) = json.loads(out.read_text())
     (found,) = [one for one in row["objects"] if one["label"] == "spork"]
