@@ -16,7 +16,7 @@ class FakeNode:
     """`bridge(call)` answers requests to the knowledge base, `sim(call)` those to the simulator."""
 
     def __init__(self, bridge: Callable[[Any], Any], sim: Callable[[Any], Any] | None = None) -> None:
-        self._answers = {keys.BRIDGE: bridge, keys.SIM: sim or _nobody}
+        self._answers = {keys.BRIDGE: bridge, keys.SIM: sim or _no_answer}
         self.session = MagicMock()
         self.followed: dict[str, list[Callable[[Any], None]]] = {}
         self.served: dict[str, Any] = {}
@@ -103,7 +103,7 @@ class FakeNode:
             handle()
 
 
-def _nobody(call: Any) -> Any:
+def _no_answer(call: Any) -> Any:
     raise errors.NoAnswer("no response from the simulator")
 
 

@@ -55,3 +55,17 @@ def test_ended_clients_are_not_listed(monkeypatch, client):
     (row,) = view.nodes()
     assert (row.node, row.state) == ("kb_node", "silent")
     assert row.detail.endswith("see logs/kb_node.log in its data folder")
+
+
+def test_the_age_of_a_heartbeat_has_two_places_and_adds_to_the_uptime(monkeypatch):
+    now_s = [50.0]
+    monkeypatch.setattr(health_view.time, "monotonic", lambda: now_s[0])
+    view = HealthView()
+    view.take(beat("ready", at_s=70))
+    now_s[0] += 1.23456
+    (row,) = view.nodes()
+    assert (row.heartbeat_age_s, row.uptime_s, row.state) == (1.23, 71.2, "ready")
+    now_s[0] = 53.0
+    (row,) = view.nodes()
+    assert row.state == "silent"
+    assert not view.alive("kb_node")

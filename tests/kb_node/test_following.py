@@ -109,3 +109,8 @@ def test_asserted_locations_need_all_facts(restarted):
     said = (v.entity_iri("more1"), v.dm("isOn"), v.entity_iri("more2"))
     restarted.commit(Transaction(id="said", source="operator", insert=(said,)))
     assert restarted._derived_all
+
+
+def test_facts_are_derived_once(semantic_map):
+    semantic_map.derive_all()
+    assert not semantic_map.derive_some()

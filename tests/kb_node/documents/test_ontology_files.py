@@ -249,3 +249,12 @@ def test_a_file_import_is_read_only_below_the_ontology(write, tmp_path):
     assert set(gathered.missing) == {away.as_uri(), (tmp_path / "secret.txt").as_uri()}
     assert set(gather([path], {away.as_uri(): away}).files) == {path, below, away}
     assert set(gather([path, away], {}).files) == {path, below, away}
+
+
+def test_an_ontology_that_is_given_too_takes_precedence_over_a_file_of_its_name(write):
+    first = write("a.ttl", ontology("http://o.org/a", "http://o.org/b"))
+    write("b.ttl", ontology("http://o.org/unlike"))
+    second = write("two/x.ttl", ontology("http://o.org/b"))
+    gathered = gather([first, second], {})
+    assert set(gathered.files) == {first, second}
+    assert gathered.found == {"http://o.org/b": second}

@@ -140,3 +140,16 @@ def test_declarations_of_the_tbox_take_precedence():
 
 def test_rdfs_classes_are_classes():
     assert "Dog" in zoo("z:Dog a rdfs:Class .").iris
+
+
+def test_in_a_household_tbox_without_roots_all_but_properties_are_spatial():
+    text = (
+        "dm:Cup a owl:Class . dm:Property a owl:Class . dm:Color a owl:Class ; rdfs:subClassOf dm:Property ."
+    )
+    spatial = {row.name: row.spatial for row in table(text, ()).rows}
+    assert spatial == {"Cup": True, "Property": False, "Color": False}
+
+
+def test_a_declared_root_replaces_the_default():
+    text = "dm:Cup a owl:Class . dm:Spoon a owl:Class ; dm:spatial true ."
+    assert {row.name: row.spatial for row in table(text, ()).rows} == {"Cup": False, "Spoon": True}

@@ -8,9 +8,17 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 
-from semmap.nodes.perception_node.fitting.fit import angle_between, fit_models, quaternion
+from semmap.nodes.perception_node.fitting.fit import (
+    MOST_POINTS,
+    Fit,
+    angle_between,
+    fit_models,
+    quaternion,
+    thinned,
+)
 from semmap.nodes.perception_node.fitting.model_surfaces import shipped
 from semmap.nodes.sim_node.models.parts import rotation_matrix
+from semmap.schemas.entities import Pose
 from tests.perception_node.fitting.seen import EYE, TOP_M, box, model, rotation, shown
 
 pytestmark = pytest.mark.skipif(find_spec("open3d") is None, reason="Open3D is not installed")
@@ -106,3 +114,63 @@ def test_rotations_are_quaternions(yaw):
     w, x, y, z = quaternion(rotation(yaw))
     assert (x, y) == pytest.approx((0.0, 0.0))
     assert math.remainder(2.0 * math.atan2(z, w) - yaw, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("count", "left"),
+    [
+        (0, 0),
+        (MOST_POINTS, MOST_POINTS),
+        (MOST_POINTS + 2, MOST_POINTS // 2 + 1),
+        (2 * MOST_POINTS, MOST_POINTS),
+    ],
+)
+def test_many_points_are_thinned_evenly(count, left):
+    points = np.arange(3 * count, dtype=float).reshape(-1, 3)
+    found = thinned(points)
+    assert len(found) == left
+    assert len(found) < 2 or len(set(np.diff(found[:, 0]))) == 1
+
+
+@pytest.mark.parametrize(
+    ("fold", "turned_deg", "angle_deg"),
+    [
+        (1, 90.0, 90.0),
+        (1, -170.0, 170.0),
+        (2, 180.0, 0.0),
+        (2, 90.0, 90.0),
+        (4, 90.0, 0.0),
+        (4, 50.0, 40.0),
+        (0, 77.0, 0.0),
+    ],
+)
+def test_turns_of_a_symmetric_thing_do_not_count(fold, turned_deg, angle_deg):
+    found = angle_between(rotation(0.3), rotation(0.3 + math.radians(turned_deg)), fold)
+    assert math.degrees(found) == pytest.approx(angle_deg, abs=1e-4)
+
+
+def test_a_round_thing_is_turned_by_the_angle_of_its_axis():
+    lying = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+    assert angle_between(rotation(1.0), lying, 0) == pytest.approx(math.pi / 2)
+
+
+UPRIGHT = Pose(position_m=(0.0, 0.0, 0.0))
+LYING = Pose(position_m=(0.0, 0.0, 0.0), orientation_wxyz=(math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("score", "clear", "fold", "pose", "is_verified", "has_orientation"),
+    [
+        (0.15, True, 1, UPRIGHT, True, True),
+        (0.14, True, 1, UPRIGHT, False, False),
+        (0.9, False, 1, UPRIGHT, True, False),
+        (0.9, True, 0, UPRIGHT, True, False),
+        (0.9, True, 0, LYING, True, True),
+    ],
+)
+def test_an_orientation_is_known_if_it_is_clear_and_not_symmetric(
+    score, clear, fold, pose, is_verified, has_orientation
+):
+    found = Fit("Cup", pose, (0.1, 0.1, 0.1), score, clear, fold)
+    assert (found.is_verified, found.has_orientation) == (is_verified, has_orientation)
+    assert found.lying == (pose is LYING)

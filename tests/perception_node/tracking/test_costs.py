@@ -211,3 +211,10 @@ def test_what_was_too_large_is_rather_what_measures_as_usual(before, now, whole,
     assert is_complete_despite_cut(box(now, whole=whole), known) is expected
     assert not is_complete_despite_cut(box(now, whole=whole), known._replace(usual_m=None))
     assert not is_complete_despite_cut(box(now, whole=whole), known._replace(size_m=None))
+
+
+@pytest.mark.parametrize(("aside_m", "way"), [(0.19, 0.19 / 0.5), (0.39, 1.0 / 1.5)])
+def test_a_front_costs_at_most_two_thirds_for_its_distance(aside_m, way):
+    oven = Target(at(1, 1, 0.0), (0.8, 0.9, 1.8), "Object")
+    front = seen("Object", at(1 + aside_m, 1, 0.0), (0.02, 0.9, 1.8))
+    assert cost_in_place(oven, front, CLASSES) == pytest.approx(way + 0.15)

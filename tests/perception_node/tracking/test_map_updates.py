@@ -327,3 +327,47 @@ def test_the_map_follows_the_label_of_a_track(later, reference):
     assert isinstance(changed, Update)
     assert changed.ref == reference
     assert changed.class_ is None
+
+
+def voted(**shares):
+    """Return a track whose classes have these shares of its votes."""
+    return replace(track(), votes=Votes(shares, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("shares", "class_"),
+    [
+        ({"Cup": 0.61, "Book": 0.24}, "Cup"),
+        ({"Cup": 0.6, "Book": 0.24}, None),
+        ({"Cup": 0.65, "Book": 0.25}, None),
+        ({"Cup": 0.95}, "Cup"),
+    ],
+)
+def test_a_class_contradicts_another_only_with_many_votes_against_few(shares, class_):
+    update = told(voted(**shares), cup(class_="Book"))
+    assert (update.class_ if update else None) == class_
+
+
+@pytest.mark.parametrize(("share", "class_"), [(0.24, ANYTHING), (0.25, None), (0.39, None)])
+def test_a_class_is_taken_back_with_few_votes_for_it(share, class_):
+    update = told(voted(Cup=share))
+    assert (update.class_ if update else None) == class_
+    early = replace(voted(Cup=share), frames=CONFIG.confirm_frames - 1)
+    assert told(early) is None or told(early).class_ is None
+
+
+@pytest.mark.parametrize(
+    ("where", "goes"),
+    [
+        (at(1.3, 1, 0.75), False),
+        (at(1.0, 1.6, 0.75), False),
+        (at(1.0, 1.9, 0.75), True),
+        (at(1.0, 1.0, 0.15), True),
+        (at(1.0, 1.0, 0.25), False),
+    ],
+)
+def test_a_visible_neighbour_is_left_if_it_is_beside_or_above(where, goes):
+    tray = entity("tray1", "Object", at(1, 1), (0.3, 0.12, 0.15), source="perception")
+    other = entity("cup1", "Cup", where, SIZES["Cup"], source="perception")
+    move = Update(name="tray1", at=(2.0, 1.0, 0.7))
+    assert ("cup1" in (with_load(move, tray, [other, tray]).leave or ())) != goes

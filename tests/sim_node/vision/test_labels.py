@@ -60,3 +60,12 @@ def test_a_label_changes_the_picture_beside_its_point_only():
     assert len(changed)
     assert (np.abs(changed - [100, 100]) < [40, 60]).all()
     assert (np.asarray(draw_labels(plain, {})) == 90).all()
+
+
+def test_labels_of_one_point_are_below_and_above_it_in_turn_until_they_are_too_far():
+    taken = []
+    while (box := free_place((100.0, 500.0), (20.0, 10.0), (400, 1000), taken)) is not None:
+        taken.append(box)
+    assert [box[1] for box in taken[:5]] == [495.0, 506.0, 484.0, 517.0, 473.0]
+    assert {box[0] for box in taken} == {90.0}
+    assert len(taken) == 15

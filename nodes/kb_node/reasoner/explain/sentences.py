@@ -107,11 +107,6 @@ def mark_measured(text: str, facts: Iterable[Triple], words: Words) -> str:
     return text
 
 
-def negated_triple_clause(triple: Triple, words: Words) -> str:
-    """Return the negation of a triple as a clause: "milk1 is not on counter1"."""
-    return _Verbalizer((triple,), words).negated_clause(triple)
-
-
 def _because(claim: str, reasons: Sequence[str]) -> str:
     reasons = sorted(reasons, key=lambda reason: reason.startswith("because "))  # rules are last
     return f"{claim}, because {_joined(reasons).removeprefix('because ')}." if reasons else f"{claim}."
