@@ -16,7 +16,7 @@ from semmap.nodes.runtime import map_replica
 from semmap.nodes.runtime.class_names import ClassNames
 from semmap.schemas import errors
 from semmap.schemas.attachments import holder_of
-from semmap.schemas.commands import Add, Batch
+from semmap.schemas.commands import Add, Batch, Explain
 from semmap.schemas.commits import Effects, Snapshot
 from semmap.schemas.entities import SAME_AS, Entity, Pose, Size, Vector
 from semmap.schemas.scenes import Body
@@ -118,8 +118,11 @@ class MapView(map_replica.MapReplica[Effects]):
             self.primary_names.update(dict.fromkeys(entity.other_names, entity.name))
 
     def with_primary_names(self, command: C) -> C:
-        """Return a command in which other names of entities are replaced by the names of the map."""
-        if not self.primary_names:
+        """Return a command in which other names of entities are replaced by the names of the map.
+
+        `explain` keeps them, because its proof is about the individual that has the name.
+        """
+        if not self.primary_names or isinstance(command, Explain):
             return command
         changed: dict[str, object] = {}
         for field in _NAMED.intersection(command.__struct_fields__):

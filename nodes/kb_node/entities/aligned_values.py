@@ -67,12 +67,26 @@ def size(alignments: Iterable[Alignment], about: About, iri: Term) -> Size | Non
     return None if asserted is None else asserted.size_m
 
 
-def labels(alignments: Iterable[Alignment], asserted: Mapping[Term, Sequence[Term]]) -> list[str]:
+def labels(alignments: Iterable[Alignment], about: About, iri: Term) -> list[str]:
     """Return the texts that name an entity, best first: names of the vocabularies, `prefLabel`, `label`.
 
     Of several languages English comes first, then texts without a language, then the others.
     """
-    return _texts(asserted, (*(p for known in alignments for p in known.names), *_LABELS))
+    return [*_names(alignments, about, iri), *stated_labels(about(iri))]
+
+
+def stated_labels(asserted: Mapping[Term, Sequence[Term]]) -> list[str]:
+    """Return the texts that name an entity in any vocabulary: `prefLabel`, `label`."""
+    return _texts(asserted, _LABELS)
+
+
+def _names(alignments: Iterable[Alignment], about: About, iri: Term) -> Iterator[str]:
+    """Yield the names of an entity in the vocabularies of alignments."""
+    for known in alignments:
+        yield from _texts(about(iri), known.names)
+        for words in known.named:
+            for nodes in _paths(about, iri, words.path):
+                yield from _texts(about(nodes[-1]), (words.text,))
 
 
 def aliases(asserted: Mapping[Term, Sequence[Term]]) -> list[str]:

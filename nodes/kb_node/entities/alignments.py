@@ -49,6 +49,14 @@ class SizeMapping(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True)
     z: Term
 
 
+class NameMapping(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """How a name is expressed that is not a text of the entity itself: at the end of `path`."""
+
+    path: Annotated[Path, Meta(min_length=1)]
+    text: Term
+    """Property: the name."""
+
+
 class PerceptionMapping(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """How events state where they perceived an object; the latest gives its pose when a file is loaded."""
 
@@ -90,6 +98,7 @@ class Alignment(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Roots of the classes with fixed bodies."""
     names: tuple[Term, ...] = ()
     """Properties with the name of an entity, best first."""
+    named: tuple[NameMapping, ...] = ()
     pose: tuple[PoseMapping, ...] = ()
     size: tuple[SizeMapping, ...] = ()
     perceived: tuple[PerceptionMapping, ...] = ()
@@ -106,14 +115,16 @@ class Alignment(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     @property
     def _paths(self) -> tuple[Path, ...]:
-        return (*(words.path for words in self.pose), *(words.path for words in self.size))
+        placed = (*(words.path for words in self.pose), *(words.path for words in self.size))
+        return (*placed, *(words.path for words in self.named))
 
     @property
     def entry_properties(self) -> frozenset[Term]:
         """The properties of an entity itself from which its pose, size or name is found."""
         poses = {words.path[0] if words.path else words.position for words in self.pose}
         sizes = {p for words in self.size for p in (words.path[:1] or (words.x, words.y, words.z))}
-        return frozenset((*poses, *sizes, *self.names, v.RDFS_LABEL))
+        named = {words.path[0] for words in self.named}
+        return frozenset((*poses, *sizes, *named, *self.names, v.RDFS_LABEL))
 
 
 def find_for_namespaces(namespaces: Iterable[str]) -> tuple[Alignment, ...]:

@@ -90,7 +90,7 @@ def read_entity(
         size_m=size_m,
         preferred=read_references(about, asserted.get(v.HAS_PREFERRED_REFERENCE, ())),
         alternatives=read_references(about, asserted.get(v.HAS_ALTERNATIVE_REFERENCE, ())),
-        labels=aligned_values.labels(classes.alignments, asserted),
+        labels=aligned_values.labels(classes.alignments, about, iri),
         aliases=aligned_values.aliases(asserted),
         conflict="; ".join(sorted(map(_text, asserted.get(v.CONFLICTING_OBSERVATION, ())))),
         tracked=_tracked(iri, asserted.get(v.TRACKED_FROM, ())),

@@ -104,7 +104,7 @@ def read_regular(pattern: Pattern, star: _Star, provenance: Provenance, classes:
         size_m=size,  # type: ignore[arg-type]
         preferred=_texts(pattern.preferred, names, others),
         alternatives=_texts(pattern.alternatives, names, others),
-        labels=aligned_values.labels((), labels) if labels else (),
+        labels=aligned_values.stated_labels(labels) if labels else (),
         aliases=aligned_values.aliases(labels) if labels else (),
         properties=classes.property_table.read_values(_terms(pattern.stated, star))
         if pattern.stated

@@ -79,7 +79,7 @@ def read_individual(reasoner: Reasoner, classes: ClassTable, iri: Term) -> Entit
     inferred = tuple(classes.names[t] for t in known if t not in stated)
     labels = [
         *sorted(entity_reading.read_references(about, asserted.get(v.HAS_PREFERRED_REFERENCE, ()))),
-        *aligned_values.labels(classes.alignments, asserted),
+        *aligned_values.labels(classes.alignments, about, iri),
         *entity_reading.read_references(about, asserted.get(v.HAS_ALTERNATIVE_REFERENCE, ())),
         *aligned_values.aliases(asserted),
     ]

@@ -7,7 +7,7 @@ test compares digests of rules, layouts and examples.
 
 from __future__ import annotations
 
-FORMAT = 11
+FORMAT = 12
 
 
 def format_mark() -> bytes:

@@ -162,8 +162,8 @@ def _require_valid(semantic_map: SemanticMap) -> None:
         found = enforcement.find_violations(None, semantic_map.reasoner)
     if found:
         raise errors.BadFile(
-            f"{violations.describe_rejection(found, semantic_map)}; to start with them and repair the map:"
-            " without --enforce-shapes"
+            f"{violations.describe_rejection(found, semantic_map)}; to start with this map and repair it,"
+            " omit --enforce-shapes"
         )
 
 

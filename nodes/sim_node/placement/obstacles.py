@@ -236,7 +236,7 @@ def _find_owners(model: mujoco.MjModel, index: BodyIndex) -> Ints:
 def _find_parts(above: Ints) -> tuple[Mapping[int, Sequence[int]], Ints]:
     """Return the rows of the parts of each body, also of parts of parts, and (N,) the whole of each body.
 
-    `above` (N,) are the rows of the bodies in which they are nested. A body that is no part is its own whole.
+    `above` (N,) are the rows of the bodies in which they are nested. A body without a whole is its own whole.
     """
     parts: dict[int, list[int]] = {}
     wholes = np.arange(len(above))

@@ -37,6 +37,7 @@ def view():
         (c.Add(class_="Cup", name="mug"), {"name": "mug"}),  # and so it is taken
         (c.Add(class_="Cup", name="mug", on="mug"), {"name": "mug", "on": "cup1"}),
         (c.Get(name="other"), {"name": "other"}),
+        (c.Explain(name="mug", predicate="sameAs", value="cup1"), {"name": "mug"}),
     ],
 )
 def test_a_command_names_an_entity_by_any_of_its_names(view, command, expected):

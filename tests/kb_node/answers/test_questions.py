@@ -297,6 +297,8 @@ def test_sentences_have_the_names_of_the_map_and_the_individual_that_was_named(t
     same = "<urn:x#4711> a dm:Chair . <urn:x#m1> owl:sameAs <urn:x#m2> . <urn:x#m2> owl:sameAs <urn:x#4711> ."
     semantic_map.commit(transaction(1, turtle(same)))
     assert explain_relation(semantic_map, "_4711", "type", "Seat").text.startswith("_4711 is a Seat, because")
+    semantic_map.commit(transaction(2, turtle("<urn:y#4712> a dm:Chair .")))  # a proof of the same shape
+    assert explain_relation(semantic_map, "_4712", "type", "Seat").text.startswith("_4712 is a Seat, because")
     said = explain_relation(semantic_map, "m1", "sameAs", "_4711").text
     assert said.startswith("m1 is the same as _4711, because m1 is the same as m2 (asserted)")
     home.close(semantic_map)

@@ -8,6 +8,7 @@ from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
+from tests.kb_node import home
 
 IFC = "http://standards.buildingsmart.org/IFC/DEV/"
 FILE = """
@@ -143,3 +144,19 @@ def test_the_elements_of_buildings_are_things_and_their_spaces_are_places(namesp
     rows = {row.name: row for row in ClassTable(Reasoner(triples)).rows}
     assert all(rows[name].spatial for name in names)
     assert [rows[name].place for name in ("Chair", "Office")] == [False, True]
+
+
+def test_the_names_of_ifc_are_labels(tmp_path):
+    ifc, string = f"{IFC}IFC4/ADD2/OWL#", "<https://w3id.org/express#hasString>"
+    element, label = v.iri(f"{ifc}IfcElement"), v.iri(f"{ifc}IfcLabel")
+    semantic_map = home.new_map(tmp_path, {(c, v.RDF_TYPE, v.OWL_CLASS) for c in (element, label)})
+    wall = ("<urn:x:wall1>", v.RDF_TYPE, element)
+    named = ("<urn:x:wall1>", v.iri(f"{ifc}name_IfcRoot"), "<urn:x:label1>")
+    text = ("<urn:x:label1>", string, v.literal("north wall"))
+    semantic_map.commit(home.transaction(1, [wall, named, ("<urn:x:label1>", v.RDF_TYPE, label), text]))
+    assert semantic_map.entity("wall1").preferred_reference == "north wall"
+    assert semantic_map.individuals.list() == ()
+    new = ("<urn:x:label1>", string, v.literal("south wall"))
+    semantic_map.commit(home.transaction(2, [new], retract=[text]))
+    assert semantic_map.entity("wall1").preferred_reference == "south wall"
+    home.close(semantic_map)

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from semmap.nodes.kb_node.reasoner import datatypes
 from semmap.nodes.kb_node.reasoner.explain.sentences import proof_sentence
-from semmap.nodes.kb_node.reasoner.explain.words import Words
+from semmap.nodes.kb_node.reasoner.explain.words import PLACEHOLDER, Words
 from semmap.nodes.kb_node.reasoner.explanations import Explanation, Step, Term, Triple
 from semmap.nodes.kb_node.reasoner.rules import swrl
 from semmap.nodes.kb_node.reasoner.rules.closure import Closure
@@ -22,7 +22,7 @@ _MOST = 2000
 """Number of cached shapes."""
 _FREE_DATATYPES = {iri(name)[1:-1] for name in ("xsd:float", "xsd:double")}
 """Datatypes whose values the cache treats as interchangeable."""
-_MARK = re.compile("\ue000(\\d+)\ue001")
+_MARK = re.compile(f"{PLACEHOLDER}(\\d+)\ue001")
 """Placeholder for a term in the text of a proof."""
 
 
@@ -180,7 +180,7 @@ def _is_free(term: Term) -> bool:
 
 def _mark(term: Term, number: int) -> Term:
     """Return a placeholder term of the same sort whose name is the number between marks."""
-    text = f"\ue000{number}\ue001"
+    text = f"{PLACEHOLDER}{number}\ue001"
     if is_literal(term):
         return f'"{text}{term[term.rindex(chr(34)) :]}'
     return f"<{text}>" if is_named(term) else f"_:{text}"

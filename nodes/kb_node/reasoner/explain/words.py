@@ -23,6 +23,8 @@ _LINKS: Final = frozenset(
     {"of", "in", "on", "at", "to", "by", "from", "with", "for", "near", "inside", "under"}
 )
 """A name without a verb that ends in one of these words gets an "is": `partOf` is "is part of"."""
+PLACEHOLDER: Final = "\ue000"
+"""The first character of the names in a sentence that are replaced by others."""
 _PREPOSITIONS: Final = _LINKS | {
     *("about", "above", "across", "after", "against", "along", "around", "as", "before", "behind", "below"),
     *("beside", "between", "into", "like", "onto", "out", "over", "through", "up", "upon", "within"),
@@ -123,6 +125,8 @@ class Words:
             text, datatype, _ = literal(term)
             is_plain = datatype in _PLAIN_VALUES and not _LETTERS.match(text)
             return text if is_plain else f'"{text}"'
+        if PLACEHOLDER in term:  # of the template of a sentence
+            return local_name(term) if is_named(term) else term[2:]
         return self.name_individual(term) if is_named(term) else term
 
     def cls(self, term: Term) -> str:

@@ -53,7 +53,7 @@ def test_a_change_of_a_nameless_value_counts_and_what_refers_to_it_does_not(jour
 
 
 def test_what_an_individual_of_the_tbox_is_has_no_commit(journal, people):
-    assert dates(journal, people, "<urn:x:nobody>") == (0, 0, 0)
+    assert dates(journal, people, "<urn:x:unknown>") == (0, 0, 0)
 
 
 def test_a_pattern_is_found_across_the_pieces_of_a_compressed_body():
