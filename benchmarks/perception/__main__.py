@@ -8,11 +8,32 @@ import os
 import platform
 from pathlib import Path
 
-from benchmarks.perception import exemplars, fitted, foreign, live, recorded, simulated, tracking, unknown
+from benchmarks.perception import (
+    exemplars,
+    fitted,
+    foreign,
+    live,
+    recorded,
+    simulated,
+    tables,
+    tracking,
+    unknown,
+)
 from benchmarks.perception.table import Row, lines
 from semmap.nodes.perception_node.recognition.recognition_model import shipped
 
-PARTS = ("recorded", "simulated", "painted", "unknown", "foreign", "fitted", "learnt", "tracking", "live")
+PARTS = (
+    "recorded",
+    "simulated",
+    "tables",
+    "painted",
+    "unknown",
+    "foreign",
+    "fitted",
+    "learnt",
+    "tracking",
+    "live",
+)
 
 
 def arguments() -> argparse.Namespace:
@@ -43,6 +64,8 @@ def main() -> None:
         rows += recorded.measure(words.recorded, words.piles)
     if "simulated" in parts:
         rows += simulated.measure(words.scenes, shipped())
+    if "tables" in parts:
+        rows += tables.measure(words.scenes, shipped())
     if "painted" in parts:
         rows += simulated.measure_painted(words.scenes, shipped())
     if "foreign" in parts:

@@ -44,9 +44,18 @@ def rooms(count: int, seed: int, *, crowded: bool, things: Sequence[str] = THING
         yield _room(rng, crowded=crowded, things=things)
 
 
-def _room(rng: np.random.Generator, *, crowded: bool, things: Sequence[str]) -> Room:
-    support = str(rng.choice(list(_SUPPORTS)))
-    top = (float(rng.uniform(0.8, 0.95)), float(rng.uniform(1.3, 1.6)), _SUPPORTS[support])
+def low_rooms(count: int, seed: int, height_m: float, *, things: Sequence[str] = THINGS) -> Iterator[Room]:
+    """Yield random rooms with things apart on a table of a height, the same at each height."""
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        yield _room(rng, crowded=False, things=things, height_m=height_m)
+
+
+def _room(
+    rng: np.random.Generator, *, crowded: bool, things: Sequence[str], height_m: float | None = None
+) -> Room:
+    support = "table" if height_m else str(rng.choice(list(_SUPPORTS)))
+    top = (float(rng.uniform(0.8, 0.95)), float(rng.uniform(1.3, 1.6)), height_m or _SUPPORTS[support])
     furniture = Item("support", support, top, _colour(support, rng), (0.0, 0.0, 0.0), 0.0)
     kinds = [str(kind) for kind in rng.choice(things, int(rng.integers(6, 13)))]
     sizes = [_size(kind, rng) for kind in kinds]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,23 +17,35 @@ _TURNS = {
     "y": np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]),
     "z": np.eye(3),
 }
-_SAMPLE = 6000
+_SAMPLE, _FEW = 6000, 3000
 _LEVEL_M, _FLOOR_SHARE, _BELOW_M = 0.03, 0.03, 0.06
-_ELEVATION_RAD = np.radians(40.0)
+_ABOVE_M, _THINGS = 0.15, 0.05
+_ELEVATIONS_RAD = np.radians([25.0, 40.0, 60.0])
+_RADII_M = (1.0, 1.5, 2.5)
 _AZIMUTHS, _FARTHER = 12, 1.3
+_PER_M = 0.05
+"""The share of hidden points that is as bad as a metre of distance."""
+_WIDE = 1.5
+"""Points with a larger tangent to the axis are not seen."""
 _HEIGHTS_M = (0.0, 0.5, 1.0, 1.5)
 _CELLS = 60
 _HIDDEN = 0.03
 """Share of its distance by which a point is behind another in the same direction."""
 _WORST_PX = 1.0
 _FEWEST = 100
+_MOST_HIDDEN, _LEVEL_SHARE = 0.5, 0.1
+"""A camera's points hide less than this share of one another. A level surface has at least this share."""
 
 
 @dataclass(frozen=True)
 class Placement:
-    """The frame of a cloud: its axis `up`, and the camera's pose (4, 4) in that frame, if known."""
+    """The frame of a cloud: its axis `up`, and the camera's pose (4, 4) in that frame, if known.
 
-    up: Up
+    Without `up`, it is the camera's frame, and the pose is `map_from_camera`; unless no camera at its origin
+    can have seen the points.
+    """
+
+    up: Up | None = None
     frame_from_camera: Transform | None = None
 
     def place(self, points: Floats) -> tuple[Floats, Transform]:
@@ -43,7 +55,7 @@ class Placement:
         pose of the camera is unknown, that of an organised cloud follows from its rows and columns; otherwise
         it is a place from which few points are hidden.
         """
-        turn = _TURNS[self.up]
+        turn = _TURNS[self.up or "z"]
         turned = points @ turn.T.astype(np.float32)
         seen = turned[np.isfinite(turned).all(axis=-1) & (turned != 0.0).any(axis=-1)]
         if len(seen) < 3:
@@ -56,10 +68,35 @@ class Placement:
         if pose is None:
             pose = _of_grid(turned)
         if pose is None:
-            pose = _of_many(seen[:: max(1, len(seen) // _SAMPLE)].astype(float))
+            pose = _of_many(seen[:: max(1, len(seen) // _FEW)].astype(float))
         in_camera = (turned - pose[:3, 3].astype(np.float32)) @ pose[:3, :3].astype(np.float32)
         pose[2, 3] += lift_m
         return in_camera, pose
+
+
+def is_seen_from_origin(points: Floats) -> bool:
+    """Return whether a camera at the origin (x right, y down, z forward) could have seen points (N, 3)."""
+    seen = _sample(points)
+    return len(seen) < _FEWEST or hidden(seen, np.eye(4)) < _MOST_HIDDEN
+
+
+def find_up(points: Floats) -> Up | None:
+    """Return the axis along which most points (N, 3) are at one level; None if there is no such level."""
+    seen = _sample(points)
+    if len(seen) < _FEWEST:
+        return None
+    shares: dict[Up, float] = {}
+    for axis, along in zip(("x", "y", "z"), seen.T, strict=True):
+        counts = np.unique(np.floor(along / _LEVEL_M), return_counts=True)[1]
+        shares[cast("Up", axis)] = float(counts.max()) / len(seen)
+    best = max(shares, key=shares.__getitem__)
+    return best if shares[best] > _LEVEL_SHARE else None
+
+
+def _sample(points: Floats) -> NDArray[np.float64]:
+    """Return some of the measured points (N, 3)."""
+    seen = points[np.isfinite(points).all(axis=-1) & (points != 0.0).any(axis=-1)]
+    return np.asarray(seen[:: max(1, len(seen) // _FEW)], np.float64)
 
 
 def _floor_m(heights: NDArray[np.floating]) -> float:
@@ -112,19 +149,25 @@ def _of_grid(points: Floats) -> Transform | None:
 
 
 def _of_many(points: NDArray[np.float64]) -> Transform:
-    """Return the pose, of several possible ones, from which the fewest points (N, 3) are hidden.
+    """Return the pose, of several possible ones, that is near and from which few points (N, 3) are hidden.
 
-    These are the axis of the frame, where a robot has its camera, and a circle around the points.
+    These are the axis of the frame, where a robot has its camera, and circles around the middle of what is
+    above the lowest level, since a floor extends everywhere. Perception trusts near points more.
     """
-    middle = np.median(points, axis=0)
-    radius = _FARTHER * float(np.quantile(np.linalg.norm(points - middle, axis=1), 0.98)) + 0.3
-    angles = np.arange(_AZIMUTHS) * 2 * np.pi / _AZIMUTHS
-    around = [
-        middle + radius * np.array([np.cos(a), np.sin(a), np.tan(_ELEVATION_RAD)]) for a in angles.tolist()
-    ]
-    eyes = [*(np.array([0.0, 0.0, height]) for height in _HEIGHTS_M), *around]
+    above = points[points[:, 2] > np.quantile(points[:, 2], 0.02) + _ABOVE_M]
+    middle = np.median(above if len(above) > _THINGS * len(points) else points, axis=0)
+    widest = _FARTHER * float(np.quantile(np.linalg.norm(points - middle, axis=1), 0.98)) + 0.3
+    eyes = [np.array([0.0, 0.0, height]) for height in _HEIGHTS_M]
+    for radius in (*(r for r in _RADII_M if r < widest), widest):
+        for elevation in _ELEVATIONS_RAD:
+            for a in (np.arange(_AZIMUTHS) * 2 * np.pi / _AZIMUTHS).tolist():
+                around = [np.cos(a) * np.cos(elevation), np.sin(a) * np.cos(elevation), np.sin(elevation)]
+                eyes.append(middle + radius * np.array(around))
     poses = [pose for eye in eyes if (pose := _looking(eye, middle)) is not None]
-    return min(poses, key=lambda pose: _hidden(points, pose))
+    return min(
+        poses,
+        key=lambda pose: hidden(points, pose) + _PER_M * float(np.linalg.norm(pose[:3, 3] - middle)),
+    )
 
 
 def _looking(eye: NDArray[np.float64], target: NDArray[np.float64]) -> Transform | None:
@@ -142,10 +185,10 @@ def _looking(eye: NDArray[np.float64], target: NDArray[np.float64]) -> Transform
     return pose
 
 
-def _hidden(points: NDArray[np.float64], pose: Transform) -> float:
-    """Return the share of points (N, 3) that are behind the camera or hidden by others."""
+def hidden(points: NDArray[np.float64], pose: Transform) -> float:
+    """Return the share of points (N, 3) that are not in the camera's view or hidden by others."""
     x, y, z = ((points - pose[:3, 3]) @ pose[:3, :3]).T
-    ahead = z > 0.05
+    ahead = (z > 0.05) & (np.maximum(np.abs(x), np.abs(y)) < _WIDE * z)
     if not ahead.any():
         return 1.0
     rays = np.stack([x[ahead], y[ahead]]) / z[ahead]

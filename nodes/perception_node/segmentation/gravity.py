@@ -11,7 +11,7 @@ from semmap.nodes.perception_node.segmentation.working_image import Floats
 _UP = 0.2
 _DOWN = 0.9
 """A floor's normal points up in the image, or at a camera that looks straight down."""
-_FURNITURE_M = 0.2
+_FURNITURE_M = 0.15
 """A level plane this far above another is furniture; closer planes may be parts of a thing."""
 _DEEP_M = 100.0
 

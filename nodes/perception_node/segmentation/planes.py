@@ -6,6 +6,7 @@ removes its voters, and the best remaining hypothesis is fitted by least squares
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import permutations
@@ -41,6 +42,7 @@ _TALLEST_M = 0.5
 _AROUND = np.ones((3, 3))
 _STEEP = 0.5
 """Minimum slope (sine) of a slice through upright things, from row to row."""
+_ROWS_APART = 8
 
 
 @dataclass(frozen=True)
@@ -110,6 +112,9 @@ def find_planes(
             count = int(piece.sum())
             solid = piece if kind == "floor" else _largest_piece(piece)  # things cut a floor into islands
             sides = _sides(_some(points, solid, count), normal)
+            if level and sides[1] < _LEAST_SIDE_M:  # another plane may have cut it, such as a thing's side
+                solid = _piece_around(piece, np.abs(height) < thickness)
+                sides = _sides(_some(points, solid, int(solid.sum())), normal)
             if planes and sides[1] < (_LEAST_WALL_M if kind == "wall" else _LEAST_SIDE_M):
                 continue
             planes.append(Plane(normal.astype(np.float64), float(offset), kind, count, sides))
@@ -156,6 +161,12 @@ def _largest_piece(on: Mask) -> Mask:
     if count < 2:
         return on
     return np.asarray(parts == 1 + np.bincount(parts.ravel())[1:].argmax())
+
+
+def _piece_around(piece: Mask, on: Mask) -> Mask:
+    """Return the connected part of `on` that has most of a piece."""
+    parts, _ = ndimage.label(on)
+    return np.asarray(parts == np.bincount(parts[piece]).argmax())
 
 
 class _Search:
@@ -244,13 +255,22 @@ def pieces_of(on: Mask, points: Floats, height: Floats, thickness: Floats, least
     counts[0] = 0
     large = [n for n in np.argsort(-counts, kind="stable") if counts[n] >= least]
     pieces = (np.asarray(numbers == n) for n in large)
-    return [piece for piece in pieces if not _is_slice(piece, points, height)]
+    return [piece for piece in pieces if not _is_slice(piece, points, height, thickness)]
 
 
-def _is_slice(piece: Mask, points: Floats, height: Floats) -> bool:
-    """Return whether the plane cuts through a thing: from row to row its points rise more than recede."""
+def _is_slice(piece: Mask, points: Floats, height: Floats, thickness: Floats) -> bool:
+    """Return whether the plane cuts through a thing: from row to row its points rise more than recede.
+
+    The rows are so far apart that a step is longer than the noise, which is the `thickness`.
+    """
     both = piece[1:] & piece[:-1]
     if not both.any():
         return True
-    step = np.linalg.norm(np.diff(points, axis=1)[:, both], axis=0)
-    return bool(np.median(np.abs(np.diff(height, axis=0)[both]) / np.maximum(step, 1e-6)) > _STEEP)
+    step_m = float(np.median(np.linalg.norm(np.diff(points, axis=1)[:, both], axis=0)))
+    apart = min(_ROWS_APART, math.ceil(float(np.median(thickness[piece])) / max(step_m, 1e-6)))
+    both = piece[apart:] & piece[:-apart]
+    if not both.any():
+        return True
+    step = np.linalg.norm((points[:, apart:] - points[:, :-apart])[:, both], axis=0)
+    rise = np.abs((height[apart:] - height[:-apart])[both])
+    return bool(np.median(rise / np.maximum(step, 1e-6)) > _STEEP)

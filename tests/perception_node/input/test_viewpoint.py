@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from semmap.nodes.perception_node.input.cloud import Cloud
-from semmap.nodes.perception_node.input.viewpoint import Placement
+from semmap.nodes.perception_node.input.viewpoint import Placement, find_up, is_seen_from_origin
 from semmap.nodes.perception_node.views.segments import map_points
 from tests.perception_node.segmentation.scenes import boxes_on_table, camera_pose
 from tests.perception_node.segmentation.test_patches import SCENES
@@ -79,3 +79,17 @@ def test_a_point_far_away_does_not_prevent_the_rest(scene, far):
     placed, pose = Placement("z").place(points)
     assert np.isfinite(pose).all()
     assert (placed[np.isfinite(placed[..., 2]), 2] > 0).mean() > 0.9
+
+
+@pytest.mark.parametrize("up", TO_UP)
+def test_the_vertical_is_found_of_points_that_no_camera_at_the_origin_can_have_seen(scene, up):
+    cloud, points = scene
+    assert is_seen_from_origin(cloud.points_camera.reshape(-1, 3))
+    found = TO_UP[up](points).reshape(-1, 3) + np.float32([0.0, 0.0, 0.01])
+    assert not is_seen_from_origin(found)
+    assert find_up(found) == up
+
+
+def test_points_without_a_level_have_no_vertical():
+    assert find_up(np.random.default_rng(0).normal(size=(5000, 3)).astype(np.float32)) is None
+    assert find_up(np.zeros((5, 3), np.float32)) is None

@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from semmap.nodes.perception_node.input.cloud import Cloud
-from semmap.nodes.perception_node.segmentation.unorganised_cloud import as_image
-from tests.perception_node.segmentation.scenes import boxes_on_table
+from semmap.nodes.perception_node.segmentation.unorganised_cloud import as_image, fill_holes
+from semmap.nodes.perception_node.views.segmented_view import segment_cloud
+from tests.perception_node.segmentation.scenes import boxes_on_table, camera_pose
 
 SEEN = boxes_on_table(((-0.1, -0.1, 0.0), (0.1, 0.1, 0.2)))
 
@@ -54,3 +56,37 @@ def test_nothing_seen():
     picture, pixel = as_image(cloud)
     assert picture.organised
     assert (pixel == -1).all()
+
+
+def thinned_to_voxels(points, side_m=0.005):
+    """Return the mean of the points (N, 3) in each voxel."""
+    voxels, of = np.unique(np.floor(points / side_m).astype(int), axis=0, return_inverse=True)
+    sums = np.zeros((len(voxels), 3))
+    np.add.at(sums, of, points)
+    return (sums / np.bincount(of)[:, None]).astype(np.float32)
+
+
+@pytest.mark.parametrize("height_m", [0.2, 0.45, 0.75, 1.1])
+def test_a_box_is_found_on_a_table_of_any_height_in_a_cloud_of_voxels(height_m):
+    table = ((-0.5, -0.35, height_m - 0.04), (0.5, 0.35, height_m))
+    box = ((-0.1, -0.1, height_m), (0.05, 0.0, height_m + 0.15))
+    pose = camera_pose((0.2, -1.1, height_m + 0.65), (0.0, 0.0, height_m))
+    seen = boxes_on_table(table, box, pose=pose, table=((-3, -3, -0.05), (3, 3, 0)))
+    points = seen.cloud.points_camera.reshape(-1, 3)
+    found = segment_cloud(Cloud(thinned_to_voxels(points[np.isfinite(points[:, 2])])[None]))
+    things = [segment for segment in found.segments if not segment.carrier]
+    tops = [round(float(np.quantile(s.points[:, 2], 0.95)), 2) for s in things if len(s.points) > 200]
+    assert height_m + 0.15 == pytest.approx(min(tops, key=lambda top: abs(top - height_m - 0.15)), abs=0.02)
+    assert max(support.height_m for support in found.supports) == pytest.approx(height_m, abs=0.02)
+
+
+def test_holes_in_a_surface_are_filled_and_edges_are_not_moved():
+    image = np.full((6, 6, 3), np.nan, np.float32)
+    image[:, 2:] = (0.0, 0.0, 1.0)
+    image[3, 3] = np.nan
+    colors = np.full((6, 6, 3), 90, np.uint8)
+    colors[3, 3] = 0
+    fill_holes(image, colors)
+    assert image[3, 3].tolist() == [0.0, 0.0, 1.0]
+    assert colors[3, 3].tolist() == [90, 90, 90]
+    assert np.isnan(image[:, :2]).all()

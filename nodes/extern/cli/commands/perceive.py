@@ -5,7 +5,8 @@ from __future__ import annotations
 import io
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -27,8 +28,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from semmap.nodes.perception_node.detector import Detector
+    from semmap.nodes.perception_node.input.cloud import Cloud
+    from semmap.nodes.perception_node.input.viewpoint import Placement
     from semmap.nodes.perception_node.recognition.recognition_model import RecognitionModel
 
+_BAGS = (".bag", ".db3", ".mcap")
 _PROGRESS_S = 5.0
 """Period of progress messages [s]."""
 _CLUTTER = "?: too few points to classify, or a part of furniture (with --frames, parts are combined)"
@@ -75,6 +79,15 @@ def _path_option(name: str, metavar: str, help: str, *also: str) -> Callable[[An
     metavar="X Y Z QW QX QY QZ",
     help="Pose of the optical frame (z forward) in the map; with --up, in the frame of the cloud.",
 )
+@click.option("--topic", metavar="NAME", help="Topic of the clouds of a bag, if it has several.")
+@click.option(
+    "--every",
+    metavar="SECONDS",
+    type=click.FloatRange(0),
+    default=1.0,
+    show_default=True,
+    help="Time between the clouds of a bag that are used; 0 for all.",
+)
 @_path_option(
     "--masks",
     "FILE",
@@ -96,6 +109,8 @@ def perceive(
     intrinsics: Path | None,
     up: Literal["x", "y", "z"] | None,
     pose: tuple[float, ...] | None,
+    topic: str | None,
+    every: float,
     masks: Path | None,
     label_map: Path | None,
     masks_only: bool,
@@ -106,7 +121,8 @@ def perceive(
 ) -> None:
     """Find the objects in point clouds, depth images or datasets.
 
-    Point clouds are PCD or PLY files and, with Open3D, .xyz, .xyzrgb and .pts files. Images are a colour and
+    Point clouds are PCD or PLY files, with Open3D also .xyz, .xyzrgb and .pts files, and those in bags (.bag,
+    .db3, .mcap). Images are a colour and
     a depth image (PNG, JPEG, TIFF, PGM, .npy). The labels are integers in the shape of the cloud: (height,
     width), or (1, points) for unorganized clouds. 0 is the background, 1 to n are the objects.
     """
@@ -133,18 +149,19 @@ def perceive(
 
     from semmap.nodes.perception_node.fitting.fit_observations import fit_view
     from semmap.nodes.perception_node.fitting.model_surfaces import shipped as surfaces
-    from semmap.nodes.perception_node.input.files.cloud_files import read_frames
+    from semmap.nodes.perception_node.input.viewpoint import Placement
     from semmap.nodes.perception_node.pipeline import recognise_segments
     from semmap.nodes.perception_node.views.masked import with_masks
     from semmap.nodes.perception_node.views.segmented_view import segment_cloud
 
     learnt = _learnt(data)
-    clouds = list(read_frames(files, intrinsics, up, None if pose is None else _pose(pose)))
+    clouds = _clouds(files, intrinsics, Placement(up, None if pose is None else _pose(pose)), topic, every)
+    first = list(islice(clouds, 2))
     for option, value in (("--labels", labels), ("--masks", masks)):
-        if value is not None and len(clouds) != 1:
-            raise errors.BadRequest(f"{option} requires a single frame, not {len(clouds)}")
+        if value is not None and len(first) != 1:
+            raise errors.BadRequest(f"{option} requires a single frame")
     records = []
-    for file, cloud in clouds:
+    for file, cloud in chain(first, clouds):
         sight = segment_cloud(cloud)
         for note in sight.notes:
             print_error(f"note: {file}: {note}")
@@ -175,6 +192,28 @@ def perceive(
                 print(f"wrote {labels}")
     if format == "json":
         print_json(records)
+
+
+def _clouds(
+    files: Sequence[Path], intrinsics: Path | None, placement: Placement, topic: str | None, every_s: float
+) -> Iterator[tuple[str, Cloud]]:
+    """Yield the frames of files and the clouds of bags, each with a name. Raises BadFile and BadRequest."""
+    from semmap.nodes.perception_node.input.files.cloud_files import read_frames
+
+    bags = [file for file in files if file.suffix.lower() in _BAGS or (file / "metadata.yaml").exists()]
+    if len(bags) not in (0, len(files)):
+        raise errors.BadRequest(f"{bags[0]} is a bag; name only bags, or only clouds and images")
+    if bags:
+        extras.require("semmap perceive with a bag", "ros")
+        from semmap.nodes.extern.frame_folders.bag_clouds import read_clouds
+
+        for bag in bags:
+            yield from read_clouds(bag, placement, topic=topic, every_s=every_s)
+        return
+    if topic is not None:
+        raise errors.BadRequest("--topic requires a bag (.bag, .db3, .mcap)")
+    for file, cloud in read_frames(files, intrinsics, placement.up, placement.frame_from_camera):
+        yield str(file), cloud
 
 
 def _pose(numbers: tuple[float, ...]) -> NDArray[np.float64]:

@@ -52,8 +52,7 @@ def read_frames(
     waiting: Path | None = None  # an image without its partner
     for path in files:
         if path.suffix.lower() not in _PICTURES:
-            cloud = read_cloud(path, None if up is None else Placement(up, pose))
-            yield path, cloud if up is not None else replace(cloud, map_from_camera=pose)
+            yield path, read_cloud(path, Placement(up, pose))
         elif waiting is None:
             waiting = path
         else:

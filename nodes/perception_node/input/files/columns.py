@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from semmap.nodes.perception_node.input.cloud import FARTHEST_M, NEAREST_M, Cloud
+from semmap.nodes.perception_node.input.cloud import FARTHEST_M, NEAREST_M, Cloud, Floats, Transform
 from semmap.nodes.perception_node.input.files import units
-from semmap.nodes.perception_node.input.viewpoint import Placement
+from semmap.nodes.perception_node.input.viewpoint import Placement, find_up, is_seen_from_origin
 
 MAX_POINTS = 50_000_000
 """A header with more points is damaged."""
@@ -57,12 +58,7 @@ def cloud_of(
     if missing := [name for name in "xyz" if name not in columns]:
         raise ValueError(f"it has no field {', '.join(missing)}, only {', '.join(columns) or 'none'}")
     points = np.stack([columns[name].astype(np.float32) for name in "xyz"], axis=-1)
-    pose = None
-    if placement is None:
-        points = _optical(points)
-    else:
-        placed, pose = placement.place(points.reshape(height, width, 3))
-        points = placed.reshape(-1, 3)
+    points, pose, notes = _in_camera(points, height, width, placement or Placement())
     depth = points[np.isfinite(points).all(axis=-1), 2]
     depth = depth[depth != 0.0]
     if len(depth) and np.median(depth) > FARTHEST_M:
@@ -78,7 +74,38 @@ def cloud_of(
         points_camera=points.reshape(height, width, 3),
         colors=None if colors is None else colors.reshape(height, width, 3),
         map_from_camera=pose,
+        notes=notes,
     )
+
+
+def _in_camera(
+    points: Floats, height: int, width: int, placement: Placement
+) -> tuple[Floats, Transform | None, tuple[str, ...]]:
+    """Return points (N, 3) in the camera's frame, map_from_camera if it is known, and notes.
+
+    If the frame is not stated, and no camera at its origin could have seen the points, it is that of a map or
+    robot, whose vertical is found.
+    """
+    up, notes = placement.up, tuple[str, ...]()
+    if up is None:
+        doubt = ""
+        try:
+            optical = _optical(points)
+        except ValueError as error:
+            doubt = str(error)
+        if not doubt and is_seen_from_origin(optical):
+            return optical, placement.frame_from_camera, ()
+        up = find_up(points)
+        if up is None:
+            if doubt:
+                raise ValueError(doubt)
+            return optical, placement.frame_from_camera, ()
+        notes = (
+            "no camera at the origin can have seen the points, so they are read in the frame of a map or"
+            f" robot with {up} up; if another axis points up: --up AXIS",
+        )
+    placed, pose = replace(placement, up=up).place(points.reshape(height, width, 3))
+    return placed.reshape(-1, 3), pose, notes
 
 
 def _optical(points: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -118,3 +118,13 @@ def test_numbers_in_words_go_to_their_fields_and_those_of_several_are_passed_ove
 def test_too_few_numbers_are_told_in_points():
     with pytest.raises(ValueError, match="truncated: 1 of 2 points"):
         columns_of_text(b"1 7 7 7 2\n3.5 7 7 7", FIELDS, 2)
+
+
+def test_a_cloud_in_the_frame_of_a_map_is_read_with_its_pose_and_a_note():
+    floor = np.random.default_rng(0).uniform([-1, -1, 0.02], [1, 1, 0.02], (4000, 3))
+    box = np.random.default_rng(1).uniform([0.2, 0.1, 0.02], [0.3, 0.2, 0.3], (800, 3))
+    columns = dict(zip("xyz", np.concatenate([floor, box]).T, strict=True))
+    cloud = cloud_of(columns, 1, 4800)
+    assert "with z up" in cloud.notes[0]
+    seen = cloud.points_camera[0] @ cloud.map_from_camera[:3, :3].T + cloud.map_from_camera[:3, 3]
+    assert np.nanquantile(seen[:, 2], [0.01, 0.99]) == pytest.approx([0.02, 0.28], abs=0.02)
