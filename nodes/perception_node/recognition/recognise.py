@@ -42,6 +42,11 @@ class Clutter(NamedTuple):
 
     probability: float
 
+    @property
+    def reason(self) -> str:
+        """Return why it is not reported, for the user."""
+        return f"classified as clutter ({self.probability:.2f}): a fragment, or a part of furniture"
+
 
 def recognise(
     things: Sequence[Thing],
