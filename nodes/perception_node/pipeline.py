@@ -130,7 +130,7 @@ def observe_views(
     observations = Observations(
         stamp_ns=max((sight.cloud.stamp_ns for sight in sights), default=0),
         views=tuple(_view(sight) for sight in sights),
-        observations=tuple(found[n] for n in kept),
+        observations=tuple(one for n in kept if isinstance(one := found[n], Observation)),
     )
     elsewhere = [rest for rest, thing in recalled if not thing]
     return FrameResult(

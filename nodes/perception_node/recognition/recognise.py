@@ -98,6 +98,8 @@ def _observation(
         return Clutter(clutter)
     chances = {leaf: chance / (1.0 - clutter) for leaf, chance in chances.items()}
     class_, probability = choose_class(chances, learnt.ancestors, learnt.sure)
+    if class_ == UNKNOWN:
+        probability = chances[UNKNOWN]  # everything is an Object, which is no information
     if detected is not None and detected[1] > (learnt.sure if class_ == UNKNOWN else probability):
         class_, probability = detected
     likely = sorted(chances, key=chances.__getitem__, reverse=True)[:_CANDIDATES]
@@ -116,7 +118,13 @@ def _observation(
         shown=_as_shown(chances, class_, learnt),
         label=label or "",
         labelled=label is not None,
+        color_rgb=None if thing.colors is None else _mean_color(thing.colors),
     )
+
+
+def _mean_color(colors: Numbers) -> tuple[float, float, float]:
+    red, green, blue = colors.mean(axis=0).round(3).tolist()
+    return (red, green, blue)
 
 
 def _as_shown(chances: Mapping[str, float], class_: str, learnt: RecognitionModel) -> bool:

@@ -35,6 +35,8 @@ _DIPS, _DEVIATIONS, _LEAST = 3.0, 2.0, 1.5
 """A thing stands out if its height, in units of `_DIPS` dips, and its contrast, in units of `_DEVIATIONS`
 standard deviations of the surface, add up to `_LEAST`."""
 _UNKNOWN_CONTRAST = 1.0
+_SMALL_POINTS = 300
+"""A thing of fewer points needs twice the evidence: noise makes small patches more often than large ones."""
 _FEWEST_POINTS, _FEWEST_CUT = 100, 600
 """Minimum number of points of a thing, and of one that an image edge cuts."""
 _ALONG_RAY, _ELONGATED = np.cos(np.radians(12)), 2.5
@@ -85,7 +87,7 @@ def _doubt(thing: Thing, found: Sequence[Protrusion | None]) -> str:
     if not seen or len(seen) < len(found):
         return ""
     best = max(seen, key=lambda one: one.evidence)
-    if best.evidence >= _LEAST:
+    if best.evidence >= (_LEAST if thing.count >= _SMALL_POINTS else 2 * _LEAST):
         return ""
     return (
         f"rises {1000 * best.rise_m:.0f} mm above a surface with {1000 * best.noise_m:.0f} mm of noise, "
