@@ -99,7 +99,7 @@ def _observation(
     chances = {leaf: chance / (1.0 - clutter) for leaf, chance in chances.items()}
     class_, probability = choose_class(chances, learnt.ancestors, learnt.sure)
     if class_ == UNKNOWN:
-        probability = chances[UNKNOWN]  # everything is an Object, which is no information
+        probability = chances[UNKNOWN]  # that it is an Object is certain
     if detected is not None and detected[1] > (learnt.sure if class_ == UNKNOWN else probability):
         class_, probability = detected
     likely = sorted(chances, key=chances.__getitem__, reverse=True)[:_CANDIDATES]

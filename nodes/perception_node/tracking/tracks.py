@@ -175,7 +175,7 @@ class Track:
         return replace(self, occupied=self.occupied + 1, unseen=0, odd=odd_frames, absent=0)
 
     def overlook(self, *, visible: bool) -> Track:
-        """Return the track of a thing that is no entity yet, in a frame without observation.
+        """Return the track of a thing that is not an entity yet, in a frame without observation.
 
         `visible`: its place is in view.
         """

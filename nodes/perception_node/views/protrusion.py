@@ -25,7 +25,8 @@ _EVERY = 4
 _RING_CELLS = 20
 _LEVEL = 2.5
 """The surface around a thing is within this multiple of a plane's tolerance."""
-_FEWEST_AROUND = 20
+_FEWEST_AROUND, _SAMPLE = 20, 400
+"""Minimum number of cells of the surface, and about the number of cells that are compared."""
 _DIP, _TOP = 0.02, 0.9
 """Quantiles of the surface and of the thing: a dip is about two standard deviations deep."""
 _LEAST_NOISE = 0.3
@@ -113,39 +114,53 @@ def _protrusions(
     points = sight.cloud.points_camera[::_EVERY, ::_EVERY]
     colors = None if sight.cloud.colors is None else sight.cloud.colors[::_EVERY, ::_EVERY]
     up = sight.map_from_camera[2].astype(np.float32)
+    depth, height = points[..., 2], points @ up[:3] + up[3]
     carrier = np.array([True, *(thing.carrier for thing in things)])
-    free = carrier[labels] & (points[..., 2] > 0)  # NaN is not
+    seen = depth > 0  # NaN is not
+    free = carrier[labels] & seen
     found: list[tuple[int, Protrusion | None]] = []
     for number, box in enumerate(ndimage.find_objects(labels), 1):
         if box is None or carrier[number]:
             continue
         window = tuple(slice(max(0, side.start - _RING_CELLS), side.stop + _RING_CELLS) for side in box)
-        own = (labels[window] == number) & (points[window][..., 2] > 0)
+        own = (labels[window] == number) & seen[window]
         if own.any():
-            heights = points[window] @ up[:3] + (up[3] - np.float32(things[number - 1].box.low[2]))
-            near = points[window][..., 2][own]
-            band = float(thickness_m(np.median(near)))
+            heights = height[window] - np.float32(things[number - 1].box.low[2])
+            band = float(thickness_m(np.median(depth[window][own])))
             around = free[window] & (np.abs(heights) < _LEVEL * band)
-            shades = None if colors is None else shades_of(np.moveaxis(colors[window], -1, 0))
-            found.append((number, _protrusion(heights, shades, own, around, band)))
+            shown = None if colors is None else colors[window]
+            found.append((number, _protrusion(heights, shown, _some(own), _some(around), band)))
     return found
+
+
+def _some(where: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Return the flat indices of a sample of the cells (h, w) in `where`."""
+    cells = np.flatnonzero(where)
+    return cells[:: max(1, len(cells) // _SAMPLE)]
 
 
 def _protrusion(
     heights: Floats,
-    shades: Floats | None,
-    own: NDArray[np.bool_],
-    around: NDArray[np.bool_],
+    colors: NDArray[np.uint8] | None,
+    own: NDArray[np.int64],
+    around: NDArray[np.int64],
     band: float,
 ) -> Protrusion | None:
-    if np.count_nonzero(around) < _FEWEST_AROUND:
+    """Return the protrusion of the cells `own` from those `around`, flat indices of `heights` (h, w)."""
+    if len(around) < _FEWEST_AROUND:
         return None
-    level = heights[around]
-    base, dip = np.quantile(level, [0.5, _DIP]).tolist()
-    rise = float(np.quantile(heights[own], _TOP)) - base
+    dip, base = _quantiles(heights.ravel()[around], (_DIP, 0.5)).tolist()
+    rise = _quantiles(heights.ravel()[own], (_TOP,)).item() - base
     contrast = _UNKNOWN_CONTRAST
-    if shades is not None:
-        low, middle, high = np.quantile(shades[:, around], [0.16, 0.5, 0.84], axis=1)
-        apart = np.abs(np.median(shades[:, own], axis=1) - middle)
+    if colors is not None:
+        surface, thing = (shades_of(colors.reshape(-1, 3)[cells].T) for cells in (around, own))
+        low, middle, high = _quantiles(surface, (0.16, 0.5, 0.84)).T
+        apart = np.abs(_quantiles(thing, (0.5,))[:, 0] - middle)
         contrast = float((apart / ((high - low) / 2 + _SHADE_ERROR)).max())
     return Protrusion(rise, max(base - dip, _LEAST_NOISE * band), contrast)
+
+
+def _quantiles(values: Floats, shares: Sequence[float]) -> Floats:
+    """Return quantiles of values (..., N) without interpolation, which takes a tenth of the time."""
+    last = values.shape[-1] - 1
+    return np.asarray(np.sort(values, axis=-1)[..., [round(share * last) for share in shares]])
