@@ -33,10 +33,10 @@ LEAST_SCORE = 0.3
 class Observation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One observation of an object.
 
-    `class_` is the most specific class with sufficient confidence (`Object` for unknown things), and
-    `probability` is the probability of this class. `candidates` are the leaf classes with theirs. `pose` and
-    `size_m` include hidden parts of the object. `whole` is false if the object is occluded or cut off by the
-    image border.
+    `class_` is the most specific class with sufficient confidence, and `probability` is the probability of
+    this class; for `Object`, that it is of no known class. `candidates` are the leaf classes with theirs.
+    `pose` and `size_m` include hidden parts of the object. `whole` is false if the object is occluded or cut
+    off by the image border.
     """
 
     class_: str = field(name="class")
@@ -56,6 +56,8 @@ class Observation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     """The label of an external detector that matches no class, in its own words."""
     labelled: bool = False
     """Whether an external detector labelled it, with this label or a class."""
+    color_rgb: tuple[Probability, Probability, Probability] | None = None
+    """The mean colour of its visible surface, if the camera has colours."""
 
 
 class CameraView(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -13,8 +13,10 @@ from benchmarks.perception import (
     fitted,
     foreign,
     live,
+    real_frames,
     recorded,
     simulated,
+    static,
     tables,
     tracking,
     unknown,
@@ -24,6 +26,8 @@ from semmap.nodes.perception_node.recognition.recognition_model import shipped
 
 PARTS = (
     "recorded",
+    "real",
+    "static",
     "simulated",
     "tables",
     "painted",
@@ -50,6 +54,11 @@ def arguments() -> argparse.Namespace:
     )
     parser.add_argument("--things", type=Path, default=recorded.data_folder().with_name("foreign"))
     parser.add_argument("--training-scenes", type=int, default=400, help="scenes to train on without samples")
+    parser.add_argument(
+        "--before", default="", metavar="REV", help="also measure the real frames at a commit"
+    )
+    parser.add_argument("--static-frames", default="", help="names of real frames to show for a minute")
+    parser.add_argument("--looks", type=int, default=static.LOOKS, help="observations of a static frame")
     parser.add_argument("--moves", type=int, default=100, help="moves for tracking")
     parser.add_argument("--json", type=Path, metavar="FILE", dest="json_file")
     return parser.parse_args()
@@ -62,6 +71,12 @@ def main() -> None:
     before = os.getloadavg()[0]
     if "recorded" in parts:
         rows += recorded.measure(words.recorded, words.piles)
+    data = words.recorded.parent
+    if "real" in parts:
+        rows += real_frames.measure(data.resolve(), words.before)
+    if "static" in parts:
+        names = [name for name in words.static_frames.split(",") if name]
+        rows += static.measure(data / "real", shipped(), names, words.looks)
     if "simulated" in parts:
         rows += simulated.measure(words.scenes, shipped())
     if "tables" in parts:

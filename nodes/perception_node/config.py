@@ -17,7 +17,9 @@ class TrackingConfig:
     """When the map is updated from observations. A frame is what all cameras see at one moment."""
 
     confirm_frames: int = 3
-    """Frames in which a thing must be seen at rest before it becomes an entity."""
+    """Frames in which a thing must be seen at rest before it becomes an entity; a miss costs two of them."""
+    vague_frames: int = 6
+    """Frames in which a thing of no known class must be seen: it may be noise, or a part of another."""
     clear_frames: int = 2
     """The same for a thing that no image edge cuts, and whose class has the probability `clear`."""
     clear: float = 0.8
@@ -33,6 +35,8 @@ class TrackingConfig:
     """The same if the remainder of its old place is filled: only a part may have been seen."""
     pushed_m: float = math.inf
     """Maximum distance at which a large vanished thing is found again in another of the same kind."""
+    hidden_m: float = 0.3
+    """Distance at which a thing that just got hidden is found again in a new one that is like it."""
     odd_frames: int = 15
     """Consecutive frames in which a thing of another size fills its place before an entity is gone."""
     gone_frames: int = 10
@@ -44,6 +48,8 @@ class TrackingConfig:
     """An entity has moved if its pose differs by more than `moved_m` or `turned_rad`."""
     resized: float = 0.25
     """A size has changed if an extent differs by more than this share."""
+    still_camera: bool = True
+    """Whether all cameras stand still, so that a place that was seen stays in view."""
     when_gone: Literal["remove", "mark"] = "remove"
     """What happens to a lost entity that perception created. An operator's entity is always marked."""
 
@@ -59,6 +65,7 @@ class TrackingConfig:
             part_frames=2 * self.part_frames,
             vanished_frames=self.vanished_frames + 2,
             pushed_m=min(self.pushed_m, 0.6),
+            still_camera=False,
         )
 
 

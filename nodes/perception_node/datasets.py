@@ -91,7 +91,7 @@ def _perceive_folder(
     if surfaces is not None:
         observations = fit_all([frame.cloud], seen, surfaces)
     objects = tuple(_object(*row) for row in zip(observations, boxes, strict=True))
-    dropped = *_clutter(seen, frame), *_unused_masks(seen, masks, frame)
+    dropped = *_dropped_things(seen, frame), *_unused_masks(seen, masks, frame)
     return DatasetFrame(
         FrameRow(frame=folder.name, objects=objects, dropped=dropped, notes=seen.notes),
         labels,
@@ -99,20 +99,20 @@ def _perceive_folder(
     )
 
 
-def _clutter(seen: FrameResult, frame: FileFrame) -> Iterator[DroppedInFrame]:
-    """Yield the things that were classified as clutter."""
+def _dropped_things(seen: FrameResult, frame: FileFrame) -> Iterator[DroppedInFrame]:
+    """Yield the things that are not reported: fragments, and noise."""
     if frame.cloud.intrinsics is None:
         return
     height, width = frame.shape
     pose = np.array(seen.observations.views[0].map_from_camera).reshape(4, 4)
-    for thing, clutter in seen.dropped:
+    for thing, reason in seen.dropped:
         points = np.concatenate([segment.points for segment in thing.segments])
         pixels = ((points - pose[:3, 3]) @ pose[:3, :3]) @ frame.cloud.intrinsics.T
         places = np.floor(pixels[:, :2] / pixels[:, 2:]).astype(int)
         column, row = (places.min(axis=0) * frame.step).tolist()
         end_column, end_row = ((places.max(axis=0) + 1) * frame.step).tolist()
         yield DroppedInFrame(
-            reason=f"classified as clutter ({clutter.probability:.2f}): a fragment, or a part of furniture",
+            reason=reason,
             box_px=(max(0, column), max(0, row), min(width, end_column), min(height, end_row)),
             points=thing.count,
         )

@@ -24,6 +24,7 @@ from semmap.nodes.perception_node.views.fusion import Member, group_segments, sa
 from semmap.nodes.perception_node.views.masked import with_masks
 from semmap.nodes.perception_node.views.merged_thing import Thing, thing_of
 from semmap.nodes.perception_node.views.object_supports import supports_of_things
+from semmap.nodes.perception_node.views.protrusion import doubts
 from semmap.nodes.perception_node.views.segment_memory import Recalled, SegmentMemory, completed
 from semmap.nodes.perception_node.views.segmented_view import SegmentedView, segment_cloud
 from semmap.nodes.perception_node.views.segments import Segment
@@ -51,9 +52,9 @@ class FrameResult:
 
     In `labels`, 0 is background and n stands for `observations.observations[n - 1]`. `unknown_labels` are
     labels of a detector that match no class. `remembered` is the memory for the next frame. `things` are the
-    things of the observations, in the same order. `dropped` are the things that are not reported.
-    `unused_masks` are the numbers of a detector's masks in each cloud that cover no surface. `notes` are
-    doubts about the clouds and their poses.
+    things of the observations, in the same order. `dropped` are the things that are not reported, with the
+    reason. `unused_masks` are the numbers of a detector's masks in each cloud that cover no surface.
+    `notes` are doubts about the clouds and their poses.
     """
 
     observations: Observations
@@ -61,7 +62,7 @@ class FrameResult:
     unknown_labels: tuple[str, ...] = ()
     remembered: SegmentMemory = _NOTHING
     things: tuple[Thing, ...] = ()
-    dropped: tuple[tuple[Thing, Clutter], ...] = ()
+    dropped: tuple[tuple[Thing, str], ...] = ()
     unused_masks: tuple[tuple[int, ...], ...] = ()
     notes: tuple[str, ...] = ()
 
@@ -120,11 +121,16 @@ def observe_views(
     things, chances, members = join_parts(parts.things, parts.same_thing_logits, learnt, parts.join)
     fits = _image_fits(sights, parts.labels, members, learnt)
     found = recognise(things, chances, learnt, labels, fits)
-    kept = [n for n, one in enumerate(found) if isinstance(one, Observation)]
+    numbers = [_renumbered(label, members) for label in parts.labels]
+    reasons = [
+        one.reason if isinstance(one, Clutter) else "" if one.shown else doubt
+        for one, doubt in zip(found, doubts(sights, numbers, things), strict=True)
+    ]
+    kept = [n for n, reason in enumerate(reasons) if not reason]
     observations = Observations(
         stamp_ns=max((sight.cloud.stamp_ns for sight in sights), default=0),
         views=tuple(_view(sight) for sight in sights),
-        observations=tuple(one for one in found if isinstance(one, Observation)),
+        observations=tuple(one for n in kept if isinstance(one := found[n], Observation)),
     )
     elsewhere = [rest for rest, thing in recalled if not thing]
     return FrameResult(
@@ -132,7 +138,7 @@ def observe_views(
         tuple(_renumbered(label, [members[n] for n in kept]) for label in parts.labels),
         remembered=before.after(sights, [thing.segments for thing in things], elsewhere),
         things=tuple(things[n] for n in kept),
-        dropped=tuple((things[n], one) for n, one in enumerate(found) if isinstance(one, Clutter)),
+        dropped=tuple((things[n], reason) for n, reason in enumerate(reasons) if reason),
         notes=tuple(note for sight in sights for note in sight.notes),
     )
 

@@ -18,7 +18,13 @@ from semmap.schemas.entities import Entity, Pose, Provenance, Size, Source, orie
 from semmap.schemas.perception import Observation
 
 CONFIG = TrackingConfig(
-    confirm_frames=3, clear_frames=3, rest_frames=2, nudge_frames=5, gone_frames=4, odd_frames=6
+    confirm_frames=3,
+    vague_frames=3,
+    clear_frames=3,
+    rest_frames=2,
+    nudge_frames=5,
+    gone_frames=4,
+    odd_frames=6,
 )
 SIZES: dict[str, Size] = {
     "Cup": (0.08, 0.08, 0.1),

@@ -48,6 +48,11 @@ class Clutter(NamedTuple):
 
     probability: float
 
+    @property
+    def reason(self) -> str:
+        """Return why it is not reported, for the user."""
+        return f"classified as clutter ({self.probability:.2f}): a fragment, or a part of furniture"
+
 
 def recognise(
     things: Sequence[Thing],
@@ -96,6 +101,8 @@ def _observation(
         return Clutter(clutter)
     chances = {leaf: chance / (1.0 - clutter) for leaf, chance in chances.items()}
     class_, probability = choose_class(chances, learnt.ancestors, learnt.sure)
+    if class_ == UNKNOWN:
+        probability = chances[UNKNOWN]  # that it is an Object is certain
     ours = dict(zip(learnt.classes, own.tolist(), strict=True))
     shares = chances
     general = as_general(thing, class_, ours, learnt, labels)
@@ -124,6 +131,7 @@ def _observation(
         shown=_as_shown(chances, class_, learnt),
         label=label or "",
         labelled=label is not None,
+        color_rgb=None if thing.colors is None else _mean_color(thing.colors),
     )
 
 
@@ -132,6 +140,11 @@ def _least(
 ) -> float:
     """Return the score above which a detected class that was not learnt replaces ours."""
     return learnt.sure if class_ in (UNKNOWN, *labels.ancestors_of(detected)) else probability
+
+
+def _mean_color(colors: Numbers) -> tuple[float, float, float]:
+    red, green, blue = colors.mean(axis=0).round(3).tolist()
+    return (red, green, blue)
 
 
 def _as_shown(chances: Mapping[str, float], class_: str, learnt: RecognitionModel) -> bool:

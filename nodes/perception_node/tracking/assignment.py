@@ -15,6 +15,7 @@ from semmap.nodes.perception_node.tracking.costs import (
     Target,
     cost_anywhere,
     cost_in_place,
+    cost_nearby,
     cost_of_height,
     size_difference,
 )
@@ -118,14 +119,28 @@ def match(
     others = dict(enumerate(tentative))
     looks = {j: others[i].track.frames for i, j in pairs(others, rest, in_place(others)).items()}
 
-    def elsewhere(name: str, j: int) -> float:
+    def may_have_moved(name: str, j: int) -> bool:
         was_there_before = looks.get(j, 0) > known[name].track.absent
+        return not was_there_before and known[name].target.whole
+
+    def elsewhere(name: str, j: int) -> float:
         target = known[name].target
-        if was_there_before or not target.whole or _is_too_far(target, observations[j], config):
+        if not may_have_moved(name, j) or _is_too_far(target, observations[j], config):
             return FORBIDDEN
         return cost_anywhere(target, observations[j], classes)
 
+    def in_front(name: str, j: int) -> float:
+        if not may_have_moved(name, j):
+            return FORBIDDEN
+        return cost_nearby(known[name].target, observations[j], classes, config.hidden_m)
+
     found = pairs(vanished, rest - relatives, elsewhere)
+    hidden = {
+        name: known[name]
+        for name, seen_there in occupancy.items()
+        if config.still_camera and seen_there == "unknown" and name not in vanished
+    }
+    found |= pairs(hidden, left - relatives - {*found.values()}, in_front)
     again = pairs(others, left.difference(found.values()), in_place(others))
     unseen = occupancy.keys() - found.keys()
     for name in unseen:

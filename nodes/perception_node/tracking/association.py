@@ -49,7 +49,7 @@ from semmap.schemas.entities import Entity, Size, distance_m, free_name
 from semmap.schemas.perception import Observation
 
 _ANY_SIZE_M: Size = (0.1, 0.1, 0.1)
-_FORGOTTEN_AFTER = 3
+_FORGOTTEN_AFTER = 6
 """Consecutive frames without observation after which a tentative track is dropped."""
 
 
@@ -86,7 +86,7 @@ def associate(
         )
         for name, candidate in candidates.items()
     }
-    tentative = _tentative(tracks.tentative, matching, observations, config)
+    tentative = _tentative(tracks.tentative, matching, observations, occupancy_of, config)
     stays = [
         entities[name]
         for name in candidates
@@ -172,7 +172,9 @@ def _candidate(
 
 
 def _target(track: Track, classes: ClassHierarchy) -> Target:
-    return Target(track.pose, track.size_m, track.votes.belief(classes), track.whole)
+    return Target(
+        track.pose, track.size_m, track.votes.belief(classes), track.whole, color_rgb=track.color_rgb
+    )
 
 
 def _after(
@@ -210,13 +212,19 @@ def _check_old_place(
 
 
 def _tentative(
-    tracks: Sequence[Track], matching: Matching, observations: Sequence[Observation], config: TrackingConfig
+    tracks: Sequence[Track],
+    matching: Matching,
+    observations: Sequence[Observation],
+    occupancy_of: OccupancyOf,
+    config: TrackingConfig,
 ) -> list[Track]:
     """Return the tentative tracks, new ones at the end."""
     after = [
         track.see(observations[matching.tentative[i]], config)
         if i in matching.tentative
-        else track.miss("free", odd=False)
+        else track.overlook(
+            visible=config.still_camera or occupancy_of(track.pose, track.size_m) != "unknown"
+        )
         for i, track in enumerate(tracks)
     ]
     new = [observations[j] for j in matching.new]

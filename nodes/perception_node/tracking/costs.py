@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from msgspec import structs
+
 from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
 from semmap.nodes.perception_node.tracking.fronts import is_front
 from semmap.nodes.perception_node.tracking.overlap import OrientedBox
-from semmap.schemas.entities import Pose, Size
+from semmap.schemas.entities import Pose, Size, Vector, distance_m
 from semmap.schemas.perception import Observation
 
 FORBIDDEN = math.inf
@@ -25,6 +27,8 @@ _SAME_SPOT, _AS_WIDE = 0.25, 0.2
 """A thing is at its place if it is off by this share of its width, and its width differs by this (log)."""
 _OUTSIZED, _USUAL = 0.5, 0.3
 """A thing is too large if it exceeds its class's size by the first (log), and typical within the second."""
+_OTHER_COLOR = 0.25
+"""Mean colours (rgb up to 1) of one thing, from two sides or in other light, differ by less than this."""
 _HIDDEN_PART = 0.3
 """Weight of a smaller extent of a partly visible thing."""
 
@@ -32,7 +36,7 @@ _HIDDEN_PART = 0.3
 class Target(NamedTuple):
     """A thing that may be visible: its last pose, its size if known, and its class.
 
-    `whole`: it was seen completely. `usual_m`: the typical size of its class.
+    `whole`: it was seen completely. `usual_m`: the typical size of its class. `color_rgb`: its mean colour.
     """
 
     pose: Pose
@@ -40,6 +44,7 @@ class Target(NamedTuple):
     class_: str
     whole: bool = True
     usual_m: Size | None = None
+    color_rgb: Vector | None = None
 
     @property
     def box(self) -> OrientedBox | None:
@@ -80,7 +85,8 @@ def _is_one_but_for_its_depth(target: Target, seen: Observation) -> bool:
 def cost_anywhere(target: Target, seen: Observation, classes: ClassHierarchy) -> float:
     """Return the cost of matching a thing that vanished; FORBIDDEN if it is of another kind.
 
-    The position has little weight. A thing back in its place may be less similar.
+    The position has little weight. A thing back in its place may be less similar. An unknown thing is only
+    recognised elsewhere if it is completely visible and has the same colour.
     """
     box = target.box
     if box is None:
@@ -90,12 +96,36 @@ def cost_anywhere(target: Target, seen: Observation, classes: ClassHierarchy) ->
     matches = classes.related(target.class_, seen.class_) and mismatch <= (
         _OF_ANY_KIND if vague else _OF_A_KIND
     )
+    if vague and not (seen.whole and _is_of_like_color(target, seen)):
+        matches = False
     if not matches and cost_in_place(target, seen, classes) == FORBIDDEN:
         return FORBIDDEN
     horizontal, vertical = _apart(box.pose, box.size_m, seen)
     vaguely = vague and target.class_ != seen.class_
     class_cost = _VAGUE if vaguely else class_difference(target.class_, seen, classes)
     return mismatch + class_cost + 0.1 * math.hypot(horizontal, vertical)
+
+
+def cost_nearby(target: Target, seen: Observation, classes: ClassHierarchy, most_m: float) -> float:
+    """Return the cost of matching a thing that is hidden now with a new one in front of it.
+
+    FORBIDDEN if it is farther away than `most_m`, or not of the same kind, size and colour.
+    """
+    like = (
+        target.size_m is not None
+        and distance_m(target.pose, seen.pose) <= most_m
+        and classes.related(target.class_, seen.class_)
+        and size_difference(target._replace(whole=True), structs.replace(seen, whole=True)) <= _OF_ANY_KIND
+        and _is_of_like_color(target, seen)
+    )
+    return distance_m(target.pose, seen.pose) if like else FORBIDDEN
+
+
+def _is_of_like_color(target: Target, seen: Observation) -> bool:
+    """Return whether the colours of a thing and an observation may be of one thing, or are unknown."""
+    if target.color_rgb is None or seen.color_rgb is None:
+        return True
+    return math.dist(target.color_rgb, seen.color_rgb) < _OTHER_COLOR
 
 
 def cost_of_height(target: Target, seen: Observation, classes: ClassHierarchy) -> float:

@@ -39,12 +39,15 @@ def subject_of(command: Command) -> str:
 
 
 def is_sure(track: Track, classes: ClassHierarchy, config: TrackingConfig) -> bool:
-    """Return whether a thing was seen at rest often enough to become an entity."""
-    if not track.whole:
-        return track.frames >= config.part_frames and not track.unseen
-    clear = track.votes.share(track.votes.belief(classes), classes) >= config.clear
+    """Return whether a thing was seen at rest often enough, and missed seldom enough, to become an entity."""
+    believed = track.votes.belief(classes)
+    clear = track.votes.share(believed, classes) >= config.clear
     enough = config.clear_frames if clear else config.confirm_frames
-    return track.frames >= enough and not track.unseen
+    if not track.whole:
+        enough = config.part_frames
+    vague = believed == ANYTHING and not track.label
+    agreeing = max(enough, config.vague_frames) if vague else enough
+    return track.frames >= enough and track.agreement >= agreeing and not track.unseen
 
 
 def additions(tracks: Iterable[Track], taken: Set[str], classes: ClassHierarchy) -> dict[str, Add]:

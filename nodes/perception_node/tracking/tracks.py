@@ -24,6 +24,8 @@ _A_PART = 0.3
 _POINTS, _LEAST_WEIGHT = 1000, 0.25
 """An observation of `_POINTS` points has the weight of one vote."""
 _CUT = 0.5
+_MISS, _MOST_MISSED = 2, 10
+"""Weight of a frame without a new thing against one with it, and the maximum weight that is left of them."""
 _MEMORY = 20
 """Number of frames of a running mean."""
 
@@ -42,12 +44,15 @@ class Track:
     - `unseen`: consecutive frames in which it should have been visible.
     - `odd`: consecutive frames with a thing of another size in its place.
     - `absent`: frames since it or its filled place was last seen.
+    - `sighted`, `missed`: frames in which it was observed, and those in which it was not though its place is
+      visible, before it is an entity.
 
     State: `whole`: it was seen completely. `map_pose`: the map's pose at the last frame. `left`: that place
     is seen empty. `kept`: the part of it that would be left is filled. `part`: the map has a size that an
     image edge cuts. `outsized`: the map's size is too large. `fit`: the fitted model since it rests.
     `rejected_class`: the class that a fit rejected. `label`: the label of a detector that is not a class.
-    `labels`: the votes of frames in which a detector labelled the thing, "" for a class.
+    `labels`: the votes of frames in which a detector labelled the thing, "" for a class. `color_rgb`: its
+    mean colour when it was last seen.
     """
 
     pose: Pose
@@ -72,6 +77,14 @@ class Track:
     rejected_class: str = ""
     label: str = ""
     labels: Votes = field(default_factory=Votes)
+    sighted: int = 0
+    missed: int = 0
+    color_rgb: Vector | None = None
+
+    @property
+    def agreement(self) -> int:
+        """Return the number of frames with it, less those without it, which count twice."""
+        return self.sighted - _MISS * self.missed
 
     @property
     def reported_pose(self) -> Pose:
@@ -96,7 +109,13 @@ class Track:
 
     def see(self, seen: Observation, config: TrackingConfig) -> Track:
         """Return the track with one more observation."""
-        return self._count_label(seen)._count(seen, config)
+        seen_again = self._count_label(seen)._count(seen, config)
+        return replace(
+            seen_again,
+            sighted=self.sighted + 1,
+            missed=self.missed,
+            color_rgb=seen.color_rgb or self.color_rgb,
+        )
 
     def _count_label(self, seen: Observation) -> Track:
         """Return the track with the vote of a detector's label; a clear majority replaces the label."""
@@ -154,6 +173,15 @@ class Track:
             return replace(self, unseen=self.unseen + 1, odd=0, absent=self.absent + 1)
         odd_frames = self.odd + 1 if odd else 0
         return replace(self, occupied=self.occupied + 1, unseen=0, odd=odd_frames, absent=0)
+
+    def overlook(self, *, visible: bool) -> Track:
+        """Return the track of a thing that is not an entity yet, in a frame without observation.
+
+        `visible`: its place is in view.
+        """
+        missed = self.missed + visible
+        missed = min(missed, (self.sighted + _MOST_MISSED) // _MISS)
+        return replace(self.miss("free", odd=False), missed=missed)
 
     def rests(self, frames: int) -> bool:
         """Return whether it was visible at its place and has been there for this many frames."""

@@ -53,8 +53,17 @@ def test_what_flashes_up_or_moves_about_is_no_entity():
         table.things = [seen("Cup", at(1 + 0.05 * step, 1))]
         assert table.look() == ()
     table.things = []
-    table.observe(3)
+    table.observe(6)
     assert table.tracks.tentative == ()
+
+
+def test_a_thing_that_is_seen_in_every_other_frame_is_no_entity():
+    cup, table = seen("Cup", at(1, 1)), Table()
+    for look in range(60):
+        table.things = [] if look % 2 else [cup]
+        assert table.look() == ()
+    table.things = [cup]
+    assert len(table.observe(20)) == 1
 
 
 @pytest.mark.parametrize("to", [at(1.06, 1), at(1.5, 1.2), at(4, -3), at(1, 1, 0.9)])
@@ -610,3 +619,52 @@ def test_what_an_operator_says_of_a_size_is_not_put_right_by_what_the_pictures_e
     table.observe(5)
     table.things, table.hidden = [seen("Cup", at(1, 1.06), whole=False)], True
     assert table.observe(20) == []
+
+
+def test_a_thing_that_moves_in_front_of_its_place_keeps_its_name():
+    table = Table([seen("Bottle", at(1, 1))])
+    table.observe(5)
+    table.things, table.hidden = [seen("Bottle", at(1, 0.82))], True
+    (update,) = table.observe(10)
+    assert (update.name, update.at) == ("bottle1", pytest.approx((1.0, 0.82, 0.7)))
+    assert list(table.entities) == ["bottle1"]
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        seen("Bottle", at(1, 0.5)),
+        seen("Bottle", at(1, 0.82), (0.1, 0.1, 0.4)),
+        seen("Cup", at(1, 0.82)),
+        structs.replace(seen("Bottle", at(1, 0.82)), color_rgb=(0.1, 0.2, 0.8)),
+    ],
+    ids=["far", "larger", "of another class", "of another colour"],
+)
+def test_another_thing_in_front_of_a_hidden_one_is_new(other):
+    table = Table([structs.replace(seen("Bottle", at(1, 1)), color_rgb=(0.8, 0.2, 0.1))])
+    table.observe(5)
+    table.things, table.hidden = [other], True
+    (add,) = table.observe(10)
+    assert isinstance(add, Add)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        seen("Object", at(2.9, 1), (0.15, 0.06, 0.15), whole=False),
+        structs.replace(seen("Object", at(2.9, 1)), color_rgb=(0.1, 0.2, 0.8)),
+    ],
+    ids=["partly visible", "of another colour"],
+)
+def test_an_unknown_thing_is_not_recognised_in_a_different_one(other):
+    table = Table([structs.replace(seen("Object", at(1, 1)), color_rgb=(0.8, 0.2, 0.1))])
+    table.observe(5)
+    table.things = [other]
+    table.observe(20)
+    assert list(table.entities) == ["object2"]
+
+
+def test_a_thing_of_no_known_class_is_looked_at_longer():
+    table = Table([seen("Object", at(1, 1))], config=replace(CONFIG, vague_frames=6))
+    assert table.observe(5) == []
+    assert len(table.look()) == 1

@@ -33,7 +33,7 @@ def track(class_="Cup", pose=None, size_m=None, *, p=0.95, **more):
     votes = Votes()
     for _ in range(6):
         votes = votes.cast(class_, p, 1.0)
-    known = {"frames": 10, "whole_frames": 10, "whole": True, "sized": 1.0}
+    known = {"frames": 10, "whole_frames": 10, "whole": True, "sized": 1.0, "sighted": more.get("frames", 10)}
     return Track(pose or at(1, 1), size_m or SIZES.get(class_, SIZES["Cup"]), votes, **known | more)
 
 
