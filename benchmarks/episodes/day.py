@@ -43,6 +43,11 @@ THINGS: Final = (
     "cup1", "cup2", "plate1", "plate2", "book1", "glass1", "water1", "keys1", "smartphone1",
     "remote_control1",
 )  # fmt: skip
+ORIGINAL: Final[Mapping[str, str]] = {
+    "cup1": "desk1", "plate1": "table1", "plate2": "table1", "book1": "desk1", "glass1": "table1",
+    "water1": "table1", "keys1": "console1", "smartphone1": "bedstand1", "remote_control1": "coffee_table1",
+}  # fmt: skip
+"""Where the map of the flat has these things before the day."""
 OPENABLE: Final = ("fridge1", "oven1", "wardrobe1", "cabinet1", "door4")
 SWITCHED: Final = ("light1", "television1", "lamp1")
 _S: Final = 1_000_000_000
@@ -72,6 +77,16 @@ class Happening:
 
 
 @dataclass(slots=True)
+class Stay:
+    """A time at a place or in a state; `end_ns` is None if it goes on."""
+
+    place: str
+    begun_ns: int
+    end_ns: int | None
+    actor: str = ""
+
+
+@dataclass(slots=True)
 class Record:
     """The day as it happened. `start` and `end` [ns] are its first and last time, `quiet` the pauses."""
 
@@ -85,6 +100,16 @@ class Record:
     def of(self, subject: str, *kinds: str) -> list[Happening]:
         """Return what happened to a subject, in order."""
         return [h for h in self.happenings if h.subject == subject and (not kinds or h.kind in kinds)]
+
+    def stays(self, subject: str) -> list[Stay]:
+        """Return where a subject was or how it was, in order, with times [ns]; the last one may go on."""
+        begun_ns = self.start_ns if subject not in THINGS else 0
+        found = [Stay(self.at_first[subject], begun_ns, None)] if subject in self.at_first else []
+        for h in self.of(subject, "moved", "entered", "open", "closed", "on", "off", "removed"):
+            found[-1].end_ns = h.ns
+            if h.kind != "removed":
+                found.append(Stay(h.place, h.ns, None, h.actor))
+        return found
 
 
 class Day:
@@ -102,11 +127,13 @@ class Day:
             client.add("Person", name, at=(*ROOMS["livingroom1"], 0.0), ref=label, track="stream")
         client.remove("person1")
         client.add("Robot", ROBOT, at=(*ROOMS["corridor1"], 0.0), track="stream")
+        begun_ns = time.time_ns()
         client.add("Cup", "cup2", on="counter1", ref="red cup")
+        self._note("added", "cup2", ROBOT, begun_ns, "counter1", "")
+        self._now.update(ORIGINAL, cup2="counter1")
+        self.record.at_first = dict(self._now)
         for name in THINGS:
-            place = self._rng.choice([p for p in SURFACES if p != "washing_machine1"])
-            client.update(name, on=place)
-            self._now[name] = place
+            self._move(name, ROBOT)
         for name in OPENABLE:
             client.set(name, "isOpen", "false")
             self._now[name] = "closed"
@@ -117,7 +144,7 @@ class Day:
             self._publish(name, room)
             self._now[name] = room
         self.rest()
-        self.record.at_first = dict(self._now)
+        self.record.at_first |= {name: self._now[name] for name in (*OPENABLE, *SWITCHED, *WALKERS)}
         self.record.start_ns = time.time_ns()
 
     def run(self, changes: int, most_s: float = 600.0) -> Record:
@@ -147,7 +174,7 @@ class Day:
     def _publish(self, name: str, room: str) -> None:
         x, y = ROOMS[room]
         shift = WALKERS.index(name) * 0.4
-        self._clients["r2"].publish_pose(name, at=(x, y - shift, 0.0))
+        self._clients["r2"].publish_pose(name, at=(x + shift, y, 0.0))
 
     def _step(self) -> None:
         kind = self._rng.choices(("move", "walk", "open", "switch", "remove"), (44, 26, 16, 10, 2))[0]

@@ -57,6 +57,7 @@ def read_claim(elements: Sequence[Element], asked: str) -> Claim:
                 element.is_used = True
                 joined += bool(bare)
             case "event", value:
+                pending = "" if pending == "to" else pending  # the last to move the cup
                 if claim.event in ("", "change", value) or value == "missing":
                     claim.event, element.is_used = value, True
                 elif value in ("go", "change"):

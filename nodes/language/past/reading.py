@@ -102,18 +102,21 @@ def _split(elements: list[Element]) -> tuple[list[Element], Anchor | None, list[
 
 def _asked(main: Sequence[Element], *, is_marked: bool) -> Asked | None:
     """Return what is asked, or None if the clause does not begin as a question does."""
-    words = [e for e in main if e.kind not in ("filler", "time")]
+    is_told = any(e.is_a("mark", "telling") for e in main)
+    words = [e for e in main if e.kind not in ("filler", "time") and not e.is_a("mark", "telling")]
     ask = next((e for e in words if e.kind == "ask"), None)
     if ask is not None:
         before = words[: words.index(ask)]
         if any(e.kind in ("event", "unknown") for e in before):
             return None
-        if ask.value == "when" and not _is_direct(words, words.index(ask)):
+        if ask.value == "when" and not is_told and not _is_direct(words, words.index(ask)):
             return None
         for element in words:
             element.is_used = element.is_used or element.kind == "ask"
         return cast(Asked, ask.value)
-    if words and words[0].is_a("mark", *TENSES):
+    if words and (
+        words[0].is_a("mark", *TENSES) or (is_told and any(e.is_a("mark", *TENSES) for e in words))
+    ):
         return "whether"
     is_question = is_marked or any(e.is_a("mark", "ever", "never") for e in words)
     has_tense = any(e.is_a("mark", *TENSES) for e in words)
@@ -131,9 +134,9 @@ def _is_direct(words: Sequence[Element], i: int) -> bool:
 def _add_marks(question: PastQuestion, main: Sequence[Element]) -> None:
     """Read the order, the tense and the negation of a question."""
     marks = {e.value for e in main if e.kind == "mark"}
-    past = [e.text for e in main if e.is_a("mark", "past")]
     question.order = cast(Order, next((order for order in ("last", "first") if order in marks), ""))
-    question.is_current = bool(marks & {"present", "perfect"}) and not set(past) - {"been"}
+    last = next((e.value for e in reversed(main) if e.is_a("mark", *TENSES) and e.text != "been"), "")
+    question.is_current = last in ("present", "perfect")
     question.is_negated = "never" in marks or "not" in marks
     question.is_previous = "previously" in marks
     if "afterwards" in marks:
@@ -149,8 +152,10 @@ def _specialise(question: PastQuestion, main: Sequence[Element]) -> None:
     has_trailing = [e for e in main if e.kind == "mark" and e.value.startswith("trailing ")]
     if question.asked in ("what", "whether") and claim.event == "change" and not claim.agent:
         question.asked = "changed"
-    elif question.asked in ("what", "whether", "missing") and claim.event == "missing":
+    elif question.asked in ("what", "whether", "missing") and _is_missing(question, main):
         question.asked = "missing"
+        if question.period.at is not None and question.is_current:  # what was there at 10:00 is not anymore
+            question.period = Period(since=question.period.at)
     elif question.asked == "what" and has_trailing and claim.subjects:
         question.asked = "where"  # what was the cup on
     elif question.asked == "where" and has_trailing and has_trailing[0].value == "trailing from":
@@ -159,6 +164,14 @@ def _specialise(question: PastQuestion, main: Sequence[Element]) -> None:
         about = [text for how, text in claim.places if how in ("to", "by")]
         claim.places = [(how, text) for how, text in claim.places if how not in ("to", "by")]
         claim.subjects += about
+
+
+def _is_missing(question: PastQuestion, main: Sequence[Element]) -> bool:
+    """Return whether a question asks what is no longer at a place: is gone, disappeared, is not there."""
+    claim = question.claim
+    is_gone = claim.event == "remove" and not claim.agent and any(how == "from" for how, _ in claim.places)
+    is_not_there = question.is_negated and any(e.is_a("mark", "there") for e in main)
+    return claim.event == "missing" or is_gone or (question.asked == "what" and is_not_there)
 
 
 def _is_past(question: PastQuestion, main: Sequence[Element]) -> bool:

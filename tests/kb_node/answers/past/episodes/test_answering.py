@@ -43,7 +43,7 @@ ON_TABLE, ON_DESK = (1, 1, 0.7), (10, 1, 0.7)
 
 @pytest.fixture(scope="module")
 def ask(tmp_path_factory):
-    """Commits: 1 rooms, 2 cup on the table, 3 on the desk, 4 on the table, 5 and 6 fridge, 7 plate removed."""
+    """Commits: 1 rooms, 2 cup on the table, 3 the desk, 4 the table, 5 and 6 fridge, 7 plate removed."""
     semantic_map = SemanticMap(home.new_household_journal(tmp_path_factory.mktemp("map")))
     journal, past = semantic_map._journal, HistoryReader(semantic_map._journal)
 
