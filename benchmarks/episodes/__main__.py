@@ -13,8 +13,10 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
+from benchmarks.episodes import blind as blind_wordings
+from benchmarks.episodes.blind import BlindAsker
 from benchmarks.episodes.day import ACTORS, Day, Record
-from benchmarks.episodes.questions import Asker, Question
+from benchmarks.episodes.questions import Expected
 from benchmarks.table import Row, as_json, lines
 from semmap import Client, connect
 from semmap.nodes.extern.testing import free_endpoint
@@ -23,7 +25,9 @@ from semmap.testing import own_system
 
 _FOLDER = Path(__file__).parent
 _EACH = 20
-"""Questions of a kind; every third of them has a blind wording."""
+"""Questions of a kind."""
+_BLIND = 7
+"""Those of them with blind wordings, at least."""
 Wordings = Mapping[str, Mapping[str, Sequence[str]]]
 _KINDS = (
     "where", "when", "since", "how_long", "how_often", "who", "changed", "missing", "before_after", "never",
@@ -33,45 +37,46 @@ _KINDS = (
 class Asked(NamedTuple):
     """A question that was asked. `fault` is empty if the answer is right."""
 
-    question: Question
+    kind: str
     text: str
     is_blind: bool
     answer: str
     fault: str
 
 
-def load_wordings(name: str) -> Wordings:
-    """Return the wordings of a file by kind and form."""
-    wordings: Wordings = tomllib.loads((_FOLDER / name).read_text("utf-8"))
-    return wordings
+def load_wordings() -> Wordings:
+    """Return our own wordings by kind and form."""
+    return tomllib.loads((_FOLDER / "wordings.toml").read_text("utf-8"))
 
 
-def ask(client: Client, question: Question, wording: str, *, is_blind: bool) -> Asked:
-    """Ask a question in a wording, and compare the answer with the record."""
-    text = wording.format(**question.slots)
+def ask(client: Client, kind: str, text: str, expected: Expected, *, is_blind: bool) -> Asked:
+    """Ask a question, and compare the answer with the record."""
     try:
         found = client.understand(text)
     except errors.SemmapError as error:
-        return Asked(question, text, is_blind, "", f"{type(error).__name__}: {error}")
+        return Asked(kind, text, is_blind, "", f"{type(error).__name__}: {error}")
     if not found.past:
-        return Asked(question, text, is_blind, found.answer, "not read as a question about the past")
-    is_negated = " never " in text
-    fault = question.expected.fault(found.past[0], time.time_ns(), is_negated=is_negated)
-    return Asked(question, text, is_blind, found.answer, fault)
+        return Asked(kind, text, is_blind, found.answer, "not read as a question about the past")
+    fault = expected.fault(found.past[0], time.time_ns(), is_negated=" never " in text)
+    return Asked(kind, text, is_blind, found.answer, fault)
 
 
 def ask_all(client: Client, record: Record, rng: random.Random) -> list[Asked]:
-    """Ask the questions of all kinds."""
-    asker = Asker(record, rng)
-    own, blind = load_wordings("wordings.toml"), load_wordings("blind_wordings.toml")
+    """Ask the questions of all kinds: a third of each, at least, in blind wordings."""
+    asker = BlindAsker(record, rng)
+    own, blind = load_wordings(), blind_wordings.load()
     found = []
     for kind in _KINDS:
-        for number in range(_EACH):
-            is_blind = number % 3 == 2
-            wordings = (blind if is_blind else own)[kind]
-            pairs = [(form, text) for form, texts in wordings.items() for text in texts]
-            form, wording = pairs[(number // 3 if is_blind else number - number // 3) % len(pairs)]
-            found.append(ask(client, asker.make(kind, form), wording, is_blind=is_blind))
+        others = [wording for wording in blind if wording.kind == kind]
+        others = others if len(others) > _BLIND else [others[i % len(others)] for i in range(_BLIND)]
+        for wording in others:
+            slots, expected = asker.make_blind(wording)
+            found.append(ask(client, kind, wording.text.format(**slots), expected, is_blind=True))
+        forms = [(form, text) for form, texts in own[kind].items() for text in texts]
+        for number in range(_EACH - len(others)):
+            form, text = forms[number % len(forms)]
+            question = asker.make(kind, form)
+            found.append(ask(client, kind, text.format(**question.slots), question.expected, is_blind=False))
     return found
 
 
@@ -79,7 +84,7 @@ def rows(asked: Sequence[Asked]) -> list[Row]:
     """Return the share of right answers by kind and by the author of the wordings."""
     made = [_row("all kinds", asked, 0.95)]
     made.append(_row("wordings written blind", [a for a in asked if a.is_blind], None))
-    return made + [_row(kind, [a for a in asked if a.question.kind == kind], None) for kind in _KINDS]
+    return made + [_row(kind, [a for a in asked if a.kind == kind], None) for kind in _KINDS]
 
 
 def _row(what: str, asked: Sequence[Asked], reach: float | None) -> Row:
@@ -106,13 +111,14 @@ def main() -> None:
         day = Day(clients, random.Random(given.seed))
         day.prepare()
         record = day.run(given.changes)
-        asked = ask_all(client, record, random.Random(given.seed))
+        with day.going_on():
+            asked = ask_all(client, record, random.Random(given.seed))
     table = rows(asked)
     print(lines(table))
     for one in asked:
         if one.fault:
             blind = " (blind)" if one.is_blind else ""
-            print(f"{one.question.kind}{blind}: {one.text}\n    {one.answer[:300]}\n    {one.fault}")
+            print(f"{one.kind}{blind}: {one.text}\n    {one.answer[:300]}\n    {one.fault}")
     if given.json:
         given.json.write_text(json.dumps([as_json(row) for row in table], indent=1))
 

@@ -7,8 +7,10 @@ asked with seconds. What happens is recorded by this module alone, with the time
 from __future__ import annotations
 
 import random
+import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -170,6 +172,24 @@ class Day:
                     self._publish(name, self._now[name])
             time.sleep(0.2)
         self.record.quiet.append((begun_ns, time.time_ns()))
+
+    @contextmanager
+    def going_on(self) -> Iterator[None]:
+        """Publish the live poses as they are, in a thread."""
+        is_over = threading.Event()
+
+        def publish() -> None:
+            while not is_over.wait(0.3):
+                for name in WALKERS:
+                    self._publish(name, self._now[name])
+
+        thread = threading.Thread(target=publish)
+        thread.start()
+        try:
+            yield
+        finally:
+            is_over.set()
+            thread.join()
 
     def _publish(self, name: str, room: str) -> None:
         x, y = ROOMS[room]

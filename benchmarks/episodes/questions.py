@@ -56,30 +56,54 @@ class Expected:
     names: frozenset[str] | None = None
     is_exact: bool = False
     """Whether all of the names and no others are right."""
+    among: frozenset[str] | None = None
+    """The names that count, if not all do."""
+    ignored: frozenset[str] = frozenset()
     time_ns: int | None = None
+    may_be_age: bool = False
+    """Whether the time since then is right as well."""
     seconds: Callable[[int], float] | None = None
     """The duration [s] if it is asked at a time [ns]."""
     count: int | None = None
     verdict: bool | None = None
+    is_said: bool = False
+    """Whether the verdict is of what is so, also if the question contains *never*."""
+    word: str = ""
+    """A word that the text of the answer begins with."""
 
     def fault(self, found: PastAnswer, asked_ns: int, *, is_negated: bool = False) -> str:
         """Return what is wrong with an answer, or ""."""
         if not found.is_known:
             return "not known"
         if self.names is not None:
-            right = set(found.names) == self.names if self.is_exact else bool(self.names & set(found.names))
-            return "" if right else f"not {', '.join(sorted(self.names)) or 'nothing'}"
+            return self._fault_of_names(set(found.names) - self.ignored)
         if self.time_ns is not None:
-            last = found.times_ns[-1] if found.times_ns else 0
-            wrong = len(found.times_ns) != 1 or abs(last - self.time_ns) > _TOLERANCE_S * _S
-            return f"not {datetime.fromtimestamp(self.time_ns / 1e9):%H:%M:%S}" if wrong else ""
+            return self._fault_of_time(found, asked_ns)
         if self.seconds is not None:
             right_s = self.seconds(asked_ns)
             wrong = found.seconds is None or abs(found.seconds - right_s) > _TOLERANCE_S + 0.02 * right_s
             return f"not {right_s:.1f} s" if wrong else ""
         if self.count is not None:
             return "" if found.count == self.count else f"not {self.count} times"
-        return "" if found.verdict == (self.verdict != is_negated) else f"not {self.verdict}"
+        if self.word:
+            return "" if found.text.startswith(self.word) else f"not {self.word}"
+        verdict = self.verdict != (is_negated and not self.is_said)
+        return "" if found.verdict == verdict else f"not {verdict}"
+
+    def _fault_of_names(self, names: set[str]) -> str:
+        wanted = self.names or frozenset()
+        names = names if self.among is None else names & self.among
+        right = names == wanted if self.is_exact else bool(wanted & names)
+        return "" if right else f"not {', '.join(sorted(wanted)) or 'nothing'}"
+
+    def _fault_of_time(self, found: PastAnswer, asked_ns: int) -> str:
+        right_ns = self.time_ns or 0
+        times = list(found.times_ns)
+        if self.may_be_age and found.seconds is not None:
+            times = [asked_ns - round(found.seconds * _S)]
+        if len(times) == 1 and abs(times[0] - right_ns) <= _TOLERANCE_S * _S:
+            return ""
+        return f"not {datetime.fromtimestamp(right_ns / 1e9):%H:%M:%S}"
 
 
 @dataclass(slots=True)
@@ -145,7 +169,7 @@ class Asker:
         second = begun_ns // _S + 1
         return second * _S, f"{datetime.fromtimestamp(second):%H:%M:%S}"
 
-    def _at(self, subject: str, ns: int) -> str:
+    def _place_at(self, subject: str, ns: int) -> str:
         """Return where a subject was, or ""."""
         stays = self._record.stays(subject)
         return next((s.place for s in stays if s.begun_ns <= ns and (s.end_ns is None or s.end_ns > ns)), "")
@@ -164,14 +188,14 @@ class Asker:
 
     def _where_thing(self) -> tuple[dict[str, str], Expected]:
         ns, time = self._quiet()
-        thing = self._rng.choice([t for t in THINGS if self._at(t, ns)])
-        place = self._at(thing, ns)
+        thing = self._rng.choice([t for t in THINGS if self._place_at(t, ns)])
+        place = self._place_at(thing, ns)
         return {"thing": thing, "time": time}, Expected(names=frozenset((place,)))
 
     def _where_walker(self) -> tuple[dict[str, str], Expected]:
         ns, time = self._quiet()
         walker = self._rng.choice(WALKERS)
-        return {"walker": walker, "time": time}, Expected(names=frozenset((self._at(walker, ns),)))
+        return {"walker": walker, "time": time}, Expected(names=frozenset((self._place_at(walker, ns),)))
 
     def _moved_last(self) -> tuple[dict[str, str], Expected]:
         thing = self._pick(THINGS, "moved")
@@ -206,8 +230,11 @@ class Asker:
                 return {"thing": thing, "surface": stay.place}, Expected(seconds=total)
 
     def _how_long_stayed(self) -> tuple[dict[str, str], Expected]:
+        return self._how_long_stayed_of(WALKERS)
+
+    def _how_long_stayed_of(self, walkers: Sequence[str]) -> tuple[dict[str, str], Expected]:
         while True:
-            walker, stay = self._stay(WALKERS, is_over=True)
+            walker, stay = self._stay(walkers, is_over=True)
             ends = {self._record.stays(walker)[i].place for i in (0, -1)}
             if stay.place not in ends:
                 return {"walker": walker, "room": stay.place}, Expected(
@@ -270,22 +297,22 @@ class Asker:
         """Return what changed, or None if something came back, perhaps to where it was."""
         names = set()
         for thing in THINGS:
-            was, now = self._at(thing, ns), self._at(thing, self._record.end_ns)
+            was, now = self._place_at(thing, ns), self._place_at(thing, self._record.end_ns)
             has_moved = any(h.ns > ns for h in self._record.of(thing, "moved", "removed"))
             if has_moved and was == now and was in surfaces:
                 return None
             if has_moved and ({was, now} & surfaces):
                 names.add(thing)
-        for device, there in _DEVICES.items():
-            if there == room and self._at(device, ns) != self._at(device, self._record.end_ns):
+        for device, there in DEVICES.items():
+            if there == room and self._place_at(device, ns) != self._place_at(device, self._record.end_ns):
                 names.add(device)
         return Expected(names=frozenset(names), is_exact=True)
 
     def _missing(self) -> tuple[dict[str, str], Expected]:
         ns, time = self._quiet()
-        surface = self._rng.choice([s for s in SURFACES if any(self._at(t, ns) == s for t in THINGS)])
-        was = {t for t in THINGS if self._at(t, ns) == surface}
-        gone = {t for t in was if self._at(t, self._record.end_ns) != surface}
+        surface = self._rng.choice([s for s in SURFACES if any(self._place_at(t, ns) == s for t in THINGS)])
+        was = {t for t in THINGS if self._place_at(t, ns) == surface}
+        gone = {t for t in was if self._place_at(t, self._record.end_ns) != surface}
         return {"surface": surface, "time": time}, Expected(names=frozenset(gone), is_exact=True)
 
     def _neighbours(self) -> Iterator[tuple[str, list[Stay], int]]:
@@ -323,7 +350,7 @@ class Asker:
         return {"walker": walker, "room": room}, Expected(verdict=was_there)
 
 
-_DEVICES: Final[Mapping[str, str]] = {
+DEVICES: Final[Mapping[str, str]] = {
     "fridge1": "kitchen1", "oven1": "kitchen1", "wardrobe1": "bedroom1", "cabinet1": "livingroom1",
     "light1": "corridor1", "television1": "livingroom1", "lamp1": "studio1",
 }  # fmt: skip
