@@ -13,6 +13,8 @@ _CAUSED: Final = frozenset(
     ("move", "put", "take", "open", "close", "switch_on", "switch_off", "add", "remove", "change")
 )
 """Events with an agent, who is named before the thing: Anna moved the cup."""
+_OPENING: Final = {"open": "open", "closed": "close", "on": "switch_on", "off": "switch_off"}
+"""The events that begin a state."""
 _MOVING: Final = frozenset(("enter", "leave", "go"))
 """Events of which the first noun phrase is the subject and the second the place."""
 _EVENT_ASKED: Final = frozenset(("when", "who", "how_often", "what", "how_many"))
@@ -33,19 +35,22 @@ def read_claim(elements: Sequence[Element], asked: str) -> Claim:
             case "relation", value:
                 pending = "" if value == "of" else value
                 element.is_used = True
-            case ("thing", _) | ("mark", "it"):
-                text = "it" if element.kind == "mark" else element.text
+            case ("thing", _) | ("mark", "it" | "you"):
+                if element.text == "yourself":
+                    element.is_used = True
+                    continue
+                text = element.value if element.kind == "mark" else element.text
                 element.is_used = True
                 if pending == "by":
                     claim.agent = text
                 elif pending:
                     claim.places.append((pending, text))
-                elif element.kind == "mark":
+                elif element.is_a("mark", "it"):
                     claim.is_it = True
                 else:
                     bare.append(element)
                 pending = ""
-            case "mark", "anyone":
+            case "mark", "anyone" | "nobody":
                 claim.is_anyone = element.is_used = True
                 pending = ""
             case "mark", "anything":
@@ -73,21 +78,22 @@ def read_claim(elements: Sequence[Element], asked: str) -> Claim:
 def _choose_senses(elements: Sequence[Element], asked: str) -> None:
     """Decide which meaning of an ambiguous expression counts."""
     acts = any(element.text in ("did", "do", "does", "has", "have", "got") for element in elements)
+    stays = any(element.is_a("mark", "stay") for element in elements)
+    does = not stays and any(element.text == "did" for element in elements)
     has_event = any(element.kind == "event" for element in elements)
     for i, element in enumerate(elements):
         senses = element.senses
         if element.kind == "state" and "state_event" in senses and not has_event:
-            is_event = asked in _EVENT_ASKED or (
-                acts and element.text != "closed" and "been" not in _texts(elements)
-            )
-            if is_event and (element.text not in ("open",) or acts):
+            is_asked = asked in _EVENT_ASKED and (acts or element.text != "open")
+            is_done = asked in ("whether", "anchor") and does and element.text != "closed"
+            if is_asked or is_done:
                 element.kind, element.value = "event", senses["state_event"]
         elif element.kind == "event" and senses.get("mark") == "stay" and asked in _LASTING:
             element.kind, element.value = "mark", "stay"
         elif element.kind in ("state", "relation") and "relation" in senses:
             following = next((e for e in elements[i + 1 :] if e.kind != "filler"), None)
             is_place = following is not None and (
-                following.kind == "thing" or following.is_a("mark", "it", "anyone", "there")
+                following.kind == "thing" or following.is_a("mark", "it", "anyone", "there", "you")
             )
             if is_place:
                 element.kind, element.value = "relation", senses["relation"]
@@ -114,7 +120,7 @@ def _share_out(
     claim: Claim, bare: list[Element], elements: Sequence[Element], asked: str, joined: int
 ) -> None:
     """Make the noun phrases without a preposition agent, subjects and place."""
-    texts = [element.text for element in bare]
+    texts = ["you" if element.kind == "mark" else element.text for element in bare]
     kind = next(
         (
             element.text
@@ -128,6 +134,11 @@ def _share_out(
         claim.subjects = [kind]
     if claim.event == "leave" and asked == "who" and any(how in ("on", "in") for how, _ in claim.places):
         claim.event = "put"  # who left the cup on the table
+    if claim.event == "leave" and claim.state in _OPENING:
+        claim.event = _OPENING[claim.state]  # who left the fridge open
+    if claim.event == "see":
+        texts = [text for text in texts if text != "you"]
+        claim.event = "" if claim.places else claim.event
     if claim.event == "missing" and texts and claim.places:
         claim.event = "leave"  # since when is the cup no longer on the table
     if claim.event == "go" and claim.places:
@@ -137,6 +148,8 @@ def _share_out(
             claim.subjects.append(texts.pop(0))
         claim.places += (("from" if claim.event == "leave" else "to", text) for text in texts)
         return
+    if "you" in texts[1:] and joined and claim.event in _CAUSED:  # did you take it, or Anna
+        claim.agent, texts = "you", texts[:1]
     if claim.event in _CAUSED and not claim.agent:
         is_active = any(element.text in ("did", "has", "have", "had") for element in elements) and (
             "been" not in _texts(elements)

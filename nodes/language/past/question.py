@@ -12,7 +12,7 @@ Asked = Literal[
     "missing", "whether",
 ]  # fmt: skip
 Order = Literal["", "first", "last"]
-Anchor = Literal["before", "after", "while"]
+Anchor = Literal["before", "after", "while", "compare"]
 
 
 @dataclass(slots=True)
@@ -52,6 +52,14 @@ class PastQuestion:
     """Whether it asks that something was never so."""
     is_previous: bool = False
     """Whether it asks for the place before the present one."""
+    is_repeated: bool = False
+    """Whether it asks for more than one time."""
+    is_gross: bool = False
+    """Whether it asks what happened, and not what is different in the end."""
+    is_all: bool = False
+    """Whether it asks that all is still there, or still the same."""
+    is_last: bool = False
+    """Whether only the last event counts: was it Anna who left it open."""
     anchor: Anchor | None = None
     anchored: Claim | None = None
     """What was so before, after or during what is asked."""

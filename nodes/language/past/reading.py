@@ -57,7 +57,9 @@ def _read_all(words: list[str], elements: Elements) -> list[PastQuestion]:
 
 def _read(elements: list[Element], words: list[str], *, is_marked: bool) -> PastQuestion | None:
     """Return the question of some elements, or None if it is not one about the past."""
+    is_tag = _drop_tag(elements)
     main, anchor, rest = _split(elements)
+    was_it = _drop_cleft(main)
     asked = _asked(main, is_marked=is_marked)
     if asked is None:
         return None
@@ -74,6 +76,9 @@ def _read(elements: list[Element], words: list[str], *, is_marked: bool) -> Past
         " ".join(words), asked, read_claim(main, asked), period, anchor=anchor, anchored=anchored
     )
     _add_marks(question, main)
+    question.is_negated = question.is_negated and not is_tag
+    if was_it is not None:  # was it Anna who moved the cup
+        question.asked, question.is_last, question.claim.agent = "whether", True, was_it.text
     _specialise(question, main)
     if not _is_past(question, main):
         return None
@@ -100,6 +105,27 @@ def _split(elements: list[Element]) -> tuple[list[Element], Anchor | None, list[
     return elements, None, []
 
 
+def _drop_tag(elements: list[Element]) -> bool:
+    """Remove *has it* at the end of a statement, and return whether it was there."""
+    is_tag = len(elements) > 3 and elements[-2].is_a("mark", *TENSES) and elements[-1].is_a("mark", "it")
+    if not is_tag or elements[0].kind != "thing":
+        return False
+    del elements[-2:]
+    return True
+
+
+def _drop_cleft(main: list[Element]) -> Element | None:
+    """Remove *was it Anna* before *who*, and return Anna."""
+    if len(main) < 5 or not main[3].is_a("ask", "who") or main[2].kind != "thing":
+        return None
+    if not main[0].is_a("mark", *TENSES) or not main[1].is_a("mark", "it"):
+        return None
+    main[2].is_used = True
+    found = main[2]
+    main[:3] = [main[0]]
+    return found
+
+
 def _asked(main: Sequence[Element], *, is_marked: bool) -> Asked | None:
     """Return what is asked, or None if the clause does not begin as a question does."""
     is_told = any(e.is_a("mark", "telling") for e in main)
@@ -114,6 +140,8 @@ def _asked(main: Sequence[Element], *, is_marked: bool) -> Asked | None:
         for element in words:
             element.is_used = element.is_used or element.kind == "ask"
         return cast(Asked, ask.value)
+    if words and words[0].is_a("mark", "anything") and any(e.is_a("event", "change", "new") for e in words):
+        return "whether"  # anything different on the table
     if words and (
         words[0].is_a("mark", *TENSES) or (is_told and any(e.is_a("mark", *TENSES) for e in words))
     ):
@@ -137,7 +165,8 @@ def _add_marks(question: PastQuestion, main: Sequence[Element]) -> None:
     question.order = cast(Order, next((order for order in ("last", "first") if order in marks), ""))
     last = next((e.value for e in reversed(main) if e.is_a("mark", *TENSES) and e.text != "been"), "")
     question.is_current = last in ("present", "perfect")
-    question.is_negated = "never" in marks or "not" in marks
+    question.is_negated = bool(marks & {"never", "not", "nobody"})
+    question.is_repeated, question.is_last = "more_than_once" in marks, "or_else" in marks
     question.is_previous = "previously" in marks
     if "afterwards" in marks:
         question.doubts.append("afterwards")
@@ -150,20 +179,39 @@ def _specialise(question: PastQuestion, main: Sequence[Element]) -> None:
     """Change what is asked by the event: *what was missing*, *which room was it in*."""
     claim = question.claim
     has_trailing = [e for e in main if e.kind == "mark" and e.value.startswith("trailing ")]
-    if question.asked in ("what", "whether") and claim.event == "change" and not claim.agent:
+    marks = {e.value for e in main if e.kind == "mark"}
+    if question.asked == "whether" and claim.event == "same":
+        question.asked, question.is_all = "changed", True
+        claim.places += [("at", text) for text in claim.subjects]
+        claim.subjects, claim.is_it = [], False
+        question.period = _since_then(question.period)
+    elif question.asked == "whether" and "everything" in marks and "still" in marks and claim.places:
+        question.asked, question.is_all = "missing", True
+        question.period = _since_then(question.period)
+    elif question.asked == "how_long" and any(e.text.startswith("for long") for e in main):
+        question.order = "last"
+    elif question.asked == "how_long" and claim.state and "stay" in marks and "did" in [e.text for e in main]:
+        question.order = question.order or "last"  # how long did it stay open
+    elif question.asked in ("what", "whether") and claim.event == "change" and not claim.agent:
         question.asked = "changed"
     elif question.asked in ("what", "whether", "missing") and _is_missing(question, main):
         question.asked = "missing"
-        if question.period.at is not None and question.is_current:  # what was there at 10:00 is not anymore
-            question.period = Period(since=question.period.at)
+        if question.is_current:  # what was there at 10:00 is not anymore
+            question.period = _since_then(question.period)
     elif question.asked == "what" and has_trailing and claim.subjects:
         question.asked = "where"  # what was the cup on
     elif question.asked == "where" and has_trailing and has_trailing[0].value == "trailing from":
         claim.places.append(("from", ""))
+    question.is_gross = any("happen" in e.text or "success" in e.text for e in main)
     if question.asked == "changed":
         about = [text for how, text in claim.places if how in ("to", "by")]
         claim.places = [(how, text) for how, text in claim.places if how not in ("to", "by")]
         claim.subjects += about
+
+
+def _since_then(period: Period) -> Period:
+    """Return the period from a moment until now."""
+    return period if period.at is None else Period(since=period.at)
 
 
 def _is_missing(question: PastQuestion, main: Sequence[Element]) -> bool:
@@ -191,16 +239,22 @@ def _is_past(question: PastQuestion, main: Sequence[Element]) -> bool:
     if asked in ("how_often",):
         return has_claim and (is_past or has_period)
     if asked == "how_long":
-        return has_claim and (is_past or bool(claim.state) or "for" in main[0].text)
+        return has_claim and (is_past or bool(claim.state) or _asks_duration(main))
     if asked == "where":
         return is_past and about
     if not is_past and not any(e.kind == "event" for e in main):
         return False
-    if not tenses and asked not in ("who", "what", "how_many"):
+    is_told = any(e.is_a("mark", "telling") for e in main)
+    if not tenses and not is_told and asked not in ("who", "what", "how_many"):
         return False
     if asked in ("what", "how_many", "who") and not is_past and "present" in tenses:
         return claim.event in ("new", "missing")
     return has_claim and (is_past or bool(claim.event))
+
+
+def _asks_duration(main: Sequence[Element]) -> bool:
+    """Return whether *how long* is not about a length: for how long is it there, da quanto sta lì."""
+    return any(e.kind == "ask" and e.text.startswith(("for ", "da ", "per ", "è ")) for e in main)
 
 
 def _unused(elements: Sequence[Element]) -> list[str]:

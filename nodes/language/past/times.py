@@ -48,7 +48,8 @@ class TimeReader:
             *(self._with_preposition(kind, words, i) for kind in ("since", "until", "at", "during")),
         ]
         length, moment = self._moment(words, i)
-        if moment is not None and (length > 1 or not words[i].isdigit()):
+        is_bare = length == 1 and (words[i].isdigit() or self._lexicon.match_time("now", words, i) > 0)
+        if moment is not None and not is_bare:
             found.append((length, _at(moment)))
         return max(found, key=lambda one: one[0])
 

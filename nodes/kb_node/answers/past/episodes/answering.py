@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from msgspec import structs
@@ -114,7 +115,8 @@ class _Answering:
         if first_ns > last_ns:
             raise NotKnown("the first time is later than the second one")
         span = Span(first_ns, last_ns, at_ns, text)
-        return self._anchored(span) if self._q.anchor is not None and self._q.asked != "where" else span
+        is_period = self._q.anchor not in (None, "compare") and self._q.asked != "where"
+        return self._anchored(span) if is_period else span
 
     def _ns(self, moment: Moment) -> tuple[int, int]:
         if moment.commit is None:
@@ -127,6 +129,10 @@ class _Answering:
     def _anchored(self, span: Span) -> Span:
         """Return the period before, after or during what the second clause states."""
         episode = self._anchor(span)
+        is_moment = self._q.asked in ("what", "who", "how_many", "whether") and not self._claim.event
+        if is_moment and self._q.anchor in ("before", "after"):
+            ns = episode.since_ns - 1 if self._q.anchor == "before" else self._end_ns(episode)
+            return Span(ns, ns, ns, f"just {self._q.anchor} {texts.clock(ns)}")
         match self._q.anchor:
             case "before":
                 return span._replace(
@@ -152,6 +158,9 @@ class _Answering:
     def _anchor_claim(self) -> Claim:
         """Return what the second clause states: *before table1* is before it was there."""
         claim = self._q.anchored or Claim()
+        own = [text for _, text in self._claim.places]
+        if claim.event == "take" and not claim.places and own and self._q.asked != "where":
+            return replace(claim, places=[("from", text) for text in own])
         if claim.event or claim.state or claim.places or claim.agent or not claim.subjects:
             return claim
         referent = self._referents[claim.subjects[0]]
@@ -234,11 +243,14 @@ class _Answering:
 
     def _episodes(self) -> list[Episode]:
         claim = self._claim
-        is_there = claim.is_there and not (claim.event or claim.state or claim.places)
+        is_there = claim.is_there and not (claim.state or claim.places)
         if is_there or claim.event == "see":
-            found = [where.visited(self._t, name)[-1:] for name in self._subjects]
-            return [episode for episodes in found for episode in episodes]
-        return clip(self._o.of(claim, self._subjects), self._span.first_ns, self._span.last_ns)
+            return [episode for name in self._subjects for episode in where.visited(self._t, name)[-1:]]
+        found = clip(self._o.of(claim, self._subjects), self._span.first_ns, self._span.last_ns)
+        return [e for e in found if e.since_ns >= self._span.first_ns] if self._is_event() else found
+
+    def _is_event(self) -> bool:
+        return self._claim.event not in ("", "see", "missing")
 
     def _what_text(self) -> str:
         return self._o.what(self._claim, self._o.places(self._claim)) or "there"
@@ -257,14 +269,16 @@ class _Answering:
             episodes = [e for e in episodes if e.since_ns >= self._span.first_ns or self._q.order == "last"]
         if not episodes:
             return PastAnswer(asked=asked, text=self._never(), count=0)
-        is_event = bool(self._claim.event) and self._claim.event not in ("see", "missing")
+        is_event = self._is_event() and not self._claim.is_there
         picked = {"first": episodes[:1], "last": episodes[-1:]}.get(self._q.order, episodes)
         if asked == "until":
             picked = episodes[-1:]
+        times: tuple[int, ...]
         if is_event:
-            times = tuple(e.since_ns for e in picked)
-            parts = [f"at {texts.begin(e)}" for e in picked]
-            text = f"{picked[-1].subject} was {picked[-1].what} {texts.listed(parts)}"
+            times = (picked[-1].since_ns,)
+            parts = [f"at {texts.begin(e)}" for e in picked[::-1]]
+            text = f"{picked[-1].subject} was {picked[-1].what} {parts[0]}"
+            text += f"; before that {texts.listed(parts[1:])}" if len(parts) > 1 else ""
         elif asked == "until" or self._q.order == "last":
             times = tuple(self._t.now_ns if e.until_ns is None else e.until_ns for e in picked)
             text = f"{picked[-1].subject} was {picked[-1].what} {texts.span(picked[-1])}"
@@ -341,9 +355,10 @@ class _Answering:
         if not episodes:
             return PastAnswer(asked="who", text=self._never(), count=0)
         picked = {"first": episodes[:1], "last": episodes[-1:]}.get(self._q.order, episodes)
-        names = tuple(dict.fromkeys(e.by for e in reversed(picked)))
+        names = (picked[-1].by,)
         parts = [f"{e.by} at {texts.clock(e.since_ns)} (commit {e.since})" for e in reversed(picked)]
-        text = f"{picked[-1].subject} was {picked[-1].what} by {texts.listed(parts)}"
+        text = f"{picked[-1].subject} was {picked[-1].what} by {parts[0]}"
+        text += f"; before that by {texts.listed(parts[1:])}" if len(parts) > 1 else ""
         return PastAnswer(asked="who", text=text, names=names, count=len(picked), evidence=tuple(picked))
 
     def _who_was_there(self) -> PastAnswer:
@@ -375,10 +390,15 @@ class _Answering:
         if self._subjects:
             return self._changes_of(first, last)
         places = self._o.places(self._claim)
+        if self._q.is_gross and places:
+            return happened(self._t, self._o, self._q, None, places, self._span)
         scope = (
             f"{' '.join(f'{self._o.preposition(p)} {few(p.names, _FEW)}' for p in places)} {self._span.text}"
         )
-        return contents.changed(self._t, self._o, places, first, last, scope.strip() or "in the map")
+        found = contents.changed(self._t, self._o, places, first, last, scope.strip() or "in the map")
+        if self._q.is_all:
+            return _as_verdict(found, is_so=not found.names)
+        return found
 
     def _changes_of(self, first: int, last: int) -> PastAnswer:
         """Return what happened to the subjects, commit by commit."""
@@ -418,21 +438,26 @@ class _Answering:
             first = max(self._t.journal.first - 1, 1)
         place = places[0] if places else None
         scope = f"from {few(place.names, _FEW)}" if place is not None else "from the map"
-        return contents.missing(self._t, self._o, place, first, last, f"{scope} {span.text}".strip())
+        found = contents.missing(self._t, self._o, place, first, last, f"{scope} {span.text}".strip())
+        return _as_verdict(found, is_so=not found.names) if self._q.is_all else found
 
     def _whether(self) -> PastAnswer:
         if not self._subjects:
             return self._whether_any()
+        if self._q.anchor == "compare":
+            return self._compare()
+        if self._claim.agent and self._is_event():
+            return self._whether_by()
         episodes = self._episodes()
-        span = self._span
-        if self._claim.event and span.at_ns is None:
-            episodes = [e for e in episodes if e.since_ns >= span.first_ns]
-        is_so = bool(episodes)
+        is_so = len(episodes) > self._q.is_repeated
+        if self._q.is_current and self._q.period.since is not None and not self._claim.event:
+            is_so = self._q.is_repeated and is_so  # has it been open since 10:00: without a break
+            is_so = is_so or any(e.since_ns <= self._span.first_ns and e.until_ns is None for e in episodes)
         if self._q.is_negated:
             verdict, word = not is_so, "no" if is_so else "yes"
         else:
             verdict, word = is_so, "yes" if is_so else "no"
-        if is_so:
+        if episodes:
             parts = [f"at {texts.begin(e)}" if self._claim.event else texts.span(e) for e in episodes]
             text = f"{word}: {episodes[0].subject} was {episodes[0].what} {texts.listed(parts)}"
         else:
@@ -440,12 +465,55 @@ class _Answering:
         evidence = tuple(episodes)
         return PastAnswer(asked="whether", text=text, verdict=verdict, count=len(episodes), evidence=evidence)
 
+    def _whether_by(self) -> PastAnswer:
+        """Return whether an author did something, with who did it last."""
+        author = self._o.author(self._claim)
+        own = self._episodes()
+        self._claim.agent = ""
+        every = self._episodes()
+        if not every:
+            return PastAnswer(asked="whether", text=f"no: {self._never()}", verdict=False, count=0)
+        last = every[-1]
+        is_so = last.by.casefold() == author.casefold() if self._q.is_last else bool(own)
+        if is_so and self._q.is_last and self._claim.state:  # was it Anna who left it open
+            is_so = any(
+                e.until_ns is None for e in self._o.of(replace(self._claim, event=""), self._subjects)
+            )
+        shown = own if is_so and not self._q.is_last else [last]
+        parts = [f"at {texts.begin(e)}" for e in shown]
+        verdict = is_so != self._q.is_negated
+        text = f"{'yes' if verdict else 'no'}: {last.subject} was {last.what} {texts.listed(parts)}"
+        return PastAnswer(
+            asked="whether",
+            text=text,
+            verdict=verdict,
+            names=(last.by,),
+            count=len(own),
+            evidence=tuple(shown),
+        )
+
+    def _compare(self) -> PastAnswer:
+        """Return whether something was before or after something else."""
+        episodes = self._o.of(self._claim, self._subjects)
+        if not episodes:
+            raise NotKnown(self._never())
+        one, other = episodes[-1], self._anchor(Span())
+        word = "before" if one.since_ns < other.since_ns else "after"
+        parts = [f"{e.subject} was {e.what} at {texts.begin(e)}" for e in (one, other)]
+        text = f"{word}: {parts[0]}, and {parts[1]}"
+        return PastAnswer(asked="whether", text=text, verdict=word == "before", evidence=(one, other))
+
     def _whether_any(self) -> PastAnswer:
         found = self._who_was_there() if self._claim.is_anyone and not self._claim.event else self._what()
         is_so = bool(found.names)
         verdict = is_so != self._q.is_negated
         text = f"{'yes' if verdict else 'no'}: {found.text}"
         return structs.replace(found, asked="whether", verdict=verdict, text=text)
+
+
+def _as_verdict(found: PastAnswer, *, is_so: bool) -> PastAnswer:
+    """Return an answer as yes or no."""
+    return structs.replace(found, verdict=is_so, text=f"{'yes' if is_so else 'no'}: {found.text}")
 
 
 def _joined(answers: Sequence[PastAnswer]) -> PastAnswer:

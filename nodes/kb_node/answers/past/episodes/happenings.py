@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from semmap.nodes.kb_node.answers.past.episodes import contents, texts
-from semmap.nodes.kb_node.answers.past.episodes.occurrences import NotKnown, Occurrences, Place
+from semmap.nodes.kb_node.answers.past.episodes.occurrences import NotKnown, Occurrences, Place, touches
 from semmap.nodes.kb_node.answers.past.episodes.timeline import Timeline, clip
 from semmap.nodes.language.past.question import PastQuestion
 from semmap.schemas.episodes import Episode, PastAnswer
@@ -48,6 +48,9 @@ def happened(
     `among` are the entities that count, None for all. Raises NotKnown.
     """
     event = question.claim.event
+    if question.is_gross:
+        touched = _touched(timeline, span)
+        return _listed(question, _changes_at(timeline, occurrences, touched, places), span)
     if not event:
         return _were_there(timeline, occurrences, question, among, places, span)
     candidates = _touched(timeline, span) if among is None else sorted(among)
@@ -74,6 +77,29 @@ def happened(
     if question.asked == "how_many":
         text = f"{count}: {text}"
     return PastAnswer(asked=question.asked, text=text, names=names, count=count, evidence=tuple(found))
+
+
+def _changes_at(
+    timeline: Timeline, occurrences: Occurrences, candidates: Sequence[str], places: Sequence[Place]
+) -> list[Episode]:
+    """Return what happened at places: each change of an entity that was there before or after it."""
+    found: list[Episode] = []
+    there = [occurrences.there(candidates, place) for place in places]
+    for name in candidates:
+        events = [] if timeline.is_live(name) else timeline.events(name, "change", "changed")
+        for spans in there:
+            events = [e for e in events if any(touches(span, e) for span in spans.get(name, ()))]
+        found += events
+    return found
+
+
+def _listed(question: PastQuestion, episodes: Sequence[Episode], span: Period) -> PastAnswer:
+    found = sorted(clip(episodes, span.first_ns, span.last_ns), key=lambda e: e.since_ns)
+    found = [e for e in found if e.since_ns >= span.first_ns]
+    names = tuple(dict.fromkeys(e.subject for e in found))
+    parts = [f"{e.subject} was {e.what} at {texts.begin(e)}" for e in found]
+    text = texts.listed(parts) if found else f"nothing happened {span.text}".strip()
+    return PastAnswer(asked=question.asked, text=text, names=names, count=len(names), evidence=tuple(found))
 
 
 def _touched(timeline: Timeline, span: Period) -> list[str]:
@@ -107,6 +133,10 @@ def _were_there(
     if question.order:
         inside = inside[:1] if question.order == "first" else sorted(inside, key=_end_ns)[-1:]
     names = tuple(dict.fromkeys(e.subject for e in inside))
+    if question.is_negated and question.asked in ("what", "how_many"):
+        others = tuple(name for name in candidates if name not in names and name not in place.names)
+        text = f"never {where} {span.text}".strip() + f": {few(others, _FEW)}"
+        return PastAnswer(asked=question.asked, text=text, names=others, count=len(others))
     parts = [f"{e.subject} {texts.span(e)}" for e in inside]
     nothing = "nobody" if question.asked == "who" else "nothing"
     text = f"{where} {span.text}".strip() + ": " + (texts.listed(parts) if inside else nothing)

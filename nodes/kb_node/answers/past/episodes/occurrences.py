@@ -181,7 +181,7 @@ class Occurrences:
         moves = self._timeline.events(name, "move", what)
         for place in places:
             spans = self.there((name,), place)[name]
-            moves = [m for m in moves if any(_touches(span, m) for span in spans)]
+            moves = [m for m in moves if any(touches(span, m) for span in spans)]
         return moves
 
     def _lasting(self, name: str, places: Sequence[Place]) -> list[Episode]:
@@ -247,7 +247,7 @@ def _common(found: list[Episode] | None, others: list[Episode]) -> list[Episode]
     return [e for e in others if e.since_ns in times]
 
 
-def _touches(span: Episode, move: Episode) -> bool:
+def touches(span: Episode, move: Episode) -> bool:
     """Return whether a move began or ended within an interval."""
     return span.since_ns <= move.since_ns and (span.until_ns is None or span.until_ns >= move.since_ns)
 

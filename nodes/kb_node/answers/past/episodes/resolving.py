@@ -81,6 +81,8 @@ class PastQuestionReader:
 
     def _referent(self, text: str, former: Set[str], *, is_agent: bool) -> Referent:
         """Return what a noun phrase denotes."""
+        if text == "you":
+            return self._robot()
         author = self._author(text, ())
         if self._map.find(text) is not None:
             return Referent(text, (text,), author=self._author(text, (text,)))
@@ -105,6 +107,13 @@ class PastQuestionReader:
         if is_agent:
             return Referent(text, problem=f"no commit is by '{text}'")
         return Referent(text, problem=f"'{text}' is not known, now or in the past{hint}")
+
+    def _robot(self) -> Referent:
+        """Return the robot that *you* means: the only one of the map."""
+        robots = tuple(sorted(e.name for e in self._map.entities() if "Robot" in e.types))
+        problem = f"'you' may be {few(robots, _FEW)}" if robots else "no robot is known"
+        problem = "" if len(robots) == 1 else problem
+        return Referent("you", robots, problem, self._author("you", robots))
 
     def _author(self, text: str, names: Sequence[str]) -> str:
         """Return the author of commits that is called so, or as one of these entities."""
