@@ -50,7 +50,7 @@ def read_claim(elements: Sequence[Element], asked: str) -> Claim:
                 else:
                     bare.append(element)
                 pending = ""
-            case "mark", "anyone" | "nobody":
+            case "mark", "anyone" | "no_one":
                 claim.is_anyone = element.is_used = True
                 pending = ""
             case "mark", "anything":

@@ -165,7 +165,7 @@ def _add_marks(question: PastQuestion, main: Sequence[Element]) -> None:
     question.order = cast(Order, next((order for order in ("last", "first") if order in marks), ""))
     last = next((e.value for e in reversed(main) if e.is_a("mark", *TENSES) and e.text != "been"), "")
     question.is_current = last in ("present", "perfect")
-    question.is_negated = bool(marks & {"never", "not", "nobody"})
+    question.is_negated = bool(marks & {"never", "not", "no_one"})
     question.is_repeated, question.is_last = "more_than_once" in marks, "or_else" in marks
     question.is_previous = "previously" in marks
     if "afterwards" in marks:

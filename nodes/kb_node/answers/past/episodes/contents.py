@@ -126,7 +126,7 @@ def list_contents(asked: str, names: Iterable[str], where: str, seq: int, ns: in
     """Return the answer with what was at a place."""
     found = tuple(names)
     evidence = tuple(Episode(subject=name, what=where, since=seq, since_ns=ns) for name in found[:100])
-    what = few(found, _FEW) if found else ("nobody" if asked == "who" else "nothing")
+    what = few(found, _FEW) if found else ("no person" if asked == "who" else "nothing")
     was = "were" if len(found) > 1 else "was"
     text = f"{what} {was} {where} at {texts.clock(ns)} (commit {seq})"
     if asked == "how_many":

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from semmap.nodes.kb_node.answers.past.episodes import contents, texts
-from semmap.nodes.kb_node.answers.past.episodes.occurrences import NotKnown, Occurrences, Place, touches
-from semmap.nodes.kb_node.answers.past.episodes.timeline import Timeline, clip
+from semmap.nodes.kb_node.answers.past.episodes.episode_lists import clip, touches
+from semmap.nodes.kb_node.answers.past.episodes.occurrences import NotKnown, Occurrences, Place
+from semmap.nodes.kb_node.answers.past.episodes.timeline import Timeline
 from semmap.nodes.language.past.question import PastQuestion
 from semmap.schemas.episodes import Episode, PastAnswer
 from semmap.schemas.wording import few
@@ -71,7 +72,7 @@ def happened(
         found = found[:1] if question.order == "first" else found[-1:]
     names = tuple(dict.fromkeys((e.by if by_author else e.subject) for e in found if e.by or not by_author))
     parts = [f"{e.subject} was {e.what} at {texts.begin(e)}" for e in found]
-    what = "nobody" if question.asked == "who" else "nothing"
+    what = "no person" if question.asked == "who" else "nothing"
     text = texts.listed(parts) if found else f"{what} {span.text}".strip()
     count = len(names)
     if question.asked == "how_many":
@@ -138,7 +139,7 @@ def _were_there(
         text = f"never {where} {span.text}".strip() + f": {few(others, _FEW)}"
         return PastAnswer(asked=question.asked, text=text, names=others, count=len(others))
     parts = [f"{e.subject} {texts.span(e)}" for e in inside]
-    nothing = "nobody" if question.asked == "who" else "nothing"
+    nothing = "no person" if question.asked == "who" else "nothing"
     text = f"{where} {span.text}".strip() + ": " + (texts.listed(parts) if inside else nothing)
     return PastAnswer(asked=question.asked, text=text, names=names, count=len(names), evidence=tuple(inside))
 
@@ -148,7 +149,7 @@ def _end_ns(episode: Episode) -> int:
 
 
 def _all_names(timeline: Timeline) -> list[str]:
-    """Return all entities that are no places, also those that no longer exist."""
+    """Return all entities that are not places, also those that no longer exist."""
     names = {name for name, _ in timeline.journal.last_touches(timeline.journal.last)}
     names |= timeline.past.initial_entities().keys()
     present = timeline.present.entities

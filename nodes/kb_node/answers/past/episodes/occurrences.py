@@ -7,6 +7,7 @@ from typing import Final, NamedTuple
 
 from msgspec import structs
 
+from semmap.nodes.kb_node.answers.past.episodes.episode_lists import find_common, find_overlaps, touches
 from semmap.nodes.kb_node.answers.past.episodes.resolved import Referent
 from semmap.nodes.kb_node.answers.past.episodes.timeline import Timeline
 from semmap.nodes.language.past.question import Claim
@@ -164,9 +165,9 @@ class Occurrences:
         departures = [place for place in places if place not in arrivals]
         found: list[Episode] | None = None
         for place in arrivals:
-            found = _common(found, self._starts(name, place))
+            found = find_common(found, self._starts(name, place))
         for place in departures:
-            found = _common(found, self._ends(name, place))
+            found = find_common(found, self._ends(name, place))
         return found or []
 
     def _events(self, name: str, event: str, what: str) -> list[Episode]:
@@ -188,7 +189,7 @@ class Occurrences:
         found: list[Episode] | None = None
         for place in places:
             spans = self.there((name,), place)[name]
-            found = spans if found is None else _overlaps(found, spans)
+            found = spans if found is None else find_overlaps(found, spans)
         return found or []
 
     def _starts(self, name: str, place: Place) -> list[Episode]:
@@ -237,39 +238,3 @@ class Occurrences:
 def _came(span: Episode) -> str:
     """Return how something came to a place: put there by an author, or seen there by live poses."""
     return "put" if span.since else "newly"
-
-
-def _common(found: list[Episode] | None, others: list[Episode]) -> list[Episode]:
-    """Return the events that are at the same time as one of the others."""
-    if found is None:
-        return others
-    times = {e.since_ns for e in found}
-    return [e for e in others if e.since_ns in times]
-
-
-def touches(span: Episode, move: Episode) -> bool:
-    """Return whether a move began or ended within an interval."""
-    return span.since_ns <= move.since_ns and (span.until_ns is None or span.until_ns >= move.since_ns)
-
-
-def _overlaps(one: Sequence[Episode], other: Sequence[Episode]) -> list[Episode]:
-    """Return the common parts of two lists of intervals."""
-    found = []
-    for a in one:
-        for b in other:
-            begin = a if a.since_ns >= b.since_ns else b
-            ends = [e for e in (a, b) if e.until_ns is not None]
-            end = min(ends, key=lambda e: e.until_ns or 0, default=None)
-            if end is not None and (end.until_ns or 0) <= begin.since_ns:
-                continue
-            found.append(
-                Episode(
-                    subject=a.subject,
-                    what=f"{a.what} {b.what}",
-                    since=begin.since,
-                    since_ns=begin.since_ns,
-                    until=None if end is None else end.until,
-                    until_ns=None if end is None else end.until_ns,
-                )
-            )
-    return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from typing import Final, NamedTuple
 
@@ -224,11 +224,6 @@ def is_event(change: Change, kind: str) -> bool:
     if kind == "remove":
         return change.kind == "removed"
     return True
-
-
-def clip(episodes: Sequence[Episode], first_ns: int, last_ns: int) -> list[Episode]:
-    """Return the episodes that overlap with a period."""
-    return [e for e in episodes if e.since_ns <= last_ns and (e.until_ns is None or e.until_ns > first_ns)]
 
 
 def _join(spans: list[tuple[int, int | None]]) -> list[tuple[int, int | None]]:
