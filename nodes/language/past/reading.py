@@ -14,6 +14,9 @@ from semmap.nodes.language.past.times import Period, TimeReader
 from semmap.nodes.language.reference_resolution.map_index import MapIndex
 from semmap.schemas.language import Language
 
+_SPEAKER: Final = frozenset(("i", "we", "me", "us", "io", "noi"))
+_OF_BOTH: Final = ("change", "missing", "new", "same")
+"""Events of questions in the present that are about the past: is anything missing since 10:00."""
 _ANCHORS: Final = get_args(Anchor)
 
 
@@ -122,33 +125,42 @@ def _drop_cleft(main: list[Element]) -> Element | None:
         return None
     main[2].is_used = True
     found = main[2]
-    main[:3] = [main[0]]
+    main[:4] = [main[3], main[0]]
     return found
 
 
 def _asked(main: Sequence[Element], *, is_marked: bool) -> Asked | None:
-    """Return what is asked, or None if the clause does not begin as a question does."""
-    is_told = any(e.is_a("mark", "telling") for e in main)
-    words = [e for e in main if e.kind not in ("filler", "time") and not e.is_a("mark", "telling")]
+    """Return what is asked, or None if the clause does not begin as a question about the past does."""
+    if any(e.text in _SPEAKER for e in main):
+        return None  # where did I put it: who speaks is not known
+    begin = [e for e in main if e.kind not in ("filler", "time")]
+    is_told = bool(begin) and begin[0].is_a("mark", "telling")
+    words = [e for e in begin if not e.is_a("mark", "telling")]
     ask = next((e for e in words if e.kind == "ask"), None)
     if ask is not None:
         before = words[: words.index(ask)]
         if any(e.kind in ("event", "unknown") for e in before):
+            return None
+        if ask.value != "how_long" and any(e.is_a("mark", *TENSES) for e in before):
             return None
         if ask.value == "when" and not is_told and not _is_direct(words, words.index(ask)):
             return None
         for element in words:
             element.is_used = element.is_used or element.kind == "ask"
         return cast(Asked, ask.value)
+    if any(e.kind == "unknown" for e in words):
+        return None
     if words and words[0].is_a("mark", "anything") and any(e.is_a("event", "change", "new") for e in words):
         return "whether"  # anything different on the table
-    if words and (
-        words[0].is_a("mark", *TENSES) or (is_told and any(e.is_a("mark", *TENSES) for e in words))
-    ):
-        return "whether"
+    if not any(e.is_a("mark", *TENSES) for e in words):
+        return None
+    if words[0].text == "have" and not any(e.text == "been" for e in words):
+        return None  # have Robin follow you
+    if main[0].kind == "time" and not is_marked:
+        return None  # this morning was nice
     is_question = is_marked or any(e.is_a("mark", "ever", "never") for e in words)
-    has_tense = any(e.is_a("mark", *TENSES) for e in words)
-    return "whether" if is_question and has_tense and words[0].kind != "event" else None
+    is_first = words[0].is_a("mark", *TENSES) or is_told
+    return "whether" if is_first or (is_question and words[0].kind != "event") else None
 
 
 def _is_direct(words: Sequence[Element], i: int) -> bool:
@@ -244,6 +256,8 @@ def _is_past(question: PastQuestion, main: Sequence[Element]) -> bool:
         return is_past and about
     if not is_past and not any(e.kind == "event" for e in main):
         return False
+    if asked == "whether" and not is_past:
+        return claim.event in _OF_BOTH
     is_told = any(e.is_a("mark", "telling") for e in main)
     if not tenses and not is_told and asked not in ("who", "what", "how_many"):
         return False

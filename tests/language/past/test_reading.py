@@ -95,6 +95,11 @@ def test_every_part_of_a_question_is_read(known, text, read):
         "I took the cup",
         "when you are in the kitchen, take the cup",
         "porta la tazza in cucina",
+        "do not take the cup",
+        "have Robin follow you to the kitchen",
+        "check whether the drawer is open",
+        "tell Anna to come if she is in the kitchen",
+        "look at the table and tell me what is the heaviest thing there",
     ],
 )
 def test_commands_and_questions_about_the_present_are_left_to_the_other_grammar(known, text):
