@@ -6,6 +6,8 @@ from typing import Literal
 
 from msgspec import Struct, field
 
+from semmap.schemas.episodes import PastAnswer
+
 Language = Literal["english", "italian"]
 """The languages of commands."""
 
@@ -173,6 +175,8 @@ class Understood(Struct, frozen=True):
     "command" explains why there are no frames: the text is a question or about the past. `question` is a
     clarification question if arguments are ambiguous. `doubts` are sentences about parts of the command that
     contradict the map: an object is not at its stated source, or there are fewer objects than required.
+
+    `past` has one answer for each question about the past, with its evidence; `answer` is their text.
     """
 
     words: tuple[str, ...]
@@ -185,6 +189,7 @@ class Understood(Struct, frozen=True):
     doubts: tuple[str, ...] = ()
     steps: tuple[CommandStep, ...] = ()
     answer: str = ""
+    past: tuple[PastAnswer, ...] = ()
 
 
 class Candidate(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

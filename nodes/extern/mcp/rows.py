@@ -21,6 +21,7 @@ from semmap.nodes.extern.mcp.hints import translate_hints
 from semmap.ontology import vocabulary as v
 from semmap.schemas import changes
 from semmap.schemas.entities import Entity
+from semmap.schemas.episodes import Episode, PastAnswer
 from semmap.schemas.explanations import Term
 from semmap.schemas.language import Candidate, Understood
 from semmap.schemas.map_history import Difference
@@ -31,6 +32,7 @@ from semmap.schemas.sparql import Row
 PLACED: Final = {"isOn": "on", "isInside": "inside", "isLocatedIn": "in"}
 """The location relations, and their field names in a row."""
 _FEW_NAMES: Final = 10
+_FEW_EPISODES: Final = 10
 OVERVIEW_BUDGET: Final = 1800
 """The maximum length of the overview, so that the whole reply stays below 2 000 characters."""
 _LONGEST_REFERENCE: Final = 40
@@ -122,7 +124,32 @@ def understood(found: Understood, by: Callable[..., str]) -> tuple[dict[str, Any
         head["question_to_ask_back"] = attribute_text(found.question, by(found.question))
     if found.answer:
         head["answer"] = attribute_text(found.answer, by(found.answer))
+    if found.past:
+        head["past"] = [_past_answer(one) for one in found.past]
     return head, [msgspec.to_builtins(step) for step in found.steps]
+
+
+def _past_answer(found: PastAnswer) -> dict[str, Any]:
+    """Return an answer about the past with the times of its evidence; its text is in the head."""
+    made: dict[str, Any] = msgspec.to_builtins(found)
+    del made["text"]
+    if found.times_ns:
+        made["times"] = [format_time(ns) for ns in made.pop("times_ns")]
+    evidence = [_episode(episode) for episode in found.evidence[:_FEW_EPISODES]]
+    rest = len(found.evidence) - len(evidence)
+    return {**made, "evidence": evidence, **({"more_evidence": rest} if rest else {})}
+
+
+def _episode(found: Episode) -> dict[str, Any]:
+    """Return an event or a time in which something was so, which may quote a text of its author."""
+    return {
+        "subject": found.subject,
+        "said": found.what,
+        "from": format_time(found.since_ns),
+        **({"to": format_time(found.until_ns)} if found.until_ns is not None else {}),
+        **({"commits": [seq for seq in (found.since, found.until) if seq]} if found.since else {}),
+        **({"by": found.by} if found.by else {}),
+    }
 
 
 def relation(found: Relation) -> dict[str, Any]:

@@ -85,6 +85,17 @@ class EntitySearch:
             return ()
         return tuple(sorted(found.names))
 
+    def denoted(self, text: str) -> tuple[tuple[str, ...], bool]:
+        """Return the entities that a text may denote, and whether exactly one of several is meant."""
+        space = self._map.places.space()
+        around = RelationCache(space, None, self._map.derived_facts.suppressed_measurements)
+        try:
+            with space.caching():
+                found = find(text, self.known(), around)
+        except errors.BadRequest:
+            return (), False
+        return tuple(sorted(found.names)), found.outcome == "ambiguous"
+
     def is_at(self, thing: str, other: str) -> bool:
         """Return whether an object is on, in or inside another, or whether that is unknown."""
         space, left_out = self._map.places.space(), self._map.derived_facts.suppressed_measurements

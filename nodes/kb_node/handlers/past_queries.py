@@ -16,6 +16,7 @@ from semmap.nodes.kb_node.answers.past import (
     live_sightings,
     trails,
 )
+from semmap.nodes.kb_node.answers.past.episodes.timeline import Timeline
 from semmap.nodes.kb_node.answers.past.renames import Renames
 from semmap.nodes.kb_node.answers.past.trail_recording import TrailRecorder
 from semmap.nodes.kb_node.answers.sightings import Sightings, describe_closed, find_closed_container
@@ -85,6 +86,12 @@ class PastQueryHandlers:
         renames = Renames.of(self._past, (found.subject, found.object)).in_time(self._journal)
         lines = renames.in_trail(self._trail_lines())
         return trails.add_visits(found, trails.Trails(lines, now_ns, {found.subject}), now_ns)
+
+    def timeline(self) -> Timeline:
+        """Return the past until now, for questions in words."""
+        self._trail.write()
+        limits = self._map.classes.limits
+        return Timeline(self._journal, self._past, limits, self._trail_lines, time.time_ns())
 
     def _trail_lines(self) -> Iterator[TrailLine]:
         return trail_file.read_lines(self._journal.path.parent)

@@ -18,6 +18,8 @@ from semmap.nodes.kb_node.answers.entity_search import EntitySearch, describe_mi
 from semmap.nodes.kb_node.answers.live_poses import LiveEntities
 from semmap.nodes.kb_node.answers.location_queries import LocationQueries
 from semmap.nodes.kb_node.answers.past import fact_intervals, individual_dates, past_map
+from semmap.nodes.kb_node.answers.past.episodes.replying import answer_questions
+from semmap.nodes.kb_node.answers.past.episodes.resolving import PastQuestionReader
 from semmap.nodes.kb_node.answers.past.trail_recording import TrailRecorder
 from semmap.nodes.kb_node.answers.route_planning import RoutePlanning
 from semmap.nodes.kb_node.answers.sightings import Sightings
@@ -60,7 +62,7 @@ from semmap.schemas.commands import (
 )
 from semmap.schemas.entities import ClassInfo, Entity, PropertyInfo, RuleInfo
 from semmap.schemas.explanations import Explanation
-from semmap.schemas.language import Account, Found
+from semmap.schemas.language import Account, Found, Understood
 from semmap.schemas.live import LivePoses
 from semmap.schemas.relations import Described, Relation
 from semmap.schemas.replies import Checked, Document, Done, Inferred, Possible
@@ -100,6 +102,7 @@ class QueryHandlers:
         """Records live poses."""
         self._search = EntitySearch(semantic_map)
         self._parser = CommandParser(semantic_map, self._search, self._seen)
+        self._past_reader = PastQuestionReader(semantic_map, self._search, journal, self._past)
         self._then = entity_queries.PastState(semantic_map, self._past)
         self.sightings = Sightings(self._past)
         """Receives the observations of perception."""
@@ -133,7 +136,7 @@ class QueryHandlers:
             Explain.answered_by(self.on_explain),
             Could.answered_by(self.on_could),
             Relations.answered_by(self.on_relations),
-            Understand.answered_by(self._parser.parse),
+            Understand.answered_by(self.on_understand),
             Tell.answered_by(self.on_tell),
             Find.answered_by(self.on_find),
             Export.answered_by(self.on_export),
@@ -267,6 +270,14 @@ class QueryHandlers:
         """Return when an entity of the map was last seen or placed, in words."""
         entity = self._map.find(name)
         return "" if entity is None else self.sightings.describe_present(entity).text.partition(";")[0]
+
+    def on_understand(self, query: Understand) -> Understood | Future[Understood]:
+        """Return the frames and steps of a command, or the answers to questions about the past."""
+        language, asked = self._past_reader.read(query.text, query.language)
+        if not asked:
+            return self._parser.parse(query)
+        timeline = self.past.timeline()
+        return self._aside.submit(answer_questions, timeline, query.text, language, asked)
 
     def on_find(self, query: Find) -> Found | Future[Found]:
         """Return the entities that a description means.

@@ -95,14 +95,14 @@ def find(client: Client, text: str, format: str, **fields: Any) -> None:
 @click.option("--language", type=click.Choice(["english", "italian"]), help="Default: detected.")
 @with_client
 def understand(client: Client, text: str, format: str, language: Language | None) -> None:
-    """Parse a spoken command to semantic frames.
+    """Parse a spoken command to semantic frames, or answer a question about the past.
 
     The command is English or Italian. The arguments of its FrameNet frames are resolved to entities of the
     map. Unknown verbs, and arguments that do not match the map, are reported on stderr. The exit status is 1
     if no frame is recognized.
     """
     found = client.understand(text, language=language)
-    done = found.steps or found.frames
+    done = found.steps or found.frames or found.past
     if format != "text":
         print_json(found if format == "json" else lu4r.document(found))
         sys.exit(0 if done else errors.Refused.exit_status)
@@ -110,5 +110,8 @@ def understand(client: Client, text: str, format: str, language: Language | None
     doubts = (*found.doubts, *((unknown,) if found.unknown else ()))
     if not done:
         raise errors.Refused("; ".join(doubts) if found.unknown else _WHY[found.mood].format(text=text))
-    print_lines([action.text for action in done] + [text for text in (found.answer, found.question) if text])
+    actions = found.steps or found.frames
+    print_lines(
+        [action.text for action in actions] + [text for text in (found.answer, found.question) if text]
+    )
     print_lines(f"note: {doubt}" for doubt in doubts)

@@ -1,0 +1,1 @@
+"""Questions about a simulated day, asked in words."""

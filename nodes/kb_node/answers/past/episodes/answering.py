@@ -1,0 +1,57 @@
+"""Answers resolved questions about the past."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from msgspec import structs
+
+from semmap.nodes.kb_node.answers.past.episodes.occurrences import NotKnown
+from semmap.nodes.kb_node.answers.past.episodes.resolved import ResolvedQuestion
+from semmap.nodes.kb_node.answers.past.episodes.timeline import Timeline
+from semmap.nodes.kb_node.answers.past.episodes.verdicts import Verdicts
+from semmap.schemas import errors
+from semmap.schemas.episodes import PastAnswer
+
+_MOST: Final = 100
+
+
+def answer(timeline: Timeline, resolved: ResolvedQuestion) -> PastAnswer:
+    """Return the answer to a question, or why it is not known."""
+    try:
+        found = _Answering(timeline, resolved).answer()
+    except NotKnown as unknown:
+        return PastAnswer(asked=resolved.question.asked, text=str(unknown), is_known=False)
+    except (errors.Refused, errors.UnknownName, errors.BadRequest) as error:
+        return PastAnswer(asked=resolved.question.asked, text=str(error), is_known=False)
+    return structs.replace(found, evidence=found.evidence[:_MOST])
+
+
+class _Answering(Verdicts):
+    """Answers any kind of question."""
+
+    def answer(self) -> PastAnswer:
+        """Return the answer. Raises NotKnown."""
+        match self._q.asked:
+            case "where":
+                return self._where()
+            case "changed":
+                return self._changed()
+            case "missing":
+                return self._missing()
+            case "what" | "how_many":
+                return self._what()
+            case "who":
+                return self._who()
+            case "whether":
+                return self._whether()
+        if not self._subjects:
+            raise NotKnown("the question names no thing")
+        match self._q.asked:
+            case "when" | "until":
+                return self._when()
+            case "since":
+                return self._since()
+            case "how_long":
+                return self._how_long()
+        return self._how_often()

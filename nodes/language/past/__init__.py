@@ -1,0 +1,1 @@
+"""Questions about the past: their words as elements, and what they ask. Pure."""

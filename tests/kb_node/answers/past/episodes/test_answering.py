@@ -1,0 +1,118 @@
+"""Answers to questions about the past, from a short history."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from semmap.nodes.kb_node.answers.entity_search import EntitySearch
+from semmap.nodes.kb_node.answers.past.episodes.replying import answer_questions
+from semmap.nodes.kb_node.answers.past.episodes.resolving import PastQuestionReader
+from semmap.nodes.kb_node.answers.past.episodes.timeline import Timeline
+from semmap.nodes.kb_node.semantic_map import SemanticMap
+from semmap.nodes.kb_node.storage.history import HistoryReader
+from semmap.nodes.kb_node.storage.trail_file import TrailLine
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import Edit, NewEntity, Statement, Transaction
+from semmap.schemas.entities import Pose
+from tests.kb_node import home
+
+S = 1_000_000_000
+
+
+def new(name, class_name, at, size, **fields):
+    iri = v.bare(v.dm(class_name))
+    return NewEntity(name=name, class_iri=iri, pose=Pose(position_m=at), size=size, **fields)
+
+
+def is_open(value):
+    return Edit(name="fridge1", set=(Statement(property="isOpen", values=(value,)),))
+
+
+ROOMS = (
+    new("kitchen1", "Kitchen", (0, 0, 0), (8, 8, 3)),
+    new("bathroom1", "Bathroom", (20, 0, 0), (8, 8, 3)),
+    new("studio1", "Studio", (10, 0, 0), (8, 8, 3)),
+    new("table1", "Table", (1, 1, 0), (1, 1, 0.7)),
+    new("desk1", "Desk", (10, 1, 0), (1, 1, 0.7)),
+    new("fridge1", "Fridge", (-3, -3, 0), (0.7, 0.7, 1.8)),
+    new("r2", "Robot", (0, 0, 0), (0.4, 0.4, 1.0)),
+)
+ON_TABLE, ON_DESK = (1, 1, 0.7), (10, 1, 0.7)
+
+
+@pytest.fixture(scope="module")
+def ask(tmp_path_factory):
+    """Commits: 1 rooms, 2 cup on the table, 3 the desk, 4 the table, 5 and 6 fridge, 7 plate removed."""
+    semantic_map = SemanticMap(home.new_household_journal(tmp_path_factory.mktemp("map")))
+    journal, past = semantic_map._journal, HistoryReader(semantic_map._journal)
+
+    def commit(number, agent="", **fields):
+        semantic_map.commit(Transaction(id=f"{number}", source="operator", agent=agent, **fields))
+
+    cup = new("cup1", "Cup", ON_TABLE, (0.08, 0.08, 0.1), ref="red cup")
+    commit(1, add=(*ROOMS, new("plate1", "Plate", (1.3, 1.3, 0.7), (0.2, 0.2, 0.02))))
+    commit(2, add=(cup,))
+    commit(3, "anna", edit=(Edit(name="cup1", at=ON_DESK),))
+    commit(4, "bruno", edit=(Edit(name="cup1", at=ON_TABLE),))
+    commit(5, "anna", edit=(is_open("true"),))
+    commit(6, "bruno", edit=(is_open("false"),))
+    commit(7, "anna", remove=("plate1",))
+    ns = journal.stamps.of(2)
+    lines = [
+        TrailLine(ns, "start"),
+        TrailLine(ns, "at", "r2", (10.0, 0.0, 0.0), ("studio1",)),
+        TrailLine(ns + 1000, "at", "r2", (0.0, 0.0, 0.0), ("kitchen1",)),
+        TrailLine(ns + 2000, "at", "r2", (10.0, 0.0, 0.0), ("studio1",)),
+    ]
+    reader = PastQuestionReader(semantic_map, EntitySearch(semantic_map), journal, past)
+
+    def answered(text):
+        language, asked = reader.read(text, None)
+        timeline = Timeline(
+            journal, past, semantic_map.classes.limits, lambda: lines, journal.stamps.of(7) + S
+        )
+        return answer_questions(timeline, text, language, asked)
+
+    yield answered
+    journal.close()
+
+
+def read_table(name):
+    """Return the pairs of a question and its answer in a file."""
+    lines = (Path(__file__).parent / name).read_text().splitlines()
+    return [(question, answer.strip()) for question, answer in zip(lines[::2], lines[1::2], strict=True)]
+
+
+def untimed(text):
+    """Return a text without clock times and durations."""
+    text = re.sub(r"\d\d:\d\d:\d\d", "T", text)
+    return re.sub(r"\d+ s\b", "N s", text)
+
+
+@pytest.mark.parametrize(("text", "answer"), read_table("known.txt"))
+def test_an_answer_is_a_sentence_with_its_evidence(ask, text, answer):
+    found = ask(text)
+    assert untimed(found.answer) == answer
+    assert (found.past[0].is_known, found.doubts, found.mood) == (True, (), "question")
+
+
+@pytest.mark.parametrize(("text", "answer"), read_table("unknown.txt"))
+def test_what_cannot_be_known_is_stated(ask, text, answer):
+    found = ask(text)
+    assert untimed(found.answer).startswith(answer)
+    assert not found.past[0].is_known
+
+
+def test_the_reply_has_names_times_and_commits_as_data(ask):
+    (who,) = ask("who moved cup1").past
+    assert (who.names, [e.since for e in who.evidence]) == (("bruno",), [3, 4])
+    (when,) = ask("when was cup1 last moved").past
+    assert when.times_ns == (who.evidence[-1].since_ns,)
+    (ever,) = ask("has cup1 ever been on desk1").past
+    assert (ever.verdict, ever.evidence[0].until) == (True, 4)
+
+
+def test_it_refers_to_the_subject_of_the_question_before(ask):
+    found = ask("where was cup1 at commit 3? who moved it last?")
+    assert [one.names for one in found.past] == [("desk1", "studio1"), ("bruno",)]
