@@ -7,6 +7,8 @@ few bytes an array of billions of values.
 from __future__ import annotations
 
 import functools
+import importlib
+from bz2 import BZ2Decompressor
 from collections.abc import Callable, Collection, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -15,6 +17,7 @@ from typing import Any, Final
 from mcap.reader import make_reader
 from mcap.records import Schema
 from rosbags.rosbag1 import Reader as Reader1
+from rosbags.rosbag1.reader import decompressors
 from rosbags.rosbag2 import Reader as Reader2
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
@@ -26,6 +29,8 @@ from semmap.schemas.errors import BadFile
 SUFFIXES: Final = (".bag", ".db3", ".mcap")
 _SCHEMAS: Final = ("ros1msg", "ros2msg", "ros2idl")
 """The encodings of schemas of ROS messages."""
+_MOST_BYTES: Final = 1 << 29
+_TOO_LARGE: Final = "a chunk unpacks to more than 512 MB; record with smaller chunks"
 Message = tuple[str, Any]
 """A topic and a message."""
 Reader = Callable[[Collection[str]], Iterator[Message]]
@@ -82,6 +87,11 @@ def _rosbag(path: Path, stack: ExitStack) -> Bag:
     else:
         reader, decode = Reader2(path), store().deserialize_cdr
     stack.enter_context(reader)
+    if path.suffix.lower() == ".bag":
+        reader.chunks = {
+            at: chunk._replace(decompressor=functools.partial(_unpack, chunk.decompressor))
+            for at, chunk in reader.chunks.items()
+        }
 
     def messages(topics: Collection[str]) -> Iterator[Message]:
         wanted = [connection for connection in reader.connections if connection.topic in topics]
@@ -99,6 +109,9 @@ def _mcap(path: Path, stack: ExitStack) -> Bag:
     summary = reader.get_summary()
     if summary is None:
         raise BadFile(f"{path} is truncated, or was not closed by its recorder: it has no summary")
+    largest = max((chunk.uncompressed_size for chunk in summary.chunk_indexes), default=0)
+    if largest > _MOST_BYTES:
+        raise BadFile(f"{path}: {_TOO_LARGE}")
 
     def messages(topics: Collection[str]) -> Iterator[Message]:
         for schema, channel, message in reader.iter_messages(topics=list(topics)):
@@ -116,6 +129,21 @@ def _mcap(path: Path, stack: ExitStack) -> Bag:
         },
         messages,
     )
+
+
+def _unpack(decompressor: Callable[[bytes], bytes], packed: bytes) -> bytes:
+    """Return the content of a chunk of a ROS 1 bag. Raises ValueError if it is too large."""
+    limited: Any
+    if decompressor is decompressors["bz2"]:
+        limited = BZ2Decompressor()
+    elif decompressor is decompressors["lz4"]:
+        limited = importlib.import_module("lz4.frame").LZ4FrameDecompressor()  # rosbags requires it
+    else:
+        return packed
+    found = bytes(limited.decompress(packed, max_length=_MOST_BYTES))
+    if not limited.eof:
+        raise ValueError(_TOO_LARGE if len(found) >= _MOST_BYTES else "a chunk is truncated")
+    return found
 
 
 @functools.cache
