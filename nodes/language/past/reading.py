@@ -141,7 +141,7 @@ def _asked(main: Sequence[Element], *, is_marked: bool) -> Asked | None:
         before = words[: words.index(ask)]
         if any(e.kind in ("event", "unknown") for e in before):
             return None
-        if ask.value != "how_long" and any(e.is_a("mark", *TENSES) for e in before):
+        if ask.value not in ("how_long", "changed") and any(e.is_a("mark", *TENSES) for e in before):
             return None
         if ask.value == "when" and not is_told and not _is_direct(words, words.index(ask)):
             return None
