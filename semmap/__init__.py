@@ -46,6 +46,7 @@ if TYPE_CHECKING:
         Provenance,
         RuleInfo,
     )
+    from semmap.schemas.episodes import Episode, PastAnswer
     from semmap.schemas.errors import (
         BadFile,
         BadRequest,
@@ -124,6 +125,7 @@ __all__ = [
     "Document",
     "Done",
     "Entity",
+    "Episode",
     "Explanation",
     "Extent",
     "Filler",
@@ -143,6 +145,7 @@ __all__ = [
     "NodeStatus",
     "Opening",
     "Outline",
+    "PastAnswer",
     "Picture",
     "PlaceChanges",
     "PlaceRelation",
@@ -245,6 +248,7 @@ _NAMES_OF: Final = {
         "Explanation",
         "Step",
     ),
+    "schemas.episodes": ("Episode", "PastAnswer"),
     "schemas.frames": ("Frame",),
     "schemas.map_history": (
         "Difference",

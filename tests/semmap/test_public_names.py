@@ -25,9 +25,9 @@ PUBLIC = {
     "semmap": """
         Account Antecedent Argument BackupPart BadFile BadRequest BodyState Busy Candidate Change
         Changed Checked ClassInfo Client CommandStep Commit Compacted Departed Described Difference
-        Document Done Entity Explanation Extent Filler Found Frame Grounded Inconsistent Inferred
+        Document Done Entity Episode Explanation Extent Filler Found Frame Grounded Inconsistent Inferred
         InternalError Joint LessonTold Live LoggedCommit Moved NameTaken NoAnswer NodeStatus Opening
-        Outline Picture PlaceChanges PlaceRelation Plan PlannedPlace PlannedThing Pose Possible
+        Outline PastAnswer Picture PlaceChanges PlaceRelation Plan PlannedPlace PlannedThing Pose Possible
         PreconditionFailed PropertyInfo Provenance Refused Related Relation Request Restored
         RowsChanged RuleInfo SemanticFrame SemmapError ShownView Sighting SparqlResult Spell Spells
         StandingQuery Step SystemStatus ThingDescription Trail TrailPoint Understood UnknownClass UnknownName

@@ -17,7 +17,6 @@ def check(explanation, asserted):
     assert goal in known or not explanation.steps
     assert explanation.text.endswith(".")
     assert "http://" not in explanation.text
-    assert "_:" not in explanation.text
 
 
 def _reached(some, goal):

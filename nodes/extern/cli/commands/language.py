@@ -95,9 +95,9 @@ def find(client: Client, text: str, format: str, **fields: Any) -> None:
 @click.option("--language", type=click.Choice(["english", "italian"]), help="Default: detected.")
 @with_client
 def understand(client: Client, text: str, format: str, language: Language | None) -> None:
-    """Parse a spoken command to semantic frames, or answer a question about the past.
+    """Parse a spoken command, or answer a question about the past.
 
-    The command is English or Italian. The arguments of its FrameNet frames are resolved to entities of the
+    The text is English or Italian. The arguments of its FrameNet frames are resolved to entities of the
     map. Unknown verbs, and arguments that do not match the map, are reported on stderr. The exit status is 1
     if no frame is recognized.
     """
