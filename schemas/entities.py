@@ -490,7 +490,9 @@ class PropertyInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """Whether it has at most one value, so that a new value replaces the previous one."""
     domain: tuple[str, ...]
     range: tuple[str, ...]
-    """Datatypes or classes; empty if there is no restriction."""
+    """Datatypes, restricted ones in words, or classes; empty if there is no restriction."""
+    datatypes: tuple[str, ...] = ()
+    """The datatypes in which values of a data property are written, such as `float` for a number from 0 to 1."""
     labels: dict[str, str]
     """Language tag (or "") to text."""
     comment: str = ""

@@ -225,6 +225,7 @@ class PropertyTable:
                 functional=prop.functional,
                 domain=self._called(domains),
                 range=self._called(prop.ranges) or ((prop.data_range.text,) if prop.data_range else ()),
+                datatypes=tuple(map(v.local_name, prop.data_range.datatypes)) if prop.data_range else (),
                 labels=self._labels(prop.iri),
                 comment=v.lexical(comments[0]) if comments else "",
                 values={v.entity_name(i): _label(self._labels(i)) for i in sorted(self._allowed(prop))},

@@ -194,6 +194,7 @@ def test_rows_have_the_domain_and_range(stateful_map):
         functional=True,
         domain=("Object",),
         range=("boolean",),
+        datatypes=("boolean",),
         labels={"en": "is open"},
         comment="Whether it stands open.",
         values={},

@@ -128,7 +128,7 @@ def _state(entity: Entity, p: PropertyInfo, things: Mapping[str, Entity]) -> Sta
 def _kind(p: PropertyInfo) -> Kind:
     if p.kind == "object":
         return "choice" if p.values else "thing"
-    ranges = set(p.range)
-    if ranges & _BOOLEANS:
+    datatypes = set(p.datatypes)
+    if datatypes & _BOOLEANS:
         return "switch"
-    return "number" if ranges & _NUMBERS else "text"
+    return "number" if datatypes & _NUMBERS else "text"

@@ -15,7 +15,9 @@ from tests.extern.web.views.sample_maps import thing
 
 def known(name, kind, range_, **fields):
     fields = {"domain": (), "functional": True, "comment": "", "values": {}, "labels": {}, **fields}
-    return PropertyInfo(name=name, iri=f"urn:{name}", kind=kind, range=(range_,), **fields)
+    return PropertyInfo(
+        name=name, iri=f"urn:{name}", kind=kind, range=(range_,), datatypes=(range_,), **fields
+    )
 
 
 PROPERTIES = {

@@ -18,6 +18,7 @@ COLOR = PropertyInfo(
 )  # fmt: skip
 OPEN = PropertyInfo(
     name="isOpen", iri=f"{v.TBOX}isOpen", kind="data", functional=True, domain=(), range=("boolean",),
+    datatypes=("boolean",),
     labels={"en": "is open"}, values={}
 )  # fmt: skip
 PROPERTIES = {p.name: p for p in (COLOR, OPEN)}

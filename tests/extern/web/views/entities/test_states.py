@@ -9,12 +9,13 @@ from tests.extern.web.views.sample_maps import by_name, thing
 def prop(name, kind="data", *, range_=(), domain=("Object",), functional=True, **fields):
     return PropertyInfo(
         name=name, iri=f"http://x/{name}", kind=kind, functional=functional, domain=domain, range=range_,
+        datatypes=fields.pop("datatypes", range_ if kind == "data" else ()),
         labels=fields.pop("labels", {}), values=fields.pop("values", {}), **fields
     )  # fmt: skip
 
 
 OPEN = prop("isOpen", range_=("boolean",), labels={"en": "is open"})
-MASS = prop("mass", range_=("float",), comment="In kilograms.")
+MASS = prop("mass", range_=("float from 0 to 1e9",), datatypes=("float",), comment="In kilograms.")
 COLOR = prop("hasColor", "object", range_=("Color",), values={"color_red": "red"}, functional=False)
 OWNER = prop("isOwnedBy", "object", range_=("Person",), functional=False)
 SERIAL = prop("serialNumber", range_=("string",), domain=("Device",))
