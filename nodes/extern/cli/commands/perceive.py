@@ -122,9 +122,9 @@ def perceive(
     """Find the objects in point clouds, depth images or datasets.
 
     Point clouds are PCD or PLY files, with Open3D also .xyz, .xyzrgb and .pts files, and those in bags (.bag,
-    .db3, .mcap). Images are a colour and
-    a depth image (PNG, JPEG, TIFF, PGM, .npy). The labels are integers in the shape of the cloud: (height,
-    width), or (1, points) for unorganized clouds. 0 is the background, 1 to n are the objects.
+    .db3, .mcap). Images are a colour and a depth image (PNG, JPEG, TIFF, PGM, .npy). The labels are integers
+    in the shape of the cloud: (height, width), or (1, points) for unorganized clouds. 0 is the background, 1
+    to n are the objects.
     """
     extras.require("semmap perceive", "perception")
     if fit:
