@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -205,6 +206,8 @@ def _clouds(
         raise errors.BadRequest(f"{bags[0]} is a bag; name only bags, or only clouds and images")
     if bags:
         extras.require("semmap perceive with a bag", "ros")
+        if not math.isfinite(every_s):
+            raise errors.BadRequest("--every must be a number of seconds, such as 0.5")
         from semmap.nodes.extern.frame_folders.bag_clouds import read_clouds
 
         for bag in bags:
