@@ -34,9 +34,10 @@ class Observation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     """One observation of an object.
 
     `class_` is the most specific class with sufficient confidence, and `probability` is the probability of
-    this class; for `Object`, that it is of no known class. `candidates` are the leaf classes with theirs.
-    `pose` and `size_m` include hidden parts of the object. `whole` is false if the object is occluded or cut
-    off by the image border.
+    this class; for `Object`, that it is of no known class. `candidates` are the leaf classes with
+    theirs; if a detector named a superclass, it is among them, with the probability of all its leaves. `pose`
+    and `size_m` include hidden parts of the object. `whole` is false if the object is occluded or cut off by
+    the image border.
     """
 
     class_: str = field(name="class")

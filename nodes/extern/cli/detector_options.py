@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -53,10 +54,12 @@ def detector_options(function: Callable[..., Any]) -> Callable[..., Any]:
 def _require_detector(
     detector: Path | None, names: Path | None, layout: str | None, score: float | None
 ) -> None:
-    """Raise BadRequest for options of a detector without a detector."""
+    """Raise BadRequest for options of a detector without a detector, or a score that is no number."""
     for option, value in (("names", names), ("layout", layout), ("score", score)):
         if detector is None and value is not None:
             raise errors.BadRequest(f"--detector-{option} requires --detector MODEL.onnx")
+    if score is not None and math.isnan(score):  # which is in every range
+        raise errors.BadRequest("--detector-score must be a number from 0 to 1, such as 0.5")
 
 
 def detector_of(

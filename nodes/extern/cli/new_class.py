@@ -49,11 +49,12 @@ def declare_class(words: str, classes: Iterable[ClassInfo]) -> NewClass:
         )
     name = class_name(words)
     namespace = above.removesuffix(ABOVE)
+    label = json.dumps(" ".join(words.split()), ensure_ascii=False)
     return NewClass(
         name,
         f"<{namespace}{name}> a <http://www.w3.org/2002/07/owl#Class> ;\n"
         f"    <http://www.w3.org/2000/01/rdf-schema#subClassOf> <{above}> ;\n"
-        f"    <http://www.w3.org/2000/01/rdf-schema#label> {json.dumps(' '.join(words.split()))}@en .\n",
+        f"    <http://www.w3.org/2000/01/rdf-schema#label> {label}@en .\n",
     )
 
 

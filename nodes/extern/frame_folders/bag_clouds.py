@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -18,7 +19,7 @@ from semmap.nodes.perception_node.input.files.cloud_files import checked
 from semmap.nodes.perception_node.input.files.columns import MAX_POINTS, cloud_of
 from semmap.nodes.perception_node.input.viewpoint import Placement
 from semmap.schemas.errors import BadFile, BadRequest
-from semmap.schemas.wording import few
+from semmap.schemas.wording import counted, few
 
 CLOUD: Final = "sensor_msgs/msg/PointCloud2"
 _TYPES: Final = ("i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8")
@@ -31,7 +32,9 @@ def read_clouds(
     """Yield clouds of a recording that are at least `every_s` seconds apart, each with a name for messages.
 
     If /tf has the frame of the clouds in `map`, `world` or `odom`, the cloud is in that frame. Otherwise
-    `placement` describes its frame. Raises BadFile, and BadRequest if the topic is missing or unclear.
+    `placement` describes its frame. Clouds with too few points, as of a covered camera, are skipped, which
+    the next one notes. Raises BadFile, also if all are skipped, and BadRequest if the topic is missing or
+    unclear.
     """
     with open_bag(path) as bag:
         topic = _choose(path, bag, topic)
@@ -40,17 +43,26 @@ def read_clouds(
         for name, message in bag.messages(transforms):
             tree.take(message, static=name.endswith("_static"))
         next_ns: int | None = None
+        skipped = list[BadFile]()
         for _, message in bag.messages([topic]):
             stamp_ns = stamp_ns_of(message.header.stamp)
             if next_ns is not None and stamp_ns < next_ns:
                 continue
-            next_ns = stamp_ns + round(every_s * 1e9)
             name = f"{path} {topic} {stamp_ns / 1e9:.3f} s"
             try:
-                cloud = _cloud(message, placement, tree)
+                cloud = checked(_cloud(message, placement, tree), Path(name))
             except ValueError as error:
                 raise BadFile(f"{name}: {error}") from None
-            yield name, checked(cloud, Path(name))
+            except BadFile as error:
+                skipped.append(error)
+                continue
+            next_ns = stamp_ns + round(every_s * 1e9)
+            if skipped:
+                note = f"{counted(len(skipped), 'cloud')} before it skipped: {skipped[0].text}"
+                cloud, skipped = replace(cloud, notes=(*cloud.notes, note)), []
+            yield name, cloud
+        if next_ns is None and skipped:
+            raise skipped[0]
 
 
 def _choose(path: Path, bag: Bag, topic: str | None) -> str:
@@ -97,7 +109,7 @@ def columns_of(message: Any) -> dict[str, NDArray[Any]]:
     fields = [field for field in message.fields if field.count == 1 and 1 <= field.datatype <= len(_TYPES)]
     formats = [np.dtype(order + _TYPES[field.datatype - 1]) for field in fields]
     ends = [field.offset + of.itemsize for field, of in zip(fields, formats, strict=True)]
-    if height * width > MAX_POINTS or max(ends, default=0) > step or row < width * step:
+    if height * width > MAX_POINTS or max(ends, default=0) > step or step < 1 or row < width * step:
         raise ValueError(f"the cloud declares {width} x {height} points that do not fit its fields")
     if len(message.data) < height * row:
         raise ValueError(f"the cloud is truncated: {len(message.data)} of {height * row} bytes")

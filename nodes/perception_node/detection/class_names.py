@@ -32,6 +32,8 @@ def _coco_91() -> tuple[str, ...]:
 
 COCO_91 = _coco_91()
 """The classes by their number in COCO's files, as RF-DETR numbers them; "" for a number without a class."""
+_MOST = 100_000
+"""A larger number of a class is an error; the longest lists of classes, as of ImageNet, have 22,000."""
 
 
 def read_names(path: Path) -> tuple[str, ...]:
@@ -74,8 +76,11 @@ def names_of(
 
 
 def coco_names(classes: int) -> tuple[str, ...]:
-    """Return the names of COCO's classes for a model with this number of classes, 0 if unknown."""
-    return COCO_91 if classes in (len(COCO_91), len(COCO_91) - 1) else COCO_80
+    """Return the names of COCO's classes for a model with this number of classes, 0 if unknown.
+
+    A model may have one class more, for no thing.
+    """
+    return COCO_91 if classes in (len(COCO_91), len(COCO_91) + 1) else COCO_80
 
 
 def _of_metadata(text: str) -> tuple[str, ...]:
@@ -86,6 +91,8 @@ def _of_metadata(text: str) -> tuple[str, ...]:
         return ()
     if isinstance(found, list):
         found = dict(enumerate(found))
-    if not isinstance(found, dict) or not all(isinstance(number, int) for number in found):
+    if not isinstance(found, dict) or not all(
+        isinstance(number, int) and 0 <= number < _MOST for number in found
+    ):
         return ()
     return tuple(str(found.get(number, "")) for number in range(max(found, default=-1) + 1))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import threading
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +36,7 @@ _TYPES = {
 
 
 class DetectorModel:
-    """A detector or instance segmenter. Thread-safe."""
+    """A detector or instance segmenter. Thread-safe: several images may be in work at once."""
 
     def __init__(
         self,
@@ -55,7 +54,6 @@ class DetectorModel:
         self.file = path.name
         self._least = least_score
         self._session = _session(path, threads or max(1, (os.cpu_count() or 1) // 2))
-        self._lock = threading.Lock()
         metadata = self._session.get_modelmeta().custom_metadata_map
         try:
             _require_task(metadata.get("task", ""))
@@ -78,8 +76,7 @@ class DetectorModel:
         """
         values, placement = self._layout.input.prepare(colours, *self._size)
         try:
-            with self._lock:
-                found = self._decode(self._run(values))
+            found = self._decode(self._run(values))
         except ValueError as error:
             raise BadFile(f"{self.file}: {error}") from None
         rows = select(found, self._least)

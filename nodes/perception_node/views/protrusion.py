@@ -41,6 +41,8 @@ _SMALL_POINTS = 300
 _FEWEST_POINTS, _FEWEST_CUT = 100, 600
 """Minimum number of points of a thing, and of one that an image edge cuts."""
 _ALONG_RAY, _ELONGATED = np.cos(np.radians(12)), 2.5
+_FEWEST_CELLS = 3
+"""Fewer have no direction: a thing of a few millimetres, close to the camera."""
 
 
 class Protrusion(NamedTuple):
@@ -98,7 +100,7 @@ def _doubt(thing: Thing, found: Sequence[Protrusion | None]) -> str:
 
 def _is_along_ray(thing: Thing) -> bool:
     """Return whether a thing is elongated and points to the only camera that sees it."""
-    if len(thing.eyes) > 1:
+    if len(thing.eyes) > 1 or len(thing.cells) < _FEWEST_CELLS:
         return False
     middle = thing.cells.mean(axis=0)
     spread, axes = np.linalg.eigh(np.cov((thing.cells - middle).T))

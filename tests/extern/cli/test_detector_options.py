@@ -31,6 +31,8 @@ def test_without_a_detector_there_are_no_settings(model):
     for options in ((None, None, "yolox", None), (None, None, None, 0.5)):
         with pytest.raises(BadRequest, match=r"requires --detector MODEL\.onnx"):
             detector_settings(*options, perception=True)
+    with pytest.raises(BadRequest, match="--detector-score must be a number from 0 to 1"):
+        detector_settings(model, None, None, float("nan"), perception=True)
     with pytest.raises(BadRequest, match="--detector requires --perception"):
         detector_settings(model, None, None, None, perception=False)
 

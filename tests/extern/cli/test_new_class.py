@@ -37,5 +37,6 @@ def test_a_new_class_is_declared_below_object_with_its_words_as_label():
     assert "<http://x.org/#Power_Drill> a <http://www.w3.org/2002/07/owl#Class>" in made.turtle
     assert "subClassOf> <http://x.org/#Object>" in made.turtle
     assert '"power \\"drill\\""@en .' in made.turtle
+    assert '"drill \U0001f527"@en .' in declare_class("drill \U0001f527", CLASSES).turtle  # no surrogates
     with pytest.raises(BadRequest, match="the TBox has no class Object"):
         declare_class("drill", CLASSES[1:])

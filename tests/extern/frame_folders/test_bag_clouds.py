@@ -81,6 +81,17 @@ def test_some_of_the_clouds_are_read(tmp_path):
     assert len(read(write(tmp_path, "mcap", said), every_s=1.0)) == 3
 
 
+def test_clouds_without_points_are_skipped_unless_all_are(tmp_path):
+    bad = [cloud(FLOOR[:0]), cloud(np.full((50, 3), np.nan), at_s=0.1)]
+    good = cloud(FLOOR + np.array([0.0, 0.0, 2.0]), at_s=0.2)
+    (found,) = read(write(tmp_path, "mcap", [*bad, good]), every_s=1.0)
+    assert found.notes[-1].startswith("2 clouds before it skipped: ")
+    assert found.notes[-1].endswith("0.000 s contains no points")
+    (tmp_path / "bad").mkdir()
+    with pytest.raises(BadFile, match="contains no points"):
+        read(write(tmp_path / "bad", "mcap", bad))
+
+
 def test_topics_of_clouds_are_listed(tmp_path):
     (tmp_path / "two").mkdir()
     two = write(tmp_path / "two", "mcap", [cloud(FLOOR), cloud(FLOOR, topic="/other")])
@@ -102,6 +113,7 @@ def test_topics_of_clouds_are_listed(tmp_path):
     [
         ({"width": 100_000_000}, "do not fit its fields"),
         ({"point_step": 12, "row_step": 12_000}, "do not fit its fields"),
+        ({"point_step": 0, "row_step": 0, "fields": []}, "do not fit its fields"),
         ({"data": np.zeros(100, np.uint8)}, "truncated: 100 of 32000 bytes"),
     ],
 )

@@ -1,5 +1,7 @@
 """A detector's model: the layouts of the real exports, with constant outputs."""
 
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -200,6 +202,23 @@ def test_other_inputs_and_other_files_are_rejected(tmp_path):
         DetectorModel(tmp_path / "text.onnx")
     with pytest.raises(BadFile, match="there is no file"):
         DetectorModel(tmp_path / "absent.onnx")
+
+
+def test_several_images_are_in_work_at_once(tmp_path):
+    model = DetectorModel(write_model(tmp_path / "m.onnx", LAYOUTS["yolov8"][0]))
+    together, run = threading.Barrier(2, timeout=60), model._session.run
+
+    class Session:
+        def __getattr__(self, name):
+            return getattr(model_session, name)
+
+        def run(self, *given):
+            together.wait()  # a broken barrier if one image waits for the other
+            return run(*given)
+
+    model_session, model._session = model._session, Session()
+    with ThreadPoolExecutor(2) as threads:
+        assert [found.boxes for found in threads.map(model, [IMAGE, IMAGE])] == [(BOX,)] * 2
 
 
 def test_weak_detections_are_left_out(tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -122,9 +123,9 @@ def perceive(
     """Find the objects in point clouds, depth images or datasets.
 
     Point clouds are PCD or PLY files, with Open3D also .xyz, .xyzrgb and .pts files, and those in bags (.bag,
-    .db3, .mcap). Images are a colour and
-    a depth image (PNG, JPEG, TIFF, PGM, .npy). The labels are integers in the shape of the cloud: (height,
-    width), or (1, points) for unorganized clouds. 0 is the background, 1 to n are the objects.
+    .db3, .mcap). Images are a colour and a depth image (PNG, JPEG, TIFF, PGM, .npy). The labels are integers
+    in the shape of the cloud: (height, width), or (1, points) for unorganized clouds. 0 is the background, 1
+    to n are the objects.
     """
     extras.require("semmap perceive", "perception")
     if fit:
@@ -205,6 +206,8 @@ def _clouds(
         raise errors.BadRequest(f"{bags[0]} is a bag; name only bags, or only clouds and images")
     if bags:
         extras.require("semmap perceive with a bag", "ros")
+        if not math.isfinite(every_s):
+            raise errors.BadRequest("--every must be a number of seconds, such as 0.5")
         from semmap.nodes.extern.frame_folders.bag_clouds import read_clouds
 
         for bag in bags:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from xml.etree import ElementTree
 
 import numpy as np
@@ -44,15 +45,22 @@ def _run(shape: ElementTree.Element, height: int, width: int) -> MaskRun:
                 corners = [float(n) for point in shape.get("points", "").split(";") for n in point.split(",")]
                 counts = counts_of([corners], height, width)
             case "box":
-                left, top, right, bottom = (
-                    float(shape.get(side, "")) for side in ("xtl", "ytl", "xbr", "ybr")
-                )
-                counts = counts_of([[left, top, right, top, right, bottom, left, bottom]], height, width)
+                counts = counts_of([_corners_of_box(shape)], height, width)
             case _:
                 counts = _counts_in_box(shape, height, width)
     except ValueError as error:
         raise ValueError(f"a {shape.tag} of '{shape.get('label', '')}' is invalid: {error}") from None
     return MaskRun(size=(height, width), counts=tuple(counts), label=shape.get("label", ""), score=1.0)
+
+
+def _corners_of_box(shape: ElementTree.Element) -> list[float]:
+    """Return x and y of the corners of a box, which may be turned around its middle (degrees, clockwise)."""
+    left, top, right, bottom = (float(shape.get(side, "")) for side in ("xtl", "ytl", "xbr", "ybr"))
+    turn = math.radians(float(shape.get("rotation", "0")))
+    (x, y), (a, b) = ((left + right) / 2, (top + bottom) / 2), ((right - left) / 2, (bottom - top) / 2)
+    around = [(dx * a, dy * b) for dx, dy in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    cos, sin = math.cos(turn), math.sin(turn)
+    return [side for dx, dy in around for side in (x + dx * cos - dy * sin, y + dx * sin + dy * cos)]
 
 
 def _counts_in_box(shape: ElementTree.Element, height: int, width: int) -> list[int]:

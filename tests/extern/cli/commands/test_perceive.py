@@ -87,6 +87,7 @@ def test_json_is_for_programs(tmp_path, capsys):
         (["boxes.pcd", "--labels", "labels.txt"], "labels.npy"),
         (["boxes.pcd", "--labels", "nowhere/labels.npy"], "cannot be written"),
         (["empty.pcd"], "contains no points"),
+        (["table.mcap", "--every", "nan"], "--every must be a number of seconds"),
         ([], "FILE"),
     ],
 )

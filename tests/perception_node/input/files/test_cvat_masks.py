@@ -29,6 +29,13 @@ def test_polygons_boxes_and_run_lengths_are_masks(tmp_path):
     ]
 
 
+def test_a_box_may_be_turned_around_its_middle(tmp_path):
+    pen = '<box label="pen" xtl="0" ytl="2" xbr="4" ybr="4" rotation="90.00"/>'
+    expected = np.zeros((4, 6), np.int32)
+    expected[1:, 1:3] = 1  # x from 1 to 3, y from 1 to 5
+    np.testing.assert_array_equal(masks_of(tmp_path, pen).labels, expected)
+
+
 @pytest.mark.parametrize(
     ("shapes", "more", "said"),
     [
