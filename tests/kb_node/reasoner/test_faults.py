@@ -57,7 +57,7 @@ FAULTS = {
     ),
     "a negative mass": (':box1 dm:mass "-3"^^xsd:float', "box1 has mass -3"),
     "an infinite mass": (':box1 dm:mass "INF"^^xsd:float', "box1 has mass INF"),
-    "a mass that is no number": (':box1 dm:mass "NaN"^^xsd:float', "box1 has mass NaN"),
+    "a mass that is not a number": (':box1 dm:mass "NaN"^^xsd:float', "box1 has mass NaN"),
     "more than open": (':box1 dm:openness "1.5"^^xsd:float', "box1 has openness 1.5"),
     "a literal of another type": (':box1 dm:mass "1.0"^^xsd:double', "1.0 (double) is not a value of float"),
     "a number for a truth value": (':box1 dm:isOpen "2"^^xsd:integer', "not a value of boolean"),
