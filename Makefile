@@ -18,6 +18,7 @@ $(UV):
 	.tools/bin/pip install --quiet --disable-pip-version-check uv==$(UV_VERSION)
 
 .venv/.ready: uv.lock pyproject.toml | $(UV)
+	@echo "installing the locked environment; compiling its modules at the end takes a minute or two, without output"
 	$(UV) sync --locked --compile-bytecode --python python3
 	@$(BIN)/python -m compileall -q semmap semmap/nodes semmap/schemas semmap/ontology  # each start of a node, too, is quicker
 	@touch $@

@@ -492,7 +492,7 @@ class PropertyInfo(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     range: tuple[str, ...]
     """Datatypes, restricted ones in words, or classes; empty if there is no restriction."""
     datatypes: tuple[str, ...] = ()
-    """The datatypes in which values of a data property are written, such as `float` for a number from 0 to 1."""
+    """The datatypes of the values of a data property: `float` for a number from 0 to 1."""
     labels: dict[str, str]
     """Language tag (or "") to text."""
     comment: str = ""

@@ -6,11 +6,9 @@ import contextlib
 import fcntl
 import math
 import os
-import re
 import resource
 import shlex
 import signal
-import socket
 import subprocess
 import time
 from collections.abc import Callable, Iterator
@@ -25,6 +23,7 @@ from semmap.nodes.runtime.web_token import new_token
 from semmap.nodes.supervisor import presence, registry
 from semmap.nodes.supervisor.control import FILES, LONGEST_STOP_S, SILENT_S, Supervisor
 from semmap.nodes.supervisor.notices import Notices
+from semmap.nodes.supervisor.ports import find_live_view, find_web_port, require_free
 from semmap.nodes.supervisor.readiness import NO_REPLY, missing
 from semmap.nodes.supervisor.settings import Replay, Settings
 from semmap.nodes.supervisor.watchdog import StoppedProcesses, Watchdog
@@ -40,7 +39,6 @@ from semmap.schemas.health import Health
 _START_TIMEOUT_S = 120.0
 _ANSWERS_WITHIN_S = 30.0
 """A supervisord that does not reply for this time hangs. Until then the nodes continue."""
-_LIVE_PORT = 9876
 _COLUMN = max(map(len, keys.NODES))
 _LOOK_S = 0.2
 _COMPLETE_WITHIN_S = 3.0
@@ -62,13 +60,13 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
     with alone(supervisor.data):
         if supervisor.end_leftovers():
             say(f"{'cleanup':<{_COLUMN}} ended processes left running by an earlier semmap up")
-        _require_free(settings.listen)
+        require_free(settings.listen)
         require_files()
         if settings.record and settings.secure is None:  # all users of this machine can open a live view
-            settings = structs.replace(settings, live_view=_live_view())
+            settings = structs.replace(settings, live_view=find_live_view())
         token = new_token(os.environ.get(WEB_TOKEN_VARIABLE, "")) if settings.web else ""
         if settings.web:
-            settings = structs.replace(settings, web_port=_web_port(settings.web_port))
+            settings = structs.replace(settings, web_port=find_web_port(settings.web_port))
         with presence.announced(settings.reachable):
             if seeded := supervisor.seed(settings, lambda since_s: say(_describe_seeding(settings, since_s))):
                 say(f"{'map':<{_COLUMN}} {seeded}")
@@ -387,23 +385,6 @@ def _describe_seeding(settings: Settings, since_s: float) -> str:
     return f"{'map':<{_COLUMN}} {doing} ({since_s:.0f} s)"
 
 
-def _require_free(endpoint: str) -> None:
-    """Raise Refused for an endpoint on which another program of this machine listens."""
-    match = re.fullmatch(r"(?:tcp|tls)/(.+):(\d+)", endpoint)
-    if match is None:
-        return
-    host, port = match[1].strip("[]"), int(match[2])
-    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind((host, port))
-        except OSError as error:
-            raise errors.Refused(
-                f"cannot listen on {endpoint}: {error.strerror}; use another endpoint, for example"
-                f" --listen tcp/{match[1]}:{port + 1}"
-            ) from None
-
-
 def require_files() -> None:
     """Raise Refused if this user may not open as many files as supervisord and the nodes need."""
     _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
@@ -414,32 +395,9 @@ def require_files() -> None:
         )
 
 
-def _web_port(port: int) -> int:
-    """Return the port of the page: `port` if it is free, or for 0 any free one. Raises Refused."""
-    with socket.socket() as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind(("127.0.0.1", port))
-        except OSError as error:
-            raise errors.Refused(
-                f"the page cannot listen on 127.0.0.1:{port}: {error.strerror}; use another port with"
-                " --web-port, or --web-port 0 for any free one"
-            ) from None
-        return int(probe.getsockname()[1])
-
-
 def _ending(status: int) -> str:
     """Return in words how a process ended."""
     return f"was killed (signal {-status})" if status < 0 else f"ended with status {status}"
-
-
-def _live_view() -> str:
-    """Return the default address of Rerun's live view, or one with a free port if that is taken."""
-    for port in (_LIVE_PORT, 0):
-        with socket.socket() as probe, contextlib.suppress(OSError):
-            probe.bind(("127.0.0.1", port))
-            return f"127.0.0.1:{probe.getsockname()[1]}"
-    raise AssertionError("port 0 can always be bound")
 
 
 def _stop(process: subprocess.Popen[bytes]) -> None:

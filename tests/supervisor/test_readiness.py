@@ -1,5 +1,7 @@
 """What a started system waits for."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from semmap.nodes.supervisor import up
@@ -46,15 +48,18 @@ def test_what_the_coordinator_lacks_is_named(status, with_scene, said):
 
 def test_the_wait_is_reported_regularly_and_at_its_end(tmp_path, monkeypatch):
     said: list[str] = []
+    now_s = 100.0
+    monkeypatch.setattr(up, "time", SimpleNamespace(monotonic=lambda: now_s))
     settings = Settings(data=str(tmp_path), tbox="", abox=None, world="")
     foreground = up._Foreground(Supervisor(tmp_path), settings, None, None, said.append)
     foreground._report_missing("the scene", 1.0, 30.0)
     foreground._report_missing("", 31.0, 30.0)
     assert not said
-    monkeypatch.setattr(up, "SILENT_S", 0.0)
-    foreground._report_missing("the scene", 1.0, 30.0)
+    now_s += up.SILENT_S + 1.0
+    foreground._report_missing("the scene", 11.0, 30.0)
+    foreground._report_missing("the scene", 11.0, 30.0)
     foreground._report_missing("the scene", 31.0, 30.0)
     assert [line.split(maxsplit=1)[1] for line in said] == [
-        "waiting for the scene (0 s)",
+        "waiting for the scene (11 s)",
         "not complete yet: waiting for the scene; see: semmap status",
     ]

@@ -37,7 +37,9 @@ def detector_options(function: Callable[..., Any]) -> Callable[..., Any]:
         click.option(
             "--detector-layout",
             type=click.Choice(DETECTOR_LAYOUTS),
-            help="Layout of the detector's outputs. Default: recognized by their shapes.",
+            metavar="LAYOUT",
+            help=f"Layout of the detector's outputs: {', '.join(DETECTOR_LAYOUTS)}. Default: recognized by"
+            " their shapes.",
         ),
         click.option(
             "--detector-score",
@@ -113,7 +115,7 @@ def detector_settings(
     if model is None:
         return {}
     if not perception:
-        raise errors.BadRequest("--detector requires --perception")
+        raise errors.BadRequest("--detector requires --perception, or with --only the node perception")
     extras.require("semmap up --detector", "perception")
     from semmap.nodes.perception_node.detection.detector_model import DetectorModel
 

@@ -37,8 +37,8 @@ def complete_settings(options: Mapping[str, Any], *, single: bool) -> Settings:
     given = {name: value for name, value in options.items() if name in fields and value is not None}
     folder = (options["data"] or default_data()).resolve()
     has_map = (folder / JOURNAL).exists() and not options["fresh"]
-    _require_for_web(options, single=single)
     nodes = _nodes(options, single=single)
+    _require_for_web(options, single=single)
     before = None if options["fresh"] else _settings_before(folder)
     _report_ignored(options, folder, has_map=has_map)
     values = {

@@ -1,0 +1,59 @@
+"""The ports of this machine that a system listens on."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+import shlex
+import socket
+from typing import Final
+
+from semmap.nodes.supervisor import registry
+from semmap.schemas import errors
+
+_LIVE_PORT: Final = 9876
+
+
+def require_free(endpoint: str) -> None:
+    """Raise Refused for an endpoint on which another program of this machine listens."""
+    match = re.fullmatch(r"(?:tcp|tls)/(.+):(\d+)", endpoint)
+    if match is None:
+        return
+    host, port = match[1].strip("[]"), int(match[2])
+    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host, port))
+        except OSError as error:
+            cause, stop = error.strerror, ""
+            for system in registry.systems():
+                if endpoint in (system.listen, system.reachable):
+                    cause = f"the system of {system.data} listens there"
+                    stop = f"stop it (semmap down --data {shlex.quote(system.data)}), or "
+            raise errors.Refused(
+                f"cannot listen on {endpoint}: {cause}; {stop}use another endpoint, for example"
+                f" --listen tcp/{match[1]}:{port + 1}"
+            ) from None
+
+
+def find_web_port(port: int) -> int:
+    """Return the port of the page: `port` if it is free, or for 0 any free one. Raises Refused."""
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind(("127.0.0.1", port))
+        except OSError as error:
+            raise errors.Refused(
+                f"the page cannot listen on 127.0.0.1:{port}: {error.strerror}; use another port with"
+                " --web-port, or --web-port 0 for any free one"
+            ) from None
+        return int(probe.getsockname()[1])
+
+
+def find_live_view() -> str:
+    """Return the default address of Rerun's live view, or one with a free port if that is taken."""
+    for port in (_LIVE_PORT, 0):
+        with socket.socket() as probe, contextlib.suppress(OSError):
+            probe.bind(("127.0.0.1", port))
+            return f"127.0.0.1:{probe.getsockname()[1]}"
+    raise AssertionError("port 0 can always be bound")
