@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from itertools import product
+from typing import Final
 
 from msgspec import structs
 
@@ -21,7 +22,8 @@ from semmap.schemas.commands import Understand
 from semmap.schemas.entities import Entity
 from semmap.schemas.language import SemanticFrame, Understood
 
-_MOST_WORDS = 200  # per command: a minute of speech
+MOST_WORDS: Final = 200
+"""The most words of a command: a minute of speech."""
 
 
 class CommandParser:
@@ -49,8 +51,8 @@ class CommandParser:
         words = split(query.text)
         if not words:
             raise errors.BadRequest("the command contains no words")
-        if len(words) > _MOST_WORDS:
-            raise errors.BadRequest(f"the command has {len(words)} words; the maximum is {_MOST_WORDS}")
+        if len(words) > MOST_WORDS:
+            raise errors.BadRequest(f"the command has {len(words)} words; the maximum is {MOST_WORDS}")
         found = shipped().understand(query.text, self._there(), query.language, self._search.described)
         open_still = dict.fromkeys(
             argument.candidates

@@ -42,6 +42,12 @@ class TimeReader:
 
     def read(self, words: list[str], i: int) -> tuple[int, Period]:
         """Return the number of words and the period of the longest expression of time at `i`, or 0."""
+        try:
+            return self._longest(words, i)
+        except (OverflowError, ValueError):  # a time that no calendar has: 999999999999 days ago
+            return 0, Period()
+
+    def _longest(self, words: list[str], i: int) -> tuple[int, Period]:
         found = [
             self._between(words, i),
             self._during(words, i),
@@ -100,7 +106,7 @@ class TimeReader:
             return 0, None
         if length := self._lexicon.match_time("commit", words, i):
             number = words[i + length] if i + length < len(words) else ""
-            return (length + 1, Moment(commit=int(number))) if number.isdigit() else (0, None)
+            return (length + 1, Moment(commit=int(number))) if number.isdecimal() else (0, None)
         length, seconds = self._duration(words, i)
         if length and (ago := self._lexicon.match_time("ago", words, i + length)):
             return length + ago, self._ago(seconds)
@@ -157,7 +163,8 @@ class TimeReader:
         article = self._lexicon.match_time("last", words, i)
         length, weekday = self._lexicon.look_up("weekdays", words, i + article)
         if length:
-            return article + length, today - timedelta(days=(today.weekday() - weekday) % 7)
+            before = (today.weekday() - weekday) % 7
+            return article + length, today - timedelta(days=before or 7 * (article > 0))
         return 0, today
 
     def _day_after(self, words: list[str], i: int) -> tuple[int, date]:
@@ -219,7 +226,7 @@ class TimeReader:
         return length, _valid(time)
 
     def _number(self, words: list[str], i: int) -> tuple[int, float]:
-        if i < len(words) and words[i].isdigit():
+        if i < len(words) and words[i].isdecimal():
             return 1, float(words[i])
         length, number = self._lexicon.look_up("numbers", words, i)
         return (length, float(number)) if length else (0, 0.0)

@@ -5,6 +5,7 @@ from datetime import datetime
 import pytest
 
 from semmap.nodes.language.past.reading import read_questions
+from semmap.nodes.language.past.times import Period
 from semmap.nodes.language.reference_resolution.map_index import Item, MapIndex, Terms
 
 NOW = datetime(2026, 3, 2, 15, 0, 0)
@@ -104,3 +105,25 @@ def test_every_part_of_a_question_is_read(known, text, read):
 )
 def test_commands_and_questions_about_the_present_are_left_to_the_other_grammar(known, text):
     assert read_questions(text, known, set(), NOW, ("english", "italian"))[1] == []
+
+
+@pytest.mark.parametrize(
+    "time",
+    [
+        "999999999999 days ago",
+        "² minutes ago",
+        "at commit ²",
+        "at 2026-03-01T25:99",
+        "on 0001-01-01",
+        "9" * 5000,
+    ],
+)
+def test_a_time_that_no_calendar_has_is_no_time(known, time):
+    _, (question,) = read_questions(f"where was cup1 {time}", known, set(), NOW, ("english",))
+    assert question.period == Period()
+
+
+@pytest.mark.parametrize(("day", "date"), [("on monday", "2026-03-02"), ("last monday", "2026-02-23")])
+def test_the_last_weekday_is_before_today(known, day, date):
+    _, (question,) = read_questions(f"where was cup1 {day}", known, set(), NOW, ("english",))
+    assert f"{datetime.fromtimestamp(question.period.since.first_ns / 1e9):%Y-%m-%d}" == date

@@ -135,7 +135,7 @@ def find_intervals(
     and a place in those around it. `renames` has the earlier names of the entities of the facts.
     """
     renames = Renames() if renames is None else renames
-    at_first = (_with_present_names(PlacedEntity.of(entity), 0, renames) for entity in first)
+    at_first = (with_present_names(PlacedEntity.of(entity), 0, renames) for entity in first)
     placed_by_name = {placed.name: placed for placed in at_first}
     by_name = groupby(sorted(facts), key=lambda fact: fact[0])
     spots = [
@@ -146,7 +146,7 @@ def find_intervals(
     since = {fact: 0 for spot in spots for fact in spot.holding()}
     for moves in history:
         removed = [renames.present(left.name, moves.seq) for left in moves.removed]
-        changed = [_with_present_names(stood.placed, moves.seq, renames) for stood in moves.changed]
+        changed = [with_present_names(stood.placed, moves.seq, renames) for stood in moves.changed]
         names = [*(placed.name for placed in changed), *removed]
         before = {name: placed_by_name.get(name) for name in names}
         for name in removed:
@@ -170,7 +170,7 @@ def find_intervals(
     return found
 
 
-def _with_present_names(placed: PlacedEntity, seq: int, renames: Renames) -> PlacedEntity:
+def with_present_names(placed: PlacedEntity, seq: int, renames: Renames) -> PlacedEntity:
     """Return an entity after a commit under its present name, attached to the present name of its holder."""
     name, holder = renames.present(placed.name, seq), renames.present(placed.held_by, seq)
     if (name, holder) == (placed.name, placed.held_by):

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from semmap.nodes.kb_node.answers.past.episodes import texts
 from semmap.nodes.kb_node.answers.past.episodes.occurrences import Occurrences, Place
+from semmap.nodes.kb_node.answers.past.episodes.places import find_places
 from semmap.nodes.kb_node.answers.past.episodes.timeline import State, Timeline
 from semmap.nodes.kb_node.relations.facts.pair_facts import are_near
 from semmap.nodes.kb_node.relations.selection import is_in, is_on
@@ -112,7 +113,7 @@ def missing(
     evidence, parts = [], []
     for name in names:
         e = _last_change(timeline, name, first, last, "removed" if name not in now.entities else "moved")
-        where = timeline.place(now, name) if name in now.entities else ()
+        where = find_places(now.space, name) if name in now.entities else ()
         is_at = f"now {' '.join(other for _, other in where[:1])}" if where else e.what
         evidence.append(e)
         parts.append(f"{name} ({is_at}; commit {e.since} at {texts.clock(e.since_ns)})")

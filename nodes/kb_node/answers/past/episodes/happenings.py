@@ -56,6 +56,7 @@ def happened(
         return _were_there(timeline, occurrences, question, among, places, span)
     candidates = _touched(timeline, span) if among is None else sorted(among)
     claim = question.claim
+    occurrences.author(claim)  # raises here for an unknown one, not for each entity
     if event == "new":
         claim.event = "put" if places else "add"
     episodes: list[Episode] = []

@@ -79,7 +79,7 @@ class Inquiry:
 
     def _ns(self, moment: Moment) -> tuple[int, int]:
         if moment.commit is None:
-            return moment.first_ns, moment.last_ns
+            return min(moment.first_ns, END_NS), min(moment.last_ns, END_NS)
         if moment.commit > self._t.journal.last:
             raise NotKnown(f"there is no commit {moment.commit} yet; the last one is {self._t.journal.last}")
         stamp_ns = self._t.stamp(moment.commit)
@@ -133,6 +133,8 @@ class Inquiry:
         """Return the episode that the second clause is about: the last one in the period."""
         claim = self._anchor_claim()
         own = self._o.subjects(claim) if claim.subjects else ()
+        if not (own or self._subjects):
+            raise NotKnown(f"the question names no thing that was so {self._q.anchor} it")
         episodes = self._o.of(claim, own or self._subjects)
         inside = clip(episodes, span.first_ns, span.last_ns)
         if not inside:

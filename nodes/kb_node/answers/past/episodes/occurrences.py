@@ -180,7 +180,7 @@ class Occurrences:
     def _moves_in(self, name: str, places: Sequence[Place], what: str) -> list[Episode]:
         """Return the moves of an entity to, from and within places."""
         moves = self._timeline.events(name, "move", what)
-        for place in places:
+        for place in places if moves else ():
             spans = self.there((name,), place)[name]
             moves = [m for m in moves if any(touches(span, m) for span in spans)]
         return moves

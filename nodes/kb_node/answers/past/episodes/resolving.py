@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence, Set
 from datetime import datetime
 from typing import Final
 
+from semmap.nodes.kb_node.answers.command_parser import MOST_WORDS
 from semmap.nodes.kb_node.answers.entity_search import EntitySearch
 from semmap.nodes.kb_node.answers.past.commit_selection import Authorship
 from semmap.nodes.kb_node.answers.past.episodes.resolved import Referent, ResolvedQuestion
@@ -15,6 +16,7 @@ from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.language.past.question import Claim, PastQuestion
 from semmap.nodes.language.past.reading import read_questions
+from semmap.nodes.language.words import split
 from semmap.schemas import errors
 from semmap.schemas.language import Language
 from semmap.schemas.wording import few
@@ -34,7 +36,9 @@ class PastQuestionReader:
         self._read = 0
 
     def read(self, text: str, language: Language | None) -> tuple[Language, list[ResolvedQuestion]]:
-        """Return the questions about the past in a text; none if it is not one."""
+        """Return the questions about the past in a text; none if it is not one, or too long for a command."""
+        if len(split(text)) > MOST_WORDS:
+            return language or "english", []
         former = self._former_names()
         self._read_authors()
         names = {name.casefold() for name in former} | self._authors.keys()

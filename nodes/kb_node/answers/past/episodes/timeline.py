@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+import time
+from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
 from typing import Final, NamedTuple
 
@@ -11,23 +12,22 @@ from semmap.nodes.kb_node.answers.past.fact_intervals import PoseChanges, find_i
 from semmap.nodes.kb_node.answers.past.renames import Renames
 from semmap.nodes.kb_node.answers.past.span_texts import stamp_of
 from semmap.nodes.kb_node.answers.past.trails import Trails
-from semmap.nodes.kb_node.relations.geometry.solids import Solid
-from semmap.nodes.kb_node.relations.measuring import places
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
-from semmap.nodes.kb_node.relations.relation_cache import RelationCache
 from semmap.nodes.kb_node.storage.changelog import Changelog
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.kb_node.storage.trail_file import TrailLine
+from semmap.schemas import errors
 from semmap.schemas.changes import Change
 from semmap.schemas.commands import WasWhen
 from semmap.schemas.commits import Commit
 from semmap.schemas.entities import Entity, Pose, distance_m
 from semmap.schemas.episodes import Episode
 from semmap.schemas.map_history import TimedRelation
-from semmap.schemas.relations import RelationName
 
+_LONGEST_S: Final = 20.0
+"""The longest time for all questions of a text, because a thread of the pool answers them [s]."""
 _MOVED_M: Final = 0.01
 """Smaller changes of a position are not a move."""
 
@@ -50,16 +50,36 @@ class Timeline:
         limits: Thresholds,
         trail: Callable[[], Iterable[TrailLine]],
         now_ns: int,
+        longest_s: float = _LONGEST_S,
     ) -> None:
-        """`trail()` returns the lines of the stored trail of live poses."""
+        """`trail()` returns the lines of the stored trail of live poses.
+
+        Methods that read the journal raise Refused `longest_s` after the first one is called.
+        """
         self.journal, self.past, self.now_ns = journal, past, now_ns
-        self._limits, self._trail = limits, trail
+        self.limits, self._trail = limits, trail
+        self._longest_s, self._begun_s = longest_s, 0.0
         self._trails: dict[str, Trails] = {}
 
     @property
     def first_ns(self) -> int:
         """Return when the history begins [ns]."""
         return stamp_of(self.journal, self.journal.first)
+
+    def check_time(self) -> None:
+        """Raise Refused if reading the journal takes too long."""
+        self._begun_s = self._begun_s or time.monotonic()
+        if time.monotonic() - self._begun_s >= self._longest_s:
+            raise errors.Refused(
+                f"the history is too long to answer this within {self._longest_s:.0f} s;"
+                " ask about one thing or a shorter time"
+            )
+
+    def pose_changes(self) -> Iterator[PoseChanges]:
+        """Yield what the commits changed of poses, in order."""
+        for moves in self.journal.decode_partially(PoseChanges):
+            self.check_time()
+            yield moves
 
     @cached_property
     def present(self) -> State:
@@ -68,8 +88,9 @@ class Timeline:
 
     def state(self, seq: int) -> State:
         """Return the map after a commit of the history."""
+        self.check_time()
         entities = {entity.name: entity for entity in self.past.entities(seq)}
-        return State(seq, entities, Space(list(entities.values()), self._limits))
+        return State(seq, entities, Space(list(entities.values()), self.limits))
 
     def last_state_of(self, name: str) -> Entity | None:
         """Return an entity as it was when it was last changed."""
@@ -86,17 +107,6 @@ class Timeline:
     def stamp(self, seq: int) -> int:
         """Return the time of a commit [ns]."""
         return stamp_of(self.journal, seq)
-
-    def place(self, state: State, name: str) -> tuple[tuple[RelationName, str], ...]:
-        """Return what an entity is in, on and located in after a commit, the innermost place first."""
-        found: list[tuple[RelationName, str]] = list(RelationCache(state.space).spatial_relations(name))
-        if (innermost := next((other for how, other in found if how == "isLocatedIn"), None)) is not None:
-            inner = state.space.solids[innermost]
-            around = (s for s in state.space.solids.values() if s.is_place and s is not inner)
-            outer = [s for s in around if is_within(state.space, inner, s)]
-            outer.sort(key=lambda solid: solid.footprint)
-            found += [("isLocatedIn", solid.name) for solid in outer]
-        return tuple(found)
 
     def places_by_trail(self, name: str, ns: int) -> tuple[str, ...] | None:
         """Return the places of an entity at a time by its live poses, or None if none are stored."""
@@ -123,10 +133,10 @@ class Timeline:
         names, kinds = [name for name in subjects if name != other], list(relations)
         facts = [(name, relation, other) for name in names for relation in kinds]
         found = find_intervals(
-            self.journal.decode_partially(PoseChanges),
+            self.pose_changes(),
             self.past.initial_entities().values(),
             facts,
-            self._limits,
+            self.limits,
             Renames.of(self.past, (*names, other)),
             in_any_place=True,
         )
@@ -187,6 +197,7 @@ class Timeline:
         changelog = Changelog(self.journal, self.past.initial_entities)
         found = []
         for seq, had in self.past.touching(subject):
+            self.check_time()
             commit = self.journal.commit(seq)
             found.append((commit, tuple(c for c in changelog.of(commit, had) if c.name in (had, subject))))
         return found
@@ -204,12 +215,6 @@ class Timeline:
             for commit, changes in self.changes(subject)
             if any(is_event(change, kind) for change in changes)
         ]
-
-
-def is_within(space: Space, inner: Solid, outer: Solid) -> bool:
-    """Return whether a place is within another one."""
-    made = places.within(inner, outer, space.limits, also_places=True)
-    return made is not None and made.holds
 
 
 def is_event(change: Change, kind: str) -> bool:

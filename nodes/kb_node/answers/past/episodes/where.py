@@ -6,6 +6,7 @@ from typing import Final
 
 from semmap.nodes.kb_node.answers.past.episodes import texts
 from semmap.nodes.kb_node.answers.past.episodes.occurrences import NotKnown
+from semmap.nodes.kb_node.answers.past.episodes.places import find_places, follow
 from semmap.nodes.kb_node.answers.past.episodes.timeline import Timeline, is_event
 from semmap.schemas.entities import Entity
 from semmap.schemas.episodes import Episode, PastAnswer
@@ -30,7 +31,7 @@ def where_at(timeline: Timeline, name: str, seq: int, ns: int, when: str) -> Pas
     entity = state.entities.get(name)
     if entity is None:
         raise NotKnown(f"{name} was not in the map {when}{_existed(timeline, name)}")
-    found = timeline.place(state, name)
+    found = find_places(state.space, name)
     if not found:
         at = "" if entity.pose is None else " at ({:.2f}, {:.2f}, {:.2f}) m".format(*entity.pose.position_m)
         raise NotKnown(f"{name} was on, inside and in nothing of the map {when}{at}")
@@ -97,13 +98,11 @@ def visited(timeline: Timeline, name: str, first_ns: int = 0, last_ns: int = 1 <
         return _visits(timeline, name, first_ns, last_ns)
     found: list[Episode] = []
     where = ""
-    seqs = [commit.seq for commit, _ in timeline.changes(name)]
-    for seq in [timeline.journal.first - 1, *seqs] if name in timeline.past.initial_entities() else seqs:
-        stamp_ns = timeline.stamp(seq) if seq else timeline.first_ns
-        state = timeline.state(max(seq, 1))
-        now = describe(timeline.place(state, name)) if name in state.entities else ""
+    for seq, places in follow(timeline, name):
+        now = describe(places)
         if now == where:
             continue
+        stamp_ns = timeline.stamp(seq) if seq else timeline.first_ns
         if found and found[-1].until_ns is None:
             found[-1] = _ended(found[-1], seq, stamp_ns)
         if now:

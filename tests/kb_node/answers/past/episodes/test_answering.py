@@ -67,11 +67,10 @@ def ask(tmp_path_factory):
     ]
     reader = PastQuestionReader(semantic_map, EntitySearch(semantic_map), journal, past)
 
-    def answered(text):
+    def answered(text, longest_s=60.0):
         language, asked = reader.read(text, None)
-        timeline = Timeline(
-            journal, past, semantic_map.classes.limits, lambda: lines, journal.stamps.of(7) + S
-        )
+        now_ns, limits = journal.stamps.of(7) + S, semantic_map.classes.limits
+        timeline = Timeline(journal, past, limits, lambda: lines, now_ns, longest_s)
         return answer_questions(timeline, text, language, asked)
 
     yield answered
@@ -116,3 +115,14 @@ def test_the_reply_has_names_times_and_commits_as_data(ask):
 def test_it_refers_to_the_subject_of_the_question_before(ask):
     found = ask("where was cup1 at commit 3? who moved it last?")
     assert [one.names for one in found.past] == [("desk1", "studio1"), ("bruno",)]
+
+
+@pytest.mark.parametrize("text", ["where was cup1", "was anything moved in the kitchen", "who moved cup1"])
+def test_reading_the_history_has_a_time_limit(ask, text):
+    (found,) = ask(text, longest_s=0.0).past
+    assert not found.is_known
+    assert found.text.startswith("the history is too long to answer this within 0 s; ask about one thing")
+
+
+def test_a_text_that_is_too_long_for_a_command_is_no_question(ask):
+    assert ask("where was the red " + "red " * 200 + "cup").past == ()
