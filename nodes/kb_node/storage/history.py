@@ -36,6 +36,7 @@ class HistoryReader:
     def __init__(self, journal: Journal) -> None:
         self._journal = journal
         self._first: tuple[int, dict[str, Entity]] | None = None
+        self._names: tuple[tuple[int, int], dict[str, list[tuple[int, str]]]] = (0, 0), {}
 
     def history(self, query: History, only: Set[int] | None = None) -> tuple[LoggedCommit, ...]:
         """Return the commits of a time span, newest last. Raises UnknownName, BadRequest.
@@ -85,9 +86,22 @@ class HistoryReader:
         return find_earlier_names(self._journal.commit(seq)).get(name)
 
     def list_names(self, name: str) -> list[tuple[int, str]]:
-        """Return the names of an entity, newest first, each with the commit that gave it, 0 for the first."""
+        """Return the names of an entity, newest first, each with the commit that gave it, 0 for the first.
+
+        They are cached until the next commit or compaction.
+        """
+        stored = self._compacted, self._journal.last
+        cached = self._names
+        if cached[0] != stored:
+            self._names = cached = stored, {}
+        known = cached[1]
+        if name not in known:
+            known[name] = self._find_names(name, stored[1])
+        return known[name]
+
+    def _find_names(self, name: str, last: int) -> list[tuple[int, str]]:
         found: list[tuple[int, str]] = []
-        before = self._journal.last + 1
+        before = last + 1
         while True:
             for seq in reversed(self._journal.touching(name, until=before - 1)):
                 if (earlier := self._find_earlier_name(seq, name)) is not None:
