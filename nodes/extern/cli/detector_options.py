@@ -56,7 +56,7 @@ def detector_options(function: Callable[..., Any]) -> Callable[..., Any]:
 def _require_detector(
     detector: Path | None, names: Path | None, layout: str | None, score: float | None
 ) -> None:
-    """Raise BadRequest for options of a detector without a detector, or a score that is no number."""
+    """Raise BadRequest for options of a detector without a detector, or a score that is not a number."""
     for option, value in (("names", names), ("layout", layout), ("score", score)):
         if detector is None and value is not None:
             raise errors.BadRequest(f"--detector-{option} requires --detector MODEL.onnx")
