@@ -53,9 +53,9 @@ class _Item(NamedTuple):
 class BodyClasses:
     """The classes of a TBox by the words of their names, labels and synonyms in all languages.
 
-    In an English name, the last word is the kind of object (`wine_bottle` is a bottle). In a name whose only
-    words of classes are Italian, it is the first one (`bicchiere_vino` is a glass). Without classes, a name
-    without its number is its own class.
+    In an English name, the last word is the kind of object (`wine_bottle` is a bottle). In an Italian one it
+    is the first one (`bicchiere_vino` is a glass): its words of classes are Italian, and the first is not
+    also English (`telecomando_tv`). Without classes, a name without its number is its own class.
     """
 
     def __init__(self, classes: Iterable[ClassInfo] = (), class_map: Mapping[str, str] | None = None) -> None:
@@ -66,6 +66,8 @@ class BodyClasses:
         self._synonyms: dict[str, str] = {}
         self._italian: set[str] = set()
         """The expressions that are only Italian."""
+        self._shared: set[str] = set()
+        """The English expressions that are also Italian, such as `tv`."""
         table = tomllib.loads((resources.files(__package__) / "body_words.toml").read_text("utf-8"))
         self._words = {kind: frozenset(words) for kind, words in table.items() if kind != "synonyms"}
         if not self._classes:
@@ -91,7 +93,9 @@ class BodyClasses:
         for c in spatial:
             label = c.labels.get("it", "")
             for word in (label, *italian.get(c.name, ())):
-                if (key := fold(word)) and key not in known and word not in self._words["ignored"]:
+                if (key := fold(word)) in known:
+                    self._shared.add(key)
+                elif key and word not in self._words["ignored"]:
                     (self._labels if word == label else self._synonyms).setdefault(key, c.name)
                     self._italian.add(key)
 
@@ -276,7 +280,9 @@ class BodyClasses:
         classes = [row for row in range(end) if kinds[row] == "class"]
         if not classes:
             return None
-        is_first = all(items[row].is_italian for row in classes)
+        is_first = items[classes[0]].is_italian and all(
+            items[row].is_italian or fold(items[row].text) in self._shared for row in classes
+        )
         head = classes[0] if is_first else classes[-1]
         if "unknown" in (kinds[:head] if is_first else kinds[head + 1 : end]):
             return None

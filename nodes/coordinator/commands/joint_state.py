@@ -1,4 +1,4 @@
-"""Checks of commands that open or close an entity whose body has joints."""
+"""Checks of commands that open, close, switch or attach an entity whose body is in the scene."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Final
 
 from semmap.nodes.coordinator.commands.map_view import MapView
 from semmap.schemas import errors
+from semmap.schemas.attachments import GRASPING
 from semmap.schemas.commands import Command, Set, Unset, Update
 from semmap.schemas.joints import IS_OPEN, OPENING, OPENNESS, SWITCHING, Joint
 from semmap.schemas.scenes import Body
@@ -36,9 +37,10 @@ def require_openable(view: MapView, command: Set | Update) -> None:
 
 
 def require_not_of_scene(changes: Iterable[Command], bodies: Mapping[str, Body]) -> None:
-    """Raise Refused, with the command to use, if a change states joint positions that the scene determines.
+    """Raise Refused, with the command to use, if a change states what the scene determines.
 
-    This is for a scene that is the source of truth: the map would follow it and undo the change.
+    These are joint positions, switches and attachments. This is for a scene that is the source of truth: the
+    map would follow it and undo the change.
     """
     for change in changes:
         if isinstance(change, (Set, Unset)):
@@ -50,6 +52,11 @@ def require_not_of_scene(changes: Iterable[Command], bodies: Mapping[str, Body])
         if (body := bodies.get(change.name)) is None:
             continue
         stated = {normalize_property(re.split("[:#/]", word)[-1]) for word in words}
+        if grip := [p for p in GRASPING if normalize_property(p) in stated]:
+            raise errors.Refused(
+                f"{grip[0]} of {body.name} follows from the scene, which is the source of truth"
+                f" (--truth scene); to change it: semmap attach {body.name} --to HOLDER, or semmap detach"
+            )
         for properties, joints in (
             (SWITCHING, [joint for joint in body.joints if joint.switches]),
             (OPENING, [joint for joint in body.joints if not joint.switch]),

@@ -90,6 +90,23 @@ def test_what_the_scene_determines_is_rejected_with_the_command_to_use(command, 
 
 
 @pytest.mark.parametrize(
+    ("command", "what"),
+    [
+        (c.Set(name="thing1", property="isGraspedBy", values=("hand1",)), "isGraspedBy"),
+        (c.Unset(name="thing1", property="is grasped by"), "isGraspedBy"),
+        (c.Update(name="thing1", set=("graspPose=0 0 1 1 0 0 0",)), "graspPose"),
+    ],
+)
+def test_attachments_of_the_scene_are_changed_by_attach_and_detach(command, what):
+    with pytest.raises(errors.Refused) as told:
+        require_not_of_scene((command,), BODIES)
+    assert told.value.text == (
+        f"{what} of thing1 follows from the scene, which is the source of truth (--truth scene);"
+        " to change it: semmap attach thing1 --to HOLDER, or semmap detach"
+    )
+
+
+@pytest.mark.parametrize(
     "command",
     [
         c.Set(name="thing1", property="color", values=("red",)),
@@ -97,6 +114,7 @@ def test_what_the_scene_determines_is_rejected_with_the_command_to_use(command, 
         c.Remove(names=("thing1",)),
         c.Set(name="cup1", property="isOpen", values=(True,)),
         c.Set(name="door1", property="isSwitchedOn", values=(True,)),
+        c.Set(name="cup1", property="isGraspedBy", values=("thing1",)),
     ],
 )
 def test_other_changes_are_of_the_map(command):

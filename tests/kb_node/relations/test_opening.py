@@ -12,7 +12,7 @@ from semmap.nodes.kb_node.relations.geometry.opening import open_shape, position
 from semmap.nodes.kb_node.relations.measuring.proximity import gap_from_above
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.relation_reports import list_relations
-from semmap.ontology.model_shapes import own_size_m, shapes
+from semmap.ontology.model_shapes import Interior, LeafShape, ModelShape, own_size_m, shapes
 from semmap.schemas.commands import Relations
 from tests.kb_node.relations.entities import ROOM, thing
 
@@ -164,6 +164,20 @@ def test_opening_keeps_sizes_and_closing_restores_the_shape(model):
             assert math.hypot(*after) == pytest.approx(math.hypot(*before))
         assert (was == now) == (k in still)
     assert open_shape(shape, (0.0,) * len(shape.leaves)) == shape
+
+
+@pytest.mark.parametrize("position", [0.0, 0.1, 0.3])
+def test_a_drawer_below_a_desk_without_a_hollow_has_its_own(position):
+    tray = Interior(low=(0.2, -0.2, 0.6), high=(0.5, 0.2, 0.7))
+    drawer = LeafShape(
+        name="drawer", kind="slide", anchor=(0, 0, 0), axis=(0, -1, 0), limits=(0, 0.3), interiors=(tray,)
+    )
+    desk = ModelShape(size_m=(1.4, 0.7, 0.75), leaves=(drawer,))
+    (hollow,) = open_shape(desk, (position,)).interiors
+    assert hollow.low == pytest.approx((0.2, -0.2 - position, 0.6))
+    assert hollow.carried_by == "drawer"
+    if not position:
+        assert open_shape(desk, ()) == open_shape(desk, (0.0,))
 
 
 @pytest.mark.parametrize(

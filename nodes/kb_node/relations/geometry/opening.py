@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from msgspec import structs
 
@@ -18,6 +18,8 @@ Positions = tuple[float, ...]
 AS_DRAWN: Positions = ()
 _NEGLIGIBLE = 0.002
 """A joint closer to its drawn position counts as there, because this is its play [rad, m]."""
+_MOST_OF_TRAY = 0.5
+"""The share of a drawer's hollow from which on it is part of a hollow of the frame, while it is closed."""
 _NOWHERE: Vector = (0.0, 0.0, 0.0)
 _LEVEL = math.cos(math.radians(2.0))
 _LEAST_TOP = 0.02
@@ -46,13 +48,15 @@ def open_shape(shape: ModelShape, positions: Positions) -> ModelShape:
     and hollows on a slide move with it. A hinge provides supporting surfaces where it turns parts level.
     """
     if not positions:
-        return shape
+        trays = [tray for leaf in shape.leaves for tray in _list_separate_trays(leaf, shape.interiors)]
+        return structs.replace(shape, interiors=(*shape.interiors, *trays)) if trays else shape
     parts = list(shape.parts)
     surfaces: list[Surface | None] = list(shape.surfaces)
     opened: list[Surface] = []
     interiors = list(shape.interiors)
     for leaf, position in zip(shape.leaves, positions, strict=True):
         if not position:
+            interiors += _list_separate_trays(leaf, shape.interiors)
             continue
         turned, there = _motion(leaf, position)
         for k in leaf.parts:
@@ -135,6 +139,23 @@ def _move_with_slide(interior: Interior, by: str, there: _Map) -> Interior:
     return structs.replace(
         interior, low=there(interior.low), high=there(interior.high), behind=(), carried_by=by
     )
+
+
+def _list_separate_trays(leaf: LeafShape, rooms: Iterable[Interior]) -> list[Interior]:
+    """Return the hollows of a closed slide that are not in one of the frame, as of a drawer below a desk."""
+    return [
+        structs.replace(tray, carried_by=leaf.name)
+        for tray in leaf.interiors
+        if all(_find_shared_share(tray, room) < _MOST_OF_TRAY for room in rooms)
+    ]
+
+
+def _find_shared_share(tray: Interior, room: Interior) -> float:
+    """Return the share of the box of a hollow that is in another one."""
+    share = 1.0
+    for low, high, its_low, its_high in zip(tray.low, tray.high, room.low, room.high, strict=True):
+        share *= max(0.0, min(high, its_high) - max(low, its_low)) / (high - low)
+    return share
 
 
 def _level_tops(parts: Iterator[ConvexPart], least_m2: float) -> Iterator[Surface]:
