@@ -193,6 +193,12 @@ class Meanings(EntityTests):
         if phrase.superlative and names and not is_open:
             ordered = self._ordered(names, phrase)
             meaning.is_unordered, names = ordered is None, names if ordered is None else ordered
+            if self._is_beyond(phrase, names):
+                if not may_be_none:
+                    meaning.doubts.append(
+                        f"'{text}': there {'is' if len(names) == 1 else 'are'} only {len(names)}"
+                    )
+                names = []
         wants_one = (
             phrase.is_definite
             and not phrase.is_plural
@@ -217,6 +223,11 @@ class Meanings(EntityTests):
         if phrase.asked:
             meaning.verdicts = self.verdicts(phrase, meaning.names)
         return meaning
+
+    def _is_beyond(self, phrase: NounPhrase, names: Sequence[str]) -> bool:
+        """Return whether there are fewer things than an ordinal counts: the THIRD of two laptops."""
+        number = int(self._nouns.describing.sense(tuple(phrase.superlative.split())).get("ordinals", 0))
+        return abs(number) > len(names) > 0
 
     def _alike(self, phrase: NounPhrase, is_any: bool) -> list[str]:
         """Return the entities that the noun alone fits."""
@@ -265,7 +276,8 @@ class Meanings(EntityTests):
                 if owner and set(owner) & self._index.items[name].values.get("isOwnedBy", frozenset())
             ]
             if names and not owned:
-                meaning.doubts.append(f"'{by.noun} {phrase.noun}': the owner is not known")
+                said = f"{by.noun} {phrase.noun}" if by.first < phrase.head else by.noun
+                meaning.doubts.append(f"'{said}': the owner is not known")
             return owned or names
         owners = self.of(by)
         text = self._t.between(by.first, by.end)

@@ -65,10 +65,11 @@ class MessageReader(QuestionReader):
             return i + length
         if g.match("question", words, i) or words[i] in ("if",):
             return self._question(clause, i)
-        if words[i] == "to" and clause.role("Addressee") is not None and g.verb(words, i + 1)[0]:
-            clause.frame = "Request"  # tell Anna to come
-            end = self._message_end(i + 1)
-            clause.roles.append(Role("Message", i, end, i + 1))
+        to = i + (words[i : i + 2] == ("not", "to"))
+        if words[to] == "to" and clause.role("Addressee") is not None and g.verb(words, to + 1)[0]:
+            clause.frame = "Request"  # tell Anna to come, not to come
+            end = self._message_end(self._requested(to + 1))
+            clause.roles.append(Role("Message", i, end, to + 1))
             return self._addressed(clause, end)
         if words[i] == "back":
             return self._told(clause, i + 1)
@@ -79,6 +80,10 @@ class MessageReader(QuestionReader):
             clause.roles.append(Role("Message", i, end, i))
             return self._addressed(clause, end)
         return self._told_of(clause, i)
+
+    def _requested(self, i: int) -> int:
+        """Return the index after a verb at `i` that would begin a clause elsewhere: ask Anna to BRING it."""
+        return i + self._g.verb(self._words, i)[0] if self._ends_clause(i) else i
 
     def _inserted(self, clause: Clause, i: int) -> int:
         """Read a condition between commas at `i` (tell Anna, if she is there, to come); return its end."""
@@ -113,7 +118,8 @@ class MessageReader(QuestionReader):
             return i
         if words[i] in ("to", "not"):
             clause.frame = "Request"
-        end = i + 1
+        is_infinitive = words[i : i + 2] == ("not", "to")
+        end = self._requested(i + 1 + is_infinitive) if clause.frame == "Request" else i + 1
         while end < len(words) and not self._ends_clause(end):
             if starts_time(self._g, words, end) and words[end] in ("at", "in"):
                 break

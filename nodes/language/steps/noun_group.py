@@ -85,7 +85,8 @@ class NounGroupReader:
     def key(self, first: int, end: int) -> str:
         """Return the key by which the words are a known noun, or ""."""
         words = [word for base in self._bases[first:end] for word in base.split("-")]
-        for key in (" ".join(words), "".join(words)):
+        joined = "".join((*self._words[first : end - 1], *self._bases[end - 1 : end])).replace("-", "")
+        for key in (" ".join(words), joined):
             if self._nouns.is_noun(key):
                 return key
         return ""
@@ -198,7 +199,7 @@ class NounGroupReader:
                 self.is_participle(i) or word == "using" or g.is_a(word, "particle") or word in ALWAYS_VERBS
             ):
                 break
-            if seen and g.is_a(word, "stative"):
+            if seen and any(g.match(kind, words, i) for kind in ("stative", "belonging", "owning")):
                 break
             if seen and self.takes_predicate and not self._names_entity(i):
                 break
@@ -277,7 +278,7 @@ class NounGroupReader:
             phrase.kind, noun = "person", head
             phrase.attributes.append(base)
         elif g.is_a(base, "anything"):
-            noun = head
+            noun, phrase.amount.is_none = head, phrase.amount.is_none or words[head] == "nothing"
         if noun is None and g.is_a(self._bases[start], "anything"):  # something sweet
             phrase.head = start
             phrase.noun, phrase.key = words[start], self.key(start, start + 1)

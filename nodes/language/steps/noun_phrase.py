@@ -225,6 +225,14 @@ class NounPhraseReader(PronounReader):
                 if not self._relative(phrase, i + 1, with_places):
                     return
                 phrase.end += words[phrase.end : phrase.end + 1] == (",",)
+            elif (owner := self._owner(i)) is not None:
+                phrase.end = owner.end + g.match("owning", words, owner.end)
+                if any(word in ("not", "n't") for word in words[i : owner.first]):
+                    phrase.attributes.append(f"not {self._t.between(i, phrase.end)}")
+                elif owner.kind in ("speaker", "pronoun"):
+                    phrase.owner = owner
+                else:
+                    phrase.of = owner
             elif words[i] == "where" and not self.is_place(phrase):
                 return
             elif g.is_a(words[i], "relative") and i + 1 < len(words):
@@ -287,6 +295,18 @@ class NounPhraseReader(PronounReader):
         phrase.quantity, phrase.amount = bounded.quantity, bounded.amount
         return end
 
+    def _owner(self, i: int) -> NounPhrase | None:
+        """Return whose a thing is by the words at `i`: (that) belongs to ANNA, that ANNA owns; or None."""
+        is_relative = self._words[i] in ("that", "which")
+        j = i + is_relative
+        while is_relative and self._words[j : j + 1] in (("do",), ("does",), ("not",), ("n't",)):
+            j += 1
+        if length := self._g.match("belonging", self._words, j):
+            return self.read(j + length, with_places=False)
+        owner = self.read(j, with_places=False) if is_relative and j < len(self._words) else None
+        is_owner = owner is not None and self._g.match("owning", self._words, owner.end)
+        return owner if is_owner else None
+
     def _whose(self, i: int) -> int:
         """Return the end of a relative clause with *whose* at `i`: whose arm is raised; or `i`."""
         be = self._group_end(i + 1)
@@ -296,8 +316,10 @@ class NounPhraseReader(PronounReader):
     def _add_whole(self, phrase: NounPhrase, other: NounPhrase) -> None:
         """Add the thing after *of*: that of which one is a part, or those of which it is one."""
         phrase.end = other.end
-        if phrase.superlative and phrase.noun == "one" and other.key:  # the biggest of the two plates
-            phrase.noun, phrase.key, phrase.amount.total = other.noun, other.key, other.quantity
+        has_noun = bool(other.key) or other.kind == "person"
+        if phrase.superlative and phrase.noun == "one" and has_noun:  # the biggest of the two plates
+            phrase.kind, phrase.noun, phrase.key = other.kind, other.noun, other.key
+            phrase.amount.total = other.quantity
             phrase.attributes += other.attributes
             phrase.places += other.places
             phrase.excluded += other.excluded

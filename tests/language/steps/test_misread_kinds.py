@@ -1,0 +1,71 @@
+"""Requests to persons, owners, ordinals and *nothing*: wordings that must not become another command."""
+
+import pytest
+
+
+def texts(understood):
+    return [step.text for step in understood.steps]
+
+
+@pytest.mark.parametrize("said", ["tell Nora", "ask Nora"])
+@pytest.mark.parametrize(
+    "message", ["to bring me the bread", "to find a towel", "not to take the kettle", "not to open the oven"]
+)
+def test_what_a_person_is_to_do_is_a_message_and_no_step(read, said, message):
+    assert texts(read(f"{said} {message}")) == [f'Request(Addressee=nora1, Message="{message}")']
+
+
+OWNED = ["belonging to", "that belongs to", "which belongs to", "owned by", "that is owned by"]
+
+
+@pytest.mark.parametrize("by", OWNED)
+def test_the_owner_selects_the_thing(read, by):
+    assert texts(read(f"put the phone {by} the owner on the desk")) == [
+        "Placing(Theme=smartphone1, Goal=desk1)"
+    ]
+
+
+@pytest.mark.parametrize("by", [*(f"{by} Nora" for by in OWNED), "that Nora owns", "which Nora possesses"])
+def test_what_a_person_does_not_own_is_a_doubt(read, by):
+    understood = read(f"take the kettle {by}")
+    assert texts(understood) == [f'Taking(Theme="the kettle {by}")']
+    assert understood.doubts == ("no kettle is known that belongs to Nora",)
+
+
+@pytest.mark.parametrize("by", ["che appartiene a", "appartenente a", "di proprietà di"])
+def test_the_owner_is_read_in_italian(read, by):
+    understood = read(f"prendi il bollitore {by} Nora")
+    assert texts(understood) == [f'Taking(Theme="il bollitore {by} Nora")']
+    assert understood.doubts == ("no kettle is known that belongs to Nora",)
+
+
+def test_a_thing_that_is_not_of_a_person_is_left_open(read):
+    understood = read("take the towel that does not belong to Nora")
+    assert texts(understood) == ['Taking(Theme="the towel that does not belong to Nora")']
+
+
+@pytest.mark.parametrize(
+    ("thing", "there"),
+    [("the second oven", "is only 1"), ("the third kettle", "is only 1"), ("the tenth door", "are only 7")],
+)
+def test_an_ordinal_beyond_the_number_of_things_is_a_doubt(read, thing, there):
+    understood = read(f"close {thing}")
+    assert "1" not in texts(understood)[0]
+    assert understood.doubts == (f"'{thing}': there {there}",)
+
+
+@pytest.mark.parametrize(
+    "text", ["open nothing", "bring me nothing", "take nothing from the desk", "non prendere niente"]
+)
+def test_nothing_negates_its_step(read, text):
+    assert [step.negated for step in read(text).steps] == [True]
+
+
+def test_one_of_several_persons_by_a_superlative_stays_open(read):
+    assert texts(read("greet the youngest of the people in the studio")) == [
+        'Greeting(Addressee="the youngest of the people in the studio")'
+    ]
+
+
+def test_a_name_and_the_next_word_are_no_noun(read):
+    assert texts(read("tell Tomas to come")) == ['Request(Addressee="Tomas", Message="to come")']
