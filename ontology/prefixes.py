@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
+from itertools import count
 from types import MappingProxyType
 from typing import Final
 from urllib.parse import unquote, urlsplit
@@ -55,6 +56,8 @@ PREFERRED_PREFIX: Final[Term] = v.iri(WELL_KNOWN["vann"] + "preferredNamespacePr
 _PREFIX = re.compile(r"[a-z][a-z0-9_-]*")
 _SUFFIXES = re.compile(r"\.(owl|ofn|omn|owx|rdf|rdfs|ttl|nt|xml|jsonld|json|obo)$", re.IGNORECASE)
 _VERSION = re.compile(r"v?[0-9][0-9.]*$", re.IGNORECASE)
+_OF_VERSION = re.compile(r"[-_.]v?[0-9]+(\.[0-9]+)+$", re.IGNORECASE)
+"""A version at the end of a word. Other digits belong to it: `floor2`."""
 
 
 def split(iri: Term) -> tuple[str, str]:
@@ -107,13 +110,17 @@ def prefixes_of(
             found[known[namespace]] = namespace
         else:
             rest.append(namespace)
+    sharing: list[tuple[str, str]] = []
     for namespace in sorted(rest, key=lambda namespace: (namespace not in declared, namespace)):
         wanted = declared.get(namespace, "").lower()
         stem = wanted if _PREFIX.fullmatch(wanted) else _made_from(namespace)
-        prefix, number = stem, 2
-        while prefix in found or prefix in WELL_KNOWN:
-            prefix, number = f"{stem}{number}", number + 1
-        found[prefix] = namespace
+        if stem in found or stem in WELL_KNOWN:
+            sharing.append((stem, namespace))
+        else:
+            found[stem] = namespace
+    for stem, namespace in sharing:  # last, so that `lab2` is not the second `lab` if a namespace is `lab2`
+        numbered = (f"{stem}{number}" for number in count(2))
+        found[next(prefix for prefix in numbered if prefix not in found)] = namespace
     return dict(sorted(found.items()))
 
 
@@ -157,4 +164,5 @@ def _made_from(namespace: str) -> str:
     words = [_SUFFIXES.sub("", unquote(word)) for word in re.split("[/:]", parts.path) if word]
     telling = [word for word in words if not _VERSION.fullmatch(word)]
     word = telling[-1] if telling else (parts.hostname or "").removeprefix("www.").partition(".")[0]
-    return re.sub(r"[^a-z0-9_-]+", "_", word.lower()).strip("_-0123456789") or "ns"
+    plain = re.sub(r"[^a-z0-9_-]+", "_", _OF_VERSION.sub("", word).lower())
+    return plain.lstrip("_-0123456789").rstrip("_-") or "ns"

@@ -26,10 +26,23 @@ iris = st.lists(st.builds("<{}{}>".format, namespaces, locals_), unique=True, ma
         ("http://x.org/Meine%20Küche#", "meine_k_che"),
         ("urn:robots:", "robots"),
         ("http://x.org/dul#", "dul2"),
+        ("http://x.org/floor2#", "floor2"),
+        ("http://x.org/hall_3/", "hall_3"),
+        ("http://x.org/3rd-floor#", "rd-floor"),
+        ("http://x.org/bfo-2.0.owl#", "bfo"),
+        ("http://x.org/lab_v1.2#", "lab"),
     ],
 )
 def test_a_prefix_is_known_or_made_from_the_namespace(namespace, prefix):
     assert prefixes.prefixes_of([namespace]) == {prefix: namespace}
+
+
+@pytest.mark.parametrize("words", [("floor2", "floor3"), ("hall_2", "hall_3"), ("b/lab2", "a/lab2", "lab")])
+def test_a_number_in_a_prefix_is_that_of_the_namespace_if_it_has_one(words):
+    found = prefixes.prefixes_of([f"http://x.org/{word}#" for word in words])
+    for prefix, namespace in found.items():
+        meant = namespace.rpartition("/")[2].removesuffix("#")
+        assert prefix == meant or (prefix not in words and prefix.startswith(meant))
 
 
 def test_what_is_declared_is_taken_unless_it_means_something_else():

@@ -72,27 +72,35 @@ _WIDER: Final = {
 }
 """The string types that contain all values of another."""
 
-_FLOAT = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|[+-]?INF|NaN")
-_DECIMAL = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)")
-_INTEGER = re.compile(r"[+-]?\d+")
+_FLOAT = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|[+-]?INF|NaN", re.ASCII)
+_DECIMAL = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)", re.ASCII)
+_INTEGER = re.compile(r"[+-]?\d+", re.ASCII)
 _BOOLEAN = {"true": True, "1": True, "false": False, "0": False}
 _ZONE = r"(Z|[+-](?:0\d|1[0-3]):[0-5]\d|[+-]14:00)?"
-_DATE_TIME = re.compile(rf"(\d{{4}})-(\d\d)-(\d\d)T(\d\d):(\d\d):(\d\d)(\.\d+)?{_ZONE}")
-_DATE = re.compile(rf"(\d{{4}})-(\d\d)-(\d\d){_ZONE}")
-_TIME = re.compile(rf"(\d\d):(\d\d):(\d\d)(\.\d+)?{_ZONE}")
-_PARTS_OF_DATES: Final = {
-    "gYear": re.compile(rf"(-?(?:[1-9]\d{{3,}}|0\d{{3}})){_ZONE}"),
-    "gYearMonth": re.compile(rf"(-?(?:[1-9]\d{{3,}}|0\d{{3}})-(?:0[1-9]|1[0-2])){_ZONE}"),
-    "gMonth": re.compile(rf"(--(?:0[1-9]|1[0-2])){_ZONE}"),
-    "gMonthDay": re.compile(
-        rf"(--(?:(?:0[1-9]|1[0-2])-(?:[01]\d|2[0-9])|(?:0[13-9]|1[0-2])-30|(?:0[13578]|1[02])-31)){_ZONE}"
-    ),
-    "gDay": re.compile(rf"(---(?:0[1-9]|[12]\d|3[01])){_ZONE}"),
+_YEAR = r"(-?(?:[1-9]\d{3,}|0\d{3}))"
+_CLOCK = r"(\d\d):(\d\d):(\d\d)(\.\d+)?"
+_DATE_TIME = re.compile(rf"{_YEAR}-(\d\d)-(\d\d)T{_CLOCK}{_ZONE}", re.ASCII)
+_DATE = re.compile(rf"{_YEAR}-(\d\d)-(\d\d){_ZONE}", re.ASCII)
+_TIME = re.compile(rf"{_CLOCK}{_ZONE}", re.ASCII)
+_YEARS: Final = {
+    "gYear": re.compile(rf"{_YEAR}{_ZONE}", re.ASCII),
+    "gYearMonth": re.compile(rf"{_YEAR}-(0[1-9]|1[0-2]){_ZONE}", re.ASCII),
 }
+_MONTHS_AND_DAYS: Final = {
+    "gMonth": re.compile(rf"(--(?:0[1-9]|1[0-2])){_ZONE}", re.ASCII),
+    "gMonthDay": re.compile(
+        rf"(--(?:(?:0[1-9]|1[0-2])-(?:[01]\d|2[0-9])|(?:0[13-9]|1[0-2])-30|(?:0[13578]|1[02])-31)){_ZONE}",
+        re.ASCII,
+    ),
+    "gDay": re.compile(rf"(---(?:0[1-9]|[12]\d|3[01])){_ZONE}", re.ASCII),
+}
+_CYCLE: Final = 400
+"""Years after which the calendar is the same. Python's dates have the years 1 to 9999 only."""
 _DURATION = re.compile(
-    r"(-)?P(?=[\dT])(?:(\d+)Y)?(?:(\d+)M)?(?:(\d+)D)?(?:T(?=\d)(?:(\d+)H)?(?:(\d+)M)?(?:(\d+(?:\.\d+)?)S)?)?"
+    r"(-)?P(?=[\dT])(?:(\d+)Y)?(?:(\d+)M)?(?:(\d+)D)?(?:T(?=\d)(?:(\d+)H)?(?:(\d+)M)?(?:(\d+(?:\.\d+)?)S)?)?",
+    re.ASCII,
 )
-_RATIONAL = re.compile(r"([+-]?\d+)\s*/\s*(\d+)")
+_RATIONAL = re.compile(r"([+-]?\d+)\s*/\s*(\d+)", re.ASCII)
 _BASE64 = re.compile(r"(?:[\w+/]{4})*(?:[\w+/]{2}==|[\w+/]{3}=)?", re.ASCII)
 _IRI = re.compile(
     r"(?:[A-Za-z][A-Za-z0-9+.-]*:|(?![^/?#]*:))"  # a scheme, or a relative reference without a leading colon
@@ -182,10 +190,17 @@ def _packed(code: str, text: str) -> bytes:
         return struct.pack(code, -inf if text[0] == "-" else inf)
 
 
-def _write_date_time(key: tuple[str, str, Fraction]) -> str:
+def _write_date_time(key: tuple[str, tuple[int, ...], Fraction]) -> str:
     zone, moment, fraction = key
     decimals = _write_decimal(fraction)[1:] if fraction else ""
-    return moment.removesuffix("+00:00") + decimals + ("Z" if zone == "zoned" else "")
+    clock = ":".join(f"{number:02}" for number in moment[3:])
+    return f"{_write_days(moment[:3])}T{clock}{decimals}{'Z' if zone == 'zoned' else ''}"
+
+
+def _write_days(numbers: tuple[int, ...]) -> str:
+    """Return a year, or a year with its month and perhaps the day, as `-0044-03-15`."""
+    year, *others = numbers
+    return "-".join((f"{'-' if year < 0 else ''}{abs(year):04}", *(f"{number:02}" for number in others)))
 
 
 def _write_time(zone: str, seconds: Fraction) -> str:
@@ -262,9 +277,8 @@ def order_key(term: Term) -> tuple[str, Any] | None:
         return ("months", months) if months else ("seconds", seconds)
     if kind in ("dateTime", "time"):
         return (f"{kind} {key[0]}", key[1:])
-    if kind == "date" or kind in _PARTS_OF_DATES:
-        number = int(key[0]) if kind == "gYear" else key[0]
-        return (f"{kind} {key[1]}", number)
+    if kind == "date" or kind in _YEARS or kind in _MONTHS_AND_DAYS:
+        return (f"{kind} {key[1]}", key[0])
     return None
 
 
@@ -416,9 +430,17 @@ def _date_time(text: str) -> Value | None:
     if hour == 24 and (minute or second or fraction):
         return None
     zone = _zone(match[8])
-    moment = datetime.combine(date(year, month, day), time(hour % 24, minute, second))
+    cycles, alike = _in_cycle(year)
+    moment = datetime.combine(date(alike, month, day), time(hour % 24, minute, second))
     moment += timedelta(days=hour // 24) - (zone.utcoffset(None) if zone else timedelta())
-    return ("dateTime", ("zoned" if zone else "local", moment.isoformat(), fraction))
+    numbers = (cycles * _CYCLE + moment.year, *moment.timetuple()[1:6])
+    return ("dateTime", ("zoned" if zone else "local", numbers, fraction))
+
+
+def _in_cycle(year: int) -> tuple[int, int]:
+    """Return a number of cycles, and the year from 2000 to 2399 with the same calendar."""
+    cycles, rest = divmod(year - 2000, _CYCLE)
+    return cycles, 2000 + rest
 
 
 def _stamp(text: str) -> Value | None:
@@ -431,7 +453,8 @@ def _date(text: str) -> Value | None:
     if match is None:
         return None
     year, month, day = map(int, match.groups()[:3])
-    return ("date", (date(year, month, day), match[4]))
+    date(_in_cycle(year)[1], month, day)  # raises ValueError for a day that does not exist
+    return ("date", ((year, month, day), _zone_key(match[4])))
 
 
 def _time(text: str) -> Value | None:
@@ -448,15 +471,28 @@ def _time(text: str) -> Value | None:
     return ("time", ("zoned" if zone else "local", seconds % 86400 + fraction))
 
 
-def _part_of_a_date(name: str) -> Callable[[str], Value | None]:
+def _year(name: str) -> Callable[[str], Value | None]:
     def read(text: str) -> Value | None:
-        match = _PARTS_OF_DATES[name].fullmatch(text.strip(" \t\n\r"))
+        match = _YEARS[name].fullmatch(text.strip(" \t\n\r"))
         if match is None:
             return None
-        zone = match[2] or ""
-        return (name, (match[1], "Z" if zone in ("+00:00", "-00:00") else zone))
+        *numbers, zone = match.groups()
+        return (name, (tuple(map(int, numbers)), _zone_key(zone)))
 
     return read
+
+
+def _month_or_day(name: str) -> Callable[[str], Value | None]:
+    def read(text: str) -> Value | None:
+        match = _MONTHS_AND_DAYS[name].fullmatch(text.strip(" \t\n\r"))
+        return (name, (match[1], _zone_key(match[2]))) if match else None
+
+    return read
+
+
+def _zone_key(text: str | None) -> str:
+    """Return a time zone so that the spellings of UTC are equal; "" for none."""
+    return "Z" if text in ("+00:00", "-00:00") else text or ""
 
 
 def _duration(text: str) -> Value | None:
@@ -516,7 +552,8 @@ _READERS: Final[dict[str, Callable[[str], Value | None]]] = {
     "dateTimeStamp": _stamp,
     "date": _date,
     "time": _time,
-    **{name: _part_of_a_date(name) for name in _PARTS_OF_DATES},
+    **{name: _year(name) for name in _YEARS},
+    **{name: _month_or_day(name) for name in _MONTHS_AND_DAYS},
     "duration": _duration,
     "dayTimeDuration": _day_time_duration,
     "yearMonthDuration": _year_month_duration,
@@ -535,10 +572,10 @@ _WRITERS: Final[dict[str, Callable[[Any], str]]] = {
     "hexBinary": lambda octets: octets.hex().upper(),
     "base64Binary": lambda octets: base64.b64encode(octets).decode(),
     "dateTime": _write_date_time,
-    "date": lambda key: key[0].isoformat() + (key[1] or ""),
+    **dict.fromkeys(("date", *_YEARS), lambda key: _write_days(key[0]) + key[1]),
     "time": lambda key: _write_time(*key),
     "duration": lambda key: _write_duration(*key),
-    **dict.fromkeys(_PARTS_OF_DATES, "".join),
+    **dict.fromkeys(_MONTHS_AND_DAYS, "".join),
 }
 """Functions that write values. Values of other types are their own spelling."""
 _REALS: Final = (_OWL + "real", _OWL + "rational")

@@ -107,6 +107,29 @@ def test_ill_typed(term):
     assert datatypes(term) == []
 
 
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("3", "xsd:integer"),
+        ("3.5", "xsd:decimal"),
+        ("3.5e1", "xsd:double"),
+        ("1/2", "owl:rational"),
+        ("2026-01-02", "xsd:date"),
+        ("2026-01-02T03:04:05", "xsd:dateTime"),
+        ("03:04:05", "xsd:time"),
+        ("2026", "xsd:gYear"),
+        ("2026-01", "xsd:gYearMonth"),
+        ("--01-12", "xsd:gMonthDay"),
+        ("---12", "xsd:gDay"),
+        ("P1DT2H", "xsd:duration"),
+    ],
+)
+def test_digits_of_other_scripts_are_no_digits(text, name):
+    other = text.translate({ord("0") + digit: chr(0x0660 + digit) for digit in range(10)})
+    assert not is_ill_typed(lit(text, name))
+    assert is_ill_typed(lit(other, name))
+
+
 def test_a_literal_of_an_unknown_datatype_is_not_ill_typed():
     assert not is_ill_typed('"x"^^<http://example.org/d>')
 
@@ -133,7 +156,16 @@ def test_a_value_is_in_every_datatype_that_holds_it():
             lit("INF", "xsd:double"),
         ),
         (lit("23:00:00", "xsd:time"), lit("23:00:00.5", "xsd:time")),
-        (lit("-0044", "xsd:gYear"), lit("2026", "xsd:gYear"), lit("12026", "xsd:gYear")),
+        *(
+            tuple(lit(f"{year}{rest}", f"xsd:{name}") for year in ("-0400", "-0044", "0000", "2026", "12026"))
+            for name, rest in (
+                ("gYear", ""),
+                ("gYearMonth", "-03"),
+                ("date", "-03-15"),
+                ("dateTime", "-03-15T12:00:00"),
+                ("dateTimeStamp", "-03-15T12:00:00Z"),
+            )
+        ),
         (lit("2026-01-31", "xsd:date"), lit("2026-02-01", "xsd:date")),
         (lit("PT1H", "xsd:duration"), lit("P1D", "xsd:duration")),
     ],
@@ -310,6 +342,14 @@ def test_a_duration_is_months_and_seconds(text, same):
         ("dateTime", "2024-02-29T23:30:00-01:30", "2024-03-01T01:00:00Z"),
         ("dateTime", "2026-01-01T00:10:00+00:20", "2025-12-31T23:50:00Z"),
         ("dateTime", "2026-01-01T12:00:00.250", "2026-01-01T12:00:00.25"),
+        ("dateTime", "-0001-12-31T23:30:00-01:00", "0000-01-01T00:30:00Z"),
+        ("dateTime", "9999-12-31T24:00:00", "10000-01-01T00:00:00"),
+        ("dateTime", "123456-07-08T09:10:11", "123456-07-08T09:10:11"),
+        ("date", "-0044-03-15", "-0044-03-15"),
+        ("date", "0000-02-29-00:00", "0000-02-29Z"),
+        ("date", "2026-01-01+00:00", "2026-01-01Z"),
+        ("gYear", "-12026", "-12026"),
+        ("gYearMonth", "12026-05+00:00", "12026-05Z"),
         ("time", "00:10:00+00:20", "23:50:00Z"),
         ("time", "23:50:01.5-00:20", "00:10:01.5Z"),
         ("time", "01:02:03", "01:02:03"),
@@ -340,6 +380,9 @@ def test_the_spelling_of_times_binary_data_and_floats(kind, text, same):
         ("time", "23:59:60"),
         ("time", "24:00:00.1"),
         ("date", "2026-02-29"),
+        ("date", "-0001-02-29"),
+        ("date", "012026-01-01"),
+        ("dateTime", "12026-02-30T00:00:00"),
         ("gMonthDay", "--04-31"),
         ("gYear", "026"),
         ("base64Binary", "YQ_="),
@@ -402,7 +445,7 @@ def test_a_literal_is_excluded_only_if_its_datatype_is_known():
         (lit("P1Y", "xsd:duration"), ("months", 12)),
         (lit("PT1M", "xsd:duration"), ("seconds", 60)),
         (lit("P1YT1S", "xsd:duration"), None),
-        (lit("-0044", "xsd:gYear"), ("gYear ", -44)),
+        (lit("-0044", "xsd:gYear"), ("gYear ", (-44,))),
         (lit("--03Z", "xsd:gMonth"), ("gMonth Z", "--03")),
         (lit("true", "xsd:boolean"), None),
     ],
