@@ -10,6 +10,7 @@ from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner.fastpaths import paths
 from semmap.nodes.kb_node.sparql.triples.consequences import Consequences, inferred
 from semmap.nodes.kb_node.sparql.triples.dataset import ASSERTED, DENIED, INFERRED, Dataset, Delta
+from tests.depth import tries
 from tests.kb_node.reasoner import graphs
 from tests.kb_node.relations.entities import thing
 
@@ -136,7 +137,7 @@ COMMITS = st.lists(
 SETTINGS = settings(deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 
 
-@settings(SETTINGS, max_examples=80)
+@settings(SETTINGS, max_examples=tries(80))
 @given(COMMITS, st.sampled_from([1, paths.MANY]))
 def test_incremental_results_equal_those_from_scratch(commits, many):
     with mock.patch.object(paths, "MANY", many):
@@ -158,7 +159,7 @@ def follow_from_nothing(commits):
         assert home.seen(ASSERTED) | home.seen(DENIED) == {*home.said, *TBOX}
 
 
-@settings(SETTINGS, max_examples=40)
+@settings(SETTINGS, max_examples=tries(40))
 @given(COMMITS, COMMITS)
 def test_a_reverted_commit_restores_the_state(first, second):
     home = Home()

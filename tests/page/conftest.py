@@ -113,7 +113,7 @@ def _in_its_loop() -> Iterator[None]:
         asyncio._set_running_loop(None)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def chromium():
     """Debian's Chromium, headless."""
     playwright = pytest.importorskip("playwright.sync_api", reason="Playwright for Python is not installed")
@@ -126,14 +126,14 @@ def chromium():
         browser.close()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def system(tmp_path_factory) -> Iterator[System]:
     """The demo flat with its simulator, without a recorder."""
     with running(Path(tmp_path_factory.mktemp("page")), "--no-record") as system:
         yield system
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def web(system) -> Iterator[Web]:
     """The page of `system`."""
     with serving(system.endpoint) as web:
@@ -162,7 +162,7 @@ class Tabs:
             self._idle.append(tab)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def tabs(chromium):
     """A function that returns the tabs with or without the scene."""
     found: dict[bool, Tabs] = {}

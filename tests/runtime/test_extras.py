@@ -46,6 +46,11 @@ WITH_AN_EXTRA = {"nodes/runtime/pictures.py": ("PIL",)}
 """Shared modules that are imported only with an extra, and what that installs for them."""
 
 
+DISTRIBUTIONS = {
+    module: {name.lower() for name in found} for module, found in packages_distributions().items()
+}
+
+
 def names(requirements):
     return {re.split(r"[><;\[ ]", requirement)[0] for requirement in requirements}
 
@@ -60,11 +65,10 @@ def without(monkeypatch):
 
 
 def test_the_modules_of_an_extra_are_what_it_installs():
-    distributions = {m: {d.lower() for d in found} for m, found in packages_distributions().items()}
     for extra, modules in extras.MODULES.items():
         installed = names(PROJECT["optional-dependencies"][extra]) - NOT_EVERYWHERE
-        assert {name for module in modules for name in distributions[module] & installed} == installed
-        assert all(distributions[module] & installed for module in modules)
+        assert {name for module in modules for name in DISTRIBUTIONS[module] & installed} == installed
+        assert all(DISTRIBUTIONS[module] & installed for module in modules)
 
 
 def third_party(path):
@@ -78,9 +82,8 @@ def third_party(path):
 
 @pytest.mark.parametrize("folder", AREAS)
 def test_what_an_area_imports_its_extra_installs(folder):
-    distributions = {m: {d.lower() for d in found} for m, found in packages_distributions().items()}
     base = names(PROJECT["dependencies"])
-    allowed = {module for module, found in distributions.items() if found & base} | NOT_ASKED_FOR
+    allowed = {module for module, found in DISTRIBUTIONS.items() if found & base} | NOT_ASKED_FOR
     allowed |= {module for extra in AREAS[folder] for module in extras.MODULES[extra]}
     for path in (ROOT / folder).rglob("*.py"):
         extra = WITH_AN_EXTRA.get(path.relative_to(ROOT).as_posix(), ())

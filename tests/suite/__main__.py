@@ -9,8 +9,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from tests.suite.failures import Failure
-from tests.suite.parts import PARTS, find_failures, run_pytest
+from tests.suite.pytest_runs import IN_PARALLEL, find_failures, run_pytest
 from tests.suite.verdict import judge
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -22,14 +21,10 @@ def main(words: list[str]) -> int:
     """Return the exit status: 0 if all tests passed, at once or, a few of them, when run again alone."""
     with tempfile.TemporaryDirectory(prefix="semmap-suite-") as folder:
         noted = Path(folder, "failures.json")
-        failures: list[Failure] = []
-        for part in PARTS:
-            noted.unlink(missing_ok=True)
-            status = run_pytest(*_SHORT, *_NAME_THE_SLOWEST, *words, *part, failures=noted)
-            found = find_failures(status, noted)
-            if found is None:
-                return status or 1
-            failures += found
+        status = run_pytest(*_SHORT, *_NAME_THE_SLOWEST, *IN_PARALLEL, *words, failures=noted)
+        failures = find_failures(status, noted)
+        if failures is None:
+            return status or 1
         verdict = judge(failures, lambda name: _passes_alone(name, noted))
     print(*verdict.lines(), sep="\n", end="\n" if verdict.lines() else "", flush=True)
     return 0 if verdict.is_green else 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from collections import Counter
 from collections.abc import Callable, Iterable
 from itertools import groupby
 from pathlib import Path
@@ -14,6 +15,9 @@ from tests.shared_systems import FIXTURES, fixtures_of
 from tests.suite.failures import Failure, write_failures
 
 _Any = TypeVar("_Any")
+_BROWSER = "chromium"
+_LOAD_OF_A_PAGE = 6
+"""As many other files that need processes take as long as one that tests the page in a browser."""
 
 
 class _Recorder:
@@ -62,7 +66,7 @@ class _Dealer:
         files = [[*several] for _, several in groupby(items, lambda item: item.path)]
         slow = [several for several in files if any(item.get_closest_marker("process") for item in several)]
         fast = [several for several in files if several not in slow]
-        items[:] = deal(share_out(slow, workers, _shared_by), fast)
+        items[:] = deal(share_out(slow, workers, _shared_by, _load_of), fast)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -91,22 +95,36 @@ def shuffle(items: list[pytest.Item], seed: int) -> list[pytest.Item]:
 
 
 def share_out(
-    files: list[list[_Any]], workers: int, shared_by: Callable[[list[_Any]], Iterable[str]]
+    files: list[list[_Any]],
+    workers: int,
+    shared_by: Callable[[list[_Any]], Iterable[str]],
+    load_of: Callable[[list[_Any]], int],
 ) -> list[list[_Any]]:
-    """Return the tests of each worker: equally many files, those that use the same shared system together.
+    """Return the tests of each worker: about the same load, files that use the same shared system together.
 
-    `shared_by(tests)` returns the names of the shared systems that the tests of a file use.
+    `shared_by(tests)` returns the names of the shared systems that the tests of a file use, and
+    `load_of(tests)` how long they take, in any unit.
     """
-    used = [tuple(sorted(shared_by(tests))) for tests in files]
-    systems = sorted({system for several in used for system in several})
-    shares: list[list[list[_Any]]] = [[] for _ in range(workers)]
-    for several in sorted({*used} - {()}):
-        share = shares[systems.index(several[-1]) % workers]
-        share += [tests for tests, needed in zip(files, used, strict=True) if needed == several]
-    for tests, needed in zip(files, used, strict=True):
-        if not needed:
-            min(shares, key=len).append(tests)
-    return [[test for tests in share for test in tests] for share in shares]
+    by_systems: dict[tuple[str, ...], list[list[_Any]]] = {}
+    for tests in files:
+        by_systems.setdefault(tuple(sorted(shared_by(tests))), []).append(tests)
+    alone = by_systems.pop((), [])
+    loads: Counter[str] = Counter()
+    for systems, several in by_systems.items():  # those that use two systems are given to the worker of one
+        loads[systems[-1]] += sum(map(load_of, several))
+    shares: list[list[_Any]] = [[] for _ in range(workers)]
+    taken = [0] * workers
+    worker_of: dict[str, int] = {}
+    for system, load in loads.most_common():
+        worker_of[system] = worker = taken.index(min(taken))
+        taken[worker] += load
+    for systems, several in sorted(by_systems.items()):
+        shares[worker_of[systems[-1]]] += [test for tests in several for test in tests]
+    for tests in alone:
+        worker = taken.index(min(taken))
+        shares[worker] += tests
+        taken[worker] += load_of(tests)
+    return shares
 
 
 def deal(shares: list[list[_Any]], fast: list[list[_Any]]) -> list[_Any]:
@@ -130,7 +148,12 @@ def deal(shares: list[list[_Any]], fast: list[list[_Any]]) -> list[_Any]:
 
 def _shared_by(tests: list[pytest.Item]) -> set[str]:
     """Return the names of the shared systems that the tests of a file use."""
-    return {name for test in tests for name in fixtures_of(test) if name in FIXTURES}
+    return {name for test in tests for name in fixtures_of(test) if name in (*FIXTURES, _BROWSER)}
+
+
+def _load_of(tests: list[pytest.Item]) -> int:
+    """Return how long a file that needs processes takes, in about 4 s on two idle cores."""
+    return _LOAD_OF_A_PAGE if _BROWSER in _shared_by(tests) else 1
 
 
 def _message(report: pytest.TestReport | pytest.CollectReport) -> str:

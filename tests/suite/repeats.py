@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from tests.suite.failures import Failure
-from tests.suite.parts import PARTS, find_failures, run_pytest
+from tests.suite.pytest_runs import IN_PARALLEL, find_failures, run_pytest
 
 _ROOT = Path(__file__).resolve().parents[2]
 
@@ -64,18 +64,15 @@ def busy_loops(number: int) -> Iterator[list[subprocess.Popen[bytes]]]:
 
 
 def _run(log: Path, seed: int, words: list[str]) -> list[Failure]:
-    """Run all parts once; what failed. A run of pytest that broke off is a failure by the name of its log."""
+    """Run the tests once; what failed. A run that broke off is a failure by the name of its log."""
     noted = log.with_suffix(".json")
-    failures: list[Failure] = []
+    noted.unlink(missing_ok=True)
+    chosen = ("-m", "process and not long", "--shuffle", str(seed), *IN_PARALLEL, *words)
     with log.open("wb") as output:
-        for part in PARTS:
-            noted.unlink(missing_ok=True)
-            chosen = ("-m", "process and not long", "--shuffle", str(seed), *words, *part)
-            status = run_pytest(*chosen, failures=noted, output=output)
-            found = find_failures(status, noted)
-            broke_off = Failure(str(log), needs_process=True, message=f"pytest ended with status {status}")
-            failures += [broke_off] if found is None else found
-    return failures
+        status = run_pytest(*chosen, failures=noted, output=output)
+    found = find_failures(status, noted)
+    broke_off = Failure(str(log), needs_process=True, message=f"pytest ended with status {status}")
+    return [broke_off] if found is None else found
 
 
 if __name__ == "__main__":

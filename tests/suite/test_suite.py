@@ -1,9 +1,9 @@
-"""Pytest is run in parts; a test that needs a process and fails is run once more, alone."""
+"""Tests are dealt to workers; a test that needs a process and fails is run once more, alone."""
 
 import pytest
 
 from tests.suite import __main__ as suite
-from tests.suite import parts, repeats
+from tests.suite import pytest_runs, repeats
 from tests.suite.pytest_plugin import deal, share_out
 
 CONFTEST = """
@@ -30,7 +30,7 @@ PURE = "def test_pure(ran_before):\n    assert not ran_before\n"
 
 @pytest.fixture
 def tests(tmp_path, monkeypatch):
-    """A function that writes a file of tests, in a folder where the suite has one part."""
+    """A function that writes a file of tests, in a folder of its own."""
     (tmp_path / "pytest.ini").write_text("[pytest]\nmarkers =\n    long\n    process\n")
     (tmp_path / "conftest.py").write_text(CONFTEST)
     (tmp_path / "test_good.py").write_text(GOOD)
@@ -38,8 +38,8 @@ def tests(tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", str(suite.ROOT))
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
     monkeypatch.delenv("PYTEST_ADDOPTS", raising=False)
-    monkeypatch.setattr(suite, "PARTS", ((),))
-    monkeypatch.setattr(repeats, "PARTS", ((),))
+    monkeypatch.setattr(suite, "IN_PARALLEL", ())
+    monkeypatch.setattr(repeats, "IN_PARALLEL", ())
     monkeypatch.setattr(repeats, "_ROOT", tmp_path)
     return lambda **files: [(tmp_path / f"test_{name}.py").write_text(text) for name, text in files.items()]
 
@@ -108,13 +108,22 @@ def test_a_share_of_slow_tests_may_be_longer_than_the_others():
 
 def test_files_that_use_the_same_shared_system_are_given_to_one_worker():
     files = [["a1", "a2"], ["map1"], ["b1"], ["both1"], ["scene1"], ["c1"], ["map2"], ["d1"]]
-    shares = share_out(files, 3, _systems_by_name)
+    shares = share_out(files, 3, _systems_by_name, _load_by_name)
     assert shares == [["map1", "map2", "c1"], ["both1", "scene1", "d1"], ["a1", "a2", "b1"]]
 
 
 def test_files_without_shared_systems_are_divided_equally():
     files = [["a1", "a2"], ["b1"], ["c1"], ["d1"], ["e1"]]
-    assert share_out(files, 2, _systems_by_name) == [["a1", "a2", "c1", "e1"], ["b1", "d1"]]
+    assert share_out(files, 2, _systems_by_name, _load_by_name) == [["a1", "a2", "c1", "e1"], ["b1", "d1"]]
+
+
+def test_a_file_that_takes_longer_stands_for_several():
+    files = [["a1"], ["b1"], ["slow1"], ["c1"], ["d1"], ["e1"]]
+    assert share_out(files, 2, _systems_by_name, _load_by_name) == [["a1", "slow1"], ["b1", "c1", "d1", "e1"]]
+
+
+def _load_by_name(tests):
+    return 3 if tests[0].startswith("slow") else 1
 
 
 def _systems_by_name(tests):
@@ -127,29 +136,21 @@ def test_no_test_is_lost_by_the_dealing(workers):
     slow = [[f"{kind}{file}{test}" for test in range(file)] for file in range(5) for kind in ("s", "map")]
     slow = [file for file in slow if file]
     fast = [[f"f{file}{test}" for test in range(file)] for file in range(8)]
-    dealt = deal(share_out(slow, workers, _systems_by_name), fast)
+    dealt = deal(share_out(slow, workers, _systems_by_name, _load_by_name), fast)
     assert sorted(dealt) == sorted(test for file in slow + fast for test in file)
-
-
-def test_all_parts_are_run_and_shown_one_after_the_other(tests, monkeypatch, capfd):
-    tests(broken=BROKEN)
-    monkeypatch.setattr(suite, "PARTS", (("test_good.py",), ("test_broken.py",)))
-    assert suite.main([]) == 1
-    out = capfd.readouterr().out
-    assert out.index(" 1 passed in ") < out.index(" 1 failed in ")
 
 
 def test_temporary_files_are_in_memory_where_there_is_room(tmp_path, monkeypatch):
     monkeypatch.delenv("TMPDIR", raising=False)
-    monkeypatch.setattr(parts, "_MEMORY", tmp_path)
-    monkeypatch.setattr(parts, "_ENOUGH_BYTES", 1)
-    assert parts.keep_files_in_memory() == {"TMPDIR": str(tmp_path)}
-    monkeypatch.setattr(parts, "_ENOUGH_BYTES", 1 << 60)
-    assert parts.keep_files_in_memory() == {}
-    monkeypatch.setattr(parts, "_MEMORY", tmp_path / "missing")
-    assert parts.keep_files_in_memory() == {}
+    monkeypatch.setattr(pytest_runs, "_MEMORY", tmp_path)
+    monkeypatch.setattr(pytest_runs, "_ENOUGH_BYTES", 1)
+    assert pytest_runs.keep_files_in_memory() == {"TMPDIR": str(tmp_path)}
+    monkeypatch.setattr(pytest_runs, "_ENOUGH_BYTES", 1 << 60)
+    assert pytest_runs.keep_files_in_memory() == {}
+    monkeypatch.setattr(pytest_runs, "_MEMORY", tmp_path / "missing")
+    assert pytest_runs.keep_files_in_memory() == {}
 
 
 def test_a_folder_for_temporary_files_that_is_set_is_kept(tmp_path, monkeypatch):
     monkeypatch.setenv("TMPDIR", str(tmp_path))
-    assert parts.keep_files_in_memory() == {}
+    assert pytest_runs.keep_files_in_memory() == {}

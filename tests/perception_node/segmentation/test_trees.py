@@ -21,11 +21,11 @@ def fitted(y, **options):
 
 
 def test_the_same_probabilities():
-    model, trees = fitted(Y, max_iter=40)
+    model, trees = fitted(Y, max_iter=8)
     seen = np.concatenate([X, RNG.normal(scale=3, size=(500, 7)).astype(np.float32)])
     expected = model.predict_proba(seen)[:, 1]
     np.testing.assert_allclose(trees.probability(seen), expected, atol=1e-5)
-    assert expected.std() > 0.3
+    assert expected.std() > 0.2
 
 
 def test_trees_that_ask_nothing():

@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 
 from semmap.nodes.perception_node.recognition.features import SORTS
 from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN, VOTERS
@@ -25,6 +26,7 @@ def between(count):
     return CENTRES[pairs].mean(axis=1) + rng.normal(0.0, 0.5, (count, WIDTH)), np.full(count, UNKNOWN_AT)
 
 
+@pytest.mark.long
 def test_what_is_unlike_all_that_was_learnt_is_doubted():
     target = np.repeat(np.arange(len(CLASSES)), EACH)
     own = CENTRES[target] + rng.normal(0.0, 0.5, (len(target), WIDTH))

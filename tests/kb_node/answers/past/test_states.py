@@ -44,9 +44,10 @@ def ask(tmp_path_factory):
     commit(6, edit=(Edit(name="oven1", rename="stove1"),))
     commit(7, edit=(Edit(name="stool1", rename="oven1"),))
 
+    reader = HistoryReader(journal)  # which derives the classes of the TBox once
+
     def find(name, relation, other=True):
-        asked = WasWhen(name=name, relation=relation, other=other)
-        return find_spells(journal, HistoryReader(journal), asked, Thresholds())
+        return find_spells(journal, reader, WasWhen(name=name, relation=relation, other=other), Thresholds())
 
     yield find
     journal.close()

@@ -10,6 +10,7 @@ from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner, compiled
 from semmap.nodes.kb_node.reasoner.rules.closure import Closure
 from semmap.nodes.kb_node.sparql.triples.consequences import Consequences, inferred
 from semmap.nodes.kb_node.sparql.triples.dataset import INFERRED, Dataset, Delta
+from tests.depth import tries
 from tests.kb_node.reasoner import graphs
 from tests.kb_node.reasoner.facts import ANY_FACT
 
@@ -76,7 +77,7 @@ def test_with_every_construct_of_the_language(commits):
     _follow(TBOX, commits)
 
 
-@settings(SETTINGS, max_examples=12)
+@settings(SETTINGS, max_examples=tries(12))
 @given(_commits(_at_home()))
 def test_in_the_household(commits):
     _follow(HOUSEHOLD, commits)

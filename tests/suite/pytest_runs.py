@@ -1,4 +1,4 @@
-"""The runs of pytest that make up the suite."""
+"""A run of pytest, and what failed in it."""
 
 from __future__ import annotations
 
@@ -11,11 +11,8 @@ from typing import IO
 
 from tests.suite.failures import Failure, read_failures
 
-PARTS: tuple[tuple[str, ...], ...] = (
-    ("-n", "3", "--dist", "worksteal", "--deal", "--ignore", "tests/page"),  # many wait for a system
-    ("-n", "3", "--dist", "loadfile", "tests/page"),  # after the others: Chromium uses both cores
-)
-"""Arguments for pytest. The parts run one after the other."""
+IN_PARALLEL: tuple[str, ...] = ("-n", "3", "--dist", "worksteal", "--deal")
+"""Arguments for pytest. Three workers keep two cores busy, because many tests wait for a system."""
 _MEMORY = Path("/dev/shm")
 _ENOUGH_BYTES = 1 << 30
 """The suite's temporary files take about 100 MB."""
