@@ -23,6 +23,7 @@ def folder(tmp_path):
     return tmp_path
 
 
+@pytest.mark.long
 def test_a_folder_has_a_row_for_each_ontology(folder, tmp_path):
     file = tmp_path / "rows.json"
     command = [sys.executable, "-m", "benchmarks.ontologies", str(folder), "--json", str(file)]

@@ -53,6 +53,7 @@ def test_a_change_that_the_mirrored_tests_miss_is_tried_against_those_of_the_fol
     assert copy.try_mutant(_mutant("x + x"), tests) == SURVIVED
 
 
+@pytest.mark.long
 def test_tests_that_fail_without_a_change_are_reported(root, tmp_path):
     _write_test(root, "assert twice(2) == 5")
     copy = Copy(root, tmp_path / "copy")

@@ -1,7 +1,7 @@
 """Inferences of owlrl from the TBox, as the reference for other reasoners.
 
 Closing the TBox with the flat takes owlrl a good while, so one closure, with the examples below, serves the
-file. The fault catalogue and the check of every class are marked long.
+file. It is long: our own reasoner checks the shipped files at every start.
 """
 
 import pytest
@@ -12,6 +12,8 @@ from benchmarks.relations.accuracy import FLAT_BY_HAND
 from semmap.nodes.kb_node.owlrl.closure_process import close
 from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
 from tests.ontology.graphs import DM, MAP, classes, forget_unused_classes, local, named, read
+
+pytestmark = pytest.mark.long
 
 PREFIXES = """
 @prefix : <urn:example:> .
@@ -49,7 +51,6 @@ def test_flat_is_consistent(inferred: tuple[Graph, list[str]]) -> None:
     assert not list(graph.subjects(RDF.type, OWL.Nothing))
 
 
-@pytest.mark.long
 def test_no_named_class_is_unsatisfiable() -> None:
     graph = read(HOUSEHOLD_TTL)
     named_classes = classes(graph)
@@ -190,7 +191,6 @@ FAULTS = {
 }
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("fault", FAULTS)
 def test_fault_is_inconsistent(fault: str) -> None:
     graph = read(HOUSEHOLD_TTL)

@@ -100,7 +100,11 @@ def test_missing_imports_are_kept_after_a_restart(tmp_path):
 @pytest.mark.parametrize(
     ("file", "class_"),
     [
-        ("soma/SOMA-ALL.owl", "http://www.ease-crc.org/ont/SOMA.owl#DesignedContainer"),
+        pytest.param(
+            "soma/SOMA-ALL.owl",
+            "http://www.ease-crc.org/ont/SOMA.owl#DesignedContainer",
+            marks=pytest.mark.long,
+        ),
         ("soma/DUL.owl", "http://www.ontologydesignpatterns.org/ont/dul/DUL.owl#PhysicalObject"),
         ("knowrob/knowrob.owl", "http://knowrob.org/kb/knowrob.owl#Candle"),
         ("oro/oro.owl", "http://kb.openrobots.org#Agent"),
