@@ -125,8 +125,10 @@ def filter_document(
         by_property = entity_triples.group_by_property(triples)
         types_said = by_property[v.RDF_TYPE]
         unknown = [(labels.get(s, s), o) for s, o in unknown]
-        few = wording.few(sorted(map(v.entity_name, labels.values())), _FEW)
-        named.append(f"{wording.counted(len(labels), 'blank node')} stored with names: {few}")
+        new = sorted(name for name in map(v.entity_name, labels.values()) if of_file.find(name) is None)
+        if new:  # the others had their names at an earlier load
+            nodes = wording.counted(len(new), "blank node")
+            named.append(f"{nodes} stored with names: {wording.few(new, _FEW)}")
     words = [f"{name} (unknown class '{c}')" for c, names in users.items() for name in names]
     kept = triples
     if unknown:

@@ -31,7 +31,6 @@ from semmap.nodes.kb_node.reasoner.rules.time_limit import TimeLimit
 from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, NotCompilable
 from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
 from semmap.nodes.kb_node.reasoner.tbox.split import (
-    check_all_compilable,
     check_compilable,
     is_inert,
     is_schema,
@@ -73,7 +72,8 @@ class CompiledEngine:
         self._schema_triples = dict.fromkeys(filter(is_schema, triples))
         self._inert = Facts(dict.fromkeys(filter(is_inert, self._schema_triples)))
         active = dict.fromkeys(t for t in self._schema_triples if t not in self._inert.facts)
-        check_all_compilable(active)
+        for triple in active:
+            check_compilable(triple)
         closure = closed or Closure(active)
         if closure.clash is not None:
             raise Refused(self._prover.prove(closure.leaves(None), None))
@@ -227,15 +227,14 @@ class CompiledEngine:
         found: set[Triple] = set()
         for s, p, o in set(edges):
             rules = abox.steps.rules(p)
-            if p <= DIFFERENT or abox.is_literal(o) or (rules is not None and rules.triggers):
+            if p <= DIFFERENT or abox.is_literal(o) or (rules is not None and rules.implies_more):
                 return None
             for q, backwards in schema.roles(p):
                 if q in schema.virtual:
                     return None
                 x, y = (o, s) if backwards else (s, o)
-                name = schema.axioms[q].term
-                if name[0] == "<" and " " not in name:
-                    found.add((terms[x], name, terms[y]))
+                if schema.axioms[q].is_shown:
+                    found.add((terms[x], schema.axioms[q].term, terms[y]))
         return frozenset(found)
 
     def _matches_rules(self, change: tuple[int, Kind]) -> bool:

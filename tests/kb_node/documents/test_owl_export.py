@@ -51,6 +51,15 @@ def test_what_the_map_uses_of_the_tbox_is_declared(syntax):
 
 
 @pytest.mark.parametrize("syntax", SYNTAXES)
+def test_properties_that_nothing_declares_are_annotations(syntax):
+    _, document = exported(':a a e:Cup ; e:alias "Tasse"@de ; e:see :b .', syntax)
+    assert document.lost == 0
+    text = document.content.decode()
+    assert "AnnotationProperty" in text
+    assert "DataProperty" not in text
+
+
+@pytest.mark.parametrize("syntax", SYNTAXES)
 def test_prefixes_are_used_where_names_allow_it(syntax):
     prefixes = {"m": "http://e.org/m#", "e": "http://e.org/dm#"}
     _, document = exported(MAP, syntax, prefixes)

@@ -60,6 +60,8 @@ class Schema:
         """The rules whose conclusion is an edge of a property."""
         self.rule_results: set[Term] = set()
         """The individuals that the conclusions of rules mention."""
+        self.memberships: dict[int, None] = {}
+        """The auxiliary properties of `membership`."""
         self._class_numbers: dict[Term, int] = {}
         self._property_numbers: dict[Term, int] = {}
         self._roles: dict[int, dict[Role, tuple[Triple, ...]]] = {}
@@ -285,18 +287,22 @@ class Schema:
                 self.rule_results.update(term for term in rule.head.arguments if not swrl.is_variable(term))
 
     def conclusion(self, head: Atom) -> int | None:
-        """Return the property of the edge that a rule adds; None for an equality.
-
-        Membership in a class is an edge of an auxiliary property from the individual to itself. The class is
-        the domain of the property.
-        """
+        """Return the property of the edge that a rule adds; None for an equality."""
         if head.kind == swrl.CLASS:
-            number = self.property(f"{head.predicate} by rule")
-            self.axioms[number].domain |= 1 << self.cls(head.predicate)
-            return number
+            return self.membership(head.predicate)
         if head.kind == swrl.PROPERTY:
             return self.property(head.predicate)
         return DIFFERENT if head.kind == swrl.DIFFERENT else None
+
+    def membership(self, cls: Term) -> int:
+        """Return the auxiliary property that stores the membership in a class that edges imply.
+
+        Its edges lead from an individual to itself. The class is its domain.
+        """
+        number = self.property(f"{cls} by rule")
+        self.axioms[number].domain |= 1 << self.cls(cls)
+        self.memberships[number] = None
+        return number
 
     def nominal(self, term: Term) -> int:
         """Return the class that has one individual or value as its only member."""
