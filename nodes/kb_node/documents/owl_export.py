@@ -54,7 +54,7 @@ def declarations(triples: Iterable[Triple], known: Iterable[Triple]) -> set[Trip
     """
     triples = list(triples)
     used = {term for triple in triples for term in triple}
-    kinds = {*v.PROPERTY_KINDS, v.OWL_CLASS, v.iri(f"{v.RDFS}Datatype")}
+    kinds = {*v.PROPERTY_KINDS, v.OWL_CLASS, v.iri(f"{v.RDFS}Datatype")} - {v.iri(f"{v.RDF}Property")}
     declared = {t for t in known if t[1] == v.RDF_TYPE and t[2] in kinds and t[0] in used}
     classes = {term for s, p, o in triples if p in _BETWEEN_CLASSES for term in (s, o) if term[0] == "<"}
     own = {(c, v.RDF_TYPE, v.OWL_CLASS) for c in classes if not c.startswith(_BUILT_IN)}

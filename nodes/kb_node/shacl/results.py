@@ -14,11 +14,11 @@ class Result(Struct, frozen=True):
     """The individual or value that the shape is about."""
     message: str
     """The message of the shape, or ""."""
-    constraint: str
-    """The violated constraint, such as "sh:minCount 1"."""
     path: str
     """The property path from the individual to the value, with IRIs in <>; "" if the shape has none."""
     value: Term
     """The value that violates the shape, or ""."""
     severity: str
     shape: Term
+    constraint: str = ""
+    """The violated constraint, such as "sh:minCount 1"."""

@@ -9,7 +9,8 @@ SYNTAXES = ["functional", "manchester"]
 HEAD = f"""@prefix : <http://e.org/m#> . @prefix e: <http://e.org/dm#> . @prefix owl: <{v.OWL}> .
 @prefix rdf: <{v.RDF}> . @prefix rdfs: <{v.RDFS}> . @prefix xsd: <{v.XSD}> .
 """
-TBOX = "e:p a owl:ObjectProperty . e:d a owl:DatatypeProperty . e:Cup a owl:Class . e:Old a owl:Class ."
+TBOX = """e:p a owl:ObjectProperty . e:see a rdf:Property . e:d a owl:DatatypeProperty .
+e:Cup a owl:Class . e:Old a owl:Class ."""
 MAP = """<http://e.org/m> a owl:Ontology ; owl:versionInfo "1" .
 :a a e:Cup ; e:p :b , [ a e:Cup ; e:d 6 ; e:p :a ] ; e:d 5 , "0005"^^xsd:integer , "INF"^^xsd:float ,
     "1e5"^^xsd:double , "caffè"@it , "a\\\\b\\"c\\nd" ; rdfs:label "hi"@en ;
