@@ -339,8 +339,10 @@ def _incomplete_values(by_property: Mapping[Term, list[Triple]], triples: list[T
     numbers: dict[Term, int] = {}
     for s, p, _ in [t for t in triples if t[1] in _FLOATS]:
         numbers[s] = numbers.get(s, 0) | _BITS[p]
+    owners = {o: s for s, p, o in triples if p in entity_triples.DESCRIPTION_PROPERTIES and is_blank(o)}
     lacking = [
-        f"{_display_name(s)} has no {' and no '.join(v.local_name(p) for p in whole if not _BITS[p] & bits)}"
+        f"{_display_name(owners.get(s, s))} has no "
+        + " and no ".join(v.local_name(p) for p in whole if not _BITS[p] & bits)
         for s, bits in numbers.items()
         for whole in _WHOLES
         if 0 < sum(_BITS[p] & bits for p in whole) < sum(_BITS[p] for p in whole)

@@ -142,6 +142,10 @@ HALF = ":p a dm:Coordinates ; dm:float_coordinates_x '1'^^xsd:float"
         (f"{HALF} .", "p has no float_coordinates_y and no float_coordinates_z"),
         (f"{HALF} ; dm:float_coordinates_z 0 .", "p has no float_coordinates_y"),
         (f"{HALF} ; dm:float_coordinates_y 0 ; dm:float_coordinates_z 0 .", None),
+        (
+            ":c dm:hasPosition [ dm:float_coordinates_x 1 ; dm:float_coordinates_y 1 ] .",
+            "c has no float_coordinates_z",
+        ),
         (":s dm:float_size_x 1 ; dm:float_size_y 1 .", "s has no float_size_z"),
     ],
 )
