@@ -24,6 +24,9 @@ from semmap.nodes.kb_node.reasoner.tbox.axioms import ANY, DIFFERENT, Axioms, Ch
 from semmap.nodes.kb_node.reasoner.tbox.transitive import compile_transitive
 from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, NOTHING, SAME_AS, THING, TYPE, iri, is_literal
 
+_MEMBERSHIP = " by rule"
+"""The end of the names of auxiliary properties for the membership in a class."""
+
 
 class Schema:
     """A compiled TBox. Classes and properties without axioms may be added later."""
@@ -299,10 +302,15 @@ class Schema:
 
         Its edges lead from an individual to itself. The class is its domain.
         """
-        number = self.property(f"{cls} by rule")
+        number = self.property(f"{cls}{_MEMBERSHIP}")
         self.axioms[number].domain |= 1 << self.cls(cls)
         self.memberships[number] = None
         return number
+
+    def property_by_name(self, name: str) -> int:
+        """Return the number of a property, which may be one of `membership`. Adds it if it is new."""
+        cls = name.removesuffix(_MEMBERSHIP)
+        return self.property(name) if cls == name else self.membership(cls)
 
     def nominal(self, term: Term) -> int:
         """Return the class that has one individual or value as its only member."""
