@@ -31,6 +31,7 @@ from semmap.nodes.kb_node.reasoner.rules.time_limit import TimeLimit
 from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, NotCompilable
 from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
 from semmap.nodes.kb_node.reasoner.tbox.split import (
+    check_all_compilable,
     check_compilable,
     is_inert,
     is_schema,
@@ -72,8 +73,7 @@ class CompiledEngine:
         self._schema_triples = dict.fromkeys(filter(is_schema, triples))
         self._inert = Facts(dict.fromkeys(filter(is_inert, self._schema_triples)))
         active = dict.fromkeys(t for t in self._schema_triples if t not in self._inert.facts)
-        for triple in active:
-            check_compilable(triple)
+        check_all_compilable(active)
         closure = closed or Closure(active)
         if closure.clash is not None:
             raise Refused(self._prover.prove(closure.leaves(None), None))

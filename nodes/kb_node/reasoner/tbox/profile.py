@@ -14,8 +14,8 @@ from semmap.nodes.kb_node.reasoner.data_ranges import read_range
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.reasoner.rules.rule_table import NUMBERS
-from semmap.nodes.kb_node.reasoner.tbox.split import METACLASSES, UNIVERSAL, changes_vocabulary, is_datatype
-from semmap.nodes.kb_node.reasoner.terms import FIRST, REST, TYPE, iri, iris
+from semmap.nodes.kb_node.reasoner.tbox.split import METACLASSES, UNIVERSAL, describes_vocabulary, is_datatype
+from semmap.nodes.kb_node.reasoner.terms import TYPE, iri, iris
 
 _SUBCLASS, _SUPERCLASS, _BOTH = "as a subclass", "as a superclass", "in an equivalence"
 _CARDINALITIES = iris(
@@ -40,15 +40,13 @@ def outside_rl(schema: Iterable[Triple]) -> Counter[str]:
 
 
 def _axiom(facts: Facts, s: Term, p: Term, o: Term) -> Iterator[str]:
-    if p == FIRST and not _is_used(facts, s):
-        return
     if p == TYPE and o in _CLASSES:
         yield _CLASSES[o]
     elif p in _PREDICATES:
         yield _PREDICATES[p]
     elif p != TYPE and (s in METACLASSES or o in METACLASSES):
         yield "class of the vocabulary as a class"
-    elif changes_vocabulary((s, p, o)):
+    elif describes_vocabulary((s, p, o)):
         yield "axiom about a term of the vocabulary"
     elif o in UNIVERSAL and p == iri("rdfs:subPropertyOf"):
         yield "universal property as a superproperty"
@@ -76,18 +74,6 @@ def _axiom(facts: Facts, s: Term, p: Term, o: Term) -> Iterator[str]:
             yield "property chain of less than two properties"
     elif s[0] == "<" and p in iris("owl:intersectionOf owl:unionOf owl:oneOf"):
         yield from _above(facts, s, _BOTH) if p != iri("owl:intersectionOf") else ()
-
-
-def _is_used(facts: Facts, cell: Term) -> bool:
-    """Return whether an axiom refers to the list of a cell; those of SHACL shapes may have any members."""
-    pending = [cell]
-    for here in pending:
-        for s, p, _ in facts.match(None, None, here):
-            if p != REST:
-                return True
-            if s not in pending:
-                pending.append(s)
-    return False
 
 
 def _below(facts: Facts, cls: Term, where: str) -> Iterator[str]:

@@ -6,6 +6,7 @@ triples with the reserved vocabulary (annotated axioms, headers, reification) ar
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from functools import lru_cache
 from typing import Final
 
@@ -17,9 +18,11 @@ from semmap.nodes.kb_node.reasoner.rules.rule_table import ANNOTATIONS
 from semmap.nodes.kb_node.reasoner.tbox.axioms import PROPERTIES_WITH_MEANING, NotCompilable
 from semmap.nodes.kb_node.reasoner.terms import (
     DIFFERENT_FROM,
+    FIRST,
     NIL,
     NOTHING,
     PREFIXES,
+    REST,
     SAME_AS,
     THING,
     TYPE,
@@ -92,15 +95,37 @@ def is_inert(triple: Triple) -> bool:
     """Return whether an axiom is outside OWL 2 RL and has no consequences.
 
     It declares a subproperty of a universal property, uses classes of the vocabulary as classes of
-    individuals (`:Concept rdfs:subClassOf rdfs:Class`), or changes the meaning of the vocabulary otherwise.
-    Or it is a part of a SWRL rule, which `swrl` reads.
+    individuals (`:Concept rdfs:subClassOf rdfs:Class`), or describes terms of the vocabulary
+    (`rdf:type rdfs:domain rdfs:Resource`). Or it is a part of a SWRL rule, which `swrl` reads.
     """
     s, p, o = triple
     if swrl.is_of_rule(triple):
         return True
     if p != TYPE and (o in UNIVERSAL or s in METACLASSES or o in METACLASSES):
         return True
-    return changes_vocabulary(triple)
+    return describes_vocabulary(triple)
+
+
+def describes_vocabulary(triple: Triple) -> bool:
+    """Return whether a triple is a description of a term of the vocabulary, which is inert."""
+    return triple[1] in _DESCRIPTIONS and changes_vocabulary(triple)
+
+
+def check_all_compilable(schema: Collection[Triple]) -> None:
+    """Raise NotCompilable for a schema that redefines the vocabulary.
+
+    Members of a list that no axiom refers to, such as `sh:ignoredProperties ( rdf:type )`, may be of the
+    vocabulary.
+    """
+    rest = {s: o for s, p, o in schema if p == REST}
+    used: set[Term] = set()
+    for head in (o for _, p, o in schema if p not in (FIRST, REST) and o in rest):
+        while head in rest and head not in used:
+            used.add(head)
+            head = rest[head]
+    for triple in schema:
+        if triple[1] != FIRST or triple[0] in used:
+            check_compilable(triple)
 
 
 def changes_vocabulary(triple: Triple) -> bool:
@@ -133,4 +158,6 @@ def _has_meaning(term: Term) -> bool:
 _DESCRIBABLE = (_PLAIN_CLASSES | _PLAIN_PREDICATES | {NIL}) - PROPERTIES_WITH_MEANING
 """The terms of the vocabulary that axioms may be about."""
 _SUB_PROPERTY = iri("rdfs:subPropertyOf")
+_DESCRIPTIONS = frozenset((TYPE, _SUB_PROPERTY, *iris("rdfs:subClassOf rdfs:domain rdfs:range")))
+"""The predicates of axioms that are inert for terms of the vocabulary."""
 _OWL, _XSD = f"<{PREFIXES['owl']}", f"<{PREFIXES['xsd']}"

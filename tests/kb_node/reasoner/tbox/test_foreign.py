@@ -58,7 +58,6 @@ HARMLESS = {
     "types by another name": ":isA rdfs:subPropertyOf rdf:type . :mug1 :isA :Cup , :Unknown , 'text' , owl:Class .",
     "equality by another name": ":eq rdfs:subPropertyOf owl:sameAs . :ne rdfs:subPropertyOf owl:differentFrom ."
     ":mug1 :eq :mug2 ; :ne :mug3 .",
-    "a chain of types": ":isA owl:propertyChainAxiom ( :in rdf:type ) .",
     "the schema of RDF": "rdf:type a rdf:Property ; rdfs:domain rdfs:Resource ; rdfs:range rdfs:Class ."
     "rdf:Bag rdfs:subClassOf rdfs:Container . rdf:first rdfs:domain rdf:List . owl:sameAs rdfs:domain owl:Thing .",
     "another name for types": "rdf:type rdfs:subPropertyOf :kind . :broader rdfs:subPropertyOf rdfs:subClassOf .",
@@ -67,6 +66,10 @@ HARMLESS = {
     "a deprecated class": ":Old a owl:DeprecatedClass , owl:Class ; owl:deprecated true .",
 }
 INSTEAD = {
+    "a chain of types": (
+        ":isA owl:propertyChainAxiom :l . :l rdf:first :in ; rdf:rest :m . :m rdf:first rdf:type ; rdf:rest rdf:nil .",
+        "vocabulary",
+    ),
     "classes that are the same": (":Cup owl:sameAs :Becher .", "classes or properties are compared"),
     "an individual that is a word of the vocabulary": (
         ":x :one :y , rdf:type . :one a owl:FunctionalProperty .",
