@@ -113,7 +113,7 @@ def follow(seed, steps, theme):
 
 @pytest.mark.parametrize("theme", THEMES.values(), ids=list(THEMES))
 def test_hundreds_of_changes(theme):
-    for seed in range(tries(15)):
+    for seed in range(tries(10)):
         follow(seed, STEPS_OF_A_WORLD, theme)
 
 
