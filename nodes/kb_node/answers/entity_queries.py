@@ -134,13 +134,14 @@ class CurrentState:
         return structs.replace(found, on_nothing=_on_nothing(self._map.places.space(), entity))
 
     def _resolve(self, word: str) -> Entity:
-        """Return the entity of this name, label or class, or else the individual of this name or IRI."""
+        """Return the entity of this name, label or class, or else the individual that is not in space."""
         try:
             return self._map.resolve(word)
         except errors.UnknownName:
             with suppress(errors.UnknownName):
                 return self._map.described(word)
-            raise
+        everyone = (*self._map.entities(), *self._map.individuals.list())
+        return self._map.described(resolve_single(everyone, word))
 
     def _with_all_properties(self, found: Described) -> Described:
         iri = v.iri(found.iri)

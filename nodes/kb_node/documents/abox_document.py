@@ -125,8 +125,10 @@ def filter_document(
         by_property = entity_triples.group_by_property(triples)
         types_said = by_property[v.RDF_TYPE]
         unknown = [(labels.get(s, s), o) for s, o in unknown]
-        few = wording.few(sorted(map(v.entity_name, labels.values())), _FEW)
-        named.append(f"{wording.counted(len(labels), 'blank node')} stored with names: {few}")
+        new = sorted(name for name in map(v.entity_name, labels.values()) if of_file.find(name) is None)
+        if new:  # the others had their names at an earlier load
+            nodes = wording.counted(len(new), "blank node")
+            named.append(f"{nodes} stored with names: {wording.few(new, _FEW)}")
     words = [f"{name} (unknown class '{c}')" for c, names in users.items() for name in names]
     kept = triples
     if unknown:
@@ -337,8 +339,10 @@ def _incomplete_values(by_property: Mapping[Term, list[Triple]], triples: list[T
     numbers: dict[Term, int] = {}
     for s, p, _ in [t for t in triples if t[1] in _FLOATS]:
         numbers[s] = numbers.get(s, 0) | _BITS[p]
+    owners = {o: s for s, p, o in triples if p in entity_triples.DESCRIPTION_PROPERTIES and is_blank(o)}
     lacking = [
-        f"{_display_name(s)} has no {' and no '.join(v.local_name(p) for p in whole if not _BITS[p] & bits)}"
+        f"{_display_name(owners.get(s, s))} has no "
+        + " and no ".join(v.local_name(p) for p in whole if not _BITS[p] & bits)
         for s, bits in numbers.items()
         for whole in _WHOLES
         if 0 < sum(_BITS[p] & bits for p in whole) < sum(_BITS[p] for p in whole)

@@ -39,8 +39,6 @@ def express_in_map_frame(
     """
     document = _Document(triples, alignments, find_frame)
     perceived, relative = document.find_perceived(), document.find_relative()
-    if not perceived and not relative:
-        return triples, []
     added: list[Triple] = []
     removed: set[Triple] = set()
     unresolved: list[Term] = []
@@ -56,7 +54,10 @@ def express_in_map_frame(
         _note(perceived.keys() - unresolved, "pose", "read from perceptions"),
         _note(relative.keys() - unresolved, "relative pose", "stored in the map frame"),
         _note(unresolved, "pose", "not used, relative to something without a pose"),
+        _note(document.find_unreadable(), "pose", "not used, not three numbers and a unit quaternion"),
     )
+    if not added:
+        return triples, [note for note in notes if note]
     return [*(t for t in triples if t not in removed), *added], [note for note in notes if note]
 
 
@@ -117,6 +118,18 @@ class _Document:
             return {}
         found = ((s, self._own_pose(s)) for s in self._asserted)
         return {s: pose for s, pose in found if pose is not None and pose.reference is not None}
+
+    def find_unreadable(self) -> set[Term]:
+        """Return the individuals with a pose whose position or orientation is not valid."""
+        forms = [words for known in self._alignments for words in known.pose]
+        unreadable = {
+            node
+            for node, values in self._asserted.items()
+            if any(words.position in values for words in forms)
+            and all(aligned_values.read_pose(values, words) is None for words in forms)
+        }
+        found = aligned_values.find_pose_owners(forms, self._asserted, self._about) if unreadable else ()
+        return {owner for owner, node in found if node in unreadable}
 
     def _own_pose(self, subject: Term) -> AlignedPose | None:
         return next(aligned_values.find_stated_poses(self._alignments, self._about, subject), None)

@@ -34,6 +34,7 @@ _BETWEEN_CLASSES: Final = frozenset(
     (v.RDFS_SUB_CLASS_OF, v.iri(f"{v.OWL}equivalentClass"), v.iri(f"{v.OWL}disjointWith"))
 )
 _MEMBERS: Final = {v.iri(f"{v.OWL}distinctMembers"): v.iri(f"{v.OWL}members")}
+_ANNOTATION: Final = v.iri(f"{v.OWL}AnnotationProperty")
 _LOCAL: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
 
 
@@ -48,14 +49,19 @@ class OwlDocument(Struct, frozen=True):
 def declarations(triples: Iterable[Triple], known: Iterable[Triple]) -> set[Triple]:
     """Return the declarations of the classes, properties and datatypes that `triples` use.
 
-    `known` includes the TBox. Without a declaration, an assertion of a property would become an annotation.
+    `known` includes the TBox. Properties that it does not declare, such as `skos:altLabel`, are annotations.
+    Without a declaration, the kind of a property would be guessed by its values.
     """
     triples = list(triples)
     used = {term for triple in triples for term in triple}
-    kinds = {*v.PROPERTY_KINDS, v.OWL_CLASS, v.iri(f"{v.RDFS}Datatype")}
+    kinds = {*v.PROPERTY_KINDS, v.OWL_CLASS, v.iri(f"{v.RDFS}Datatype")} - {v.iri(f"{v.RDF}Property")}
     declared = {t for t in known if t[1] == v.RDF_TYPE and t[2] in kinds and t[0] in used}
     classes = {term for s, p, o in triples if p in _BETWEEN_CLASSES for term in (s, o) if term[0] == "<"}
-    return declared.union((c, v.RDF_TYPE, v.OWL_CLASS) for c in classes if not c.startswith(_BUILT_IN))
+    own = {(c, v.RDF_TYPE, v.OWL_CLASS) for c in classes if not c.startswith(_BUILT_IN)}
+    properties = {p for _, p, _ in triples if not p.startswith((*_BUILT_IN, f"<{v.RDFS}"))} - {
+        s for s, _, _ in declared
+    }
+    return declared | own | {(p, v.RDF_TYPE, _ANNOTATION) for p in properties}
 
 
 def write(triples: Iterable[Triple], syntax: OwlFormat, prefixes: Mapping[str, str]) -> OwlDocument:

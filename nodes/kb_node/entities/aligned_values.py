@@ -126,6 +126,15 @@ def find_stated_poses(alignments: Iterable[Alignment], about: About, iri: Term) 
                 yield AlignedPose(words, nodes, pose.position_m, pose.orientation_wxyz, reference)
 
 
+def find_pose_owners(
+    forms: Iterable[PoseMapping], subjects: Iterable[Term], about: About
+) -> Iterator[tuple[Term, Term]]:
+    """Yield the individuals with a node for their pose, valid or not, and this node."""
+    for words in forms:
+        for subject in subjects:
+            yield from ((subject, nodes[-1]) for nodes in _paths(about, subject, words.path))
+
+
 def read_pose(values: Mapping[Term, Sequence[Term]], words: PoseMapping) -> Pose | None:
     """Return the pose that an individual has by its properties, or None if it is incomplete or invalid."""
     position = _vector(values.get(words.position, ()), 3)

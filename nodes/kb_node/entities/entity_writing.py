@@ -22,7 +22,7 @@ from semmap.nodes.kb_node.entities import (
 from semmap.nodes.kb_node.entities.aligned_values import LABELS
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.entities.equal_individuals import Objects
-from semmap.nodes.kb_node.entities.property_table import STRUCTURAL, Property
+from semmap.nodes.kb_node.entities.property_table import EQUALITY, STRUCTURAL, Property
 from semmap.nodes.kb_node.entities.property_values import is_same_value, to_text
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import entity_triples
@@ -290,7 +290,8 @@ class Draft:
             try:
                 prop = table.find(statement.property, name)
             except errors.BadRequest:
-                foreign = (p for p in used if p not in table.by_iri and p not in STRUCTURAL)
+                own = table.by_iri.keys() | STRUCTURAL.keys() | EQUALITY
+                foreign = (p for p in used if p not in own)
                 if statement.property not in map(v.local_name, foreign):
                     raise
                 raise errors.BadRequest(

@@ -47,7 +47,8 @@ _FIELDS: Mapping[str, str] = {
     "name": "rename {name} NEW",
 }
 """Words for what is not a property, in lower case, with the commands that change it."""
-_EQUALITY = frozenset((v.OWL_SAME_AS, v.iri(f"{v.OWL}differentFrom")))
+EQUALITY = frozenset((v.OWL_SAME_AS, v.iri(f"{v.OWL}differentFrom")))
+"""Properties that no command changes."""
 _TYPE = frozenset(("type", "class"))
 _TEXT = frozenset((v.XSD_STRING,))
 _OF_A_STAR = frozenset((v.LEXICAL_REFERENCE, *v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ, *v.SIZE_XYZ))
@@ -161,10 +162,10 @@ class PropertyTable:
             return self.by_iri[p]
         if p is None and (how := _FIELDS.get(_fold(word), "")):
             raise errors.BadRequest(f"{word} is changed with: semmap {how.format(name=name)}")
-        if p in _EQUALITY or _fold(word) in ("sameas", "differentfrom"):
+        if p in EQUALITY or _fold(word) in ("sameas", "differentfrom"):
             raise errors.BadRequest(
                 f"'{word}' is not changed by commands, but by files: semmap load FILE.ttl with the statement"
-                f" <IRI of {name}> owl:{word.rpartition(':')[2]} <IRI>"
+                f" <IRI of {name}> owl:{word.rpartition(':')[2]} <IRI>; semmap undo COMMIT takes it back"
             )
         hint = self._names.did_you_mean(word, self.by_iri.__contains__) or "; see: semmap properties"
         raise errors.BadRequest(f"unknown property '{word}'{hint}")

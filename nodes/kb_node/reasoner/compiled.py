@@ -227,15 +227,14 @@ class CompiledEngine:
         found: set[Triple] = set()
         for s, p, o in set(edges):
             rules = abox.steps.rules(p)
-            if p <= DIFFERENT or abox.is_literal(o) or (rules is not None and rules.triggers):
+            if p <= DIFFERENT or abox.is_literal(o) or (rules is not None and rules.implies_more):
                 return None
             for q, backwards in schema.roles(p):
                 if q in schema.virtual:
                     return None
                 x, y = (o, s) if backwards else (s, o)
-                name = schema.axioms[q].term
-                if name[0] == "<" and " " not in name:
-                    found.add((terms[x], name, terms[y]))
+                if schema.axioms[q].is_shown:
+                    found.add((terms[x], schema.axioms[q].term, terms[y]))
         return frozenset(found)
 
     def _matches_rules(self, change: tuple[int, Kind]) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence, Set
+from contextlib import suppress
 from functools import partial
 from itertools import chain
 from typing import Final, NamedTuple
@@ -193,7 +194,8 @@ def resolve_word(candidates: Sequence[Entity], word: str) -> frozenset[str]:
             return frozenset(names)
     article, _, noun = folded.partition(" ")
     if article in _ARTICLES and noun:
-        return resolve_word(candidates, noun)
+        with suppress(errors.UnknownName):
+            return resolve_word(candidates, noun)
     words = ((e.name, *e.other_names, e.preferred_reference or "", e.class_) for e in candidates)
     all_words = sorted(set(chain.from_iterable(words)))
     known = {word.casefold(): word for word in all_words}.values()  # of Table and table, table

@@ -95,7 +95,7 @@ class Shapes:
                         break
             if failed is not None and error is not None:
                 failed(error.text)
-        return sorted(found, key=lambda one: (one.focus, one.path, one.message, one.value))
+        return sorted(found, key=lambda one: (one.focus, one.path, one.message, one.constraint, one.value))
 
     def _evaluate(
         self, shape: Shape, focus: Sequence[IdentifiedNode | Literal], facts: Graph, executor: SHACLExecutor
@@ -126,18 +126,19 @@ class Shapes:
         value = report.get(SH.value, [None])[0]
         return Result(
             focus=_short_term(report[SH.focusNode][0]),
-            message=errors.shortened(self._message(source, report), _LONGEST_TEXT),
+            message=errors.shortened(self._message(source), _LONGEST_TEXT),
+            constraint=errors.shortened(self._constraint(source, report), _LONGEST_TEXT),
             path="" if path is None else errors.shortened(self._path(path), _LONGEST_TEXT),
             value="" if value is None else _short_term(value),
             severity=_SEVERITIES.get(report[SH.resultSeverity][0], "violation"),
             shape=_short_term(source),
         )
 
-    def _message(self, source: Node, report: dict[Node, list[Any]]) -> str:
-        """Return the message of the shape, or the constraint that is violated."""
+    def _message(self, source: Node) -> str:
         own = [text for text in self._graph.graph.objects(source, SH.message) if isinstance(text, Literal)]
-        if own:
-            return str(min(own, key=lambda text: (_rank(text.language), str(text))))
+        return str(min(own, key=lambda text: (_rank(text.language), str(text)), default=""))
+
+    def _constraint(self, source: Node, report: dict[Node, list[Any]]) -> str:
         component = str(report[SH.sourceConstraintComponent][0])
         name = component.removeprefix(str(SH)).removesuffix("ConstraintComponent")
         parameter = name[:1].lower() + name[1:]
@@ -149,7 +150,7 @@ class Shapes:
         )
         if len(values) == 1 and isinstance(values[0], URIRef):
             limit = f" {v.local_name(to_term(values[0]))}"
-        return f"violates sh:{parameter}{limit}"
+        return f"sh:{parameter}{limit}"
 
     def _path(self, path: Node) -> str:
         if isinstance(path, URIRef):

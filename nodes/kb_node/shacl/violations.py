@@ -19,14 +19,17 @@ from semmap.schemas.commands import SHAPES_BYTES, Check
 from semmap.schemas.explanations import Term
 from semmap.schemas.replies import Checked, Violation
 
+_STEP: Final = "correct the map or the shape"
 _IRI: Final = re.compile(r"<[^<>]*>")
 
 
-def to_violation(result: Result, name_of: Callable[[Term], str], names: Mapping[Term, str]) -> Violation:
+def to_violation(
+    result: Result, name_of: Callable[[Term], str], names: Mapping[Term, str], step: str = _STEP
+) -> Violation:
     """Return a result for the client.
 
     `name_of(individual)` returns the name of an individual, and `names` has those of classes and properties
-    whose local names are not unique.
+    whose local names are not unique. `step` is the next step, unless the shape has a message.
     """
 
     def words(term: Term) -> str:
@@ -37,14 +40,20 @@ def to_violation(result: Result, name_of: Callable[[Term], str], names: Mapping[
     path = _IRI.sub(lambda found: names.get(found[0]) or v.local_name(found[0]), result.path)
     value = words(result.value) if result.value and result.value != result.focus else ""
     name = words(result.focus)
+    shape = "" if result.shape.startswith("_:") else v.local_name(result.shape)
+    message, details = result.message, [path, value]
+    if not message:
+        values = f"the value {value} of {path} violates" if value else f"the values of {path} violate"
+        message = f"{values if path else f'{value} violates' if value else 'violates'} {result.constraint}"
+        details = [f"{step} {shape}".strip()] if step else []
     return Violation(
         name=name,
-        message=result.message,
+        message=message,
         path=path,
         value=value,
         severity=cast(Any, result.severity),
-        shape="" if result.shape.startswith("_:") else v.local_name(result.shape),
-        text="; ".join(filter(None, (f"{name}: {result.message}", path, value))),
+        shape=shape,
+        text="; ".join(filter(None, (f"{name}: {message}", *details))),
     )
 
 
@@ -55,7 +64,7 @@ def describe_rejection(results: Sequence[Result], map_state: MapState) -> str:
         entity = map_state.find_by_individual(term)
         return v.entity_name(term) if entity is None else entity.name
 
-    first = to_violation(results[0], name_of, map_state.classes.qualified_names).text
+    first = to_violation(results[0], name_of, map_state.classes.qualified_names, step="").text
     more = f" (and {wording.counted(len(results) - 1, 'more violation')})" if len(results) > 1 else ""
     return f"{first}{more}; required by the shapes of the TBox (semmap up --enforce-shapes)"
 

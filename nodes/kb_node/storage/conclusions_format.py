@@ -7,7 +7,7 @@ test compares digests of rules, layouts and examples.
 
 from __future__ import annotations
 
-FORMAT = 12
+FORMAT = 13
 
 
 def format_mark() -> bytes:

@@ -1,3 +1,5 @@
+from types import SimpleNamespace
+
 import pytest
 
 from semmap.nodes.kb_node.documents import abox_document
@@ -140,6 +142,10 @@ HALF = ":p a dm:Coordinates ; dm:float_coordinates_x '1'^^xsd:float"
         (f"{HALF} .", "p has no float_coordinates_y and no float_coordinates_z"),
         (f"{HALF} ; dm:float_coordinates_z 0 .", "p has no float_coordinates_y"),
         (f"{HALF} ; dm:float_coordinates_y 0 ; dm:float_coordinates_z 0 .", None),
+        (
+            ":c dm:hasPosition [ dm:float_coordinates_x 1 ; dm:float_coordinates_y 1 ] .",
+            "c has no float_coordinates_z",
+        ),
         (":s dm:float_size_x 1 ; dm:float_size_y 1 .", "s has no float_size_z"),
     ],
 )
@@ -186,6 +192,9 @@ def test_blank_nodes_of_spatial_classes_get_names_that_stay(classes):
     assert filtered.notes[0] == f"1 blank node stored with names: {name}"
     assert (v.entity_iri(name), v.dm("near"), v.entity_iri("k")) in filtered.triples
     assert len(filtered.triples) == len(turtle(text))
+    known = abox_document.DocumentOrigin(find=lambda name: SimpleNamespace(iri=v.bare(v.entity_iri(name))))
+    again = abox_document.filter_document(turtle(text), classes, skip_unknown=False, of_file=known)
+    assert again.notes == filtered.notes[1:]
     assert filtered_names(classes, text)[0] == names
     assert filtered_names(classes, text.replace("'1'", "'2'"))[0] != names
 

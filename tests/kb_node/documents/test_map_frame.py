@@ -114,6 +114,13 @@ def test_a_pose_relative_to_something_without_a_pose_is_noted():
     assert notes == ["1 pose not used, relative to something without a pose: handle"]
 
 
+@pytest.mark.parametrize(("xyz", "xyzw"), [("1 2", "0 0 0 1"), ("1 2 3", "0 0 0 2"), ("a b c", "0 0 0 1")])
+def test_a_pose_that_is_not_valid_is_noted(xyz, xyzw):
+    poses, notes = converted(pose("cup", xyz, xyzw) + pose("table", "1 2 3"))
+    assert poses.keys() == {"table"}
+    assert notes == ["1 pose not used, not three numbers and a unit quaternion: cup"]
+
+
 def test_poses_in_a_cycle_are_rejected():
     turtle = "".join(pose(a, "0 0 1", reference=b) for a, b in ("ab", "bc", "ca"))
     with pytest.raises(

@@ -9,7 +9,8 @@ SYNTAXES = ["functional", "manchester"]
 HEAD = f"""@prefix : <http://e.org/m#> . @prefix e: <http://e.org/dm#> . @prefix owl: <{v.OWL}> .
 @prefix rdf: <{v.RDF}> . @prefix rdfs: <{v.RDFS}> . @prefix xsd: <{v.XSD}> .
 """
-TBOX = "e:p a owl:ObjectProperty . e:d a owl:DatatypeProperty . e:Cup a owl:Class . e:Old a owl:Class ."
+TBOX = """e:p a owl:ObjectProperty . e:see a rdf:Property . e:d a owl:DatatypeProperty .
+e:Cup a owl:Class . e:Old a owl:Class ."""
 MAP = """<http://e.org/m> a owl:Ontology ; owl:versionInfo "1" .
 :a a e:Cup ; e:p :b , [ a e:Cup ; e:d 6 ; e:p :a ] ; e:d 5 , "0005"^^xsd:integer , "INF"^^xsd:float ,
     "1e5"^^xsd:double , "caffè"@it , "a\\\\b\\"c\\nd" ; rdfs:label "hi"@en ;
@@ -48,6 +49,15 @@ def test_what_the_map_uses_of_the_tbox_is_declared(syntax):
     assert {s for s, _, o in stated if o in (v.OWL_CLASS, *v.PROPERTY_KINDS)} == {
         f"<http://e.org/dm#{name}>" for name in ("p", "d", "Cup")
     }
+
+
+@pytest.mark.parametrize("syntax", SYNTAXES)
+def test_properties_that_nothing_declares_are_annotations(syntax):
+    _, document = exported(':a a e:Cup ; e:alias "Tasse"@de ; e:see :b .', syntax)
+    assert document.lost == 0
+    text = document.content.decode()
+    assert "AnnotationProperty" in text
+    assert "DataProperty" not in text
 
 
 @pytest.mark.parametrize("syntax", SYNTAXES)

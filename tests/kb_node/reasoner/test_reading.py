@@ -24,7 +24,7 @@ MAP = ':mug1 a :Mug ; :on :table1 ; :mass "2.50"^^xsd:float . :mug2 owl:sameAs :
 def reasoner(request):
     made = Reasoner(triples(TBOX))
     if request.param == "general":
-        made = Reasoner(triples(f"{TBOX} rdf:type rdfs:subPropertyOf :kind ."))
+        made = Reasoner(triples(f"{TBOX} :Cup owl:differentFrom :Box ."))
         assert not made.is_compiled
     made.apply(insert=triples(MAP))
     assert made.is_compiled == (request.param == "compiled")
@@ -201,7 +201,7 @@ def test_assumptions_hold_only_for_a_while(reasoner):
     else:
         with pytest.raises(NotCompilable), reasoner.assuming(assumed, allow_recompute=False):
             pass
-        assert "vocabulary" in reasoner.not_incremental
+        assert "compared" in reasoner.not_incremental
 
 
 def test_a_copy_has_the_same_facts_without_the_suppressed_ones(reasoner):

@@ -15,7 +15,16 @@ from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.reasoner.terms import SAME_AS, TYPE, iri, is_literal, is_named
 from tests.depth import tries
 from tests.kb_node.reasoner import proofs
-from tests.kb_node.reasoner.worlds import AXIOMS, KEYS, NOMINALS, RANGES, TRANSITIVE, World
+from tests.kb_node.reasoner.worlds import (
+    AXIOMS,
+    EQUALITIES,
+    KEYS,
+    NOMINALS,
+    RANGES,
+    TRANSITIVE,
+    TYPES,
+    World,
+)
 
 STEPS_OF_A_WORLD = 25
 THEMES = {
@@ -24,6 +33,8 @@ THEMES = {
     "nominals": NOMINALS,
     "transitive": TRANSITIVE,
     "ranges": RANGES,
+    "equalities": EQUALITIES,
+    "types": TYPES,
 }
 SCHEMA_PREDICATES = [iri("rdfs:subClassOf"), iri("rdfs:domain"), iri("owl:equivalentProperty")]
 
@@ -102,7 +113,7 @@ def follow(seed, steps, theme):
 
 @pytest.mark.parametrize("theme", THEMES.values(), ids=list(THEMES))
 def test_hundreds_of_changes(theme):
-    for seed in range(tries(20)):
+    for seed in range(tries(10)):
         follow(seed, STEPS_OF_A_WORLD, theme)
 
 

@@ -100,6 +100,7 @@ FACTS = (
     "{i} owl:sameAs {i}",
     "{i} owl:differentFrom {i}",
 )
+TYPE_FACTS = ("{i} {k} {c}", "{i} {k} :Other", ":Other :kinds {i}", "{c} :kinds {i}") * 2
 TRANSITIVE = [text for text in AXIOMS if "TransitiveProperty" in text] * 6 + [
     text
     for text in AXIOMS
@@ -131,6 +132,25 @@ RANGES = [
     "{c} rdfs:subClassOf [ a owl:Restriction ; owl:onProperty {d} ; owl:allValuesFrom {x} ]",
     "{c} owl:disjointUnionOf ( {c} {c} )",
 ] * 3 + [text for text in AXIOMS if "{d}" in text or "disjointWith" in text]
+EQUALITIES = [
+    "{p} rdfs:subPropertyOf owl:sameAs",
+    "{p} rdfs:subPropertyOf owl:differentFrom",
+] * 4 + [text for text in AXIOMS if "{p}" in text or "{e}" in text or "AllDifferent" in text]
+TYPES = [
+    "{k} rdfs:subPropertyOf rdf:type",
+    "{k} rdfs:subPropertyOf rdf:type",
+    "{k} rdfs:subPropertyOf {k}",
+    "{k} owl:equivalentProperty {k}",
+    "{k} owl:inverseOf :kinds",
+    "{k} rdfs:domain {c}",
+    "{k} owl:propertyDisjointWith {k}",
+    "{k} owl:propertyChainAxiom ( {p} {k} )",
+    "{k} a owl:IrreflexiveProperty",
+    "{c} rdfs:subClassOf [ a owl:Restriction ; owl:onProperty {k} ; owl:hasValue {c} ]",
+    "{c} owl:equivalentClass [ a owl:Restriction ; owl:onProperty {k} ; owl:hasValue {c} ]",
+    "{c} owl:equivalentClass [ a owl:Restriction ; owl:onProperty {k} ; owl:someValuesFrom owl:Thing ]",
+] * 3 + [text for text in AXIOMS if "{c}" in text and "Key" not in text]
+"""The values of the properties `k`, which may be below rdf:type, are classes."""
 
 
 class Change(NamedTuple):
@@ -160,11 +180,12 @@ class World:
             "t": DATATYPES,
             "x": DATA_RANGES,
             "n": "01",
+            "k": (":k0", ":k1"),
             "e": EXPRESSIONS,
             "r": [f"[ a owl:Restriction ; {text} ]" for text in used(RESTRICTIONS)],
         }
         self._templates = self.random.choices(used(templates), k=10)
-        self._facts = used(FACTS)
+        self._facts = used((*FACTS, *TYPE_FACTS) if templates is TYPES else FACTS)
         self.axioms = [self._axiom() for _ in range(self.random.randint(1, 10))]
         self.asserted = dict.fromkeys(fact for axiom in self.axioms for fact in axiom)
 

@@ -87,6 +87,8 @@ def test_words():
     assert resolve_word(MAP, "Cup") == {"cup1", "cup2"}
     with pytest.raises(errors.UnknownName, match="did you mean table1"):
         resolve_word(MAP, "tabel1")
+    with pytest.raises(errors.UnknownName, match=r"'A cupp'; did you mean [Cc]up"):
+        resolve_word(MAP, "A cupp")
 
 
 def test_an_exact_class_takes_precedence_over_a_label():

@@ -105,7 +105,7 @@ dm:reaches owl:propertyChainAxiom ( dm:s dm:t dm:u ) ; owl:inverseOf dm:reachedF
     made.enforcement = ShapeEnforcement(made.tbox)
     try:
         made.commit(transaction(1, turtle(before)))
-        with pytest.raises(errors.Refused, match=r"^a: violates sh:maxCount"):
+        with pytest.raises(errors.Refused, match=r"^a: the values of .* violate sh:maxCount"):
             made.commit(transaction(2, turtle(inserted)))
         assert made.seq == 1
     finally:
@@ -120,25 +120,25 @@ dm:reaches owl:propertyChainAxiom ( dm:s dm:t dm:u ) ; owl:inverseOf dm:reachedF
             ":z dm:uses :b . :a dm:uses2 :b .",
             "",
             ":a dm:uses2 :b .",
-            "z: violates sh:class Seat; uses; b",
+            "z: the value b of uses violates sh:class Seat",
         ),
         (
             ":z dm:uses :b . :b owl:sameAs :c . :a dm:uses2 :c .",
             "",
             ":a dm:uses2 :c .",
-            "z: violates sh:class Seat; uses; b",
+            "z: the value b of uses violates sh:class Seat",
         ),
         (
             ":z dm:uses :b . :b owl:sameAs :c . :a dm:uses2 :c .",
             "",
             ":b owl:sameAs :c .",
-            "z: violates sh:class Seat; uses; b",
+            "z: the value b of uses violates sh:class Seat",
         ),
         (
             ":z dm:far 1 ; dm:reaches :y ; dm:s :a . :a dm:t :b .",
             ":b dm:u :c .",
             "",
-            "z: violates sh:maxCount 1; reaches",
+            "z: the values of reaches violate sh:maxCount 1",
         ),
     ],
 )
@@ -176,7 +176,7 @@ dm:reaches a owl:ObjectProperty ; owl:propertyChainAxiom ( dm:s dm:t dm:u ) .
     made.enforcement = ShapeEnforcement(made.tbox)
     try:
         made.commit(transaction(1, turtle(before)))
-        with pytest.raises(errors.Refused, match=r"^y: violates sh:maxCount"):
+        with pytest.raises(errors.Refused, match=r"^y: the values of .* violate sh:maxCount"):
             made.commit(transaction(2, turtle(inserted)))
     finally:
         home.close(made)
@@ -244,7 +244,9 @@ def test_violations_before_a_tbox_refuse_it_only_if_others_come(enforcing):
     other = turtle("dm:Stool a owl:Class ; rdfs:subClassOf dm:Chair .")
     assert enforcing.replace_tbox(transaction(2), [*enforcing.tbox, *other]).seq == 2
     few = turtle(SH + ":T sh:targetClass dm:Chair ; sh:property [ sh:path dm:seats ; sh:maxInclusive 4 ] .")
-    with pytest.raises(errors.Refused, match=r"^chair2: violates sh:maxInclusive 4; seats; 5; required"):
+    with pytest.raises(
+        errors.Refused, match=r"^chair2: the value 5 of seats violates sh:maxInclusive 4; required"
+    ):
         enforcing.replace_tbox(transaction(3), [*enforcing.tbox, *few])
 
 
@@ -283,6 +285,6 @@ def test_a_shape_that_fails_rejects_no_commit(enforcing, caplog):
     for n in range(2):
         enforcing.commit(transaction(f"c{n}", turtle(f":chair{n} a dm:Chair ; dm:on :chair{n} .")))
     assert enforcing.seq == 3
-    with pytest.raises(errors.Refused, match="door1: violates sh:closed"):
+    with pytest.raises(errors.Refused, match=r"door1: the value .* violates sh:closed"):
         enforcing.commit(transaction("d", turtle(":door1 a dm:Door ; dm:on :chair1 .")))
     assert caplog.text.count("it is not enforced") == 1

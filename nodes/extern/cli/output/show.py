@@ -127,7 +127,8 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         **({"problems": "; ".join(problems)} if (problems := _problems(e)) else {}),
         "label": e.preferred_reference or "none",
         "aliases": ", ".join(e.alternative_references) or "-",
-        **_stated(e, {p.name: p for p in properties}),
+    }
+    after = {
         "body": body,
         **({"name in the world": e.body.body} if e.body is not None and e.body.body else {}),
         **(
@@ -144,7 +145,14 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         **({"joints set": provenance_text(e.joint_provenance)} if e.joint_provenance is not None else {}),
         **({"switches set": provenance_text(e.switch_provenance)} if e.switch_provenance is not None else {}),
     }
-    return card(rows)
+    return _card(rows, _stated(e, {p.name: p for p in properties}), after)
+
+
+def _card(before: dict[str, str], stated: Mapping[str, str], after: dict[str, str]) -> Table:
+    """Return a card with properties in between. Those that are called like another row are marked."""
+    taken = before.keys() | after.keys()
+    marked = {f"{name} (property)" if name in taken else name: text for name, text in stated.items()}
+    return card({**before, **marked, **after})
 
 
 def _individual_card(e: Described, properties: Iterable[PropertyInfo]) -> Table:
@@ -157,14 +165,15 @@ def _individual_card(e: Described, properties: Iterable[PropertyInfo]) -> Table:
         "pose": "none: not in space",
         "label": e.preferred_reference or "none",
         "aliases": ", ".join(e.alternative_references) or "-",
-        **_stated(e, {p.name: p for p in properties}),
+    }
+    after = {
         "referred to by": "; ".join(f"{p}: {wording.few(names)}" for p, names in e.referred_by.items())
         or "-",
         "last change": provenance_text(e.provenance),
         "class set": provenance_text(e.shape_provenance),
         "label set": provenance_text(e.reference_provenance),
     }
-    return card(rows)
+    return _card(rows, _stated(e, {p.name: p for p in properties}), after)
 
 
 def _live(e: Entity) -> str:

@@ -265,9 +265,8 @@ class View:
         """Return the named properties that an edge implies for its subject, and those for its object."""
         ends: tuple[list[tuple[int, Term]], list[tuple[int, Term]]] = ([], [])
         for q, backwards in self._schema.roles(predicate) if predicate != SAME else ():
-            name = self._schema.axioms[q].term
-            if name[0] == "<" and " " not in name:
-                ends[backwards].append((q, name))
+            if self._schema.axioms[q].is_shown:
+                ends[backwards].append((q, self._schema.axioms[q].term))
         found = self._further[predicate] = (tuple(ends[0]), tuple(ends[1]) if predicate > DIFFERENT else ())
         return found
 
@@ -311,8 +310,9 @@ class View:
         }
         values: dict[tuple[int, Term], None] = {}
         for predicate, object_ in dict.fromkeys(self._implied(node)):
-            name = self._schema.axioms[predicate].term
-            if wanted not in (None, predicate) or name[0] != "<" or " " in name:
+            axioms = self._schema.axioms[predicate]
+            name = axioms.term
+            if wanted not in (None, predicate) or not axioms.is_shown:
                 continue
             if self._abox.is_literal(object_):
                 values[predicate, datatypes.canonical(store.terms[object_])] = None

@@ -234,6 +234,8 @@ class Retraction:
             for q, backwards in abox.schema.roles(predicate):
                 ends = (object_, subject) if backwards else (subject, object_)
                 self._saturation.apply_rules_for(ends[0], q, ends[1])
+        if predicate == DIFFERENT or predicate in abox.schema.memberships:
+            self._process_meanings(subject, predicate)
         steps = abox.steps
         if not (producing_chains := steps.producing_chains(predicate)):
             return
@@ -244,6 +246,13 @@ class Retraction:
         for backwards, chain in producing_chains:
             if begins[backwards]:
                 self._look_for_middle(*((object_, subject) if backwards else (subject, object_)), chain)
+
+    def _process_meanings(self, subject: int, predicate: int) -> None:
+        """Process the edges again that may have implied an edge by a subproperty of the vocabulary."""
+        abox = self._abox
+        prop = DIFFERENT if predicate == DIFFERENT else abox.schema.find_property(TYPE)
+        if prop is not None:
+            abox.fresh += [edge for edge, _, _ in abox.related(subject, abox.steps.group((prop, False)))]
 
     def _may_have_been_a_value(self, node: int, other: int) -> bool:
         """Return whether a lost neighbour may have been a value implied by the node's classes."""

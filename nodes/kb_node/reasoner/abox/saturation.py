@@ -17,6 +17,7 @@ from semmap.nodes.kb_node.reasoner.rules import swrl
 from semmap.nodes.kb_node.reasoner.rules.swrl import SwrlRule
 from semmap.nodes.kb_node.reasoner.rules.time_limit import TimeLimit
 from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, SAME, Chain, NotCompilable
+from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.reasoner.terms import TYPE
 
 
@@ -219,6 +220,23 @@ class Saturation:
             role = (self._abox.schema.property(rule.body[at].predicate), False)
             ends = (s, o) if forwards else (o, s)
             self._conclude(rule, self._matching.of_atom(rule, at, ends, Edge(edge, role)))
+        for role in rules.meanings:
+            self._apply_meaning(role[0], *((o, s) if role[1] else (s, o)), Edge(edge, role))
+
+    def _apply_meaning(self, prop: int, x: int, y: int, edge: Edge) -> None:
+        """Apply the rules of owl:sameAs, owl:differentFrom or rdf:type to an edge of a subproperty.
+
+        Classes of the vocabulary and literals are not used as classes.
+        """
+        if prop == SAME:
+            self._equality.merge(x, y, edge)
+        elif prop == DIFFERENT:
+            if self._store.edge(x, DIFFERENT, y) == NONE:
+                self._add_derived(x, DIFFERENT, y, edge)
+        elif not self._abox.is_literal(y) and not is_schema(("", TYPE, cls := self._store.terms[y])):
+            if self._abox.schema.find_class(cls) is None:
+                self._first_use(cls, self._abox.schema.cls)
+            self._derive(x, self._abox.schema.membership(cls), x, edge)
 
     def apply_rules(self) -> None:
         """Apply the SWRL rules to all facts."""
@@ -267,7 +285,11 @@ class Saturation:
 
     def _derive(self, subject: int, predicate: int, object_: int, *claims: Claim) -> None:
         """Add a derived edge unless another edge implies it."""
-        if self._abox.is_literal(subject) or self._abox.find(subject, (predicate, False), object_) != NONE:
+        if self._abox.find(subject, (predicate, False), object_) == NONE:
+            self._add_derived(subject, predicate, object_, *claims)
+
+    def _add_derived(self, subject: int, predicate: int, object_: int, *claims: Claim) -> None:
+        if self._abox.is_literal(subject):
             return
         edge = self._store.add(subject, predicate, object_, DERIVED)
         self._abox.reasons[edge] = self._abox.conclude(claims, edge=edge)

@@ -57,7 +57,7 @@ def fill(abox: ABox, columns: Columns) -> bool:
     if not _is_plain(abox) or not all(map(is_named, unknown)):
         return False  # only the schema creates names that are not IRIs
     classes = [schema.cls(term) for term in columns.classes]
-    properties = [schema.property(term) for term in columns.properties]
+    properties = [schema.property_by_name(term) for term in columns.properties]
     kinds = [_decode_kind(abox, kind, classes) for kind in columns.kinds]
     for kind in abox.kinds:
         del kind.nodes[:]

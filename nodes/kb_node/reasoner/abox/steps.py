@@ -34,6 +34,13 @@ class EdgeRules:
     """Whether the only check is that the subject has no other edge with the predicate."""
     triggers: tuple[tuple[bool, SwrlRule, int], ...] = ()
     """The SWRL rules and their atoms that the edge may match, and whether it is read forwards."""
+    meanings: tuple[Role, ...] = ()
+    """The implied roles of rdf:type, owl:sameAs and owl:differentFrom."""
+
+    @property
+    def implies_more(self) -> bool:
+        """Whether edges may imply more than edges along the roles of their property."""
+        return bool(self.triggers or self.meanings)
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,7 +229,8 @@ class Steps:
             for q, backwards in roles
             for rule, at in schema.rules_by_property.get(q, ())
         )
-        by_value |= bool(heads or tails or triggers)
+        meanings = tuple(role for role in roles if schema.axioms[role[0]].has_meaning and role[0] != prop)
+        by_value |= bool(heads or tails or triggers or meanings)
         others = by_value or irreflexive or exclusive or heads or tails
         if not (limits or others):
             return None
@@ -242,6 +250,7 @@ class Steps:
             by_value=by_value,
             only_uniqueness=not others and self._only_check_uniqueness(prop, limits),
             triggers=triggers,
+            meanings=meanings,
         )
 
 

@@ -20,7 +20,7 @@ _LABEL: Final = iri("rdfs:label")
 _DATA: Final = iri("owl:DatatypeProperty")
 _HUMPS: Final = re.compile(r"[_\s.-]+|(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _LINKS: Final = frozenset(
-    {"of", "in", "on", "at", "to", "by", "from", "with", "for", "near", "inside", "under"}
+    {"of", "in", "on", "at", "to", "by", "from", "with", "for", "near", "inside", "under", "as"}
 )
 """A name without a verb that ends in one of these words gets an "is": `partOf` is "is part of"."""
 PLACEHOLDER: Final = "\ue000"
@@ -30,6 +30,23 @@ _PREPOSITIONS: Final = _LINKS | {
     *("beside", "between", "into", "like", "onto", "out", "over", "through", "up", "upon", "within"),
 }
 """Last words of a verb phrase that are not a noun: "contains zone" is "contains it as zone"."""
+_VERBS_OF_VALUES: Final = frozenset(
+    (
+        "weighs",
+        "costs",
+        "measures",
+        "lasts",
+        "holds",
+        "contains",
+        "opens",
+        "closes",
+        "starts",
+        "begins",
+        "ends",
+        "expires",
+    )
+)
+"""Verbs that begin names of data properties. Other words in s are nouns there ("hours")."""
 _NO_VERB: Final = ("ss", "us", "is", "as", "os")
 """Endings in s of words that are not verbs."""
 _PLAIN_VALUES: Final = frozenset(
@@ -200,7 +217,7 @@ def _verb(phrase: str, is_data: bool) -> VerbPhrase:
         return VerbPhrase("is", rest) if first == "is" else VerbPhrase("has", rest)
     last = phrase.rpartition(" ")[2]
     is_verb = first.endswith("s") and len(first) > 3 and not first.endswith(_NO_VERB)
-    if is_verb and not is_data:
+    if is_verb and (not is_data or last in _LINKS or first in _VERBS_OF_VALUES):
         return VerbPhrase("does", phrase)
     if last in _LINKS:
         return VerbPhrase("is", phrase)

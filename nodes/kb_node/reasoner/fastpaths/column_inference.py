@@ -41,7 +41,7 @@ class ColumnInference:
         rules = self._abox.steps.rules(column.predicate)
         if rules is None:
             return doubtful
-        if rules.triggers:
+        if rules.implies_more:
             return range(len(edges))
         if rules.limits:
             is_alone = self._abox.store.out.is_alone

@@ -8,12 +8,15 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from semmap.nodes.kb_node.reasoner.explanations import Term
+from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, SAME_AS, TYPE, is_named
 
 Role = tuple[int, bool]
 """The number of a property, and whether it is read backwards."""
 
 ANY = -1
 """The pseudo class of everything."""
+PROPERTIES_WITH_MEANING = frozenset((TYPE, SAME_AS, DIFFERENT_FROM))
+"""The properties with rules about individuals. Their subproperties imply them (prp-spo1)."""
 WIDE = 12
 """Number of properties in a group above which all edges of a node are scanned."""
 SAME, DIFFERENT = 0, 1
@@ -77,6 +80,16 @@ class Axioms:
     exclusive: set[Role] = field(default_factory=set)
     """Roles that exclude this property between the same two individuals."""
     irreflexive: bool = False
+    is_shown: bool = field(init=False)
+    """Whether implied edges are returned as inferred triples: auxiliary properties are not, and types and
+    equalities are found otherwise."""
+
+    has_meaning: bool = field(init=False)
+    """Whether the rules are about the property itself: rdf:type, owl:sameAs or owl:differentFrom."""
+
+    def __post_init__(self) -> None:
+        self.is_shown = is_named(self.term) and " " not in self.term and self.term not in (TYPE, SAME_AS)
+        self.has_meaning = self.term in PROPERTIES_WITH_MEANING
 
 
 class NotCompilable(Exception):

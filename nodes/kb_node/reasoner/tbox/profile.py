@@ -14,7 +14,7 @@ from semmap.nodes.kb_node.reasoner.data_ranges import read_range
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.reasoner.rules.rule_table import NUMBERS
-from semmap.nodes.kb_node.reasoner.tbox.split import METACLASSES, UNIVERSAL, is_datatype
+from semmap.nodes.kb_node.reasoner.tbox.split import METACLASSES, UNIVERSAL, describes_vocabulary, is_datatype
 from semmap.nodes.kb_node.reasoner.terms import TYPE, iri, iris
 
 _SUBCLASS, _SUPERCLASS, _BOTH = "as a subclass", "as a superclass", "in an equivalence"
@@ -40,13 +40,14 @@ def outside_rl(schema: Iterable[Triple]) -> Counter[str]:
 
 
 def _axiom(facts: Facts, s: Term, p: Term, o: Term) -> Iterator[str]:
-    if p == TYPE:
-        if o in _CLASSES:
-            yield _CLASSES[o]
+    if p == TYPE and o in _CLASSES:
+        yield _CLASSES[o]
     elif p in _PREDICATES:
         yield _PREDICATES[p]
-    elif s in METACLASSES or o in METACLASSES:
+    elif p != TYPE and (s in METACLASSES or o in METACLASSES):
         yield "class of the vocabulary as a class"
+    elif describes_vocabulary((s, p, o)):
+        yield "axiom about a term of the vocabulary"
     elif o in UNIVERSAL and p == iri("rdfs:subPropertyOf"):
         yield "universal property as a superproperty"
     elif p == iri("rdfs:subClassOf"):

@@ -24,6 +24,9 @@ from semmap.nodes.kb_node.reasoner.tbox.axioms import ANY, DIFFERENT, Axioms, Ch
 from semmap.nodes.kb_node.reasoner.tbox.transitive import compile_transitive
 from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, NOTHING, SAME_AS, THING, TYPE, iri, is_literal
 
+_MEMBERSHIP = " by rule"
+"""The end of the names of auxiliary properties for the membership in a class."""
+
 
 class Schema:
     """A compiled TBox. Classes and properties without axioms may be added later."""
@@ -60,6 +63,8 @@ class Schema:
         """The rules whose conclusion is an edge of a property."""
         self.rule_results: set[Term] = set()
         """The individuals that the conclusions of rules mention."""
+        self.memberships: dict[int, None] = {}
+        """The auxiliary properties of `membership`."""
         self._class_numbers: dict[Term, int] = {}
         self._property_numbers: dict[Term, int] = {}
         self._roles: dict[int, dict[Role, tuple[Triple, ...]]] = {}
@@ -285,18 +290,27 @@ class Schema:
                 self.rule_results.update(term for term in rule.head.arguments if not swrl.is_variable(term))
 
     def conclusion(self, head: Atom) -> int | None:
-        """Return the property of the edge that a rule adds; None for an equality.
-
-        Membership in a class is an edge of an auxiliary property from the individual to itself. The class is
-        the domain of the property.
-        """
+        """Return the property of the edge that a rule adds; None for an equality."""
         if head.kind == swrl.CLASS:
-            number = self.property(f"{head.predicate} by rule")
-            self.axioms[number].domain |= 1 << self.cls(head.predicate)
-            return number
+            return self.membership(head.predicate)
         if head.kind == swrl.PROPERTY:
             return self.property(head.predicate)
         return DIFFERENT if head.kind == swrl.DIFFERENT else None
+
+    def membership(self, cls: Term) -> int:
+        """Return the auxiliary property that stores the membership in a class that edges imply.
+
+        Its edges lead from an individual to itself. The class is its domain.
+        """
+        number = self.property(f"{cls}{_MEMBERSHIP}")
+        self.axioms[number].domain |= 1 << self.cls(cls)
+        self.memberships[number] = None
+        return number
+
+    def property_by_name(self, name: str) -> int:
+        """Return the number of a property, which may be one of `membership`. Adds it if it is new."""
+        cls = name.removesuffix(_MEMBERSHIP)
+        return self.property(name) if cls == name else self.membership(cls)
 
     def nominal(self, term: Term) -> int:
         """Return the class that has one individual or value as its only member."""

@@ -15,7 +15,7 @@ from semmap.nodes.kb_node.reasoner.data_ranges import FACETS
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
 from semmap.nodes.kb_node.reasoner.rules import swrl
 from semmap.nodes.kb_node.reasoner.rules.rule_table import ANNOTATIONS
-from semmap.nodes.kb_node.reasoner.tbox.axioms import NotCompilable
+from semmap.nodes.kb_node.reasoner.tbox.axioms import PROPERTIES_WITH_MEANING, NotCompilable
 from semmap.nodes.kb_node.reasoner.terms import (
     DIFFERENT_FROM,
     FIRST,
@@ -40,6 +40,7 @@ _PLAIN_PREDICATES = _EXTREME | frozenset(
         SAME_AS,
         DIFFERENT_FROM,
         *iris("owl:imports owl:versionIRI owl:annotatedSource owl:annotatedProperty owl:annotatedTarget"),
+        *iris("rdf:subject rdf:predicate rdf:object rdf:value rdfs:member"),
         *ANNOTATIONS,
     }
 )
@@ -93,15 +94,21 @@ def is_datatype(term: Term) -> bool:
 def is_inert(triple: Triple) -> bool:
     """Return whether an axiom is outside OWL 2 RL and has no consequences.
 
-    It declares a subproperty of a universal property, or uses classes of the vocabulary as classes of
-    individuals (`:Concept rdfs:subClassOf rdfs:Class`), or it is a part of a SWRL rule, which `swrl` reads.
+    It declares a subproperty of a universal property, uses classes of the vocabulary as classes of
+    individuals (`:Concept rdfs:subClassOf rdfs:Class`), or describes terms of the vocabulary
+    (`rdf:type rdfs:domain rdfs:Resource`). Or it is a part of a SWRL rule, which `swrl` reads.
     """
     s, p, o = triple
     if swrl.is_of_rule(triple):
         return True
-    if p == TYPE:
-        return False
-    return o in UNIVERSAL or s in METACLASSES or o in METACLASSES
+    if p != TYPE and (o in UNIVERSAL or s in METACLASSES or o in METACLASSES):
+        return True
+    return describes_vocabulary(triple)
+
+
+def describes_vocabulary(triple: Triple) -> bool:
+    """Return whether a triple is a description of a term of the vocabulary, which is inert."""
+    return triple[1] in _DESCRIPTIONS and changes_vocabulary(triple)
 
 
 def check_all_compilable(schema: Collection[Triple]) -> None:
@@ -121,13 +128,20 @@ def check_all_compilable(schema: Collection[Triple]) -> None:
             check_compilable(triple)
 
 
+def changes_vocabulary(triple: Triple) -> bool:
+    """Return whether a triple is an axiom about a term of the vocabulary that has a meaning in the rules."""
+    s, p, o = triple
+    if p == TYPE:
+        return o not in METACLASSES and _has_meaning(s)
+    return _has_meaning(s) or (_has_meaning(o) and not (p == _SUB_PROPERTY and o in PROPERTIES_WITH_MEANING))
+
+
 def check_compilable(triple: Triple) -> None:
     """Raise NotCompilable if a triple redefines the vocabulary or equates something with a value."""
     s, p, o = triple
     if is_literal(s):
         raise NotCompilable(f"a literal has properties: {_text(triple)}")
-    described = () if p == TYPE and o in METACLASSES else (s,) if p == TYPE else (s, o)
-    if any(is_reserved(term) and not _may_be_described(term) for term in described):
+    if changes_vocabulary(triple):
         raise NotCompilable(f"the meaning of OWL's own vocabulary is changed: {_text(triple)}")
     if p in (SAME_AS, DIFFERENT_FROM) and is_literal(o):
         raise NotCompilable(f"an individual is compared with a value: {_text(triple)}")
@@ -137,14 +151,13 @@ def _text(triple: Triple) -> str:
     return " ".join(triple)
 
 
-def _may_be_described(term: Term) -> bool:
-    return (
-        term in ANNOTATIONS
-        or term in (THING, NOTHING, NIL, _RESOURCE)
-        or term in _EXTREME
-        or is_datatype(term)
-    )
+def _has_meaning(term: Term) -> bool:
+    return is_reserved(term) and term not in _DESCRIBABLE and not is_datatype(term)
 
 
-_RESOURCE = iri("rdfs:Resource")
+_DESCRIBABLE = (_PLAIN_CLASSES | _PLAIN_PREDICATES | {NIL}) - PROPERTIES_WITH_MEANING
+"""The terms of the vocabulary that axioms may be about."""
+_SUB_PROPERTY = iri("rdfs:subPropertyOf")
+_DESCRIPTIONS = frozenset((TYPE, _SUB_PROPERTY, *iris("rdfs:subClassOf rdfs:domain rdfs:range")))
+"""The predicates of axioms that are inert for terms of the vocabulary."""
 _OWL, _XSD = f"<{PREFIXES['owl']}", f"<{PREFIXES['xsd']}"

@@ -3,7 +3,7 @@
 The number of pairs `x p z` implied by `x p y p z` grows quadratically, and most rules do not need them.
 Domain and range follow from the single steps, and membership in a restriction can be passed on along the
 steps. The pairs are stored only if a rule needs them (functional, disjoint, irreflexive, chains with others,
-keys, SWRL rules).
+keys, SWRL rules, types).
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def _wider(schema: Schema, p: int) -> set[int]:
 def _needs_pairs(schema: Schema, q: int, paired: set[int]) -> bool:
     axioms = schema.axioms[q]
     special = axioms.limits or axioms.exclusive or axioms.none or axioms.keys or axioms.irreflexive
-    return bool(special) or q in paired
+    return bool(special) or q in paired or axioms.has_meaning
 
 
 def _restrictions(schema: Schema, p: int) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:

@@ -85,11 +85,17 @@ def test_a_card_of_what_is_not_in_space_has_what_refers_to_it_and_no_pose():
     person = structs.replace(
         Described.of(entity("anna")),
         in_space=False,
-        properties={"age": 41},
+        properties={"age": 41, "name": "Anna B."},
         referred_by={"knows": ("bob", "carla")},
     )
     card = drawn(show.entity_card(person), 80)
-    for text in ("none: not in space", "knows: bob and carla", "age", "last change     commit 7"):
+    for text in (
+        "none: not in space",
+        "knows: bob and carla",
+        "age",
+        "name (property)  Anna B.",
+        "last change      commit 7",
+    ):
         assert text in card
     assert "pose set" not in card
     assert show.entity_line([entity("chair1"), person]) == "1 entity and 1 individual not in space"

@@ -94,9 +94,9 @@ def test_the_time_of_changes_is_measured(report, monkeypatch):
 
 
 def test_the_reason_for_slow_changes_is_reported(report):
-    quick = report("owl:inverseOf rdfs:domain :Cup .").quickness
+    quick = report(":Cup owl:sameAs :Tasse .").quickness
     assert quick is not None
-    assert "owl:inverseOf" in quick.not_incremental or "inverseOf" in quick.not_incremental
+    assert "sameAs" in quick.not_incremental
     assert quick.add_p50_ms is not None
 
 

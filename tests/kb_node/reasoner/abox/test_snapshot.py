@@ -10,7 +10,7 @@ from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from tests.kb_node.reasoner.graphs import triples
 from tests.kb_node.reasoner.swrl import graph
 from tests.kb_node.reasoner.test_worlds import check, refused
-from tests.kb_node.reasoner.worlds import AXIOMS, NOMINALS, TRANSITIVE, World
+from tests.kb_node.reasoner.worlds import AXIOMS, NOMINALS, TRANSITIVE, TYPES, World
 
 SCHEMA = triples(
     """
@@ -42,9 +42,9 @@ def restored(reasoner, random_):
 
 
 @pytest.mark.parametrize(
-    "theme", [AXIOMS, NOMINALS, TRANSITIVE], ids=["everything", "nominals", "transitive"]
+    "theme", [AXIOMS, NOMINALS, TRANSITIVE, TYPES], ids=["everything", "nominals", "transitive", "types"]
 )
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(6))
 def test_a_restored_reasoner_behaves_like_the_original(seed, theme):
     random_, world = random.Random(seed), None
     while world is None or Closure(world.asserted).clash is not None:

@@ -18,6 +18,7 @@ LABELS = """
 :Cup rdfs:label "cup"@en-GB , "tazza"@it . :Mug rdfs:label "Becher"@de , "mug" .
 :Bar1 rdfs:label "bar"@en . :Bar2 rdfs:label "bar"@en . :Pub rdfs:label "pub"@en .
 :mass a owl:DatatypeProperty . :address a owl:ObjectProperty . :needs a owl:DatatypeProperty .
+:weighs a owl:DatatypeProperty . :opensAt a owl:DatatypeProperty . :hours a owl:DatatypeProperty .
 """
 WORDS = Words.of(triples(LABELS))
 
@@ -91,6 +92,10 @@ def test_a_number_without_a_class_counts_things():
         ("color", "has", "color"),
         ("mass", "has", "mass"),
         ("needs", "has", "needs"),
+        ("weighs", "does", "weighs"),
+        ("opensAt", "does", "opens at"),
+        ("hours", "has", "hours"),
+        ("sameAs", "is", "same as"),
         ("address", "has", "address"),
         ("has_part", "has", "part"),
         ("isOn", "is", "on"),

@@ -162,7 +162,7 @@ def test_recursion_through_arithmetic_is_found_over_other_rules_and_properties()
 
 
 def test_rules_of_the_general_engine_are_applied_too():
-    reasoner = Reasoner(graph("A(x) -> B(x)", axioms="owl:sameAs rdfs:subPropertyOf :same ."))
+    reasoner = Reasoner(graph("A(x) -> B(x)", axioms=":A owl:sameAs :A ."))
     assert not reasoner.is_compiled
     reasoner.apply(insert=[triple(":i a :A")])
     assert reasoner.holds(triple(":i a :B"))

@@ -55,15 +55,22 @@ HARMLESS = {
     "a broken list": ":Broken owl:unionOf :nowhere . :Broken owl:intersectionOf [ rdf:first :Cup ] .",
     "a disjoint union": ":Vessel owl:disjointUnionOf ( :Cup :Pot ) .",
     "lists with words of the vocabulary": "[] :ignored ( rdf:type owl:Class ) ; :among ( [ :path rdf:type ] ) .",
+    "types by another name": ":isA rdfs:subPropertyOf rdf:type . :mug1 :isA :Cup , :Unknown , 'text' , owl:Class .",
+    "equality by another name": ":eq rdfs:subPropertyOf owl:sameAs . :ne rdfs:subPropertyOf owl:differentFrom ."
+    ":mug1 :eq :mug2 ; :ne :mug3 .",
+    "the schema of RDF": "rdf:type a rdf:Property ; rdfs:domain rdfs:Resource ; rdfs:range rdfs:Class ."
+    "rdf:Bag rdfs:subClassOf rdfs:Container . rdf:first rdfs:domain rdf:List . owl:sameAs rdfs:domain owl:Thing .",
+    "another name for types": "rdf:type rdfs:subPropertyOf :kind . :broader rdfs:subPropertyOf rdfs:subClassOf .",
+    "below plain terms of RDF": ":Map rdfs:subClassOf rdf:Seq . :of rdfs:range rdf:Statement , owl:Ontology ."
+    ":item rdfs:subPropertyOf rdfs:member . rdf:_1 rdfs:subPropertyOf rdfs:member .",
     "a deprecated class": ":Old a owl:DeprecatedClass , owl:Class ; owl:deprecated true .",
 }
 INSTEAD = {
-    "classes that are the same": (":Cup owl:sameAs :Becher .", "classes or properties are compared"),
-    "types by another name": (":isA rdfs:subPropertyOf rdf:type .", "vocabulary"),
     "a chain of types": (
         ":isA owl:propertyChainAxiom :l . :l rdf:first :in ; rdf:rest :m . :m rdf:first rdf:type ; rdf:rest rdf:nil .",
         "vocabulary",
     ),
+    "classes that are the same": (":Cup owl:sameAs :Becher .", "classes or properties are compared"),
     "an individual that is a word of the vocabulary": (
         ":x :one :y , rdf:type . :one a owl:FunctionalProperty .",
         "the same as another",
