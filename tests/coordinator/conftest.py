@@ -42,7 +42,8 @@ TBOX = """
 :hasPosition a owl:ObjectProperty , owl:FunctionalProperty ;
   rdfs:domain :Physical_Thing ; rdfs:range :Coordinates .
 :isDirectPartOf a owl:ObjectProperty .
-:isGraspedBy a owl:ObjectProperty , owl:FunctionalProperty ; owl:inverseOf :grasps ; rdfs:label "è tenuto da"@it .
+:isGraspedBy a owl:ObjectProperty , owl:FunctionalProperty ; owl:inverseOf :grasps ;
+  rdfs:label "è tenuto da"@it .
 :grasps a owl:ObjectProperty .
 :isSwitchedOn a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:boolean .
 :isOpen a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:boolean .
