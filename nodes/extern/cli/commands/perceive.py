@@ -110,7 +110,9 @@ def _path_option(
 )
 @click.option("--masks-only", is_flag=True, help="Report only the objects that the detector found.")
 @click.option("--fit", is_flag=True, help="Fit class models to the objects, for full poses (needs Open3D).")
-@_path_option("--data", "DIR", "Also use the exemplars in this data folder (semmap learn --data).")
+@_path_option(
+    "--data", "DIR", "Also use the exemplars in this data folder (semmap learn --data).", type=_ANY_PATH
+)
 @click.option("--format", type=click.Choice(["table", "json"]), default="table", show_default=True)
 def perceive(
     files: tuple[Path, ...],

@@ -257,7 +257,7 @@ def test_a_model_of_a_detector_labels_the_segment_in_its_box(tmp_path, capsys):
             "--masks and --detector exclude each other",
         ),
         (["boxes.pcd", "--detector-names", "coco"], "--detector-names requires --detector MODEL.onnx"),
-        (["boxes.pcd", "--detector", "absent.onnx"], "there is no file absent.onnx"),
+        (["boxes.pcd", "--detector", "absent.onnx"], "there is no file or folder absent.onnx"),
         (["boxes.pcd", "--masks", "missing.npy"], "missing.npy cannot be read"),
         (["boxes.pcd", "--masks", "small.npy"], "this one has 4 x 3 of int64"),
         (["boxes.pcd", "--masks", "small.npy", "--label-map", "small.npy"], "not a JSON object of labels"),
@@ -267,6 +267,8 @@ def test_what_is_wrong_with_masks_is_reported_in_one_line(tmp_path, capsys, monk
     monkeypatch.chdir(tmp_path)
     write_cloud(tmp_path / "boxes.pcd")
     np.save(tmp_path / "small.npy", np.zeros((3, 4), int))
+    for name in ("map.json", "m.onnx"):
+        (tmp_path / name).touch()
     assert execute(["perceive", *words]) == 2
     error = capsys.readouterr().err
     assert said in error
