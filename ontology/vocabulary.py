@@ -304,6 +304,7 @@ OWL_ONTOLOGY: Final = iri(f"{OWL}Ontology")
 OWL_IMPORTS: Final = iri(f"{OWL}imports")
 OWL_OBJECT_PROPERTY: Final = iri(f"{OWL}ObjectProperty")
 OWL_DATATYPE_PROPERTY: Final = iri(f"{OWL}DatatypeProperty")
+OWL_INVERSE_OF: Final = iri(f"{OWL}inverseOf")
 OWL_FUNCTIONAL_PROPERTY: Final = iri(f"{OWL}FunctionalProperty")
 OWL_ANNOTATION_PROPERTY: Final = iri(f"{OWL}AnnotationProperty")
 PROPERTY_KINDS: Final = (

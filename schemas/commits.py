@@ -251,6 +251,17 @@ class Effects(Struct, frozen=True, kw_only=True):
 _FEW: Final = 1000
 
 
+class Reserved(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True):
+    """Properties of entities that edits must not change, neither directly nor by an inverse property.
+
+    `why` ends the error "PROPERTY of NAME ..."; `{name}` in it is the name of the entity.
+    """
+
+    names: tuple[str, ...]
+    properties: tuple[str, ...]
+    why: str
+
+
 class Transaction(
     Call[Effects | None], frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True
 ):
@@ -285,6 +296,8 @@ class Transaction(
     require: tuple[Triple, ...] = ()
     unchanged: tuple[str, ...] = ()
     since: int = 0
+    reserved: tuple[Reserved, ...] = ()
+    """It is rejected if it changes any of these properties."""
     retract: tuple[Triple, ...] = ()
     insert: tuple[Triple, ...] = ()
     others: bool = False

@@ -14,7 +14,7 @@ from semmap.nodes.coordinator.access import admission, authority
 from semmap.nodes.coordinator.access.approvals import Approvals
 from semmap.nodes.coordinator.commands.dispatcher import CommandDispatcher
 from semmap.nodes.coordinator.commands.entity_changes import require_removable
-from semmap.nodes.coordinator.commands.joint_state import require_not_of_scene
+from semmap.nodes.coordinator.commands.joint_state import reserve_for_scene
 from semmap.nodes.coordinator.commands.registration import HANDLERS
 from semmap.nodes.coordinator.config import CoordinatorConfig
 from semmap.nodes.coordinator.early_commands import EarlyCommands
@@ -94,6 +94,8 @@ class Coordinator:
         )
         exemplars = ExemplarCommands(dispatcher, lambda: self._health.alive("perception_node"))
         dispatcher.map.pose_of, dispatcher.map.bodies = self._live.pose_of, lambda: scene.bodies
+        if config.truth == "scene":
+            dispatcher.map.reserve = lambda transaction: reserve_for_scene(transaction, scene.bodies)
         relay = self._kb.relay
         of_the_map = calls.by_verb(
             *(kind.answered_by(self._scheduler.change) for kind in HANDLERS),  # unless it has a row below
@@ -291,9 +293,6 @@ class Coordinator:
         """Change the map, and add a note if the scene or perception will override the change."""
         if isinstance(command, c.Remove) and self._config.truth != "replayed":
             require_removable(command.names, self._reconciler.scene.bodies)
-        if self._config.truth == "scene":
-            changes = command.changes if isinstance(command, c.Batch) else (command,)
-            require_not_of_scene(changes, self._reconciler.scene.bodies)
         made, note = self._scheduler.change(command), authority.describe_override(command, self._config.truth)
         if note is None:
             return made

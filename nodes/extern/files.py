@@ -6,12 +6,20 @@ import contextlib
 import os
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Final
 
 import msgspec
 
 from semmap.nodes.runtime import extras
 from semmap.schemas import codec, errors
 from semmap.schemas.packing import LARGEST
+
+BAG_SUFFIXES: Final = (".bag", ".db3", ".mcap")
+
+
+def is_bag(path: Path) -> bool:
+    """Return whether a path is a bag, by its suffix, or a rosbag2 folder."""
+    return path.suffix.lower() in BAG_SUFFIXES or (path / "metadata.yaml").exists()
 
 
 def read_file(path: Path, *, largest: int | None = None) -> bytes:

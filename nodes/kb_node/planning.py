@@ -35,7 +35,7 @@ def make_plan(state: MapState, transaction: Transaction) -> Plan | None:
     """Return what a transaction changes, or None if it changes nothing.
 
     Raises PreconditionFailed, NameTaken, BadRequest for invalid content, UnknownName for an entity that does
-    not exist, and Refused if it removes triples of the TBox.
+    not exist, and Refused if it removes triples of the TBox or changes reserved properties.
     """
     if transaction.unchanged:
         preconditions.require_unchanged(transaction, state.by_name)
@@ -56,6 +56,7 @@ def make_plan(state: MapState, transaction: Transaction) -> Plan | None:
         inserted = tuple([t for t in inserted if t not in asserted])
     if not retracted and not inserted:
         return None
+    preconditions.require_unreserved(transaction, state.by_name, (*inserted, *retracted), state.reasoner)
     denied = state.places.find_denied_locations(state.reasoner, state.classes, retracted, inserted)
     if denied.triples:
         wanted = wanted or set(insert)

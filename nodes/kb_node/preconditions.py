@@ -69,3 +69,25 @@ def require_unchanged(transaction: Transaction, entities: Mapping[str, Entity]) 
             raise errors.PreconditionFailed(
                 f"{name} was changed by commit {commit}, after commit {transaction.since}; repeat the query"
             )
+
+
+def require_unreserved(
+    transaction: Transaction, entities: Mapping[str, Entity], triples: Iterable[Triple], reasoner: Reasoner
+) -> None:
+    """Raise Refused if triples that a transaction changes state a reserved property, or its inverse."""
+    reserved = {
+        (v.iri(entity.iri), property_): (name, one.why)
+        for one in transaction.reserved
+        for name in one.names
+        if (entity := entities.get(name)) is not None
+        for property_ in one.properties
+    }
+    if not reserved:
+        return
+    for s, p, o in triples:
+        inverses = (q for t in reasoner.asserted(p, v.OWL_INVERSE_OF) for q in t[2:])
+        others = (t[0] for t in reasoner.asserted(None, v.OWL_INVERSE_OF, p))
+        for subject, property_ in ((s, p), *((o, q) for q in chain(inverses, others))):
+            name = v.local_name(property_)
+            if found := reserved.get((subject, name)):
+                raise errors.Refused(f"{name} of {found[0]} {found[1].replace('{name}', found[0])}")

@@ -155,6 +155,8 @@ class Perception:
         seen = found.observations
         if found.unknown_labels:
             self._on_complaint(wording.unknown_labels(found.unknown_labels))
+        for text in found.failures:
+            self._on_complaint(text)
         seen = self._compare(seen, clouds, camera_moves=found.camera_moves)
         if self._exemplar_commands is not None:
             self._exemplar_commands.see(found.things, seen.observations)

@@ -54,7 +54,8 @@ class FrameResult:
     labels of a detector that match no class. `remembered` is the memory for the next frame. `things` are the
     things of the observations, in the same order. `dropped` are the things that are not reported, with the
     reason. `unused_masks` are the numbers of a detector's masks in each cloud that cover no surface.
-    `notes` are doubts about the clouds and their poses.
+    `notes` are doubts about the clouds and their poses. `failures` are the reasons why a detector gave no
+    masks.
     """
 
     observations: Observations
@@ -65,6 +66,7 @@ class FrameResult:
     dropped: tuple[tuple[Thing, str], ...] = ()
     unused_masks: tuple[tuple[int, ...], ...] = ()
     notes: tuple[str, ...] = ()
+    failures: tuple[str, ...] = ()
 
     @property
     def camera_moves(self) -> bool:

@@ -23,7 +23,7 @@ from semmap.schemas import errors
 from semmap.schemas.bridge import Outcome
 from tests.kb_node.handlers.test_loading import loading
 
-TBOX = b"""
+TBOX = """
 @prefix : <http://www.semanticweb.org/ontologies/2016/1/semantic_mapping_domain_model#> .
 @prefix owl: <http://www.w3.org/2002/07/owl#> .
 @prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
@@ -42,12 +42,16 @@ TBOX = b"""
 :hasPosition a owl:ObjectProperty , owl:FunctionalProperty ;
   rdfs:domain :Physical_Thing ; rdfs:range :Coordinates .
 :isDirectPartOf a owl:ObjectProperty .
+:isGraspedBy a owl:ObjectProperty , owl:FunctionalProperty ; owl:inverseOf :grasps ;
+  rdfs:label "è tenuto da"@it .
+:grasps a owl:ObjectProperty .
+:isSwitchedOn a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:boolean .
 :isOpen a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:boolean .
 :openness a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:float .
 :jointPositions a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:string .
 :note a owl:DatatypeProperty .
 :float_coordinates_x a owl:DatatypeProperty , owl:FunctionalProperty ; rdfs:range xsd:float .
-"""
+""".encode()
 
 
 @pytest.fixture

@@ -12,6 +12,7 @@ from semmap.nodes.coordinator.files import huric
 from semmap.nodes.coordinator.files.content import kind_of
 from semmap.schemas import scene_files
 from semmap.schemas.errors import BadFile
+from semmap.schemas.file_kinds import FORMATS
 from tests.data import data_folder
 
 SCENE = {"entities": [{"class": "Chair", "name": "chair9", "at": [1, 2, 0], "yaw": 1.5, "alt": ["seat"]}]}
@@ -50,16 +51,19 @@ def test_unknown_content_is_rejected(content):
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        (b"\x89PNG\r\n\x1a\n", "x is not a map, but an image"),
-        (b"SQLite format 3\0", "x is not a map, but a database"),
-        (b"\x93NUMPY\x01\0", "x is not a map, but a NumPy array"),
-        (b"#ROSBAG V2.0\n", "x is not a map, but a recording; convert it with `semmap frames`"),
+        (b"\x89PNG\r\n\x1a\n", "an image; a floor plan is loaded by its .yaml file"),
+        (b"SQLite format 3\0", f"a database; supported formats: {FORMATS}"),
+        (b"#ROSBAG V2.0\n", "a recording; convert it with `semmap frames`"),
+        (
+            b'<?xml version="1.0"?>\n<!-- a\n<robot> -->\n<mujoco model="desk">',
+            "a world; start a system with it: `semmap up --world FILE`",
+        ),
     ],
 )
-def test_another_kind_of_file_is_named(content, said):
+def test_another_kind_of_file_is_named_with_the_next_step(content, said):
     with pytest.raises(BadFile) as caught:
         kind_of(content, "x")
-    assert caught.value.text == said
+    assert caught.value.text == f"x is not a map, but {said}"
 
 
 def test_a_broken_json_file_is_reported():

@@ -16,6 +16,7 @@ import pytest
 
 from semmap.nodes.extern.cli.all_commands import app
 from semmap.nodes.extern.cli.app import execute
+from semmap.nodes.extern.cli.common import InputPath
 from semmap.nodes.kb_node.storage.seed import seed
 from semmap.ontology import FLAT_TTL
 from tests.conftest import until
@@ -225,8 +226,9 @@ def parse(words):
     while isinstance(command, click.Group) and rest:
         command, rest = command.commands[rest[0]], rest[1:]
     above = click.Context(app, info_name="semmap", **app.context_settings)  # click keeps the names of --help
-    with command.make_context(name, [word.strip("[]") for word in rest if word != "..."], parent=above):
-        pass
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(InputPath, "convert", click.Path.convert)  # the files of examples do not exist
+        command.make_context(name, [word.strip("[]") for word in rest if word != "..."], parent=above).close()
 
 
 @pytest.mark.parametrize("text", PROGRAMS)

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import contextlib
 import json
+import random
 import resource
 import sqlite3
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import psutil
 
+from tests.faults.flipped_bits import flip_checkpoint, flip_closure, try_flips
 from tests.faults.ground import Ground, wait_for
 from tests.faults.processes import all_pids_of
 from tests.faults.table import Fault
@@ -22,6 +25,7 @@ _BIN = Path(sys.executable).parent
 _GIVEN_OUT_S = 3.0
 _CUT_S = 15.0
 _SPARE_BYTES = 4 << 20
+_FLIPS = 100
 
 
 def disk_full(ground: Ground) -> None:
@@ -97,6 +101,27 @@ def restored_backup(ground: Ground) -> None:
     assert before <= there
 
 
+def flipped_bits(ground: Ground) -> None:
+    """A flipped bit in a checkpoint or in the cached closure has no effect on a start."""
+    ground.system.stop()
+    began_s, chance = time.monotonic(), random.Random(ground.data.stat().st_mtime_ns)
+    with tempfile.TemporaryDirectory(dir=ground.data.parent) as folder:
+        try_flips(ground.data, Path(folder), _FLIPS, chance)
+    ground.observed_s += time.monotonic() - began_s
+    flip_checkpoint(ground.data, chance)
+    flip_closure(ground.data, chance)
+    ground.start()
+
+
+def no_space(ground: Ground) -> None:
+    """Compaction and backup without space lose nothing; they are tried on file systems of their own."""
+    began_s = time.monotonic()
+    words = ["unshare", "-rm", sys.executable, "-m", "tests.faults.no_space"]
+    ended = subprocess.run(words, capture_output=True, text=True, timeout=900)
+    assert ended.returncode == 0, ended.stderr[-2000:]
+    ground.observed_s += time.monotonic() - began_s
+
+
 def links_cut(ground: Ground) -> None:
     """In its own network, a whole system survives an interruption of all links."""
     words = ["unshare", "-rn", sys.executable, "-m", "tests.faults.cut_links", str(_CUT_S)]
@@ -135,5 +160,7 @@ RESOURCES = (
     Fault("read-only data folder", read_only, often=1, missing=lambda: _no_namespace("m")),
     Fault("a damaged commit, repair", damaged_journal, often=2),
     Fault("backup under load, restored", restored_backup, often=2),
+    Fault(f"{_FLIPS} flipped bits in checkpoints and closures", flipped_bits, often=1),
+    Fault("compaction and backup without space", no_space, often=1, missing=lambda: _no_namespace("m")),
     Fault(f"links cut for {_CUT_S:g} s", links_cut, often=1, missing=lambda: _no_namespace("n")),
 )

@@ -48,3 +48,17 @@ def test_a_model_needs_an_image():
     flat = replace(cloud, points_camera=row, colors=cloud.colors.reshape(1, -1, 3))
     with pytest.raises(BadFile, match="has no rows and columns of an image; remove --detector"):
         detected(Model(), flat)
+
+
+def test_a_frame_is_processed_without_a_detector_that_fails():
+    class Failing(Model):
+        def __call__(self, colours):
+            raise BadFile("spoons.onnx: it failed")
+
+    clouds = list(shot().clouds)
+    found = Observer(shipped(), detector=Failing())(clouds)
+    assert found.observations == Observer(shipped())(clouds).observations
+    assert found.failures == tuple(
+        f"camera {cloud.camera}: spoons.onnx: it failed; objects are found without the detector"
+        for cloud in clouds
+    )

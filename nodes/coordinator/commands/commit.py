@@ -66,7 +66,7 @@ def find_earlier_result(command: Command) -> KbCoroutine[Changed | None]:
 
 def commit(view: MapView, transaction: Transaction) -> KbCoroutine[Effects | None]:
     """Commit a transaction and apply it to the view. Return None if it changes nothing."""
-    return (yield from apply(view, (yield from ask(transaction))))
+    return (yield from apply(view, (yield from ask(view.reserve(transaction)))))
 
 
 def apply(view: MapView, commit: Effects | None) -> KbCoroutine[Effects | None]:

@@ -53,7 +53,7 @@ _TRIES = 4
 @handles(Add)
 def add(view: MapView, command: Add) -> KbCoroutine[Changed]:
     """Add an entity to the map."""
-    found = view.classes.spatial(command.class_)
+    found = _find_class(view, command)
     for _ in range(_TRIES):
         try:
             return (yield from _add(view, command, found))
@@ -62,6 +62,19 @@ def add(view: MapView, command: Add) -> KbCoroutine[Changed]:
                 raise
         yield from reload_map(view)  # the replica was wrong: it had a publication that was never committed
     return (yield from _add(view, command, found))
+
+
+def _find_class(view: MapView, command: Add) -> ClassInfo:
+    """Return the class of a new entity. Raises UnknownClass, also if class and name were swapped."""
+    try:
+        return view.classes.spatial(command.class_)
+    except errors.UnknownClass as error:
+        if command.name is None or not view.classes.has(command.name):
+            raise
+        raise errors.UnknownClass(
+            f"{error.text.partition(';')[0]}; the class comes before the name:"
+            f" semmap add {command.name} {command.class_}"
+        ) from None
 
 
 def _add(view: MapView, command: Add, found: ClassInfo) -> KbCoroutine[Changed]:

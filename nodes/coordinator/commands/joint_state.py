@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
+
+from msgspec import structs
 
 from semmap.nodes.coordinator.commands.map_view import MapView
 from semmap.schemas import errors
 from semmap.schemas.attachments import GRASPING
-from semmap.schemas.commands import Command, Set, Unset, Update
+from semmap.schemas.commands import Batch, Set, Unset, Update
+from semmap.schemas.commits import Reserved, Transaction
 from semmap.schemas.joints import IS_OPEN, OPENING, OPENNESS, SWITCHING, Joint
 from semmap.schemas.scenes import Body
 
@@ -19,6 +23,8 @@ def normalize_property(property_: str) -> str:
     return property_.replace(" ", "").replace("_", "").lower()
 
 
+_STATING: Final = {command.VERB for command in (Batch, Set, Unset, Update)}
+_OF_SCENE: Final = "follows from the scene, which is the source of truth (--truth scene)"
 _OPEN: Final = {normalize_property(IS_OPEN), normalize_property(OPENNESS)}
 
 
@@ -36,37 +42,29 @@ def require_openable(view: MapView, command: Set | Update) -> None:
         )
 
 
-def require_not_of_scene(changes: Iterable[Command], bodies: Mapping[str, Body]) -> None:
-    """Raise Refused, with the command to use, if a change states what the scene determines.
+def reserve_for_scene(transaction: Transaction, bodies: Mapping[str, Body]) -> Transaction:
+    """Return the transaction of a command, rejected if it states what the scene determines.
 
-    These are joint positions, switches and attachments. This is for a scene that is the source of truth: the
-    map would follow it and undo the change.
+    These are joint positions, switches and attachments; the error has the command to use. This is for a scene
+    that is the source of truth: the map would follow it and undo the change.
     """
-    for change in changes:
-        if isinstance(change, (Set, Unset)):
-            words: tuple[str, ...] = (change.property,)
-        elif isinstance(change, Update):
-            words = (*properties_in(change.set), *properties_in(change.unset))
-        else:
-            continue
-        if (body := bodies.get(change.name)) is None:
-            continue
-        stated = {normalize_property(re.split("[:#/]", word)[-1]) for word in words}
-        if grip := [p for p in GRASPING if normalize_property(p) in stated]:
-            raise errors.Refused(
-                f"{grip[0]} of {body.name} follows from the scene, which is the source of truth"
-                f" (--truth scene); to change it: semmap attach {body.name} --to HOLDER, or semmap detach"
-            )
-        for properties, joints in (
-            (SWITCHING, [joint for joint in body.joints if joint.switches]),
-            (OPENING, [joint for joint in body.joints if not joint.switch]),
-        ):
-            if joints and (found := [p for p in properties if normalize_property(p) in stated]):
-                joint = f" --joint {joints[0].name}" if properties is SWITCHING else ""
-                raise errors.Refused(
-                    f"{found[0]} of {body.name} follows from the scene, which is the source of truth"
-                    f" (--truth scene); to change it: semmap open {body.name}{joint}, or semmap close"
-                )
+    if transaction.verb not in _STATING or not any(edit.set or edit.unset for edit in transaction.edit):
+        return transaction
+    reserved = defaultdict[tuple[tuple[str, ...], str], list[str]](list)
+    for name, body in bodies.items():
+        reserved[GRASPING, "semmap attach {name} --to HOLDER, or semmap detach"].append(name)
+        if switches := [joint for joint in body.joints if joint.switches]:
+            how = f"semmap open {{name}} --joint {switches[0].name}, or semmap close"
+            reserved[SWITCHING, how].append(name)
+        if any(not joint.switch for joint in body.joints):
+            reserved[OPENING, "semmap open {name}, or semmap close"].append(name)
+    return structs.replace(
+        transaction,
+        reserved=tuple(
+            Reserved(names=tuple(names), properties=properties, why=f"{_OF_SCENE}; to change it: {how}")
+            for (properties, how), names in reserved.items()
+        ),
+    )
 
 
 def properties_in(statements: Iterable[str]) -> tuple[str, ...]:

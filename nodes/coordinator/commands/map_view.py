@@ -17,7 +17,7 @@ from semmap.nodes.runtime.class_names import ClassNames
 from semmap.schemas import errors
 from semmap.schemas.attachments import holder_of
 from semmap.schemas.commands import Add, Batch, Explain
-from semmap.schemas.commits import Effects, Snapshot
+from semmap.schemas.commits import Effects, Snapshot, Transaction
 from semmap.schemas.entities import SAME_AS, Entity, Pose, Size, Vector
 from semmap.schemas.scenes import Body
 
@@ -47,6 +47,8 @@ class MapView(map_replica.MapReplica[Effects]):
         """Returns the current pose of an entity; set to a function that also uses bodies and live poses."""
         self.bodies: Callable[[], Mapping[str, Body]] = dict
         """Returns the bodies of the scene, by name."""
+        self.reserve: Callable[[Transaction], Transaction] = lambda transaction: transaction
+        """Adds to a transaction the properties that only the scene changes."""
         self._names = FreeNames()
         self._floor: FreePlaces | None = None
         """Created at the first request for a free place."""

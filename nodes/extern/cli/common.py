@@ -345,6 +345,23 @@ class Endpoint(click.ParamType[str]):
 ENDPOINT: Final = Endpoint()
 
 
+class InputPath(click.Path):
+    """A file or folder that is read. A missing one is an error before anything else is done."""
+
+    def __init__(self) -> None:
+        super().__init__(path_type=Path)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the path. Raises BadFile."""
+        path = Path(value)
+        if not path.exists():
+            raise errors.BadFile(f"there is no file or folder {path}")
+        return path
+
+
+INPUT_PATH: Final = InputPath()
+
+
 def placing_options(function: Callable[..., None]) -> Callable[..., None]:
     """Add the options that place an object relative to another one."""
     options = {
@@ -378,8 +395,9 @@ def drop_unset(fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def print_error(text: str) -> None:
-    """Print an error, a warning or a note to stderr in one line."""
-    print_escaped(f"semmap: {' '.join(text.split())}", file=sys.stderr)
+    """Print an error, a warning or a note to stderr in one line. Only errors begin with `semmap:`."""
+    line = " ".join(text.split())
+    print_escaped(line if line.startswith(("note: ", "warning: ")) else f"semmap: {line}", file=sys.stderr)
 
 
 def _strip_prefix(text: str) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from semmap.nodes.extern.cli.common import print_error
+from semmap.nodes.extern.cli.common import INPUT_PATH, print_error
 from semmap.nodes.extern.files import read_label_map
 from semmap.nodes.runtime import extras
 from semmap.schemas import errors, wording
@@ -25,7 +25,7 @@ def detector_options(function: Callable[..., Any]) -> Callable[..., Any]:
         click.option(
             "--detector",
             metavar="MODEL.onnx",
-            type=click.Path(path_type=Path),
+            type=INPUT_PATH,
             help="Detector or instance segmenter to run on colour images (YOLO, RT-DETR, RF-DETR ...).",
         ),
         click.option(

@@ -82,11 +82,17 @@ def _usage(ctx: click.Context) -> str:
 
 _OPTIONAL: Final = re.compile(r"'\[([A-Z_]+)\]'")
 """An optional argument as click prints it: '[COMMIT]'."""
+_NUMBERS: Final = (
+    (re.compile(r"is not a valid integer(?: range)?"), "is not a whole number"),
+    (re.compile(r"is not a valid float(?: range)?"), "is not a number"),
+)
 
 
 def one_line(error: click.ClickException) -> str:
     """Return the message of an error of click without its capital letter, full stop and brackets of names."""
     text = _OPTIONAL.sub(r"\1", error.format_message())
+    for kind, words in _NUMBERS:
+        text = kind.sub(words, text)
     return f"{text[:1].lower()}{text[1:]}".rstrip(".")
 
 

@@ -26,7 +26,6 @@ from semmap.nodes.extern.frame_folders.topics import TRANSFORMS
 from semmap.nodes.extern.ros.types import store
 from semmap.schemas.errors import BadFile
 
-SUFFIXES: Final = (".bag", ".db3", ".mcap")
 _SCHEMAS: Final = ("ros1msg", "ros2msg", "ros2idl")
 """The encodings of schemas of ROS messages."""
 _MOST_BYTES: Final = 1 << 29
@@ -49,11 +48,6 @@ class Bag:
         """Yield the messages of some topics in the order of the recording. Raises BadFile."""
         with _readable(self._path):
             yield from self._messages(topics)
-
-
-def is_bag(path: Path) -> bool:
-    """Return whether a path is a bag, by its suffix, or a rosbag2 folder."""
-    return path.suffix.lower() in SUFFIXES or (path / "metadata.yaml").exists()
 
 
 @contextmanager

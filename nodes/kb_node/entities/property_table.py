@@ -201,6 +201,8 @@ class PropertyTable:
         hint = errors.did_you_mean(text, (*allowed, *names))
         if not hint and 0 < len(allowed) <= _FEW:
             hint = f"; {prop.name} takes {', '.join(allowed)}"
+        elif not hint:
+            hint = "; see: semmap list --all"
         raise errors.UnknownName(f"no individual is named '{text}'{hint}")
 
     def ranges(self, p: Term) -> frozenset[Term]:

@@ -223,9 +223,9 @@ class _Search:
         """Return why there is no room."""
         how = f"{placing_words(self._placing)} {self._target.name}"
         if self._obstacles:
-            return (
-                f"there is no room for {self._name} {how}: {wording.few(sorted(self._obstacles))} take it up"
-            )
+            take = "takes" if len(self._obstacles) == 1 else "take"
+            obstacles = wording.few(sorted(self._obstacles))
+            return f"there is no room for {self._name} {how}: {obstacles} {take} it up"
         return f"{self._name} ({' x '.join(f'{length:g}' for length in size)} m) does not fit {how}"
 
     def describe_shut(self, solid: Solid) -> str:

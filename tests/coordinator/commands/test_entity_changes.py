@@ -97,6 +97,9 @@ class View:
             name: entity(name, pose=Pose(position_m=(0.0, 0.0, 0.0))) for name in ("cup1", "box1")
         }
 
+    def reserve(self, transaction):
+        return transaction
+
     def take(self, commit):
         return True
 
@@ -149,3 +152,11 @@ def test_the_state_of_entities_that_changed_since_is_not_committed():
     with pytest.raises(StopIteration) as end:
         next(adopt_observed(view, observed, BY_HAND))
     assert (end.value.value.commit, end.value.value.text) == (None, "unchanged: already up to date")
+
+
+def test_class_and_name_in_the_wrong_order_are_explained(dispatcher):
+    with pytest.raises(errors.UnknownClass) as told:
+        dispatcher.change(c.Add(class_="thing1", name="chair"))
+    assert told.value.text == (
+        "unknown class 'thing1'; the class comes before the name: semmap add chair thing1"
+    )

@@ -66,7 +66,7 @@ def test_the_values_of_an_option_are_named(capsys, words, said):
             " usage: semmap get [OPTIONS] NAME",
         ),
         (["move", "cup1", "--to", "2", "1", "0"], "unknown option '--to'; did you mean --at?"),
-        (["undo", "cup1"], "invalid value for COMMIT: 'cup1' is not a valid integer"),
+        (["undo", "cup1"], "invalid value for COMMIT: 'cup1' is not a whole number"),
     ],
 )
 def test_an_error_of_usage_names_the_next_step(capsys, words, said):

@@ -42,6 +42,7 @@ def test_it_starts_without_numpy():
     ("words", "needless"),
     [
         (("--version",), {"zenoh", "rich.console", "semmap.nodes.extern.client"}),
+        (("perceive", "missing.pcd"), {"zenoh", "numpy"}),
         (("tbox", "--help"), {"zenoh", "rich.console", "semmap.nodes.extern.client"}),
         (
             ("update", "cup1", "--connect", "tcp/127.0.0.1:9"),

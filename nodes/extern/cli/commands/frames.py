@@ -13,9 +13,17 @@ import click
 
 from semmap.nodes.extern.cli import output
 from semmap.nodes.extern.cli.command import command
-from semmap.nodes.extern.cli.common import drop_unset, print_error, print_json, print_lines, with_client
+from semmap.nodes.extern.cli.common import (
+    INPUT_PATH,
+    drop_unset,
+    print_error,
+    print_json,
+    print_lines,
+    with_client,
+)
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.shell_completion import entity_names
+from semmap.nodes.extern.files import BAG_SUFFIXES, is_bag
 from semmap.nodes.runtime import extras
 from semmap.schemas import errors
 from semmap.schemas.wording import counted
@@ -50,7 +58,7 @@ def _or_folders(function: Callable[..., None]) -> Callable[..., None]:
     @click.option(
         "--intrinsics",
         metavar="FILE",
-        type=click.Path(path_type=Path),
+        type=INPUT_PATH,
         help="Recording: camera file, as for perceive (fx, fy, cx, cy, depth_scale ...).",
     )
     @functools.wraps(function)
@@ -72,7 +80,7 @@ def _or_folders(function: Callable[..., None]) -> Callable[..., None]:
         if passed := list(drop_unset(options)):
             option = passed[0].replace("_", "-")
             raise errors.BadRequest(f"--{option} requires a recording: semmap frames RECORDING DIR")
-        if name is not None and ("/" in name or Path(name).suffix in _SUFFIXES):
+        if name is not None and ("/" in name or Path(name).suffix in BAG_SUFFIXES):
             raise errors.BadRequest(f"missing argument DIR; usage: semmap frames {name} DIR")
         function(name=name, format=format, **arguments)
 
@@ -80,7 +88,6 @@ def _or_folders(function: Callable[..., None]) -> Callable[..., None]:
 
 
 _OPTIONS = ("every", "within", "rgb_topic", "depth_topic", "base", "intrinsics")
-_SUFFIXES = (".bag", ".db3", ".mcap")
 
 
 @command(example="semmap frames robot1")
@@ -119,19 +126,19 @@ def _folders(
     intrinsics: Path | None,
 ) -> None:
     """Write the frames of a recording. Frames that cannot be used are skipped and reported."""
-    extras.require("semmap frames RECORDING DIR", "ros", "perception")
-    from semmap.nodes.extern.frame_folders import bag, bag_frames, tum
-    from semmap.nodes.extern.frame_folders.frames import make, require_empty
-
     if not path.exists():
         raise errors.BadFile(f"there is no file or folder {path}")
+    extras.require("semmap frames RECORDING DIR", "ros", "perception")
+    from semmap.nodes.extern.frame_folders import bag_frames, tum
+    from semmap.nodes.extern.frame_folders.frames import make, require_empty
+
     require_empty(folder)
     common: dict[str, Any] = {
         "within_s": _WITHIN_S if within is None else within,
         "every_s": every or 0.0,
         "intrinsics": intrinsics,
     }
-    if bag.is_bag(path):
+    if is_bag(path):
         found = bag_frames.read(path, colour=rgb_topic, depth=depth_topic, base=base, **common)
     elif path.is_dir():
         if rgb_topic or depth_topic or base:
@@ -141,7 +148,7 @@ def _folders(
         found = tum.read(path, **common)
     else:
         raise errors.BadFile(
-            f"{path} is not a recording; supported: {', '.join(_SUFFIXES)} and folders in the TUM format"
+            f"{path} is not a recording; supported: {', '.join(BAG_SUFFIXES)} and folders in the TUM format"
         )
     make(folder)
     _write(found, path, folder, as_json=as_json)

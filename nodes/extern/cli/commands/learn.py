@@ -12,6 +12,7 @@ import click
 
 from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.common import (
+    INPUT_PATH,
     connect_option,
     identity_option,
     namespace_option,
@@ -60,7 +61,7 @@ def _where(function: Callable[..., None]) -> Callable[..., None]:
 
 @command(example="semmap learn Cup --frames frames/mug")
 @click.argument("class_", metavar="CLASS", shell_complete=class_names)
-@click.option("--frames", metavar="DIR", type=_path, help="Folders of frames, as for perceive --frames.")
+@click.option("--frames", metavar="DIR", type=INPUT_PATH, help="Folders of frames, as for perceive --frames.")
 @click.option(
     "--entity", metavar="NAME", shell_complete=entity_names, help="Entity that perception currently observes."
 )

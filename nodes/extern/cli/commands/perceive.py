@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 
 from semmap.nodes.extern.cli.command import command
-from semmap.nodes.extern.cli.common import print_error, print_json
+from semmap.nodes.extern.cli.common import INPUT_PATH, print_error, print_json
 from semmap.nodes.extern.cli.detector_options import detector_of, detector_options
 from semmap.nodes.extern.cli.output.printable import print_escaped
 from semmap.nodes.extern.cli.output.show import console
 from semmap.nodes.extern.cli.output.show_perceived import as_records, as_table, show_frame
-from semmap.nodes.extern.files import write_atomically
+from semmap.nodes.extern.files import is_bag, write_atomically
 from semmap.nodes.runtime import extras
 from semmap.schemas import errors, wording
 from semmap.schemas.perception import FrameRow
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from semmap.nodes.perception_node.input.viewpoint import Placement
     from semmap.nodes.perception_node.recognition.recognition_model import RecognitionModel
 
-_BAGS = (".bag", ".db3", ".mcap")
 _PROGRESS_S = 5.0
 """Period of progress messages [s]."""
 _CLUTTER = "?: too few points to classify, or a part of furniture (with --frames, parts are combined)"
@@ -43,13 +42,18 @@ _FRAMES = {
 }
 
 
-def _path_option(name: str, metavar: str, help: str, *also: str) -> Callable[[Any], Any]:
+_ANY_PATH = click.Path(path_type=Path)
+
+
+def _path_option(
+    name: str, metavar: str, help: str, *also: str, type: click.Path = INPUT_PATH
+) -> Callable[[Any], Any]:
     """Return an option whose value is a file or a folder."""
-    return click.option(name, *also, metavar=metavar, type=click.Path(path_type=Path), help=help)
+    return click.option(name, *also, metavar=metavar, type=type, help=help)
 
 
 @command(example="semmap perceive --frames recording --format json")
-@click.argument("files", metavar="[FILE...]", nargs=-1, type=click.Path(path_type=Path))
+@click.argument("files", metavar="[FILE...]", nargs=-1, type=INPUT_PATH)
 @_path_option(
     "--frames",
     "DIR",
@@ -59,9 +63,14 @@ def _path_option(name: str, metavar: str, help: str, *also: str) -> Callable[[An
     "--labels",
     "OUT",
     "Write the object label of each point to this .npy file or, with --frames, to files in this folder.",
+    type=_ANY_PATH,
 )
 @_path_option(
-    "--json", "OUT", "With --frames: write the results to this JSON file, one row per frame.", "rows"
+    "--json",
+    "OUT",
+    "With --frames: write the results to this JSON file, one row per frame.",
+    "rows",
+    type=_ANY_PATH,
 )
 @_path_option(
     "--intrinsics",
@@ -93,6 +102,7 @@ def _path_option(name: str, metavar: str, help: str, *also: str) -> Callable[[An
     "--masks",
     "FILE",
     "Masks of a detector (COCO, labelme, CVAT, YOLO, image, .npz); with --frames, their name in each folder.",
+    type=_ANY_PATH,
 )
 @detector_options
 @_path_option(
@@ -100,7 +110,9 @@ def _path_option(name: str, metavar: str, help: str, *also: str) -> Callable[[An
 )
 @click.option("--masks-only", is_flag=True, help="Report only the objects that the detector found.")
 @click.option("--fit", is_flag=True, help="Fit class models to the objects, for full poses (needs Open3D).")
-@_path_option("--data", "DIR", "Also use the exemplars in this data folder (semmap learn --data).")
+@_path_option(
+    "--data", "DIR", "Also use the exemplars in this data folder (semmap learn --data).", type=_ANY_PATH
+)
 @click.option("--format", type=click.Choice(["table", "json"]), default="table", show_default=True)
 def perceive(
     files: tuple[Path, ...],
@@ -201,7 +213,7 @@ def _clouds(
     """Yield the frames of files and the clouds of bags, each with a name. Raises BadFile and BadRequest."""
     from semmap.nodes.perception_node.input.files.cloud_files import read_frames
 
-    bags = [file for file in files if file.suffix.lower() in _BAGS or (file / "metadata.yaml").exists()]
+    bags = [file for file in files if is_bag(file)]
     if len(bags) not in (0, len(files)):
         raise errors.BadRequest(f"{bags[0]} is a bag; name only bags, or only clouds and images")
     if bags:

@@ -9,7 +9,14 @@ import click
 
 from semmap.nodes.extern.backup import restore as restore_map
 from semmap.nodes.extern.cli.command import command
-from semmap.nodes.extern.cli.common import json_option, print_error, print_json, print_text, with_client
+from semmap.nodes.extern.cli.common import (
+    INPUT_PATH,
+    json_option,
+    print_error,
+    print_json,
+    print_text,
+    with_client,
+)
 from semmap.nodes.extern.cli.output.printable import print_escaped
 
 if TYPE_CHECKING:
@@ -41,7 +48,7 @@ def backup(client: Client, file: Path, overwrite: bool, format: str) -> None:
 
 
 @command(example="semmap restore flat.backup --data maps/restored")
-@click.argument("file", type=_path)
+@click.argument("file", type=INPUT_PATH)
 @click.option("--data", type=_path, required=True, help="Data folder to restore the map to.")
 @click.option("--replace", is_flag=True, help="Move an existing map to DIR/kept.")
 @json_option

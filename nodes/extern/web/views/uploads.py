@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from semmap.schemas.file_kinds import other_kind
+from semmap.schemas.file_kinds import FORMATS, other_kind
 from semmap.schemas.packing import PACKED_FROM
 
 LARGEST: Final = 200 << 20
@@ -13,10 +13,6 @@ BEGINNING: Final = 4096
 """Number of bytes that are checked."""
 
 _GZIP: Final = b"\x1f\x8b"
-FORMATS: Final = (
-    "RDF in any syntax, OWL (functional, Manchester or XML), a scene in JSON or a HuRIC map, "
-    "optionally compressed with gzip"
-)
 
 
 def check_upload(filename: str, size: int, beginning: bytes) -> str:
@@ -26,7 +22,7 @@ def check_upload(filename: str, size: int, beginning: bytes) -> str:
     if size > LARGEST:
         return size_error(filename, size)
     if kind := other_kind(beginning):
-        return f"{filename}: unsupported format, the file is {kind}; supported formats: {FORMATS}"
+        return f"{filename}: unsupported format, the file is {kind}"
     if b"\0" in beginning and not beginning.startswith((_GZIP, b"\xff\xfe", b"\xfe\xff")):
         return f"{filename}: unsupported binary format; supported formats: {FORMATS}"
     return ""

@@ -139,7 +139,9 @@ class JournalFile:
                     if db.in_transaction:
                         db.execute("ROLLBACK")
         except sqlite3.Error as error:
-            raise NotWritten(f"{what} could not be written to {self.path}: {error}") from None
+            is_full = getattr(error, "sqlite_errorcode", None) == sqlite3.SQLITE_FULL
+            hint = "; free some space, then repeat it" if is_full else ""
+            raise NotWritten(f"{what} could not be written to {self.path}: {error}{hint}") from None
 
     def shrink(self) -> None:
         """Return free space to the disk. Raises NotWritten, and then SQLite reuses the space itself."""

@@ -70,7 +70,7 @@ def test_a_kind_that_no_class_names_becomes_a_class_below_object(here, capsys):
         (["learn", "Dog", "--entity", "dog1", "--box", "1", "2", "3", "4"], "--box requires --frames"),
         (["learn", "Dgo", "--frames", "shown", "--data", "map"], "unknown class 'Dgo'; did you mean Dog?"),
         (["learn", "Object", "--frames", "shown", "--data", "map"], "name a more specific class"),
-        (["learn", "Dog", "--frames", "nowhere", "--data", "map"], "nowhere cannot be read"),
+        (["learn", "Dog", "--frames", "nowhere", "--data", "map"], "no file or folder nowhere"),
         (["learn", "Dog", "--frames", "empty", "--data", "map"], "empty has no folders of frames"),
         (["learn", "Dog", "--frames", "shown", "--data", "map", "--box", "9", "9", "2", "2"], "640 x 480"),
         (

@@ -82,7 +82,7 @@ def test_json_is_for_programs(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["missing.pcd"], "missing.pcd cannot be read"),
+        (["missing.pcd"], "there is no file or folder missing.pcd"),
         (["boxes.pcd", "boxes.pcd", "--labels", "labels.npy"], "a single frame"),
         (["boxes.pcd", "--labels", "labels.txt"], "labels.npy"),
         (["boxes.pcd", "--labels", "nowhere/labels.npy"], "cannot be written"),
@@ -95,6 +95,7 @@ def test_what_cannot_be_done_is_reported_in_one_line(tmp_path, capsys, monkeypat
     monkeypatch.chdir(tmp_path)
     write_cloud(tmp_path / "boxes.pcd")
     (tmp_path / "empty.pcd").write_bytes(header("binary", width=0, height=0))
+    (tmp_path / "table.mcap").touch()
     assert execute(["perceive", *arguments]) == 2
     error = capsys.readouterr().err
     assert said in error
@@ -149,13 +150,14 @@ def test_a_dataset_without_any_frame_that_can_be_used_is_an_error(tmp_path, caps
     [
         (["boxes.pcd", "--frames", "."], "camera.json"),
         (["boxes.pcd", "--json", "out.json"], "--frames"),
-        (["--frames", "missing"], "cannot be read"),
+        (["--frames", "missing"], "there is no file or folder missing"),
         (["--frames", "empty"], "no folders of frames"),
     ],
 )
 def test_what_a_dataset_is_not_is_reported(tmp_path, capsys, monkeypatch, arguments, said):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "empty").mkdir()
+    (tmp_path / "boxes.pcd").touch()
     assert execute(["perceive", *arguments]) == 2
     assert said in capsys.readouterr().err
 
@@ -255,7 +257,7 @@ def test_a_model_of_a_detector_labels_the_segment_in_its_box(tmp_path, capsys):
             "--masks and --detector exclude each other",
         ),
         (["boxes.pcd", "--detector-names", "coco"], "--detector-names requires --detector MODEL.onnx"),
-        (["boxes.pcd", "--detector", "absent.onnx"], "there is no file absent.onnx"),
+        (["boxes.pcd", "--detector", "absent.onnx"], "there is no file or folder absent.onnx"),
         (["boxes.pcd", "--masks", "missing.npy"], "missing.npy cannot be read"),
         (["boxes.pcd", "--masks", "small.npy"], "this one has 4 x 3 of int64"),
         (["boxes.pcd", "--masks", "small.npy", "--label-map", "small.npy"], "not a JSON object of labels"),
@@ -265,6 +267,8 @@ def test_what_is_wrong_with_masks_is_reported_in_one_line(tmp_path, capsys, monk
     monkeypatch.chdir(tmp_path)
     write_cloud(tmp_path / "boxes.pcd")
     np.save(tmp_path / "small.npy", np.zeros((3, 4), int))
+    for name in ("map.json", "m.onnx"):
+        (tmp_path / name).touch()
     assert execute(["perceive", *words]) == 2
     error = capsys.readouterr().err
     assert said in error
