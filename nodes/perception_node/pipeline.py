@@ -121,13 +121,8 @@ def observe_views(
         recalled
     )
     things, chances, members = join_parts(parts.things, parts.same_thing_logits, learnt, parts.join)
-    fits = _image_fits(sights, parts.labels, members, learnt)
-    found = recognise(things, chances, learnt, labels, fits)
     numbers = [_renumbered(label, members) for label in parts.labels]
-    reasons = [
-        one.reason if isinstance(one, Clutter) else "" if one.shown else doubt
-        for one, doubt in zip(found, doubts(sights, numbers, things), strict=True)
-    ]
+    found, reasons = _recognised(sights, numbers, things, chances, learnt, labels)
     kept = [n for n, reason in enumerate(reasons) if not reason]
     observations = Observations(
         stamp_ns=max((sight.cloud.stamp_ns for sight in sights), default=0),
@@ -137,7 +132,7 @@ def observe_views(
     elsewhere = [rest for rest, thing in recalled if not thing]
     return FrameResult(
         observations,
-        tuple(_renumbered(label, [members[n] for n in kept]) for label in parts.labels),
+        tuple(_renumbered(number, [[n] for n in kept]) for number in numbers),
         remembered=before.after(sights, [thing.segments for thing in things], elsewhere),
         things=tuple(things[n] for n in kept),
         dropped=tuple((things[n], reason) for n, reason in enumerate(reasons) if reason),
@@ -148,38 +143,55 @@ def observe_views(
 def recognise_segments(
     sight: SegmentedView, learnt: RecognitionModel, labels: LabelMap | None = None
 ) -> dict[int, Observation | None]:
-    """Recognise each label of one view by itself; None for clutter. Table tops are omitted."""
+    """Recognise each label of one view by itself; None for clutter and noise. Table tops are omitted."""
     segments = [segment for segment in sight.segments if not segment.carrier]
     if not segments:
         return {}
     things = [thing_of([segment], sight.supports) for segment in segments]
-    fits = _image_fits([sight], [sight.labels], [[segment.label - 1] for segment in segments], learnt)
-    found = recognise(things, leaf_probabilities(learnt, features_of(things)), learnt, labels, fits)
+    numbers = _renumbered(sight.labels, [[segment.label - 1] for segment in segments])
+    chances = leaf_probabilities(learnt, features_of(things))
+    found, reasons = _recognised([sight], [numbers], things, chances, learnt, labels)
     return {
-        segment.label: one if isinstance(one, Observation) else None
-        for segment, one in zip(segments, found, strict=True)
+        segment.label: one if isinstance(one, Observation) and not reason else None
+        for segment, one, reason in zip(segments, found, reasons, strict=True)
     }
 
 
-def _image_fits(
+def _recognised(
     sights: Sequence[SegmentedView],
-    labels: Sequence[NDArray[np.int32]],
-    members: Sequence[Sequence[int]],
+    numbers: Sequence[NDArray[np.int32]],
+    things: Sequence[Thing],
+    chances: NDArray[np.float64],
     learnt: RecognitionModel,
+    labels: LabelMap | None,
+) -> tuple[list[Observation | Clutter], list[str]]:
+    """Return an observation of each thing, and the reason why it is not reported, or an empty text.
+
+    `numbers`: for each view (H, W) the number of the thing, from 1. `chances`: as for `recognise`.
+    """
+    found = recognise(things, chances, learnt, labels, _image_fits(sights, numbers, learnt))
+    reasons = [
+        one.reason if isinstance(one, Clutter) else "" if one.shown else doubt
+        for one, doubt in zip(found, doubts(sights, numbers, things), strict=True)
+    ]
+    return found, reasons
+
+
+def _image_fits(
+    sights: Sequence[SegmentedView], numbers: Sequence[NDArray[np.int32]], learnt: RecognitionModel
 ) -> ImageFits | None:
-    """Return what images of things say about them; `labels` and `members` as for `_renumbered`."""
+    """Return what images of things say about them; `numbers` as for `_recognised`."""
     images = learnt.images
     views = [
-        (sight.cloud.colors, label)
-        for sight, label in zip(sights, labels, strict=True)
+        (sight.cloud.colors, number)
+        for sight, number in zip(sights, numbers, strict=True)
         if sight.cloud.colors is not None and sight.cloud.organised
     ]
     if images is None or not views:
         return None
 
     def fits(things: Sequence[int]) -> NDArray[np.float64]:
-        shown = [(colors, _renumbered(label, members)) for colors, label in views]
-        return images.fits(shown, [thing + 1 for thing in things], learnt)
+        return images.fits(views, [thing + 1 for thing in things], learnt)
 
     return fits
 

@@ -15,9 +15,10 @@ ImageFits = Callable[[Sequence[int]], Numbers]
 _CERTAIN = 0.97
 """A thing that shape and colours recognise with more than this probability needs no image."""
 _DROPPED = 0.7
-_LEAST = 0.003
-_IMAGES = 1.0
-"""Weight of the logarithm of what images say."""
+_LEAST = 0.006
+_SHAPE = 0.6
+"""Weight of the logarithm of what shape and colours say, against that of images: they are as certain of a
+real thing as of a simulated one, but less often right."""
 _UNKNOWN = 0.2
 """Weight of `Object` in images: fewer things of unknown class were in the training than there are."""
 
@@ -37,10 +38,10 @@ def with_image_votes(chances: Numbers, learnt: RecognitionModel, fits: ImageFits
     doubtful = np.flatnonzero((named <= _CERTAIN) & (chances[:, clutter] <= _DROPPED))
     if not doubtful.size:
         return chances
-    logs = np.log(chances[doubtful][:, ~fixed] + _LEAST)
+    logs = _SHAPE * np.log(chances[doubtful][:, ~fixed] + _LEAST)
     said = fits(doubtful.tolist())[:, ~fixed]
     told = (said != 1.0).any(axis=1)
-    logs += _IMAGES * np.log(said)
+    logs += np.log(said)
     logs[:, np.count_nonzero(~fixed[:unknown])] += np.log(_UNKNOWN)
     votes = np.exp(logs - logs.max(axis=1, keepdims=True))
     rest = chances[doubtful][:, ~fixed].sum(axis=1, keepdims=True)

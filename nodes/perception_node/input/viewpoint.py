@@ -10,12 +10,15 @@ from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import Floats, Transform
 
-Up = Literal["x", "y", "z"]
+Up = Literal["x", "y", "z", "-x", "-y", "-z"]
 
 _TURNS = {
     "x": np.array([[0.0, 0, -1], [0, 1, 0], [1, 0, 0]]),
     "y": np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]),
     "z": np.eye(3),
+    "-x": np.array([[0.0, 0, 1], [0, 1, 0], [-1, 0, 0]]),
+    "-y": np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]]),
+    "-z": np.diag([1.0, -1, -1]),
 }
 _SAMPLE, _FEW = 6000, 3000
 _LEVEL_M, _FLOOR_SHARE, _BELOW_M = 0.03, 0.03, 0.06
@@ -80,17 +83,23 @@ def is_seen_from_origin(points: Floats) -> bool:
     return len(seen) < _FEWEST or hidden(seen, np.eye(4)) < _MOST_HIDDEN
 
 
-def find_up(points: Floats) -> Up | None:
-    """Return the axis along which most points (N, 3) are at one level; None if there is no such level."""
+def find_up(points: Floats) -> tuple[Up, bool] | None:
+    """Return the axis along which most points (N, 3) are at one level; None if there is no such level.
+
+    The second value is whether the axis may point down, because more points are below the level than above.
+    """
     seen = _sample(points)
     if len(seen) < _FEWEST:
         return None
-    shares: dict[Up, float] = {}
+    found: dict[Up, tuple[int, int]] = {}
     for axis, along in zip(("x", "y", "z"), seen.T, strict=True):
-        counts = np.unique(np.floor(along / _LEVEL_M), return_counts=True)[1]
-        shares[cast("Up", axis)] = float(counts.max()) / len(seen)
-    best = max(shares, key=shares.__getitem__)
-    return best if shares[best] > _LEVEL_SHARE else None
+        levels, counts = np.unique(np.floor(along / _LEVEL_M), return_counts=True)
+        level = float(levels[counts.argmax()] + 0.5) * _LEVEL_M
+        above, below = along > level + _BELOW_M, along < level - _BELOW_M
+        found[cast("Up", axis)] = int(counts.max()), int(above.sum() - below.sum())
+    best = max(found, key=found.__getitem__)
+    count, more_above = found[best]
+    return (best, more_above < 0) if count > _LEVEL_SHARE * len(seen) else None
 
 
 def _sample(points: Floats) -> NDArray[np.float64]:

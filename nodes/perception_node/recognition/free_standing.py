@@ -13,6 +13,8 @@ from semmap.nodes.perception_node.views.merged_thing import Thing
 
 _SMALLEST_M, _LARGEST_M = 0.025, 0.5
 """Limits of its largest extent: less is a piece, more is furniture or a wall."""
+_THINNEST_M = 0.005
+"""Minimum height: less is depth noise, or a patch of another colour."""
 _SLENDER, _LEG_M = 5.0, 0.25
 """A thing this high, and this many times higher than wide, may be a leg of a hidden table."""
 
@@ -67,7 +69,12 @@ def is_compact(thing: Thing) -> bool:
         not thing.carrier
         and thing.whole
         and thing.count >= _FEWEST
-        and thing.lifted_m < _LIFTED_M
+        and reaches_support(thing)
         and _SMALLEST_M <= max(x, y, z) <= _LARGEST_M
-        and z < max(_LEG_M, _SLENDER * max(x, y))
+        and _THINNEST_M <= z < max(_LEG_M, _SLENDER * max(x, y))
     )
+
+
+def reaches_support(thing: Thing) -> bool:
+    """Return whether a thing is visible down to its support, or almost."""
+    return thing.lifted_m < _LIFTED_M

@@ -18,7 +18,7 @@ from semmap.nodes.perception_node.recognition.detector_labels import (
     with_detector_labels,
 )
 from semmap.nodes.perception_node.recognition.features import features_of
-from semmap.nodes.perception_node.recognition.free_standing import are_free_standing
+from semmap.nodes.perception_node.recognition.free_standing import are_free_standing, reaches_support
 from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN, RecognitionModel
 from semmap.nodes.perception_node.recognition.sides import completed, side_features
 from semmap.nodes.perception_node.recognition.vote import (
@@ -33,8 +33,12 @@ from semmap.schemas.entities import Pose, orientation_from_yaw
 from semmap.schemas.perception import Observation
 
 _CANDIDATES = 5
-_CLUTTER = 0.7
+_CLUTTER, _CLUTTER_CUT = 0.7, 0.35
+"""Maximum probability of clutter of a reported thing, and of one that an image edge cuts above its support:
+walls of bins and pieces of furniture appear there."""
 _WORTH_SAYING = 0.01
+_SURE_GENERAL = 0.35
+"""Minimum probability of a class that is only a superclass."""
 _TRIMMED_BELOW = 0.6
 _TRIMMING_GAIN = 0.3
 _OUTERMOST = 0.03
@@ -97,10 +101,10 @@ def _observation(
 ) -> Observation | Clutter:
     chances = dict(zip(learnt.classes, probabilities.tolist(), strict=True))
     clutter = chances.pop(CLUTTER)
-    if clutter > _CLUTTER:
+    if clutter > (_CLUTTER if thing.whole or reaches_support(thing) else _CLUTTER_CUT):
         return Clutter(clutter)
     chances = {leaf: chance / (1.0 - clutter) for leaf, chance in chances.items()}
-    class_, probability = choose_class(chances, learnt.ancestors, learnt.sure)
+    class_, probability = choose_class(chances, learnt.ancestors, learnt.sure, sure_general=_SURE_GENERAL)
     if class_ == UNKNOWN:
         probability = chances[UNKNOWN]  # that it is an Object is certain
     ours = dict(zip(learnt.classes, own.tolist(), strict=True))

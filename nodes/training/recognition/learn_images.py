@@ -46,8 +46,8 @@ _LONGEST = (35, 160)
 _OWN_WEIGHT, _DECAY, _SCALE, _STEPS = 8.0, 3e-4, 20.0, 30
 
 _LOOK_ALIKE = {
-    "Box": {"Box": 1.0, "Carton": 1.0, "Cereals": 1.0}
-    | {"Book": 0.5, "Drug": 0.5, "Magazine": 0.3, "Folder": 0.3},
+    "Box": {"Box": 1.0, "Carton": 1.0, "Cereals": 0.5}
+    | {"Book": 0.3, "Drug": 0.5, "Magazine": 0.3, "Folder": 0.3},
     "Cup": {"Cup": 1.0, "Glass": 1.0, "Bowl": 0.7, "Pot": 0.7, "Flower_Pot": 0.3, "Yogurt": 0.3},
     "Plate": {"Plate": 1.0, "Bowl": 0.5},
     "Bottle": {"Bottle": 1.0, "Cleaner": 1.0, "Wine": 1.0},

@@ -30,7 +30,7 @@ def share(found, leaf, model=MODEL):
 
 def test_images_decide_between_likely_classes():
     found = with_image_votes(chances({"Radio": 0.5, "Box": 0.4, CLUTTER: 0.1}), MODEL, fits({"Box": 0.9}))
-    assert share(found, "Box") > 0.8
+    assert share(found, "Box") > 0.7
     assert found.sum() == pytest.approx(1.0)
     assert share(found, CLUTTER) == pytest.approx(0.1)
 
@@ -42,7 +42,7 @@ def test_images_name_what_shape_does_not_know():
 
 def test_images_that_know_the_thing_as_of_no_class_leave_it_so():
     found = with_image_votes(chances({UNKNOWN: 0.6, "Pan": 0.4}), MODEL, fits({UNKNOWN: 1.0}))
-    assert share(found, UNKNOWN) > 0.9
+    assert share(found, UNKNOWN) > 0.5
 
 
 def test_images_that_tell_nothing_change_nothing():

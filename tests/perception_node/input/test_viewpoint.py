@@ -87,7 +87,8 @@ def test_the_vertical_is_found_of_points_that_no_camera_at_the_origin_can_have_s
     assert is_seen_from_origin(cloud.points_camera.reshape(-1, 3))
     found = TO_UP[up](points).reshape(-1, 3) + np.float32([0.0, 0.0, 0.01])
     assert not is_seen_from_origin(found)
-    assert find_up(found) == up
+    assert find_up(found) == (up, False)
+    assert find_up(-found) == (up, True)
 
 
 def test_points_without_a_level_have_no_vertical():

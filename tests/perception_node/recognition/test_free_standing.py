@@ -67,8 +67,9 @@ def test_a_scrap_beside_a_thing_does_not_count():
         replace(THING, segments=(replace(THING.segments[0], carrier=True),)),
         block(((0.0, 0.0, 0.0), (0.9, 0.02, 0.2))),
         block(((0.0, 0.0, 0.0), (0.06, 0.08, 0.46))),
+        replace(THING, box=replace(THING.box, high=THING.box.high - [0.0, 0.0, 0.098])),
     ],
-    ids=["in mid-air", "cut by the picture's edge", "of few points", "a table top", "large", "a leg"],
+    ids=["in mid-air", "cut by the picture's edge", "of few points", "a table top", "large", "a leg", "flat"],
 )
 def test_what_may_be_a_piece_does_not_stand_alone(thing):
     assert standing(thing) == [False]
@@ -93,3 +94,13 @@ def test_what_stands_alone_is_an_object_however_much_it_looks_like_clutter():
     assert kept.class_ == UNKNOWN
     assert kept.probability >= 0.95
     assert dropped == Clutter(pytest.approx(0.95))
+
+
+def test_a_piece_at_the_image_edge_above_its_support_is_not_an_object():
+    learnt = shipped()
+    cut = replace(THING, segments=(replace(THING.segments[0], cut=True),))
+    chances = np.zeros((3, len(learnt.classes)))
+    chances[:, learnt.classes.index(CLUTTER)] = 0.5
+    chances[:, learnt.classes.index("Book")] = 0.5
+    found = recognise([replace(cut, lifted_m=0.1), cut, replace(THING, lifted_m=0.1)], chances, learnt)
+    assert [isinstance(one, Clutter) for one in found] == [True, False, False]

@@ -57,6 +57,12 @@ def test_a_class_must_have_most_of_what_each_above_it_has():
     assert choose_class({"Fork": 0.84, "Plate": 0.16}, ABOVE, 0.6, clear=0.8)[0] == "Fork"
 
 
+def test_less_is_enough_for_a_class_that_is_only_a_superclass():
+    leaves = {"Fork": 0.2, "Plate": 0.2, "Book": 0.4, "Object": 0.2}
+    assert choose_class(leaves, ABOVE, 0.5)[0] == "Object"
+    assert choose_class(leaves, ABOVE, 0.5, sure_general=0.35)[0] == "Tableware"
+
+
 WIDTHS = dict(zip(SORTS, range(1, len(SORTS) + 1), strict=True))
 RNG = np.random.default_rng(0)
 FEATURES = [RNG.normal(size=(3, width)) for width in WIDTHS.values()]

@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -30,12 +30,12 @@ if TYPE_CHECKING:
 
     from semmap.nodes.perception_node.detector import Detector
     from semmap.nodes.perception_node.input.cloud import Cloud
-    from semmap.nodes.perception_node.input.viewpoint import Placement
+    from semmap.nodes.perception_node.input.viewpoint import Placement, Up
     from semmap.nodes.perception_node.recognition.recognition_model import RecognitionModel
 
 _PROGRESS_S = 5.0
 """Period of progress messages [s]."""
-_CLUTTER = "?: too few points to classify, or a part of furniture (with --frames, parts are combined)"
+_CLUTTER = "?: depth noise, a fragment, or a part of furniture (with --frames, parts are combined)"
 _FRAMES = {
     "map": "map frame",
     "plane": "frame: z = 0 is the floor or the largest plane, the origin is below the camera",
@@ -79,7 +79,7 @@ def _path_option(
 )
 @click.option(
     "--up",
-    type=click.Choice(["x", "y", "z"]),
+    type=click.Choice(["x", "y", "z", "-x", "-y", "-z"]),
     help="Clouds are in a map's or robot's frame; this axis is up.",
 )
 @click.option(
@@ -120,7 +120,7 @@ def perceive(
     labels: Path | None,
     rows: Path | None,
     intrinsics: Path | None,
-    up: Literal["x", "y", "z"] | None,
+    up: Up | None,
     pose: tuple[float, ...] | None,
     topic: str | None,
     every: float,

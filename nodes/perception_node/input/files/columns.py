@@ -18,6 +18,11 @@ MAX_POINTS = 50_000_000
 _BEHIND = 0.2
 """With this share of points behind the camera, the axes of a cloud are not those of a camera."""
 
+_NO_LEVEL = (
+    "no camera at the origin can have seen the points, and no level surface shows which axis is up; if they"
+    " are in the frame of a map or robot: --up AXIS"
+)
+
 Column = NDArray[Any]
 
 
@@ -95,15 +100,21 @@ def _in_camera(
             doubt = str(error)
         if not doubt and is_seen_from_origin(optical):
             return optical, placement.frame_from_camera, ()
-        up = find_up(points)
-        if up is None:
+        found = find_up(points)
+        if found is None:
             if doubt:
                 raise ValueError(doubt)
-            return optical, placement.frame_from_camera, ()
+            return optical, placement.frame_from_camera, (_NO_LEVEL,)
+        up, doubtful = found
         notes = (
             "no camera at the origin can have seen the points, so they are read in the frame of a map or"
             f" robot with {up} up; if another axis points up: --up AXIS",
         )
+        if doubtful:
+            notes += (
+                f"more points are below the largest level surface than above it, so {up} may point down; if"
+                f" it does: --up -{up}",
+            )
     placed, pose = replace(placement, up=up).place(points.reshape(height, width, 3))
     return placed.reshape(-1, 3), pose, notes
 

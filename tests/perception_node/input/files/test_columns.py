@@ -125,6 +125,14 @@ def test_a_cloud_in_the_frame_of_a_map_is_read_with_its_pose_and_a_note():
     box = np.random.default_rng(1).uniform([0.2, 0.1, 0.02], [0.3, 0.2, 0.3], (800, 3))
     columns = dict(zip("xyz", np.concatenate([floor, box]).T, strict=True))
     cloud = cloud_of(columns, 1, 4800)
-    assert "with z up" in cloud.notes[0]
+    (note,) = cloud.notes
+    assert "with z up" in note
     seen = cloud.points_camera[0] @ cloud.map_from_camera[:3, :3].T + cloud.map_from_camera[:3, 3]
     assert np.nanquantile(seen[:, 2], [0.01, 0.99]) == pytest.approx([0.02, 0.28], abs=0.02)
+    assert "--up -z" in cloud_of({axis: -along for axis, along in columns.items()}, 1, 4800).notes[1]
+
+
+def test_a_cloud_around_the_origin_without_a_level_is_noted():
+    around = np.random.default_rng(0).normal([0.0, 0.0, 3.0], 1.0, (4000, 3))
+    cloud = cloud_of(dict(zip("xyz", around.T, strict=True)), 1, 4000)
+    assert "no level surface" in cloud.notes[0]
