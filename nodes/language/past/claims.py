@@ -27,10 +27,13 @@ def read_claim(elements: Sequence[Element], asked: str) -> Claim:
     """Return what a clause states, and mark the elements that it uses."""
     _choose_senses(elements, asked)
     claim = Claim()
+    _read_kind(claim, elements)
     bare: list[Element] = []
     joined = 0
     pending = ""
     for i, element in enumerate(elements):
+        if claim.kind and element.is_used and element.kind in ("relation", "thing"):
+            continue
         match element.kind, element.value:
             case "relation", value:
                 pending = "" if value == "of" else value
@@ -67,12 +70,25 @@ def read_claim(elements: Sequence[Element], asked: str) -> Claim:
                     claim.event, element.is_used = value, True
                 elif value in ("go", "change"):
                     element.is_used = True
-            case "state", value:
+            case "state", value if claim.state in ("", value):
                 claim.state, element.is_used = value, True
             case _:
                 pass
     _share_out(claim, bare, elements, asked, joined)
     return claim
+
+
+def _read_kind(claim: Claim, elements: Sequence[Element]) -> None:
+    """Read the noun of *in which rooms has it been* and *which table was it on*."""
+    is_trailing = any(e.value.startswith("trailing ") for e in elements if e.kind == "mark")
+    for i, (element, noun) in enumerate(pairwise(elements)):
+        before = elements[i - 1] if i else None
+        is_after = before is not None and before.kind == "relation"
+        if element.is_a("ask", "what") and noun.kind == "thing" and (is_after or is_trailing):
+            claim.kind, noun.is_used = noun.text, True
+            if before is not None:
+                before.is_used = True
+            return
 
 
 def _choose_senses(elements: Sequence[Element], asked: str) -> None:
@@ -85,8 +101,9 @@ def _choose_senses(elements: Sequence[Element], asked: str) -> None:
         senses = element.senses
         if element.kind == "state" and "state_event" in senses and not has_event:
             is_asked = asked in _EVENT_ASKED and (acts or element.text != "open")
-            is_done = asked in ("whether", "anchor") and does and element.text != "closed"
-            if is_asked or is_done:
+            is_done = asked in ("whether", "while") and does and element.text != "closed"
+            is_anchor = asked in ("before", "after") and element.text != "open" and _is_passive(elements)
+            if is_asked or is_done or is_anchor:
                 element.kind, element.value = "event", senses["state_event"]
         elif element.kind == "event" and senses.get("mark") == "stay" and asked in _LASTING:
             element.kind, element.value = "mark", "stay"
@@ -103,6 +120,11 @@ def _choose_senses(elements: Sequence[Element], asked: str) -> None:
                 element.kind, element.value = "mark", f"trailing {senses['relation']}"
             elif "filler" in senses:
                 element.kind = "filler"
+
+
+def _is_passive(elements: Sequence[Element]) -> bool:
+    """Return whether a clause is in the past, where a participle is an event: after it was closed."""
+    return any(e.is_a("mark", "past") for e in elements)
 
 
 def _texts(elements: Sequence[Element]) -> list[str]:
@@ -131,7 +153,10 @@ def _share_out(
     )
     if kind is not None:
         texts.remove(kind)
-        claim.subjects = [kind]
+        if claim.event in _MOVING and (texts or claim.is_it):
+            claim.kind = kind  # which rooms did the robot visit
+        else:
+            claim.subjects = [kind]
     if claim.event == "leave" and asked == "who" and any(how in ("on", "in") for how, _ in claim.places):
         claim.event = "put"  # who left the cup on the table
     if claim.event == "leave" and claim.state in _OPENING:
