@@ -430,6 +430,8 @@ class _StepReader:
             things = [
                 m for m in things if m.filler.entities != theme.filler.entities or not m.filler.entities
             ]
+        if role.role in PLACES:  # the apples in the bowl and the banana next to IT
+            things = [m for m in things if not m.is_plural] or things
         acted_on = next((m for m in reversed(things) if not m.is_place), None)
         if acted_on is not None and clause.frame not in ("Motion", "Arriving"):
             return acted_on
