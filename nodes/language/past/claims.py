@@ -31,12 +31,13 @@ def read_claim(elements: Sequence[Element], asked: str) -> Claim:
     bare: list[Element] = []
     joined = 0
     pending = ""
+    relation: Element | None = None
     for i, element in enumerate(elements):
         if claim.kind and element.is_used and element.kind in ("relation", "thing"):
             continue
         match element.kind, element.value:
             case "relation", value:
-                pending = "" if value == "of" else value
+                pending, relation = "" if value == "of" else value, element
                 element.is_used = True
             case ("thing", _) | ("mark", "it" | "you"):
                 if element.text == "yourself":
@@ -74,6 +75,8 @@ def read_claim(elements: Sequence[Element], asked: str) -> Claim:
                 claim.state, element.is_used = value, True
             case _:
                 pass
+    if pending and relation is not None:
+        relation.is_used = False  # on average
     _share_out(claim, bare, elements, asked, joined)
     return claim
 
@@ -112,14 +115,26 @@ def _choose_senses(elements: Sequence[Element], asked: str) -> None:
             is_place = following is not None and (
                 following.kind == "thing" or following.is_a("mark", "it", "anyone", "there", "you")
             )
+            has_subject = asked in ("where", "what") and _has_subject(elements[:i])
             if is_place:
                 element.kind, element.value = "relation", senses["relation"]
+            elif has_subject and following is None:  # which table was the cup on
+                element.kind, element.value = "mark", f"trailing {senses['relation']}"
             elif "state" in senses:
                 element.kind, element.value = "state", senses["state"]
             elif asked in ("where", "what"):
                 element.kind, element.value = "mark", f"trailing {senses['relation']}"
             elif "filler" in senses:
                 element.kind = "filler"
+
+
+def _has_subject(elements: Sequence[Element]) -> bool:
+    """Return whether there is a noun that does not follow *which* or *what*."""
+    pairs = pairwise((None, *elements))
+    return any(
+        e is not None and (e.kind == "thing" or e.is_a("mark", "it", "you")) and (before is None or before.kind != "ask")
+        for before, e in pairs
+    )
 
 
 def _is_passive(elements: Sequence[Element]) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 from semmap.nodes.language.past.elements import Element
-from semmap.nodes.language.past.question import Asked
+from semmap.nodes.language.past.question import Asked, PastQuestion
 
 _USED_BY: Final[Mapping[str, frozenset[Asked]]] = {
     "never": frozenset(("whether", "what", "how_many", "missing")),
@@ -20,11 +20,18 @@ _USED_BY: Final[Mapping[str, frozenset[Asked]]] = {
     "last": frozenset(("where", "when", "since", "until", "how_long", "who", "what", "whether")),
 }
 """The questions of which a mark changes the answer; in others it is not used."""
+_OF_PLACES: Final = ("where", "who", "what", "how_many", "changed", "missing")
+"""Questions without an event that are about places, and not about states."""
 
 
-def mark_used(asked: Asked, main: Sequence[Element]) -> None:
+def mark_used(question: PastQuestion, main: Sequence[Element]) -> None:
     """Mark the words that change the answer to the question, and those that state only structure."""
+    asked, claim = question.asked, question.claim
+    has_state = asked not in _OF_PLACES and bool(claim.subjects or claim.is_it)
+    is_state_used = has_state or bool(claim.event)
     for element in main:
+        if element.kind == "state" and not is_state_used:
+            element.is_used = False
         uses = _USED_BY.get(element.value, (asked,)) if element.kind == "mark" else ()
         element.is_used = (
             element.is_used or asked in uses or ("filler" in element.senses and element.kind == "ask")

@@ -112,7 +112,7 @@ def _read(elements: list[Element], *, is_marked: bool, before: Sequence[PastQues
     _specialise(question, main)
     if not _is_past(question, main):
         return None
-    mark_used(question.asked, main)
+    mark_used(question, main)
     question.doubts = find_unused(elements)
     question.unused = [e.text for e in elements if not e.is_used and e.kind not in ("filler", "unknown")]
     return question
