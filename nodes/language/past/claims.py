@@ -62,8 +62,8 @@ def read_claim(elements: Sequence[Element], asked: str) -> Claim:
             case "mark", "there":
                 element.is_used = True
                 claim.is_there = claim.is_there or not _is_existential(elements, i)
-            case "mark", "and":
-                element.is_used = True
+            case "mark", "and" | "or" as value:
+                element.is_used = value == "and" or not claim.places  # on the table or on the desk
                 joined += bool(bare)
             case "event", value:
                 pending = "" if pending == "to" else pending  # the last to move the cup
@@ -86,11 +86,11 @@ def _read_kind(claim: Claim, elements: Sequence[Element]) -> None:
     is_trailing = any(e.value.startswith("trailing ") for e in elements if e.kind == "mark")
     for i, (element, noun) in enumerate(pairwise(elements)):
         before = elements[i - 1] if i else None
-        is_after = before is not None and before.kind == "relation"
+        is_after = before is not None and "relation" in before.senses
         if element.is_a("ask", "what") and noun.kind == "thing" and (is_after or is_trailing):
             claim.kind, noun.is_used = noun.text, True
-            if before is not None:
-                before.is_used = True
+            if before is not None and is_after:
+                before.kind, before.is_used = "relation", True
             return
 
 

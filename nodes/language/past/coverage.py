@@ -13,6 +13,7 @@ _USED_BY: Final[Mapping[str, frozenset[Asked]]] = {
     "not": frozenset(("whether", "what", "how_many", "missing")),
     "no_one": frozenset(("whether", "what", "how_many", "missing")),
     "more_than_once": frozenset(("whether", "what", "how_many")),
+    "or": frozenset(),
     "or_else": frozenset(("whether",)),
     "previously": frozenset(("where",)),
     "afterwards": frozenset(),

@@ -15,7 +15,7 @@ _ORDER: Final[tuple[Kind, ...]] = ("ask", "event", "state", "relation", "mark", 
 _MOST_WORDS: Final = 8
 TENSES: Final = ("past", "present", "perfect")
 """The marks of the tense: was, is, has."""
-_DETERMINERS: Final = ("definite", "indefinite", "mine", "every", "plural_determiner")
+_DETERMINERS: Final = ("definite", "indefinite", "mine", "plural_determiner")
 
 
 @dataclass(slots=True)

@@ -269,8 +269,8 @@ def _is_past(question: PastQuestion, main: Sequence[Element]) -> bool:
     if asked == "changed":
         return True
     if asked == "missing":
-        is_here = claim.event == "missing" and bool(claim.places)
-        return is_past or has_period or is_here or any(e.text.startswith(("no ", "not ")) for e in main)
+        is_denied = any(e.text.startswith(("no ", "not ")) for e in main)
+        return is_past or has_period or is_denied or bool(claim.places)
     if asked in ("since", "until"):
         return has_claim
     if asked in ("how_often",):
