@@ -194,6 +194,8 @@ def _share_out(
         is_active = any(element.text in ("did", "has", "have", "had") for element in elements) and (
             "been" not in _texts(elements)
         )
+        pairs = pairwise(elements)  # the last thing that Anna moved
+        is_active = is_active or any(a in bare and a.text in texts and b.kind == "event" for a, b in pairs)
         is_first = kind is not None or (len(texts) > joined + 1) or claim.is_it
         if texts and asked != "who" and (is_first or (asked == "what" and is_active)):
             claim.agent = texts.pop(0)

@@ -80,6 +80,7 @@ def claim_of(claim):
         ("was cup1 on table1 or in the kitchen", "whether; cup1 on table1 in the kitchen; ? or"),
         ("how many times did r2 visit each kitchen", "how_often; r2 enter to kitchen; ? each"),
         ("cosa manca da table1", "missing; from table1"),
+        ("what was the first thing that anna moved", "what; move by anna; first"),
         ("what was moved after the fridge was closed", "what; move; after (the fridge close)"),
         ("who did not move cup1", "who; cup1 move; ? not"),
         ("since when was cup1 not on table1", "since; cup1 on table1; ? not"),

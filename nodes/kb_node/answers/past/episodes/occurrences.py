@@ -79,7 +79,7 @@ class Occurrences:
         self._used.add(text)
         found = self._referents[text]
         if found.problem or not found.names:
-            raise NotKnown(found.problem or f"'{text}' is the author of commits, and no entity of the map")
+            raise NotKnown(found.problem or _is_author(text))
         return found.names
 
     def kind(self, text: str) -> tuple[str, ...]:
@@ -87,7 +87,7 @@ class Occurrences:
         self._used.add(text)
         found = self._referents[text]
         if not found.names:
-            raise NotKnown(found.problem)
+            raise NotKnown(found.problem or _is_author(text))
         return found.names
 
     def author(self, claim: Claim) -> str:
@@ -248,6 +248,10 @@ class Occurrences:
                 by = self._timeline.author(span.since)
                 found.append(structs.replace(span, what=_DONE[event], until=None, until_ns=None, by=by))
         return found
+
+
+def _is_author(text: str) -> str:
+    return f"'{text}' is the author of commits, and no entity of the map"
 
 
 def _came(span: Episode) -> str:
