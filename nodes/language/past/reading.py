@@ -85,8 +85,8 @@ def _read(elements: list[Element], *, is_marked: bool, before: Sequence[PastQues
     """
     asks = [element for element in elements if element.kind != "filler"]
     if before and len(asks) == 1 and asks[0].kind == "ask":
-        asked = cast(Asked, asks[0].value)
-        return replace(before[-1], text=_text(elements), asked=asked, claim=deepcopy(before[-1].claim))
+        first, claim = before[-1], deepcopy(before[-1].claim)
+        return replace(first, text=_text(elements), asked=cast(Asked, asks[0].value), claim=claim)
     is_tag = _drop_tag(elements)
     main, anchor, rest = _split(elements)
     was_it = _drop_cleft(main)
