@@ -27,10 +27,10 @@ _STRUCTURE_TEXT: Final = (
     "here with for from by as me my i we us have has had like want need make sure go ahead mind how "
     "about great kind was wondering try first second finally after before okay hey um uh buddy let "
     "shall well actually wait sorry no rather mean meant him forget right think know able "
-    "job task thanks again only keep her them he she they one any some all"
+    "job task thanks don favour again only keep her them he she they one any some all"
 )
 _STRUCTURE: Final = frozenset(_STRUCTURE_TEXT.split())
-"""Words that state structure or nothing."""
+"""Words that state structure, politeness or nothing."""
 _WORD: Final = re.compile(r"[^\W\d_]+")
 
 

@@ -15,7 +15,7 @@ _ORDER: Final[tuple[Kind, ...]] = ("ask", "event", "state", "relation", "mark", 
 _MOST_WORDS: Final = 8
 TENSES: Final = ("past", "present", "perfect")
 """The marks of the tense: was, is, has."""
-_DETERMINERS: Final = ("definite", "indefinite", "mine", "every", "plural_determiner")
+_DETERMINERS: Final = ("definite", "indefinite", "mine", "plural_determiner")
 
 
 @dataclass(slots=True)
@@ -82,6 +82,9 @@ class Elements:
         length = self._noun(words, j)
         if not length:
             return 0
+        is_name = " ".join(words[j : j + length]) in self._names
+        if is_name and "filler" in self._lexicon.match(words, i)[1]:
+            return 0  # the cup that Anna moved
         end = j + length
         of, of_senses = self._lexicon.match(words, end)
         if of_senses.get("relation") == "of" and (more := self._thing(words, end + of)):

@@ -35,11 +35,13 @@ class Claim:
     """Whether it is the present place of the subject that is meant: since when is it there."""
     is_it: bool = False
     """Whether the subject is a pronoun."""
+    kind: str = ""
+    """The noun of the place that is asked for: in which *rooms*, which *table* was it on."""
 
 
 @dataclass(slots=True)
 class PastQuestion:
-    """A question about the past. `doubts` quote the words that were not used."""
+    """A question about the past. `doubts` quote the words that were not used, also those in `unused`."""
 
     text: str
     asked: Asked
@@ -64,3 +66,5 @@ class PastQuestion:
     anchored: Claim | None = None
     """What was so before, after or during what is asked."""
     doubts: list[str] = field(default_factory=list)
+    unused: list[str] = field(default_factory=list)
+    """Words that have a meaning in other questions: without them it would be another question."""

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Set
+from collections.abc import Iterator, Sequence, Set
+from copy import deepcopy
+from dataclasses import replace
 from datetime import datetime
+from itertools import pairwise
 from typing import Final, cast, get_args
 
 from semmap.nodes.language.lexicon.past import load
 from semmap.nodes.language.past.claims import read_claim
+from semmap.nodes.language.past.coverage import find_unused, mark_used
 from semmap.nodes.language.past.elements import TENSES, Element, Elements
 from semmap.nodes.language.past.question import Anchor, Asked, Order, PastQuestion
 from semmap.nodes.language.past.times import Period, TimeReader
@@ -47,19 +51,42 @@ def _read_all(words: list[str], elements: Elements) -> list[PastQuestion]:
         if word not in ("?", ";"):
             part.append(word)
         elif part:
-            question = _read(elements.read(part), part, is_marked=word == "?")
-            if question is None and not found:
-                return []
-            if question is None:
-                found[-1].doubts.append(" ".join(part))
-            else:
-                found.append(question)
+            for one in _split_questions(elements.read(part)):
+                question = _read(one, is_marked=word == "?", before=found)
+                if question is not None:
+                    found.append(question)
+                elif not found:
+                    return []
+                else:
+                    found[-1].doubts.append(_text(one))
             part = []
     return found
 
 
-def _read(elements: list[Element], words: list[str], *, is_marked: bool) -> PastQuestion | None:
-    """Return the question of some elements, or None if it is not one about the past."""
+def _split_questions(elements: list[Element]) -> Iterator[list[Element]]:
+    """Yield the elements of each question: who moved the cup, and when."""
+    begin = 0
+    for i, (joined, following) in enumerate(pairwise(elements)):
+        is_question = any(e.kind == "ask" or e.is_a("mark", *TENSES) for e in elements[begin:i])
+        if is_question and joined.is_a("mark", "and") and following.kind == "ask":
+            yield elements[begin:i]
+            begin = i + 1
+    yield elements[begin:]
+
+
+def _text(elements: Sequence[Element]) -> str:
+    return " ".join(element.text for element in elements)
+
+
+def _read(elements: list[Element], *, is_marked: bool, before: Sequence[PastQuestion]) -> PastQuestion | None:
+    """Return the question of some elements, or None if it is not one about the past.
+
+    A question word alone asks it of the same as the question before.
+    """
+    asks = [element for element in elements if element.kind != "filler"]
+    if before and len(asks) == 1 and asks[0].kind == "ask":
+        first, claim = before[-1], deepcopy(before[-1].claim)
+        return replace(first, text=_text(elements), asked=cast(Asked, asks[0].value), claim=claim)
     is_tag = _drop_tag(elements)
     main, anchor, rest = _split(elements)
     was_it = _drop_cleft(main)
@@ -72,11 +99,11 @@ def _read(elements: list[Element], words: list[str], *, is_marked: bool) -> Past
             combined = period.combined(element.period)
             element.is_used = combined is not None
             period = combined or period
-    anchored = read_claim(rest, "anchor") if anchor else None
+    anchored = read_claim(rest, anchor) if anchor else None
     for element in rest:
         element.is_used = element.is_used or element.is_a("mark", *TENSES, "first", "last", "stay")
     question = PastQuestion(
-        " ".join(words), asked, read_claim(main, asked), period, anchor=anchor, anchored=anchored
+        _text(elements), asked, read_claim(main, asked), period, anchor=anchor, anchored=anchored
     )
     _add_marks(question, main)
     question.is_negated = question.is_negated and not is_tag
@@ -85,7 +112,9 @@ def _read(elements: list[Element], words: list[str], *, is_marked: bool) -> Past
     _specialise(question, main)
     if not _is_past(question, main):
         return None
-    question.doubts = _unused(elements)
+    mark_used(question, main)
+    question.doubts = find_unused(elements)
+    question.unused = [e.text for e in elements if not e.is_used and e.kind not in ("filler", "unknown")]
     return question
 
 
@@ -145,8 +174,7 @@ def _asked(main: Sequence[Element], *, is_marked: bool) -> Asked | None:
             return None
         if ask.value == "when" and not is_told and not _is_direct(words, words.index(ask)):
             return None
-        for element in words:
-            element.is_used = element.is_used or element.kind == "ask"
+        ask.is_used = True
         return cast(Asked, ask.value)
     if any(e.kind == "unknown" for e in words):
         return None
@@ -178,13 +206,9 @@ def _add_marks(question: PastQuestion, main: Sequence[Element]) -> None:
     last = next((e.value for e in reversed(main) if e.is_a("mark", *TENSES) and e.text != "been"), "")
     question.is_current = last in ("present", "perfect")
     question.is_negated = bool(marks & {"never", "not", "no_one"})
-    question.is_repeated, question.is_last = "more_than_once" in marks, "or_else" in marks
+    question.is_repeated = "more_than_once" in marks
+    question.is_last = bool(marks & {"or_else", "last"})
     question.is_previous = "previously" in marks
-    if "afterwards" in marks:
-        question.doubts.append("afterwards")
-    for element in main:
-        if element.kind == "mark" and element.value not in ("afterwards",):
-            element.is_used = True
 
 
 def _specialise(question: PastQuestion, main: Sequence[Element]) -> None:
@@ -210,8 +234,8 @@ def _specialise(question: PastQuestion, main: Sequence[Element]) -> None:
         question.asked = "missing"
         if question.is_current:  # what was there at 10:00 is not anymore
             question.period = _since_then(question.period)
-    elif question.asked == "what" and has_trailing and claim.subjects:
-        question.asked = "where"  # what was the cup on
+    elif question.asked == "what" and (claim.kind or (has_trailing and claim.subjects)):
+        question.asked = "where"  # what was the cup on, which rooms did it visit
     elif question.asked == "where" and has_trailing and has_trailing[0].value == "trailing from":
         claim.places.append(("from", ""))
     question.is_gross = any("happen" in e.text or "success" in e.text for e in main)
@@ -245,7 +269,8 @@ def _is_past(question: PastQuestion, main: Sequence[Element]) -> bool:
     if asked == "changed":
         return True
     if asked == "missing":
-        return is_past or has_period or any(e.text.startswith(("no ", "not ")) for e in main)
+        is_denied = any(e.text.startswith(("no ", "not ")) for e in main)
+        return is_past or has_period or is_denied or bool(claim.places)
     if asked in ("since", "until"):
         return has_claim
     if asked in ("how_often",):
@@ -269,17 +294,3 @@ def _is_past(question: PastQuestion, main: Sequence[Element]) -> bool:
 def _asks_duration(main: Sequence[Element]) -> bool:
     """Return whether *how long* is not about a length: for how long is it there, da quanto sta lì."""
     return any(e.kind == "ask" and e.text.startswith(("for ", "da ", "per ", "è ")) for e in main)
-
-
-def _unused(elements: Sequence[Element]) -> list[str]:
-    """Return the words that were not used, each run of them as one text."""
-    found: list[str] = []
-    is_run = False
-    for element in elements:
-        is_unused = not element.is_used and element.kind != "filler"
-        if is_unused and is_run:
-            found[-1] = f"{found[-1]} {element.text}"
-        elif is_unused:
-            found.append(element.text)
-        is_run = is_unused
-    return found

@@ -108,8 +108,8 @@ class NounPhraseReader:
 
     def _run_end(self, i: int) -> int:
         """Return the index after the noun group that begins at i."""
-        seen_noun = False
-        while i < len(self._words):
+        seen_noun, begin = False, i
+        while i < len(self._words) and not (i > begin and self._owns(i)):
             noun = self._length("noun", i)
             bound = max(self._length(kind, i) for kind in _BOUNDS)
             beside = max(self._length(kind, i) for kind in _BEFORE_A_NOUN)
@@ -127,6 +127,11 @@ class NounPhraseReader:
                 seen_noun = seen_noun or (bool(noun) and not self._followed_by_noun(i + noun))
                 i += 1 if not beside or noun else beside
         return i
+
+    def _owns(self, i: int) -> bool:
+        """Return whether an owner and *owns* are at i: the cup ANNA OWNS."""
+        noun = i + self._length("definite", i)
+        return self._length("noun", noun) > 0 and self._length("own", noun + self._length("noun", noun)) > 0
 
     def _joins_qualities(self, i: int) -> bool:
         """Return whether the *and* or *or* at i joins two adjectives before a noun."""
@@ -194,6 +199,8 @@ class NounPhraseReader:
         if word in describing.pluralia:
             if draft.number is None:
                 draft.is_plural = draft.is_plural and not self._only_agrees(draft)
+        elif word in describing.collectives:
+            draft.is_plural = True
         elif describing.head_is_last and describing.base(word) != word and word.endswith(("s", "ves", "men")):
             draft.is_plural = True
 

@@ -80,6 +80,8 @@ class _Parser(NounPhraseReader):
             length := max(self._length("opening", i), self._length("filler", i), self._length("polite", i))
         ):
             i += length
+        if self._length("be", len(self._words) - 1) and not self._length("afford", i):
+            i += self._length("where", i)  # where Anna is; not: where can I sit
         while i < len(self._words):
             made, j = self._phrase(i, 0)
             if j == i:  # no phrase begins here: keep the word as unknown
@@ -283,8 +285,9 @@ class _Parser(NounPhraseReader):
         return j
 
     def _owned_by(self, draft: Draft, i: int, depth: int) -> int:
-        """Read *that Anna owns*; return the index of the next word, or 0."""
-        if not (length := self._length("relative", i)) or self._ends(i + length):
+        """Read *that Anna owns*, *Anna owns*; return the index of the next word, or 0."""
+        length = self._length("relative", i)
+        if not (length or self._owns(i)) or self._ends(i + length):
             return 0
         if not any(self._length("own", j) for j in range(i + length + 1, len(self._words))):
             return 0

@@ -43,7 +43,7 @@ class ArgumentReader(CorrectionReader):
             elif words[i] in ("each", "apiece") and self._t.is_mark(i + 1):
                 clause.roles.append(Role("Manner", i, i + 1, i))
                 i += 1
-            elif words[i] == "using":
+            elif words[i] == "using" or words[i - 1 : i + 1] == (",", "whichever"):
                 end = self._clause_end(i)
                 self.found.unused.append(self._t.between(i, end))
                 i = end

@@ -86,7 +86,7 @@ class ClauseBoundaries(ClauseStarts):
     def _subordinates(self, i: int) -> int:
         """Return the number of words of a conjunction at `i` that begins a subordinate clause, or 0."""
         g, words = self._g, self._words
-        length = g.match("condition", words, i)
+        length = g.match("condition", words, i) or int(self._is_absolute(i))
         negation = i + (words[i : i + 1] == ("but",))
         if words[negation : negation + 1] == ("not",) and (
             denied := g.match("condition", words, negation + 1)
@@ -102,6 +102,17 @@ class ClauseBoundaries(ClauseStarts):
             not length and words[i : i + 1] == ("should",) and self._t.is_mark(i - 1 if i else len(words))
         )
         return int(is_first and words[i + 1 : i + 2] != ("i",)) or length  # should Anna arrive, greet her
+
+    def _is_absolute(self, i: int) -> bool:
+        """Return whether *with* at `i` and a predicate stand before a clause: with Anna gone, close it."""
+        words = self._words
+        is_first = i == 0 or self._t.is_mark(i - 1) or self._g.is_a(words[i - 1], "and")
+        is_with = is_first and words[i : i + 1] == ("with",)
+        phrase = self._np.read(i + 1, with_places=False) if is_with else None
+        if phrase is None or self._g.match("manner", words, i):
+            return False
+        end = next(j for j in range(phrase.head + 1, len(words) + 1) if self._t.is_mark(j))
+        return end > phrase.head + 1 and words[end : end + 1] == (",",) and self.starts_clause(end + 1)
 
     def _connects(self, i: int) -> bool:
         """Return whether *and* at `i` joins the main clause, and not a subordinate one, with another."""

@@ -310,6 +310,7 @@ class ClauseReader(MessageReader):
             return self._end_activity(i, activity)
         clause = Clause(frame, " ".join(self._words[i : i + length]), i)
         self.found.clauses.append(clause)
+        self._np.is_negated = self._is_negated
         self._np.takes_that = frame in ("Telling", "Questioning")
         self._np.takes_with = "with" in self._g.frames[frame].roles
         j = i + length

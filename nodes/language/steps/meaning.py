@@ -226,7 +226,8 @@ class Meanings(EntityTests):
 
     def _is_beyond(self, phrase: NounPhrase, names: Sequence[str]) -> bool:
         """Return whether there are fewer things than an ordinal counts: the THIRD of two laptops."""
-        number = int(self._nouns.describing.sense(tuple(phrase.superlative.split())).get("ordinals", 0))
+        ordinal = phrase.superlative.partition(" from ")[0]  # the second from the left
+        number = int(self._nouns.describing.sense(tuple(ordinal.split())).get("ordinals", 0))
         return abs(number) > len(names) > 0
 
     def _alike(self, phrase: NounPhrase, is_any: bool) -> list[str]:

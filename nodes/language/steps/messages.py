@@ -137,6 +137,8 @@ class MessageReader(QuestionReader):
         elif words[i : i + 1] == ("how",):
             head = min(i + 1, end - 1)
         clause.roles.append(Role("Message", i, end, head))
+        if clause.frame == "Questioning":  # ask Anna where her keys are and bring THEM
+            self._mention_all(i, end)
         return self._addressed(clause, end)
 
     def _answer(self, clause: Clause, i: int) -> int:

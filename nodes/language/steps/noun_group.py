@@ -68,6 +68,7 @@ class NounGroupReader:
         denotes a person. `above` maps classes to their superclasses.
         """
         self.takes_that = False
+        self.is_negated = False
         """Whether *that* may begin a message in the clause that is read, and not a relative clause."""
         self.takes_with = False
         """Whether *with* after a thing belongs to the verb: fill the glass WITH water."""

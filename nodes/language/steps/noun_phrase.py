@@ -26,6 +26,9 @@ class NounPhraseReader(PronounReader):
         """
         if self._t.is_mark(i):
             return None
+        if (only := self._nothing_but(i)) and (meant := self.read(i + only, with_places=with_places)):
+            meant.first = i
+            return meant
         phrase = NounPhrase(i)
         if self._read_pronoun(phrase):
             if phrase.kind == "person":
@@ -66,6 +69,13 @@ class NounPhraseReader(PronounReader):
             return self._owned(phrase, i, with_places)
         self._after_the_noun(phrase, with_places)
         return phrase
+
+    def _nothing_but(self, i: int) -> int:
+        """Return the number of words of *nothing but* at `i`, which is *only*; or 0."""
+        is_none = self._words[i] in ("nothing", "nobody", "none") and not self.is_negated
+        is_but = self._words[i + 1 : i + 2] == ("but",)
+        length = (int(is_but) or self._g.match("exclude", self._words, i + 1)) if is_none else 0
+        return length + 1 if length else 0
 
     def _all_but(self, i: int) -> NounPhrase | None:
         """Return the phrase of *all but two cups* or *all except the red cup* at `i`, or None."""
@@ -413,7 +423,13 @@ class NounPhraseReader(PronounReader):
         return True
 
     def _is_with(self, i: int) -> bool:
-        """Return whether *with* at `i` describes a thing, and is not of the verb or of the robot's hand."""
+        """Return whether *with* at `i` describes a thing, and is not of the verb, a hand or a person.
+
+        What a person does or where one is, is no property of a thing: close the oven with Anna gone.
+        """
+        other = self.read(i + 1, with_places=False)
+        if other is not None and self._is_person(other):
+            return False
         is_manner = self._g.match("manner", self._words, i) > 0
         return not (self.takes_with or is_manner or self._t.is_mark(i + 1) or self._words[i + 1] == "your")
 

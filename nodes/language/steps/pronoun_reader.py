@@ -73,6 +73,9 @@ class PronounReader(NounGroupReader):
     def exclusion(self, i: int) -> int:
         """Return the number of words before an exception at `i` (except, but not), or 0."""
         length = self._g.match("exclude", self._words, i)
+        is_any = any(self._g.is_a(self._words[i - 1], kind) for kind in ("anything", "everyone"))
+        if not length and is_any and self._words[i : i + 1] == ("but",):
+            return 1  # take anything but the milk
         is_clause = self._words[i + length : i + length + 1] == ("that",)
         is_clause = is_clause and not (self._t.is_translated and self._t.word(i + length) != "che")  # quella
         return 0 if is_clause and not self._is_determiner(i + length, 1) else length  # except that it is red

@@ -89,7 +89,9 @@ class _StepReader:
                 )
                 self._mentions.append(mention)
             found.steps.append(self._step(clause, len(found.steps) + 1))
-        is_condition = bool(self._g.match("condition", self._t.words, 0))
+        conditions = [text for clause in parsed.clauses for text in clause.conditions]
+        is_condition = any(self._t.text.startswith(text) for text in conditions)
+        is_condition = is_condition or bool(self._g.match("condition", self._t.words, 0))
         first = self._g.match("polite", self._t.words, 0)
         negation = self._g.match("negation", self._t.words, 0)
         first = max(first, negation)
@@ -97,8 +99,7 @@ class _StepReader:
         found.commands = is_condition or is_wish or negation > 1 or self._g.verb(self._t.words, 0)[0] > 0
         found.asks = bool(parsed.clauses) and all(clause.asks for clause in parsed.clauses)
         found.unknown = list(dict.fromkeys(parsed.unknown))
-        conditions = dict.fromkeys(text for clause in parsed.clauses for text in clause.conditions)
-        for condition in conditions:
+        for condition in dict.fromkeys(conditions):
             if condition.startswith("not (") and condition[5:-1] in conditions:
                 continue
             found.doubts.append(f"'{condition}' is a condition; it is not checked")
@@ -429,6 +430,8 @@ class _StepReader:
             things = [
                 m for m in things if m.filler.entities != theme.filler.entities or not m.filler.entities
             ]
+        if role.role in PLACES:  # the apples in the bowl and the banana next to IT
+            things = [m for m in things if not m.is_plural] or things
         acted_on = next((m for m in reversed(things) if not m.is_place), None)
         if acted_on is not None and clause.frame not in ("Motion", "Arriving"):
             return acted_on

@@ -7,6 +7,7 @@ from typing import Final
 
 from semmap.nodes.language.lexicon.commands import Grammar
 
+_DURING: Final = ("in", "for", "after", "within", "before", "during", "about")
 _AFTER_HOUR: Final = frozenset(
     ("", ",", ".", "!", "?", "and", "then", "please", "today", "tomorrow", "if", "unless")
 )
@@ -27,6 +28,12 @@ def starts_time(g: Grammar, words: Sequence[str], i: int) -> int:
     def is_unit(text: str) -> bool:
         return g.is_a(text.removesuffix("s"), "unit")
 
+    if word in ("by", "before", "until", "till", "from", "after", "since") and (
+        length := g.match("time", words, i + 1)
+    ):
+        return length + 1
+    if length := _within(g, words, i):
+        return length
     if word in ("at", "by", "around", "before", "after", "until", "from", "till", "about", "past"):
         if (at(0) in ("half", "quarter", "a") and "past" in rest[1:3]) or (
             "to" in rest[1:3] and at(0) == "quarter"
@@ -50,7 +57,7 @@ def starts_time(g: Grammar, words: Sequence[str], i: int) -> int:
                 and g.verb(words, i + k + 2)[0]
             ):
                 return k + 2  # at ten go to the kitchen
-    if word in ("in", "for", "after", "within", "before", "during", "about"):
+    if word in _DURING:
         k = 1 if at(0) in ("about", "the", "next", "a", "an") else 0
         k += at(k) in ("couple", "few", "next", "half", "of")
         k += at(k) in ("of", "an", "a")
@@ -79,3 +86,21 @@ def starts_time(g: Grammar, words: Sequence[str], i: int) -> int:
     if word == "tomorrow" or word == "today":
         return 1
     return 0
+
+
+def _within(g: Grammar, words: Sequence[str], i: int) -> int:
+    """Return the length of a period at `i`: in a quarter of an hour, for an hour and a half; or 0."""
+    if words[i] not in _DURING:
+        return 0
+    share = g.match("share", words, i + 1)
+    j = i + 1 + share
+    j += words[j : j + 1] == ("of",) if share else 0
+    number = words[j : j + 1] in (("a",), ("an",), ("the",)) or (
+        j < len(words) and g.number(words[j]) is not None
+    )
+    j += number
+    if not (share or number) or j >= len(words) or not g.is_a(words[j].removesuffix("s"), "unit"):
+        return 0
+    is_more = words[j + 1 : j + 2] == ("and",)
+    more = g.match("share", words, j + 2) if is_more else 0
+    return j + 1 - i + (more + 1 if more else 0)

@@ -17,6 +17,7 @@ from semmap.nodes.language.words import without_markup
 _ADJECTIVES: Final = frozenset(lexicon().adjectives.values())
 _ARTICLES: Final = frozenset(("the", "these", "a", "this", "that", "and", "from", "on", "in", ",", "."))
 _BEFORE_GROUP: Final = _ARTICLES | {"is", "are"}
+_BEFORE_HOUR: Final = frozenset(("a", "half", "quarter", "of"))
 _SOUND: Final = r"(?:ehm|uhm|um|mmm?|eh|ah|oh|beh|boh)"
 _HESITATION: Final = re.compile(
     rf"(?:,\s*)?(?<!\w){_SOUND}(?!\w)(?:\s*,?\s*{_SOUND}(?!\w))*(?:\s*,)?", re.IGNORECASE
@@ -70,10 +71,15 @@ def _begins_correction(text: str) -> bool:
 
 
 def _with_times(tokens: list[Token]) -> list[Token]:
-    """Replace the prepositions of times: *tra cinque minuti* is in five minutes, *alle dieci* at ten."""
+    """Replace words of times: *tra cinque minuti* is in five minutes, *alle dieci* at ten, *ora* now or hour."""
     found: list[Token] = []
     for token in tokens:
         before = [other.word for other in found[-2:]]
+        if token.word == "now" and before[-1:] in (["a"], ["half"], ["of"]):
+            token = replace(token, word="hour")
+            first = next((k for k in range(len(found) - 1, -1, -1) if found[k].word not in _BEFORE_HOUR), -1)
+            if first >= 0 and found[first].word == "between":
+                found[first] = replace(found[first], word="in")
         if grammar().number(token.word) is not None or ":" in token.word:
             if before[-1:] == ["between"]:
                 found[-1] = replace(found[-1], word="in")

@@ -187,7 +187,7 @@ class _Glossing:
 
     def _expression(self, english: str, i: int, length: int) -> int:
         following = self._pieces[i + 1].text if i + 1 < len(self._pieces) else ""
-        if english == "of" and following in self._known.verbs and following.endswith(_INFINITIVE):
+        if english == "of" and self._is_infinitive(i + 1):
             english = "to"  # "chiedi a Nora di venire"
         if english == "of" and self._is_partitive(i):
             self._say("some", i, i + 1, "det")
@@ -207,6 +207,13 @@ class _Glossing:
             return 1
         self._say(english, i, i + length - 1, "det" if english in _DETERMINERS else None)
         return length
+
+    def _is_infinitive(self, i: int) -> bool:
+        """Return whether piece i is an infinitive, also without its last letter: portare, portar-mi."""
+        text = self._pieces[i].text if i < len(self._pieces) else ""
+        if i + 1 < len(self._pieces) and self._pieces[i + 1].is_clitic:
+            text = f"{text}e"
+        return text.endswith(_INFINITIVE) and self._pieces[i].text in self._known.verbs
 
     def _is_determiner(self, text: str) -> bool:
         return self._known.expressions.get((text,), "") in _DETERMINERS

@@ -43,6 +43,7 @@ def claim_of(claim):
     it = ["it"] if claim.is_it else []
     places = [f"{how} {text}" for how, text in claim.places]
     by = [f"by {claim.agent}"] if claim.agent else []
+    it += [f"(of {claim.kind})"] if claim.kind else []
     return " ".join([*it, *claim.subjects, *filter(None, (claim.event, claim.state)), *places, *by])
 
 
@@ -70,6 +71,19 @@ def claim_of(claim):
         ("what did anna move", "what; move by anna"),
         ("was cup1 ever in the bathroom", "whether; cup1 in the bathroom"),
         ("where was cup1 gladly at 10:00", "where; cup1; at 10:00:00; ? gladly"),
+        ("which kitchens did r2 visit", "where; (of kitchens) r2 enter"),
+        ("in which kitchens has r2 been", "where; (of kitchens) r2; current"),
+        ("su quale tavolo era cup1", "where; (of tavolo) cup1"),
+        ("what was open in the kitchen at 10:00", "what; open in the kitchen; at 10:00:00; ? open"),
+        ("which table was cup1 on", "where; (of table) cup1"),
+        ("on which table was cup1", "where; (of table) cup1"),
+        ("was cup1 on table1 or in the kitchen", "whether; cup1 on table1 in the kitchen; ? or"),
+        ("how many times did r2 visit each kitchen", "how_often; r2 enter to kitchen; ? each"),
+        ("cosa manca da table1", "missing; from table1"),
+        ("what was the first thing that anna moved", "what; move by anna; first"),
+        ("what was moved after the fridge was closed", "what; move; after (the fridge close)"),
+        ("who did not move cup1", "who; cup1 move; ? not"),
+        ("since when was cup1 not on table1", "since; cup1 on table1; ? not"),
         ("dov'era cup1 alle 10:00", "where; cup1; at 10:00:00"),
         ("quando è stata spostata la tazza", "when; la tazza move"),
         ("da quando è aperto il cassetto", "since; il cassetto open; current"),
@@ -82,6 +96,20 @@ def claim_of(claim):
 def test_every_part_of_a_question_is_read(known, text, read):
     _, questions = read_questions(text, known, {"anna"}, NOW, ("english", "italian"))
     assert [shown(question) for question in questions] == [read]
+
+
+@pytest.mark.parametrize(
+    ("text", "read"),
+    [
+        ("who moved cup1, and when", ["who; cup1 move", "when; cup1 move"]),
+        ("where was cup1 and who moved it", ["where; cup1", "who; it move"]),
+        ("when was cup1 on table1 and for how long", ["when; cup1 on table1", "how_long; cup1 on table1"]),
+        ("chi ha spostato cup1 e quando", ["who; cup1 move; current", "when; cup1 move; current"]),
+    ],
+)
+def test_two_question_words_are_two_questions(known, text, read):
+    _, questions = read_questions(text, known, {"anna"}, NOW, ("english", "italian"))
+    assert [shown(question) for question in questions] == read
 
 
 @pytest.mark.parametrize(

@@ -29,6 +29,8 @@ ENGLISH = [
     ("before you take the milk open the oven and come back", ["before you take the milk"] * 2),
     ("after lunch close the fridge", ["after lunch"]),
     ("next time Nora comes, greet her", ["next time Nora comes"]),
+    ("with Nora gone, close the oven and come back", ["with Nora gone"] * 2),
+    ("with the oven on, go to the studio", ["with the oven on"]),
     ("should Nora be in the kitchen bring her the milk", ["should Nora be in the kitchen"]),
     ("wait until Nora arrives and take the milk", ["wait until Nora arrives"]),
     ("go to the studio and wait until Nora arrives and then come", ["", "wait until Nora arrives"]),

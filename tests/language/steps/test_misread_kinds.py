@@ -69,3 +69,27 @@ def test_one_of_several_persons_by_a_superlative_stays_open(read):
 
 def test_a_name_and_the_next_word_are_no_noun(read):
     assert texts(read("tell Tomas to come")) == ['Request(Addressee="Tomas", Message="to come")']
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        ("take nothing but the milk", ["Taking(Theme=milk1)"]),
+        ("take nothing except the milk and the kettle", ["Taking(Theme=milk1, Theme=kettle1)"]),
+        ("do not take anything but the milk", ['not Taking(Theme="anything but the milk")']),
+        ("non prendere niente tranne il latte", ['not Taking(Theme="niente tranne il latte")']),
+        ("close the oven with Nora gone", ["Closure(Containing_object=oven1)"]),
+        ("di' a Nora di portarmi il latte", ['Request(Addressee=nora1, Message="di portarmi il latte")']),
+        ("ask Nora where the milk is and bring it here",
+         ['Questioning(Addressee=nora1, Message="where the milk is")', 'Bringing(Theme=milk1, Goal="here")']),
+        ("put the plates on the desk and the milk next to it",
+         ["Placing(Theme=plate1|plate2, Goal=desk1)", "Placing(Theme=milk1, Goal=desk1)"]),
+    ],
+)  # fmt: skip
+def test_only_and_pronouns_are_no_other_things(read, text, steps):
+    assert texts(read(text)) == steps
+
+
+@pytest.mark.parametrize("thing", ["the second kettle from the left", "the third oven from the right"])
+def test_an_ordinal_is_counted_from_a_side(read, thing):
+    assert read(f"take {thing}").doubts == (f"'{thing}': there is only 1",)

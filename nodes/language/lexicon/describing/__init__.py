@@ -43,6 +43,7 @@ class Describing:
     qualities: Mapping[str, tuple[str, ...]]  # label -> other words
     synonyms: Mapping[str, tuple[str, ...]]  # class -> other words
     pluralia: frozenset[str]
+    collectives: frozenset[str]
     content: frozenset[str]
     wording: Mapping[str, str]
     lemmas: Mapping[str, str]
@@ -140,6 +141,7 @@ def load(language: Language) -> Describing:
         qualities={label: tuple(words) for label, words in table["qualities"].items()},
         synonyms={name: tuple(words) for name, words in table["synonyms"].items()},
         pluralia=frozenset(table["pluralia"]["words"]),
+        collectives=frozenset(table["collectives"]["words"]),
         content=frozenset(),
         wording=table["wording"],
         lemmas=table["lemmas"],

@@ -12,8 +12,10 @@ from semmap.nodes.kb_node.answers.past.episodes.timeline import Timeline
 from semmap.nodes.kb_node.answers.past.episodes.verdicts import Verdicts
 from semmap.schemas import errors
 from semmap.schemas.episodes import PastAnswer
+from semmap.schemas.wording import few
 
 _MOST: Final = 100
+_FEW: Final = 5
 
 
 def answer(timeline: Timeline, resolved: ResolvedQuestion) -> PastAnswer:
@@ -31,7 +33,15 @@ class _Answering(Verdicts):
     """Answers any kind of question."""
 
     def answer(self) -> PastAnswer:
-        """Return the answer. Raises NotKnown."""
+        """Return the answer, if it depends on all that the question states. Raises NotKnown."""
+        if self._q.unused:
+            raise NotKnown(f"'{few(self._q.unused, _FEW)}' is not understood in this question")
+        found = self._answer()
+        for referent in self._o.unused():
+            raise NotKnown(referent.problem or f"'{referent.text}' is not understood in this question")
+        return found
+
+    def _answer(self) -> PastAnswer:
         match self._q.asked:
             case "where":
                 return self._where()

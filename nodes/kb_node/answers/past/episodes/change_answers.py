@@ -50,9 +50,7 @@ class ChangeAnswers(TimeAnswers):
     def _what(self) -> PastAnswer:
         among: set[str] | None = None
         if self._claim.subjects:
-            among = {name for text in self._claim.subjects for name in self._referents[text].names}
-            if not among:
-                raise NotKnown(self._referents[self._claim.subjects[0]].problem)
+            among = {name for text in self._claim.subjects for name in self._o.kind(text)}
         return happened(self._t, self._o, self._q, among, self._o.places(self._claim), self._span)
 
     def _changed(self) -> PastAnswer:
@@ -108,6 +106,8 @@ class ChangeAnswers(TimeAnswers):
             first = max(self._t.journal.first - 1, 1)
         place = places[0] if places else None
         scope = f"from {few(place.names, FEW)}" if place is not None else "from the map"
+        if not span.text:
+            span = span._replace(text=f"since {texts.clock(self._t.first_ns)}")
         found = contents.missing(self._t, self._o, place, first, last, f"{scope} {span.text}".strip())
         return _as_verdict(found, is_so=not found.names) if self._q.is_all else found
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import Protocol
 
@@ -69,6 +70,9 @@ def happened(
     found = [e for e in clip(episodes, span.first_ns, span.last_ns) if e.since_ns >= span.first_ns]
     found.sort(key=lambda e: e.since_ns)
     by_author = question.asked == "who" and event not in ("enter", "leave", "go")
+    if _is_complement(question):
+        return _others(question, timeline, among, {e.subject for e in found}, occurrences.what(claim, places))
+    found = _repeated(found) if question.is_repeated else found
     if question.order:
         found = found[:1] if question.order == "first" else found[-1:]
     names = tuple(dict.fromkeys((e.by if by_author else e.subject) for e in found if e.by or not by_author))
@@ -128,21 +132,44 @@ def _were_there(
         seq = timeline.seq_at(span.at_ns)
         sets = [set(contents.contents(timeline, occurrences, one, seq, span.at_ns, among)) for one in places]
         found = sorted(set.intersection(*sets))
+        if _is_complement(question):
+            return _others(question, timeline, among, {*found, *place.names}, f"{where} {span.text}")
         return contents.list_contents(question.asked, found, where, seq, span.at_ns)
     candidates = sorted(among) if among is not None else _all_names(timeline)
     episodes = [e for es in occurrences.there(candidates, place).values() for e in es]
     inside = sorted(clip(episodes, span.first_ns, span.last_ns), key=lambda e: e.since_ns)
     if question.order:
         inside = inside[:1] if question.order == "first" else sorted(inside, key=_end_ns)[-1:]
+    if _is_complement(question):
+        there = {*(e.subject for e in inside), *place.names}
+        return _others(question, timeline, among, there, f"{where} {span.text}".strip())
+    inside = _repeated(inside) if question.is_repeated else inside
     names = tuple(dict.fromkeys(e.subject for e in inside))
-    if question.is_negated and question.asked in ("what", "how_many"):
-        others = tuple(name for name in candidates if name not in names and name not in place.names)
-        text = f"never {where} {span.text}".strip() + f": {few(others, _FEW)}"
-        return PastAnswer(asked=question.asked, text=text, names=others, count=len(others))
     parts = [f"{e.subject} {texts.span(e)}" for e in inside]
     nothing = "no person" if question.asked == "who" else "nothing"
     text = f"{where} {span.text}".strip() + ": " + (texts.listed(parts) if inside else nothing)
     return PastAnswer(asked=question.asked, text=text, names=names, count=len(names), evidence=tuple(inside))
+
+
+def _is_complement(question: PastQuestion) -> bool:
+    """Return whether the things are asked for to which it did not happen."""
+    return question.is_negated and question.asked in ("what", "how_many")
+
+
+def _others(
+    question: PastQuestion, timeline: Timeline, among: set[str] | None, names: set[str], what: str
+) -> PastAnswer:
+    """Return the things of which something was not so."""
+    candidates = sorted((among or set(_all_names(timeline))) - set(timeline.live_names))
+    others = tuple(name for name in candidates if name not in names)
+    text = f"never {what}: {few(others, _FEW) if others else 'nothing'}"
+    return PastAnswer(asked=question.asked, text=text, names=others, count=len(others))
+
+
+def _repeated(episodes: Sequence[Episode]) -> list[Episode]:
+    """Return the episodes of those that have several."""
+    times = Counter(e.subject for e in episodes)
+    return [e for e in episodes if times[e.subject] > 1]
 
 
 def _end_ns(episode: Episode) -> int:

@@ -99,7 +99,7 @@ class Inquiry:
                 )
             case "after":
                 end_ns = self._end_ns(episode)
-                return span._replace(first_ns=end_ns, text=f"after {texts.clock(end_ns)}")
+                return span._replace(first_ns=end_ns + 1, text=f"after {texts.clock(end_ns)}")
         if episode.until_ns is None and episode.since is not None and episode.by:
             ns = episode.since_ns
             return span._replace(first_ns=ns, last_ns=ns, at_ns=ns, text=f"at {texts.clock(ns)}")
@@ -132,7 +132,8 @@ class Inquiry:
     def _anchor(self, span: Span) -> Episode:
         """Return the episode that the second clause is about: the last one in the period."""
         claim = self._anchor_claim()
-        own = self._o.subjects(claim) if claim.subjects else ()
+        is_it = claim is self._q.anchored and claim.is_it and not self._subjects
+        own = self._o.subjects(claim) if claim.subjects or is_it else ()
         if not (own or self._subjects):
             raise NotKnown(f"the question names no thing that was so {self._q.anchor} it")
         episodes = self._o.of(claim, own or self._subjects)

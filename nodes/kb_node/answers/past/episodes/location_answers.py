@@ -20,13 +20,20 @@ class LocationAnswers(Inquiry):
     def _where(self) -> PastAnswer:
         if not self._subjects:
             raise NotKnown("the question names no thing")
-        return _joined([self._where_of(one) for one in self._subjects])
+        found = _joined([self._where_of(one) for one in self._subjects])
+        if not self._claim.kind:
+            return found
+        kind = self._o.kind(self._claim.kind)
+        names = tuple(name for name in found.names if name in kind)
+        if not names:
+            raise NotKnown(f"{found.text}; that is not one of '{self._claim.kind}'")
+        return structs.replace(found, names=names)
 
     def _where_of(self, name: str) -> PastAnswer:
         span = self._span
         if self._q.anchor is not None:
             return self._where_anchored(name)
-        if self._claim.event and self._claim.event not in ("see", "go"):
+        if self._claim.event and self._claim.event not in ("see", "go", "enter"):
             return self._where_event(name)
         if span.at_ns is not None:
             return where.where_at(self._t, name, self._t.seq_at(span.at_ns), span.at_ns, span.text)
@@ -40,7 +47,8 @@ class LocationAnswers(Inquiry):
             )
         if span.last_ns < END_NS and not span.first_ns:
             return where.where_at(self._t, name, self._t.seq_at(span.last_ns), span.last_ns, span.text)
-        if span.first_ns or self._q.is_current:
+        is_every = self._claim.kind and not self._q.order  # which rooms did it visit
+        if span.first_ns or self._q.is_current or is_every:
             return where.where_during(self._t, name, span.first_ns, span.last_ns)
         episodes = where.visited(self._t, name)
         if not episodes:

@@ -58,6 +58,11 @@ class Occurrences:
 
     def __init__(self, timeline: Timeline, referents: Mapping[str, Referent], it: Sequence[str]) -> None:
         self._timeline, self._referents, self._it = timeline, referents, tuple(it)
+        self._used: set[str] = set()
+
+    def unused(self) -> list[Referent]:
+        """Return the referents that no answer was computed from so far."""
+        return [found for text, found in self._referents.items() if text not in self._used]
 
     def subjects(self, claim: Claim) -> tuple[str, ...]:
         """Return the entities that a claim is about. Raises NotKnown."""
@@ -71,15 +76,25 @@ class Occurrences:
         """Return the entities that a noun phrase denotes. Raises NotKnown."""
         if text == "it":
             return self._it
+        self._used.add(text)
         found = self._referents[text]
         if found.problem or not found.names:
-            raise NotKnown(found.problem or f"'{text}' is the author of commits, and no entity of the map")
+            raise NotKnown(found.problem or _is_author(text))
+        return found.names
+
+    def kind(self, text: str) -> tuple[str, ...]:
+        """Return the entities of a kind that a question asks for. Raises NotKnown if there are none."""
+        self._used.add(text)
+        found = self._referents[text]
+        if not found.names:
+            raise NotKnown(found.problem or _is_author(text))
         return found.names
 
     def author(self, claim: Claim) -> str:
         """Return the author that a claim names, or "". Raises NotKnown for one without commits."""
         if not claim.agent:
             return ""
+        self._used.add(claim.agent)
         found = self._referents[claim.agent]
         if not found.author:
             raise NotKnown(found.problem or f"no commit is by {claim.agent}")
@@ -233,6 +248,10 @@ class Occurrences:
                 by = self._timeline.author(span.since)
                 found.append(structs.replace(span, what=_DONE[event], until=None, until_ns=None, by=by))
         return found
+
+
+def _is_author(text: str) -> str:
+    return f"'{text}' is the author of commits, and no entity of the map"
 
 
 def _came(span: Episode) -> str:

@@ -76,10 +76,12 @@ class PastQuestionReader:
             if text in ("it", "") or text in referents:
                 continue
             referents[text] = found = self._referent(text, former, is_agent=text in agents)
-            if len(found.names) > 1 and not found.is_plural and question.asked not in ("what", "how_many"):
+            is_kind = text == question.claim.kind or question.asked in ("what", "how_many")
+            if len(found.names) > 1 and not found.is_plural and not is_kind:
                 asks.append(self._search.question(found.names, language))
         if not it and question.anchored is not None:  # before cup1 was moved, where was it
-            others = (referents.get(text) for text in question.anchored.subjects)
+            places = (text for _, text in question.claim.places)  # what was in it when it was closed
+            others = (referents.get(text) for text in (*question.anchored.subjects, *places))
             it = next((found.names for found in others if found is not None and found.names), ())
         return ResolvedQuestion(question, referents, it, asks)
 
@@ -162,6 +164,7 @@ def _phrases(question: PastQuestion) -> Iterator[str]:
 
 def _claim_phrases(claim: Claim) -> Iterator[str]:
     yield from claim.subjects
+    yield claim.kind
     yield from (text for _, text in claim.places)
     if claim.agent:
         yield claim.agent
