@@ -132,7 +132,9 @@ def _has_subject(elements: Sequence[Element]) -> bool:
     """Return whether there is a noun that does not follow *which* or *what*."""
     pairs = pairwise((None, *elements))
     return any(
-        e is not None and (e.kind == "thing" or e.is_a("mark", "it", "you")) and (before is None or before.kind != "ask")
+        e is not None
+        and (e.kind == "thing" or e.is_a("mark", "it", "you"))
+        and (before is None or before.kind != "ask")
         for before, e in pairs
     )
 

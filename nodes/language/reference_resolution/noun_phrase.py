@@ -199,9 +199,9 @@ class NounPhraseReader:
         if word in describing.pluralia:
             if draft.number is None:
                 draft.is_plural = draft.is_plural and not self._only_agrees(draft)
-        elif word in describing.collectives:
-            draft.is_plural = True
-        elif describing.head_is_last and describing.base(word) != word and word.endswith(("s", "ves", "men")):
+        elif word in describing.collectives or (
+            describing.head_is_last and describing.base(word) != word and word.endswith(("s", "ves", "men"))
+        ):
             draft.is_plural = True
 
     def _only_agrees(self, draft: Draft) -> bool:

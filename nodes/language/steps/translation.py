@@ -71,7 +71,7 @@ def _begins_correction(text: str) -> bool:
 
 
 def _with_times(tokens: list[Token]) -> list[Token]:
-    """Replace words of times: *tra cinque minuti* is in five minutes, *alle dieci* at ten, *ora* now or hour."""
+    """Replace words of times: *tra cinque minuti* is in five minutes, *ora* now or an hour."""
     found: list[Token] = []
     for token in tokens:
         before = [other.word for other in found[-2:]]
