@@ -149,6 +149,8 @@ def test_a_verb_without_its_extra_exits_with_2(without, capsys, monkeypatch, tmp
 
     without(module)
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
+    monkeypatch.chdir(tmp_path)
+    Path("x.pcd").touch()
     assert execute(words) == 2
     said = capsys.readouterr().err.strip()
     assert f"pip install 'semmap[{extra}]'" in said
