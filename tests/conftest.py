@@ -32,6 +32,8 @@ from hypothesis import HealthCheck, settings
 from semmap.nodes.extern.cli.app import execute
 from semmap.nodes.extern.client import Client, connect
 from semmap.nodes.extern.testing import free_endpoint
+from semmap.nodes.kb_node.reasoner import compiled
+from semmap.nodes.kb_node.reasoner.rules.closure import Closure
 from semmap.nodes.kb_node.storage.journal import FILENAME
 from semmap.nodes.kb_node.storage.seed import seed
 from semmap.nodes.runtime.loop import Node
@@ -40,7 +42,7 @@ from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
 from semmap.schemas import errors, keys
 from semmap.schemas.replies import SystemStatus
 from tests import tiers
-from tests.depth import tries
+from tests.depth import IS_THOROUGH, tries
 from tests.shared_systems import SharedSystem, is_one_running, stop_unused
 
 # A shell that starts pytest in the background has it ignore Ctrl-C, and so would what it spawns.
@@ -52,11 +54,19 @@ sys.dont_write_bytecode = False
 
 # On a busy machine the clock says nothing of the code: no deadlines, and input may take its time to be made.
 settings.register_profile(
-    "busy", deadline=None, max_examples=tries(100), suppress_health_check=[HealthCheck.too_slow]
+    "semmap",
+    deadline=None,
+    max_examples=tries(100),
+    derandomize=not IS_THOROUGH,
+    suppress_health_check=[HealthCheck.too_slow],
 )
-settings.load_profile("busy")
+settings.load_profile("semmap")
 
 tiers.forbid_processes()
+
+# Most maps of tests have one of a few TBoxes, whose closures are computed once in a process.
+_close_schema = functools.lru_cache(maxsize=32)(Closure)
+compiled.Closure = lambda triples: _close_schema(tuple(triples))  # type: ignore[assignment,misc]
 
 _BIN = Path(sys.executable).parent
 _START_S = 120.0
