@@ -57,7 +57,7 @@ def endpoint(namespace: str | None = None) -> str:
 
 def resolve_endpoint(where: str | None, namespace: str | None) -> str:
     """Return the endpoint `where`, or the default one; see `endpoint`. Raises BadRequest if it is invalid."""
-    return parse_endpoint(where) if where else endpoint(namespace)
+    return endpoint(namespace) if where is None else parse_endpoint(where)
 
 
 def namespace(name: str | None, where: str | None = None) -> str:
