@@ -13,7 +13,7 @@ from semmap.schemas.replies import LoggedCommit
 
 ROWS: Final = 200
 """Maximum number of rows in the table."""
-_WRAPPED: Final = "white-space: normal"
+_WRAPPED: Final = "white-space: normal; min-width: 11rem"
 _COLUMNS: Final[list[dict[Any, Any]]] = [
     {"name": "seq", "label": "Commit", "field": "seq", "align": "right", "sortable": True},
     {"name": "time", "label": "Time", "field": "time", "align": "left"},
