@@ -52,6 +52,6 @@ ALL_ROBOTS: Final = "*"
 
 def robot_name(name: str) -> str:
     """Return `name` if it is a valid robot name; empty stands for no name. Raises BadRequest."""
-    if name and not _ROBOT.fullmatch(str(name)):
+    if name and not (isinstance(name, str) and _ROBOT.fullmatch(name)):
         raise BadRequest(f"'{name}' is not a valid robot name; use letters, digits, '_', '.' and '-'")
     return name
