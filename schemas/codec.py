@@ -75,6 +75,14 @@ def decode_text(content: bytes) -> str:
     return content.decode("utf-16" if utf16 else "utf-8-sig")
 
 
+def decode_json(text: str) -> Any:
+    """Return the value in JSON. Raises DecodeError of msgspec, also if it is nested too deeply."""
+    try:
+        return msgspec.json.decode(text)
+    except RecursionError:
+        raise msgspec.DecodeError("nested too deeply") from None
+
+
 def decoder(kind: Any) -> msgspec.msgpack.Decoder[Any]:
     """Return the MessagePack decoder for `kind`. Thread-safe.
 

@@ -30,11 +30,12 @@ _ADDRESS: Final = re.compile(r"(\[[0-9a-fA-F:.%\w]+\]|[^\s/\[\]:?#,]+):(\d{1,5})
 def parse_endpoint(text: str) -> str:
     """Return a Zenoh endpoint such as `tcp/127.0.0.1:7447`.
 
-    `HOST:PORT` and `tcp://HOST:PORT` are accepted, too. Raises BadRequest for other texts.
+    `HOST:PORT` and `tcp://HOST:PORT` are accepted, too. Raises BadRequest for anything else.
     """
-    protocol, separator, address = text.strip().partition("/")
+    given = str(text).strip()  # Python programs may pass a port, whose number is not an endpoint either
+    protocol, separator, address = given.partition("/")
     if not separator:
-        protocol, address = "tcp", text.strip()
+        protocol, address = "tcp", given
     elif protocol.endswith(":"):
         protocol, address = protocol[:-1], address.removeprefix("/").removesuffix("/")
     if protocol in _OTHERS and address:
@@ -51,6 +52,6 @@ ALL_ROBOTS: Final = "*"
 
 def robot_name(name: str) -> str:
     """Return `name` if it is a valid robot name; empty stands for no name. Raises BadRequest."""
-    if name and not _ROBOT.fullmatch(name):
+    if name and not (isinstance(name, str) and _ROBOT.fullmatch(name)):
         raise BadRequest(f"'{name}' is not a valid robot name; use letters, digits, '_', '.' and '-'")
     return name

@@ -57,7 +57,7 @@ def endpoint(namespace: str | None = None) -> str:
 
 def resolve_endpoint(where: str | None, namespace: str | None) -> str:
     """Return the endpoint `where`, or the default one; see `endpoint`. Raises BadRequest if it is invalid."""
-    return parse_endpoint(where) if where else endpoint(namespace)
+    return endpoint(namespace) if where is None else parse_endpoint(where)
 
 
 def namespace(name: str | None, where: str | None = None) -> str:
@@ -75,7 +75,7 @@ def namespace(name: str | None, where: str | None = None) -> str:
 def identity(path: str | None) -> Identity | None:
     """Return the identity in `path` (`DIR/NAME`) or `SEMMAP_IDENTITY`, or None. Raises BadFile."""
     path = path or os.environ.get(IDENTITY_VARIABLE)
-    return Identity.read(path) if path else None
+    return Identity.read(str(path)) if path else None
 
 
 @contextlib.contextmanager
@@ -90,8 +90,10 @@ def open_session(
 
     Without `mode`, the session is a peer on the machine of the system, so that replies of the knowledge base
     arrive directly. With an identity it is a client of the router, over TLS. Raises NoAnswer if the system
-    does not respond, takes too long to start, or requires a certificate.
+    does not respond, takes too long to start, or requires a certificate, and BadRequest for another `mode`.
     """
+    if mode not in (None, "peer", "client"):
+        raise errors.BadRequest(f"'{mode}' is not a mode of a session; use peer or client")
     own_config = os.environ.get(CONFIG_VARIABLE) or None
     if identity is not None:
         identity.require_valid()

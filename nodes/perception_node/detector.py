@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,6 +12,8 @@ from semmap.nodes.perception_node.input.files.mask_files import read_masks
 from semmap.nodes.perception_node.input.masks import Masks
 from semmap.nodes.perception_node.recognition.detector_labels import LabelMap
 from semmap.schemas.errors import BadFile
+
+log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -38,8 +41,17 @@ class Detector:
 
 
 def detected(model: DetectorModel, cloud: Cloud) -> Masks:
-    """Return a model's detections in the colours of a cloud. Raises BadFile for a cloud without image."""
+    """Return a model's detections in the colours of a cloud.
+
+    Raises BadFile for a cloud without image, and if the model fails or its outputs cannot be decoded.
+    """
     if cloud.colors is None or not cloud.organised:
         lack = "colours" if cloud.colors is None else "rows and columns of an image"
         raise BadFile(f"{model.file} needs a colour image, and the cloud has no {lack}; remove --detector")
-    return model(cloud.colors)
+    try:
+        return model(cloud.colors)
+    except BadFile:
+        raise
+    except Exception as error:
+        log.exception("%s failed", model.file)
+        raise BadFile(f"{model.file} failed: {type(error).__name__}: {error}") from None

@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 _READ = os.O_RDONLY | os.O_NOFOLLOW
-_LOOPBACK = re.compile(r"(?:tcp|tls)/(?:127\.\d+\.\d+\.\d+|localhost|\[::1\]):(\d+)")
+_LOOPBACK = re.compile(r"(?:tcp|tls)/(127\.\d+\.\d+\.\d+|localhost|\[::1\]):(\d+)")
 
 
 @contextlib.contextmanager
@@ -66,15 +66,19 @@ def is_listening(endpoint: str) -> bool:
         return False
     import socket
 
-    host = endpoint.partition("/")[2].rpartition(":")[0].strip("[]")
-    with contextlib.suppress(OSError), socket.create_connection((host, int(match[1])), timeout=1.0):
+    with (
+        contextlib.suppress(OSError),
+        socket.create_connection((match[1].strip("[]"), int(match[2])), timeout=1.0),
+    ):
         return True
     return False
 
 
 def _lock_of(endpoint: str) -> Path | None:
-    """Return the lock file of a loopback port, shared by all users."""
+    """Return the lock file of a loopback address and port, shared by all users."""
     import tempfile
 
-    match = _LOOPBACK.fullmatch(endpoint)
-    return Path(tempfile.gettempdir(), f"semmap-{match[1]}.lock") if match else None
+    if (match := _LOOPBACK.fullmatch(endpoint)) is None:
+        return None
+    host = match[1].strip("[]").replace("localhost", "127.0.0.1")
+    return Path(tempfile.gettempdir(), f"semmap-{host}-{match[2]}.lock")

@@ -108,6 +108,20 @@ def test_a_system_that_does_not_come_is_said_to_be_starting(monkeypatch):
         pass
 
 
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        ({"where": 7447}, "'7447' is not a valid endpoint; use tcp/HOST:PORT"),
+        ({"where": "tcp/robot:7447", "namespace": 5}, "'5' is not a valid robot name"),
+        ({"where": "tcp/robot:7447", "identity": 5}, "there is no file 5.crt"),
+        ({"where": "tcp/robot:7447", "mode": "router"}, "'router' is not a mode of a session; use peer"),
+    ],
+)
+def test_arguments_of_another_type_are_rejected_before_a_connection(arguments, reason):
+    with pytest.raises(errors.BadRequest, match=reason), connect(**arguments):
+        pass
+
+
 @pytest.mark.parametrize(("mode", "is_peer"), [("client", False), ("peer", True), (None, True)])
 def test_the_mode_of_a_session(mode, is_peer):
     where = free_endpoint()

@@ -50,15 +50,21 @@ def test_a_model_needs_an_image():
         detected(Model(), flat)
 
 
-def test_a_frame_is_processed_without_a_detector_that_fails():
+@pytest.mark.parametrize(
+    ("failure", "reason"),
+    [
+        (BadFile("spoons.onnx: it failed"), "spoons.onnx: it failed"),
+        (IndexError("index 7"), "spoons.onnx failed: IndexError: index 7"),
+    ],
+)
+def test_a_frame_is_processed_without_a_detector_that_fails(failure, reason):
     class Failing(Model):
         def __call__(self, colours):
-            raise BadFile("spoons.onnx: it failed")
+            raise failure
 
     clouds = list(shot().clouds)
     found = Observer(shipped(), detector=Failing())(clouds)
     assert found.observations == Observer(shipped())(clouds).observations
     assert found.failures == tuple(
-        f"camera {cloud.camera}: spoons.onnx: it failed; objects are found without the detector"
-        for cloud in clouds
+        f"camera {cloud.camera}: {reason}; objects are found without the detector" for cloud in clouds
     )

@@ -27,7 +27,7 @@ def test_an_endpoint_is_understood_as_people_write_it(text, endpoint):
 @pytest.mark.parametrize(
     "text",
     ["", "robot", ":7447", "http://robot:7447", "tcp/127.0.0.1", "udp//", "tcp/robot:70000", "tcp/::1:7447",
-     "tcp/a:1,tcp/b:2", "tcp:/robot", "unixpipe/", "tcp/robot:7447/x"],
+     "tcp/a:1,tcp/b:2", "tcp:/robot", "unixpipe/", "tcp/robot:7447/x", 7447, ["tcp/a:1"], b"tcp/a:1"],
 )  # fmt: skip
 def test_another_text_is_no_endpoint(text):
     with pytest.raises(BadRequest, match="is not a valid endpoint; use tcp/HOST:PORT"):

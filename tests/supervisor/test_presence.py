@@ -18,6 +18,7 @@ def test_an_endpoint_is_announced_until_the_end_also_by_two():
             assert presence.is_announced(endpoint.replace("127.0.0.1", "localhost"))
         assert presence.is_announced(endpoint)
         assert not presence.is_announced(free_endpoint())
+        assert not presence.is_announced(endpoint.replace("127.0.0.1", "[::1]"))
     assert not presence.is_announced(endpoint)
 
 

@@ -130,6 +130,7 @@ def test_what_moves_with_it_takes_up_no_room():
     ("placing", "target", "reason"),
     [
         ("on", "kitchen1", "kitchen1 is a place; for its floor use --in kitchen1"),
+        ("next_to", "kitchen1", "kitchen1 is a place; for its floor use --in kitchen1"),
         ("in", "table1", "table1 has no interior"),
         ("in", "tray1", "tray1 is shallow, so things are on it; use --on tray1"),
         ("on", "lost1", "lost1 has no position, so nothing can be placed on it; first: semmap update lost1"),

@@ -14,12 +14,14 @@ from semmap.schemas.replies import LoggedCommit
 ROWS: Final = 200
 """Maximum number of rows in the table."""
 _WRAPPED: Final = "white-space: normal"
+_TEXT: Final = f"{_WRAPPED}; min-width: 8rem"
+"""On a phone the table is scrolled sideways instead of one word being a line."""
 _COLUMNS: Final[list[dict[Any, Any]]] = [
     {"name": "seq", "label": "Commit", "field": "seq", "align": "right", "sortable": True},
-    {"name": "time", "label": "Time", "field": "time", "align": "left"},
+    {"name": "time", "label": "Time", "field": "time", "align": "left", "style": _WRAPPED},
     {"name": "by", "label": "By", "field": "by", "align": "left"},
-    {"name": "why", "label": "Reason", "field": "why", "align": "left", "style": _WRAPPED},
-    {"name": "what", "label": "Changes", "field": "what", "align": "left", "style": _WRAPPED},
+    {"name": "why", "label": "Reason", "field": "why", "align": "left", "style": _TEXT},
+    {"name": "what", "label": "Changes", "field": "what", "align": "left", "style": _TEXT},
 ]
 
 

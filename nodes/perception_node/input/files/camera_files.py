@@ -127,7 +127,7 @@ def pose_of(numbers: tuple[Any, ...] | None) -> Transform | None:
 
 
 def _of_json(text: str, *, of_frame: bool) -> PinholeCamera:
-    found = msgspec.json.decode(text)
+    found = codec.decode_json(text)
     if not isinstance(found, dict):
         raise ValueError(f"invalid intrinsics: {_WANTED}")
     if "ppx" in found and "ppy" in found:  # as RealSense's tools name them, beside a distortion

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.input.cloud import Floats
 from semmap.nodes.perception_node.input.files import units
+from semmap.nodes.perception_node.input.files.array_files import open_array
 from semmap.nodes.runtime.pictures import MAX_PIXELS, open_picture
 from semmap.schemas.wording import few
 
@@ -35,7 +36,7 @@ def read_depth(path: Path) -> NDArray[Any]:
     numbers: NDArray[Any]
     match path.suffix.lower():
         case ".npy":
-            numbers = np.lib.format.open_memmap(path, mode="r")  # its header may claim any size
+            numbers = open_array(path)
         case ".npz":
             numbers = _of_archive(path)
         case ".exr":

@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from semmap.nodes.perception_node.input.files.array_files import open_array
 from semmap.nodes.perception_node.input.files.cvat_masks import cvat_runs
 from semmap.nodes.perception_node.input.files.mask_polygons import counts_of
 from semmap.nodes.perception_node.input.masks import (
@@ -53,7 +54,7 @@ def read_masks(path: Path, height: int, width: int) -> Masks:
                 with open_picture(path) as image:
                     numbers = np.asarray(image)
             case ".npy":
-                numbers = np.lib.format.open_memmap(path, mode="r")  # its header may claim any size
+                numbers = open_array(path)
                 if numbers.dtype == bool:
                     return masks_from_stack(_stack(numbers, height, width))
             case other:
@@ -170,7 +171,7 @@ def _require_size(found: Mapping[str, Any], height: int, width: int) -> None:
 def _runs(data: bytes, height: int, width: int) -> list[MaskRun]:
     """Return masks, with labels if there are category names. Raises ValueError."""
     try:
-        found = msgspec.json.decode(codec.decode_text(data))
+        found = codec.decode_json(codec.decode_text(data))
     except (msgspec.DecodeError, UnicodeDecodeError) as error:
         raise ValueError(f"not JSON: {error}") from None
     names: dict[str, str] = {}

@@ -134,6 +134,7 @@ def test_scale_and_pose_stand_beside_a_matrix(tmp_path):
         '{"K": [1, 2]}',
         '{"K": null}',
         "K: [1, 2, 3]",
+        "[" * 100_000,
         "525 9 3 0 525 2 0 0 1",
     ],
 )

@@ -151,6 +151,7 @@ def test_label_images(tmp_path):
     ("name", "content", "said"),
     [
         ("a.json", b"{", "not JSON"),
+        ("a.json", b"[" * 100_000, "not JSON: nested too deeply"),
         ("a.json", b"{}", "expected a list of masks"),
         ("a.json", b"[3]", "needs a segmentation"),
         ("a.json", b'[{"segmentation": [[1, 2, 3]]}]', "polygon needs x and y of at least three corners"),
@@ -167,8 +168,8 @@ def test_label_images(tmp_path):
         ("a.json", b'[{"image_id": 1}, {"image_id": 2}]', "masks of 2 images"),
         ("a.json", b'[{"segmentation": {"size": [2, 3], "counts": [%d, 3]}}]' % 10**30, "add up to"),
         ("a.json", b'[{"segmentation": {"size": [2, 3], "counts": "%s0"}}]' % (b"o" * 40), "add up to"),
-        ("a.npy", b"nothing", "a.npy"),
-        ("a.npy", b"", "a.npy"),
+        ("a.npy", b"nothing", r"a\.npy: not a valid \.npy array"),
+        ("a.npy", b"\x93NUMPY\x01\x00\xff\xff" + b"(" * 65_535, r"may not be safe to load securely\.$"),
         ("a.gif", b"", "masks are"),
         ("a.txt", b"0 0.1 0.1 0.2", "line 1 is not a class, x and y"),
         ("a.txt", b"0 0 0 1 0 1 1\ncup 0 0 1 0 1 1", "line 2 is not a class"),
