@@ -344,6 +344,8 @@ def _has_facet(term: Term, facet: Term, bound: Term) -> bool | None:
         if one is None or other is None or one[0] != other[0]:
             return None
         return _ORDERS[facet](one[1], other[1])
+    if datatypes.value(term) is None:
+        return None
     text, _, language = literal(term)
     if facet in _LENGTHS:
         limit = datatypes.value(bound)

@@ -61,6 +61,7 @@ RANGES = {
     "owl:real": (("1", "'1/3'^^owl:rational"), ("'1'^^xsd:float", "'a'")),
     ":unknown . :unknown a rdfs:Datatype": (("'1 2 3'^^:unknown", "1", "'a'"), ()),
     restricted(":unknown", "xsd:minLength 2") + " . :unknown a rdfs:Datatype": (("'a'^^:unknown", "1"), ()),
+    restricted("xsd:string", "xsd:pattern '[a-c]'"): (("'a'", "'x'^^:unknown"), ("'x'",)),
     restricted("xsd:string", "xsd:pattern '[a-z-[aeiou]]'"): (("'a'",), ("1",)),  # Python lacks subtraction
 }
 
