@@ -56,8 +56,8 @@ class RecognitionModel:
     whether a leaf's longer side is its y axis. `voters`: scores (N, K) from the features of each voter.
     `weights`: (voters,) weights of the votes. `familiar`: scores (N, K + 1) of having the exact form of our
     model of a leaf, with "none" last. `joining`: whether two things are pieces of one, from
-    `joining.pair_features`. `sides`: see `sides.completed`. `story`: the training data. `exemplars`: things that were shown, whose leaves come last. `images`: what
-    images say, if their packages are installed.
+    `joining.pair_features`. `sides`: see `sides.completed`. `story`: the training data. `exemplars`: things
+    that were shown, whose leaves come last. `images`: what images say, if their packages are installed.
     """
 
     classes: tuple[str, ...]
