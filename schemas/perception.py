@@ -28,6 +28,8 @@ COCO: Final = "coco"
 """Names the classes of COCO instead of a file with names."""
 LEAST_SCORE = 0.3
 """Minimum score of a detection, by default."""
+SURE: Final = 0.4
+"""Minimum probability of a class that is reported in a frame, or believed after several."""
 
 
 class Observation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

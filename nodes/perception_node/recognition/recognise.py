@@ -30,15 +30,13 @@ from semmap.nodes.perception_node.recognition.vote import (
 from semmap.nodes.perception_node.views.boxes import Box, Numbers, best_yaw, box_around, in_frame
 from semmap.nodes.perception_node.views.merged_thing import Thing
 from semmap.schemas.entities import Pose, orientation_from_yaw
-from semmap.schemas.perception import Observation
+from semmap.schemas.perception import SURE, Observation
 
 _CANDIDATES = 5
 _CLUTTER, _CLUTTER_CUT = 0.7, 0.35
 """Maximum probability of clutter of a reported thing, and of one that an image edge cuts above its support:
 walls of bins and pieces of furniture appear there."""
 _WORTH_SAYING = 0.01
-_SURE_GENERAL = 0.35
-"""Minimum probability of a class that is only a superclass."""
 _TRIMMED_BELOW = 0.6
 _TRIMMING_GAIN = 0.3
 _OUTERMOST = 0.03
@@ -104,7 +102,7 @@ def _observation(
     if clutter > (_CLUTTER if thing.whole or reaches_support(thing) else _CLUTTER_CUT):
         return Clutter(clutter)
     chances = {leaf: chance / (1.0 - clutter) for leaf, chance in chances.items()}
-    class_, probability = choose_class(chances, learnt.ancestors, learnt.sure, sure_general=_SURE_GENERAL)
+    class_, probability = choose_class(chances, learnt.ancestors)
     if class_ == UNKNOWN:
         probability = chances[UNKNOWN]  # that it is an Object is certain
     ours = dict(zip(learnt.classes, own.tolist(), strict=True))
@@ -143,7 +141,7 @@ def _least(
     class_: str, probability: float, detected: str, labels: LabelMap, learnt: RecognitionModel
 ) -> float:
     """Return the score above which a detected class that was not learnt replaces ours."""
-    return learnt.sure if class_ in (UNKNOWN, *labels.ancestors_of(detected)) else probability
+    return SURE if class_ in (UNKNOWN, *labels.ancestors_of(detected)) else probability
 
 
 def _mean_color(colors: Numbers) -> tuple[float, float, float]:

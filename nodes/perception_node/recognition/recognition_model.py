@@ -56,9 +56,8 @@ class RecognitionModel:
     whether a leaf's longer side is its y axis. `voters`: scores (N, K) from the features of each voter.
     `weights`: (voters,) weights of the votes. `familiar`: scores (N, K + 1) of having the exact form of our
     model of a leaf, with "none" last. `joining`: whether two things are pieces of one, from
-    `joining.pair_features`. `sides`: see `sides.completed`. `sure`: minimum probability of a reported class.
-    `story`: the training data. `exemplars`: things that were shown, whose leaves come last. `images`: what
-    images say, if their packages are installed.
+    `joining.pair_features`. `sides`: see `sides.completed`. `story`: the training data. `exemplars`: things
+    that were shown, whose leaves come last. `images`: what images say, if their packages are installed.
     """
 
     classes: tuple[str, ...]
@@ -71,7 +70,6 @@ class RecognitionModel:
     novelty: OpenSetDetector
     joining: Trees
     sides: Perceptron
-    sure: float
     story: str
     exemplars: ExemplarMatcher | None = None
     images: ImageEvidence | None = None
@@ -116,7 +114,6 @@ def save(learnt: RecognitionModel, path: Path) -> None:
             arrays[f"{name}.{layer}.bias"] = bias.astype(np.float32)
     text = {
         "story": learnt.story,
-        "sure": learnt.sure,
         "joining bias": learnt.joining.bias,
         "classes": learnt.classes,
         "ancestors": dict(learnt.ancestors),
@@ -142,7 +139,6 @@ def load(path: Path = SHIPPED) -> RecognitionModel:
                     **{name: arrays[f"joining.{name}"] for name in _JOINING}, bias=float(text["joining bias"])
                 ),
                 sides=_perceptron(arrays, "sides"),
-                sure=float(text["sure"]),
                 story=text["story"],
             )
     except (OSError, EOFError, ValueError, KeyError) as error:

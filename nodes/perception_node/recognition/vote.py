@@ -15,8 +15,9 @@ from semmap.nodes.perception_node.recognition.recognition_model import (
     RecognitionModel,
 )
 from semmap.nodes.perception_node.views.boxes import Numbers
+from semmap.schemas.perception import SURE
 
-_CLEAR = 0.85
+_CLEAR = 0.9
 _SAY = 0.2
 """Weight of the votes for a thing with the form of our model, so that they can rule it out."""
 
@@ -83,27 +84,23 @@ def expected_sizes(probabilities: Numbers, sizes_m: Numbers) -> Numbers:
 def choose_class(
     probabilities: Mapping[str, float],
     ancestors: Mapping[str, Sequence[str]],
-    sure: float,
+    sure: float = SURE,
     clear: float = _CLEAR,
-    sure_general: float | None = None,
 ) -> tuple[str, float]:
     """Return the most specific class with a probability of at least `sure`; else `UNKNOWN`.
 
-    A class that is not a leaf says less, so `sure_general` is enough for it, if given, and if it is more
-    likely than no known class. A class must have at least the share `clear` of the probability of each of its
-    ancestors: a thing that is either a desk or a table is furniture. Among unrelated classes, the most likely
-    is chosen.
+    A class must have at least the share `clear` of the probability of each of its ancestors: a thing that is
+    either a desk or a table is furniture. Among unrelated classes, the most likely is chosen.
     """
     total: dict[str, float] = {}
     for leaf, probability in probabilities.items():
         for name in (leaf, *ancestors.get(leaf, ())):
             total[name] = total.get(name, 0.0) + probability
-    general = sure if sure_general is None else max(sure_general, probabilities.get(UNKNOWN, 0.0))
     certain = [
         name
         for name in total
         if name not in (UNKNOWN, CLUTTER)
-        and total[name] >= (sure if name in probabilities else min(sure, general))
+        and total[name] >= sure
         and all(total[name] >= clear * total[above] for above in ancestors.get(name, ()) if above != UNKNOWN)
     ]
     lowest = [name for name in certain if not any(name in ancestors.get(other, ()) for other in certain)]

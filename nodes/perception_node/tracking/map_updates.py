@@ -39,7 +39,10 @@ def subject_of(command: Command) -> str:
 
 
 def is_sure(track: Track, classes: ClassHierarchy, config: TrackingConfig) -> bool:
-    """Return whether a thing was seen at rest often enough, and missed seldom enough, to become an entity."""
+    """Return whether a thing was seen at rest often enough, and missed seldom enough, to become an entity.
+
+    A thing of no known class that an image edge cuts is not sure: most are pieces of walls and furniture.
+    """
     believed = track.votes.belief(classes)
     clear = track.votes.share(believed, classes) >= config.clear
     enough = config.clear_frames if clear else config.confirm_frames
@@ -47,7 +50,8 @@ def is_sure(track: Track, classes: ClassHierarchy, config: TrackingConfig) -> bo
         enough = config.part_frames
     vague = believed == ANYTHING and not track.label
     agreeing = max(enough, config.vague_frames) if vague else enough
-    return track.frames >= enough and track.agreement >= agreeing and not track.unseen
+    seen = track.frames >= enough and track.agreement >= agreeing and not track.unseen
+    return seen and (track.whole or not vague)
 
 
 def additions(tracks: Iterable[Track], taken: Set[str], classes: ClassHierarchy) -> dict[str, Add]:

@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy
+from semmap.schemas.perception import SURE
 
-_SURE = 0.4
-"""Minimum share of the votes of a believed class."""
 _CLEAR = 0.6
 """Minimum share of the votes of a clear winner."""
 _FORGET = 0.9
@@ -56,7 +55,7 @@ class Votes:
     def belief(self, classes: ClassHierarchy) -> str:
         """Return the most specific class that is certain enough."""
         named = {*self.weights, *(a for voted in self.weights for a in classes.ancestors.get(voted, ()))}
-        sure = [name for name in named if self.share(name, classes) >= _SURE and classes.is_a(name, ANYTHING)]
+        sure = [name for name in named if self.share(name, classes) >= SURE and classes.is_a(name, ANYTHING)]
         return max(
             sure, key=lambda name: (classes.depth(name), self.share(name, classes), name), default=ANYTHING
         )

@@ -43,7 +43,6 @@ from semmap.nodes.training.scenes.simulated_scenes import DISTRACTOR, foreign_cl
 from semmap.nodes.training.segmentation.fit import trees_of
 from semmap.nodes.training.taxonomy import class_of_models, hierarchy
 
-SURE = 0.48
 _HELD_OUT = 5
 _ONE_SORT = Recipe((256,), rounds=12, dropped=(0.1, 0.3))
 _ALL = Recipe((512, 256), rounds=12, dropped=(0.1, 0.3))
@@ -100,7 +99,6 @@ def learn(
         novelty=novelty,
         joining=trees_of([], 0.0),  # is learnt last, from what all else says
         sides=_sides(samples, expected),
-        sure=SURE,
         story=f"{len(samples)} segments, {len(pairs.one)} pairs, {len(classes)} leaves; "
         "rendered from the model library, 2 cameras",
     )

@@ -24,7 +24,8 @@ _ENOUGH = 0.25
 
 _AXES = 30
 _SURE, _CLEAR = 0.42, 2.0 / 3.0
-"""The confidence from which a class counts as reported; lower than in perception, to get more errors."""
+"""The confidence from which a class counts as reported, and its share of that of a superclass, which is lower
+than in perception, to get more errors."""
 _NEW_CLASS, _NEW_THING, _FAR = 0.1, 0.4, 0.03
 """The assumed shares of encountered things: of an unknown class, of a known class but another make, and
 unlike anything known. These are estimates."""

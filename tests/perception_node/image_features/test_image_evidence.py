@@ -67,7 +67,7 @@ def test_a_thing_that_rests_is_looked_up_and_one_that_changes_is_not():
 
 
 def test_frames_are_named_with_images():
-    learnt = replace(shipped_model(), sure=0.1)
+    learnt = shipped_model()
     unsure = replace(learnt, weights=0.02 * learnt.weights, familiar=_never(learnt.familiar))
     seen = replace(unsure, images=ImageEvidence(Banana(), shipped()))
     unseen, named = (observe_clouds(shot().clouds, m).observations.observations for m in (unsure, seen))

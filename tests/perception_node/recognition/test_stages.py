@@ -92,7 +92,7 @@ def recognised_things():
         less = trim(thing)
         found[f"trimmed {number}"] = [len(less.cells), *described_box(less.box), *summary(less.colors)]
         rated = dict(zip(learnt.classes, chances[number].tolist(), strict=True))
-        found[f"class {number}"] = [*choose_class(rated, learnt.ancestors, learnt.sure)]
+        found[f"class {number}"] = [*choose_class(rated, learnt.ancestors)]
     found["again"] = summary(reclassify_trimmed(things, chances, learnt))
     everything = np.ones(len(things), bool)
     found["free"] = are_free_standing(things, everything).astype(int).tolist()

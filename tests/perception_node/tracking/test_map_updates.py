@@ -73,6 +73,20 @@ def test_a_thing_is_sure_after_enough_looks_and_sooner_if_it_is_clear(frames, p,
     assert is_sure(track(frames=frames, p=p, whole=whole, unseen=unseen), CLASSES, config) is sure
 
 
+@pytest.mark.parametrize(
+    ("class_", "whole", "label", "sure"),
+    [
+        ("Object", True, "", True),
+        ("Object", False, "", False),
+        ("Object", False, "drill", True),
+        ("Cup", False, "", True),
+    ],
+)
+def test_a_thing_of_no_class_must_be_seen_completely(class_, whole, label, sure):
+    seen = track(class_, frames=9, whole=whole, label=label)
+    assert is_sure(seen, CLASSES, CONFIG) is sure
+
+
 def test_new_entities_have_free_names_and_say_what_was_seen():
     found = additions(
         [
