@@ -518,11 +518,11 @@ class NounPhraseReader(PronounReader):
             elif words[j] in ("with", "of") or self._is_last_particle(j):
                 pass
             elif (
-                any(
+                max(
                     g.match(kind, words, j)
                     for kind in ("to", "from", "place", "for", "relative", "be", "condition")
                 )
-                and not (g.is_a(words[j], "direction") and words[j] not in ("left of", "right of"))
+                > g.is_a(words[j], "direction")  # UP TO the bedroom, but not: pointing UP
             ) or (
                 g.match("time", words, j)
                 or words[j] in ("please", "then", "and", "so")
