@@ -265,7 +265,8 @@ class Set(Command[Changed], frozen=True, tag="set"):
 
     The property's range determines the type of the values: true or false, numbers, texts (`rosso@it` has a
     language), individuals by name. A functional property's value is replaced; other properties get an
-    additional value. An individual that is not in space is given by its name or IRI. The command is rejected
+    additional value. The name may be a label or class that only one entity has. An individual that is not in
+    space is given by its name or IRI. The command is rejected
     with PreconditionFailed unless `if_is` is a current value, or with `if_unset` unless the property has
     none.
     """

@@ -155,23 +155,26 @@ def notes_for(
 @handles(Set)
 def set_(view: MapView, command: Set) -> KbCoroutine[Changed]:
     """Set a property of an entity, or of an individual that is not in space."""
-    require_openable(view, command)
-    return (yield from _change_property(view, command, transactions.set_property(command)))
+    return (yield from _change_property(view, command))
 
 
 @handles(Unset)
 def unset(view: MapView, command: Unset) -> KbCoroutine[Changed]:
     """Remove the values of a property of an entity, or one of them."""
-    return (yield from _change_property(view, command, transactions.unset_property(command)))
+    return (yield from _change_property(view, command))
 
 
-def _change_property(view: MapView, command: Set | Unset, transaction: Transaction) -> KbCoroutine[Changed]:
-    entity = view.entities.get(command.name)
-    if entity is None:
-        entity = yield from individuals.find_individual(view, command.name)
-        if not entity.in_space:
-            return (yield from individuals.change_individual(view, entity, transaction))
-        transaction = transactions.for_name(transaction, entity.name)
+def _change_property(view: MapView, command: Set | Unset) -> KbCoroutine[Changed]:
+    entity = view.entities.get(command.name) or (yield from individuals.find_meant(view, command.name))
+    if entity.in_space:
+        command = structs.replace(command, name=entity.name)
+    if isinstance(command, Set):
+        require_openable(view, command)
+        transaction = transactions.set_property(command)
+    else:
+        transaction = transactions.unset_property(command)
+    if not entity.in_space:
+        return (yield from individuals.change_individual(view, entity, transaction))
     made = yield from commit(view, transaction)
     text = (
         _describe(entity, made) if made else f"{entity.name}: {(yield from _describe_value(entity, command))}"

@@ -43,6 +43,15 @@ def find_individual(view: MapView, word: str) -> KbCoroutine[Entity]:
     return view.entity(found.name if found is not None and is_iri else word)
 
 
+def find_meant(view: MapView, word: str) -> KbCoroutine[Entity]:
+    """Return the individual or entity with this name or IRI, or the only entity with this label or class.
+
+    Raises UnknownName, or BadRequest if there are several.
+    """
+    found: Described = yield from ask(Get(name=word))
+    return view.entity(found.name) if found.in_space else found
+
+
 def rename_individual(view: MapView, was: Entity, command: Rename) -> KbCoroutine[Changed]:
     """Commit another last part of the IRI of an individual. Raises NameTaken."""
     try:

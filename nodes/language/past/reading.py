@@ -122,6 +122,8 @@ def _split(elements: list[Element]) -> tuple[list[Element], Anchor | None, list[
     """Return the main clause, and the clause after *before*, *after* or *while*, if there is one."""
     for i, element in enumerate(elements):
         value = element.value if element.kind == "mark" else element.senses.get("mark", "")
+        if value == "before" and i + 1 == len(elements):
+            element.kind, element.value = "mark", "previously"  # where was it before
         if value not in _ANCHORS or i + 1 == len(elements):
             continue
         has_asked = any(e.kind == "ask" or (e.is_a("mark", *TENSES)) for e in elements[:i])

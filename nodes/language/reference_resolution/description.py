@@ -7,8 +7,8 @@ from typing import Literal
 
 from semmap.schemas.relations import RelationName
 
-Axis = Literal["across", "height", "volume", "tallness", "length", "distance", ""]
-"""The quantity to sort by: position from left to right, height, size or distance."""
+Axis = Literal["across", "height", "volume", "tallness", "length", "mass", "distance", ""]
+"""The quantity to sort by: position from left to right, height, size, mass or distance."""
 
 
 @dataclass(frozen=True, slots=True)

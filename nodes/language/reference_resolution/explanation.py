@@ -107,6 +107,8 @@ def _ordered(name: str, order: Order, resolver: Resolver) -> Iterator[str]:
         yield f"at a height of {at[2]:.2f} m"
     elif order.axis in ("volume", "tallness", "length") and (size := geometry.size(name)) is not None:
         yield f"of {' x '.join(f'{extent:.2f}' for extent in size)} m"
+    elif order.axis == "mass" and (mass := resolver.index.items[name].number("mass")) is not None:
+        yield f"of {mass:g} kg"
 
 
 def _from_where(answer: Answer) -> str:

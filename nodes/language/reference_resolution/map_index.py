@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import islice
 from typing import Final
@@ -23,7 +24,7 @@ MOST_WORDS: Final = 5
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """An entity with its labels; `values` are its properties' values: individuals' names or booleans."""
+    """An entity with its labels; `values` are its properties' values: individuals' names or literals."""
 
     name: str
     class_name: str
@@ -36,6 +37,14 @@ class Item:
     def all_values(self) -> frozenset[object]:
         """The values of all properties."""
         return frozenset[object]().union(*self.values.values())
+
+    def number(self, property_name: str) -> float | None:
+        """Return the number among the values of a property, or None."""
+        for value in self.values.get(property_name, ()):
+            if isinstance(value, int | float | str) and not isinstance(value, bool):
+                with suppress(ValueError):
+                    return float(value)
+        return None
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,6 +209,12 @@ class MapIndex:
         for class_name in nouns.classes.get(key, ()):
             found.update(self.members.get(class_name, {}))
         return found
+
+    def several_of(self, key: str, language: Language) -> str:
+        """Return the singular of a noun if only that denotes several entities (glasses), else `key`."""
+        one = self.nouns[language].describing.singular_of(key)
+        is_one = one == key or self.find_by_noun(key, language) or len(self.find_by_noun(one, language)) < 2
+        return key if is_one else one
 
     def is_exact_match(self, name: str, key: str, language: Language) -> bool:
         """Return whether the key is the entity's name, a whole label or its own class (not a superclass)."""

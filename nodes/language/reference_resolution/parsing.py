@@ -148,7 +148,7 @@ class _Parser(NounPhraseReader):
         while i < len(self._words):
             if depth and self._opens(i):
                 self.inner.append(i)
-                if i in self._high:
+                if (i in self._high) != self._denies_kind(i):
                     return i
             if (length := self._length("except", i)) and not self._goes_on(i + length):
                 if depth:  # it is an exception to the outer phrase
@@ -199,6 +199,14 @@ class _Parser(NounPhraseReader):
     def _opens(self, i: int) -> bool:
         """Return whether a modifying phrase begins at i."""
         return any(self._length(kind, i) for kind in _OPENING)
+
+    def _denies_kind(self, i: int) -> bool:
+        """Return whether *that is not a box* is at i: on the shelf that is not a box, no shelf is meant."""
+        j, is_denied = i, False
+        while length := max(self._length(kind, j) for kind in ("relative", "be", "not", "indefinite")):
+            is_denied = is_denied or self._length("not", j) == length
+            j += length
+        return is_denied and self._length("noun", j) > max(self._length(k, j) for k in ("quality", "states"))
 
     def _goes_on(self, i: int) -> bool:
         """Return whether the word at i continues the description of the same object."""
@@ -364,6 +372,9 @@ class _Parser(NounPhraseReader):
         if self._ends(j):
             return 0
         other, end = self._phrase(j, depth + 1)
+        if other.head == "one" and len(other.restrictions) == 1:  # something of Anna's is of Anna
+            (owned,) = other.restrictions
+            other = (owned.by if isinstance(owned, Owned) else None) or other
         is_content = draft.key in self._r.nouns.describing.content
         draft.restrictions.append(Of(self._text(i, end), other, is_content))
         return end

@@ -103,6 +103,8 @@ def _senses(words: list[str], nouns: Nouns) -> tuple[Mapping[str, tuple[int, Any
                     break
         if words[i].isdecimal() and len(words[i]) < 4:
             senses["numbers"] = (1, int(words[i]))
+        elif bases[i] in nouns.exact and not any(nouns.is_noun(key) for key in bases[i + 1 : i + 2]):
+            senses.pop("numbers", None)  # Otto is a name, but eight in "otto tazze"
         found.append(senses)
     return tuple(found)
 

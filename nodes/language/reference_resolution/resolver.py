@@ -106,6 +106,8 @@ class Resolver:
             description = replace(
                 description, head=scope.one.head, key=scope.one.key, noun=scope.one.noun, is_alternative=False
             )
+        if (key := self.index.several_of(description.key, self.language)) != description.key:
+            description = replace(description, key=key, is_plural=True)
         kind = self._kind(description, scope)
         names = kind
         failed = None
@@ -134,12 +136,6 @@ class Resolver:
         if description.head != "noun":
             return tuple(sorted(name for name, item in self.index.items.items() if not item.is_place))
         found = self.index.find_by_noun(description.key, self.language)
-        if (
-            not found
-            and (one := self.index.nouns[self.language].describing.singular_of(description.key))
-            != description.key
-        ):
-            found = self.index.find_by_noun(one, self.language)  # glasses to drink from
         for restriction in description.restrictions:
             if isinstance(restriction, Of) and restriction.is_content:
                 content = self.resolve(restriction.other, scope)
@@ -314,6 +310,8 @@ class Resolver:
     # Big, small, first, nearest
 
     def _measure(self, name: str, axis: str) -> float | None:
+        if axis == "mass":
+            return self.index.items[name].number("mass")
         size = self.geometry.size(name)
         if size is None:
             return None
@@ -365,6 +363,8 @@ class Resolver:
         known = sorted((name for name in names if math.isfinite(values[name])), key=lambda n: (values[n], n))
         if order.sign < 0:
             known.reverse()
+        if order.axis == "mass" and len(known) < len(names):  # one of unknown mass may be the heaviest
+            return names, len(names) > 1
         if not known:
             return (), False
         if order.sign == 0:

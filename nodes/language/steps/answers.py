@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from semmap.nodes.language.steps.entity_tests import Meaning, Verdicts, World, number_of
+from semmap.nodes.language.steps.entity_tests import Meaning, Verdicts, World
 from semmap.nodes.language.steps.phrase import NounPhrase
 
 _MOST: Final = 5
@@ -157,7 +157,7 @@ def _property(name: str, wanted: str, noun: str, world: World) -> str:
     if wanted == "label":
         value = next(iter(item.references), "")
     elif wanted == "mass":
-        mass = number_of(item.values.get("mass", frozenset()))
+        mass = item.number("mass")
         value = f"{mass:g} kg" if mass is not None else ""
     elif wanted == "size":
         size = world.geometry.size(name)

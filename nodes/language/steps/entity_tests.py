@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -29,7 +28,6 @@ Names = tuple[str, ...]
 Verdicts = tuple[bool | None, ...]
 """For each thing that is asked whether it is so, or None if the map cannot tell."""
 _FROM_VIEWER: Final = ("isLeftOf", "isRightOf", "isInFrontOf", "isBehind")
-_BY_MASS: Final = {"heaviest": -1, "lightest": 1}
 _BY_THICKNESS: Final = {"thickest": -1, "thinnest": 1}
 _COLORS: Final = "Color"
 
@@ -258,15 +256,13 @@ class EntityTests:
     def _values(self, names: list[str], superlative: str) -> tuple[int, dict[str, float]]:
         """Return the sign of a superlative (1: the least first, 0: unknown) and the value of each entity."""
         size = self._world.geometry.size
-        if superlative in _BY_MASS:
-            masses = {name: self._index.items[name].values.get("mass", frozenset()) for name in names}
-            return _BY_MASS[superlative], {
-                name: number for name, mass in masses.items() if (number := number_of(mass)) is not None
-            }
         sizes = {name: s for name in names if (s := size(name)) is not None}
         if superlative in _BY_THICKNESS:
             return _BY_THICKNESS[superlative], {name: min(s) for name, s in sizes.items()}
         sense = self._nouns.describing.sense(tuple(superlative.split())).get("sides")
+        if sense is not None and sense[0] == "mass":
+            masses = {name: self._index.items[name].number("mass") for name in names}
+            return sense[1], {name: mass for name, mass in masses.items() if mass is not None}
         if sense is None or sense[0] not in ("volume", "tallness", "length"):
             return 0, {}
         measured: Mapping[str, Callable[[tuple[float, float, float]], float]] = {
@@ -281,14 +277,3 @@ def _is_alike(value: object, others: frozenset[str]) -> bool:
     """Return whether a value is an individual of the same kind as others by its name: *color_red*."""
     kind, underscore, _ = str(value).partition("_")
     return bool(underscore) and any(other.startswith(f"{kind}_") for other in others)
-
-
-def number_of(values: frozenset[object]) -> float | None:
-    """Return the number among the values of a property, or None."""
-    for value in values:
-        if isinstance(value, int | float) and not isinstance(value, bool):
-            return float(value)
-        if isinstance(value, str):
-            with suppress(ValueError):
-                return float(value)
-    return None

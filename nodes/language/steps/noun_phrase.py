@@ -9,6 +9,7 @@ from semmap.nodes.language.steps.phrase import NounPhrase, PlacePhrase
 from semmap.nodes.language.steps.pronoun_reader import PronounReader
 from semmap.nodes.language.steps.times import starts_time
 
+_NEGATIONS: Final = ("not", "n't", "never", "neither")
 _NOT_STATED: Final = (
     *("and", "be", "have", "modal", "speaker", "robot", "condition", "question", "negation", "determiner"),
     *("all", "possessive", "pronoun", "relative_adverb", "polite", "then", "anaphoric", "here", "place"),
@@ -387,12 +388,12 @@ class NounPhraseReader(PronounReader):
             g.is_a(words[j], "be")
             or g.is_a(words[j], "have")
             or g.is_a(words[j], "modal")
-            or words[j] in ("not", "n't", "never")
+            or words[j] in _NEGATIONS
             or g.is_a(words[j], "relative_adverb")
         ):
             has_be = has_be or g.is_a(words[j], "be")
             has_have = has_have or g.is_a(words[j], "have")
-            negated = negated or words[j] in ("not", "n't", "never")
+            negated = negated or words[j] in _NEGATIONS
             j += 1
         is_that_clause = (
             words[i] == "that"
@@ -410,6 +411,12 @@ class NounPhraseReader(PronounReader):
                 return False
             self._add_place(phrase, place)
             return True
+        if has_be and negated and (denied := self._read_denied(j)):
+            if not self._includes(phrase, denied[0]):
+                return False
+            phrase.exclude(denied)
+            phrase.end = denied[-1].end
+            return True
         if has_be and words[j] in ("called", "named"):
             end = self._group_end(j + 1)
             phrase.name, phrase.end = self._t.between(j + 1, end), end
@@ -421,6 +428,24 @@ class NounPhraseReader(PronounReader):
             return True
         self._participle(phrase, j, i if not has_have else j, negated=negated)
         return True
+
+    def _read_denied(self, i: int) -> list[NounPhrase]:
+        """Return the kinds that a relative clause denies at `i`: (not) A BOX, (neither) BOXES NOR BINS."""
+        found: list[NounPhrase] = []
+        while (other := self.read(i, with_places=False)) is not None:
+            if not other.key or other.determiner not in ("", "a", "an") or other.attributes:
+                return []
+            found.append(other)
+            i = other.end + 1
+            if self._words[other.end : i] not in (("nor",), ("or",)):
+                break
+        return found
+
+    def _includes(self, phrase: NounPhrase, other: NounPhrase) -> bool:
+        """Return whether a noun includes another one, as things and containers include boxes."""
+        kinds, below = (self._nouns.classes.get(one.key, set()) for one in (phrase, other))
+        is_any = self._g.is_a(self._bases[phrase.head], "anything")
+        return is_any or any(kinds.intersection(self._above.get(name, ())) for name in below)
 
     def _is_with(self, i: int) -> bool:
         """Return whether *with* at `i` describes a thing, and is not of the verb, a hand or a person.
@@ -493,11 +518,11 @@ class NounPhraseReader(PronounReader):
             elif words[j] in ("with", "of") or self._is_last_particle(j):
                 pass
             elif (
-                any(
+                max(
                     g.match(kind, words, j)
                     for kind in ("to", "from", "place", "for", "relative", "be", "condition")
                 )
-                and not (g.is_a(words[j], "direction") and words[j] not in ("left of", "right of"))
+                > g.is_a(words[j], "direction")  # UP TO the bedroom, but not: pointing UP
             ) or (
                 g.match("time", words, j)
                 or words[j] in ("please", "then", "and", "so")

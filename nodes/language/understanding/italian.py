@@ -149,6 +149,8 @@ class _Glossing:
         for length in range(min(_LONGEST, len(self._tokens) - piece.token), 1, -1):
             if (name := self._called(i, length)) is not None:
                 return self._noun(name, i, length)
+        if self._counts(i) and (name := self._called(i, 1)) is not None and self._ends_group(i + 1):
+            return self._noun(name, i, 1)  # Otto, but "otto tazze"
         if self._stands_before_verb(i):
             self._clitic(i)
             return 1
@@ -222,6 +224,12 @@ class _Glossing:
         """Return whether piece i is a number."""
         text = self._pieces[i].text if i < len(self._pieces) else ""
         return text[:1].isdigit() or self._known.expressions.get((text,), "") in _NUMBERS
+
+    def _ends_group(self, i: int) -> bool:
+        """Return whether no noun or adjective begins at piece i."""
+        if i >= len(self._pieces):
+            return True
+        return self._pieces[i].text not in self._known.adjectives and self._called(i, 1) is None
 
     def _is_partitive(self, i: int) -> bool:
         """Return whether `di` and an article begin an object: `prendi del latte`."""

@@ -29,6 +29,15 @@ def test_a_property_is_set_and_unset_by_name_or_iri(people, semantic_map, name):
     assert semantic_map.described("anna").properties == {}
 
 
+@pytest.mark.parametrize("word", ["seat", "Chair", "the chair"])
+def test_a_property_is_set_by_the_label_or_class_of_only_one_thing(people, word):
+    made = people.change(c.Set(name=word, property="isOpen", values=(True,)))
+    assert (made.text, made.names) == ("chair1: isOpen: not set → true", ("chair1",))
+    people.change(c.Add(class_="Chair", at=(3.0, 0.0, 0.0), ref="seat"))
+    with pytest.raises(errors.BadRequest, match="is ambiguous: chair1 and chair2; name one of them"):
+        people.change(c.Unset(name=word, property="isOpen"))
+
+
 def test_a_dry_run_changes_nothing_and_says_what_would_change(people, semantic_map):
     tried = people.change(c.Set(name="anna", property="isOpen", values=(True,), dry_run=True))
     assert (tried.commit, tried.dry_run) == (None, True)
@@ -108,12 +117,12 @@ def test_an_individual_is_renamed_with_what_refers_to_it(people, semantic_map):
         people.change(c.Rename(name="anne", new="anna", source="perception"))
 
 
-def test_an_entity_is_also_given_by_its_iri_but_not_by_its_label(people, semantic_map):
+def test_an_entity_to_update_is_also_given_by_its_iri_but_not_by_its_label(people, semantic_map):
     iri = semantic_map.entity("chair1").iri
     people.change(c.Set(name=iri, property="isOpen", values=(True,)))
     assert semantic_map.entity("chair1").properties == {"isOpen": True}
     for word in ("seat", "chair2"):
         with pytest.raises(errors.UnknownName, match=f"no entity is named '{word}'"):
-            people.change(c.Set(name=word, property="isOpen", values=(True,)))
+            people.change(c.Update(name=word, set=("isOpen=false",)))
     people.change(c.Remove(names=(f"<{iri}>",)))
     assert "chair1" not in semantic_map.by_name

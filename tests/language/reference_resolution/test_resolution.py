@@ -63,6 +63,13 @@ from tests.language.reference_resolution.phrases import PHRASES
         ("gli occhiali", {"glasses1"}),
         ("il tavolo della cucina", {"table1"}),
         ("la lampada accesa", {"lamp1"}),
+        ("the things on the table that are not cups", set()),
+        ("the things in the fridge that are neither cups nor bottles", {"wine1"}),
+        ("le cose sul tavolo che non sono tazze", set()),
+        ("the cups that do not belong to Anna", {"cup1", "cup2"}),
+        ("something of Anna's", {"cup3", "glasses1"}),
+        ("the heaviest cup", {"cup2"}),
+        ("la tazza più leggera", {"cup1"}),
     ],
 )
 def test_what_is_meant(text, names):
@@ -76,6 +83,13 @@ def test_a_phrase_means_what_fits_it(row):
     text, outcome, names, _, _ = row
     answer = find(text, known(), Written(has_viewer=True), "anna")
     assert (answer.outcome, " ".join(answer.names)) == (outcome, names)
+
+
+def test_a_name_may_be_a_number_word_too():
+    there = known()
+    there.update((item("otto1", "Person", "Otto"), item("cup4", "Cup", isOwnedBy="otto1")))
+    assert find("le cose di Otto", there, Written()).names == ("cup4",)
+    assert find("otto tazze", there, Written()).outcome == "none"
 
 
 def test_what_may_be_meant_is_all_that_fits():

@@ -141,7 +141,8 @@ def update(client: Client, **fields: Any) -> None:
 def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fields: Any) -> None:
     """Set a property of an entity.
 
-    NAME may also be the name or IRI of an individual that is not in space.
+    NAME may also be a label or class of only one entity, or the name or IRI of an individual that is not in
+    space.
 
     The value of a functional property replaces the previous one. Other properties keep their previous values.
     The range of the property gives the datatype. A text ends with its language where the range allows one:
@@ -162,7 +163,8 @@ def set_(client: Client, name: str, property: str, values: tuple[str, ...], **fi
 def unset(client: Client, **fields: Any) -> None:
     """Remove one value of a property of an entity, or all.
 
-    NAME may also be the name or IRI of an individual that is not in space.
+    NAME may also be a label or class of only one entity, or the name or IRI of an individual that is not in
+    space.
     """
     print_result(client.unset(**_drop_none(fields)), lines.format_change)
 

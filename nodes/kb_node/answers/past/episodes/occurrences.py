@@ -111,7 +111,7 @@ class Occurrences:
             return f"{_DONE[claim.event]} {where}".strip()
         if claim.event in ("put", "take") and not where:
             return _DONE[claim.event]
-        return claim.state or where
+        return claim.state or (f"moved {where}" if where.startswith("from ") else where)
 
     def preposition(self, place: Place) -> str:
         """Return the preposition for what is at a place."""
