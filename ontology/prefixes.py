@@ -103,11 +103,15 @@ def prefixes_of(
     The result does not depend on the order of the namespaces.
     """
     known = {namespace: prefix for prefix, namespace in WELL_KNOWN.items() if prefix}
+    used = set(namespaces)
     found: dict[str, str] = {}
     rest: list[str] = []
-    for namespace in sorted(set(namespaces)):
+    for namespace in sorted(used):
+        other = other_scheme(namespace)
         if namespace in known:
             found[known[namespace]] = namespace
+        elif other in known and other not in used:
+            found[known[other]] = namespace
         else:
             rest.append(namespace)
     sharing: list[tuple[str, str]] = []
@@ -122,6 +126,12 @@ def prefixes_of(
         numbered = (f"{stem}{number}" for number in count(2))
         found[next(prefix for prefix in numbered if prefix not in found)] = namespace
     return dict(sorted(found.items()))
+
+
+def other_scheme(namespace: str) -> str:
+    """Return the namespace with `http` instead of `https`, or the reverse."""
+    scheme, separator, rest = namespace.partition("://")
+    return {"http": "https", "https": "http"}.get(scheme, scheme) + separator + rest
 
 
 def prefixed(iri: Term, prefixes: Prefixes) -> str:

@@ -160,7 +160,7 @@ class Applier:
                 return state.derived_facts.change(delete, insert, lenient=lenient)
             return self._change_in_parts(delete, insert, lenient)
         except Inconsistent as error:
-            raise proofs.to_error(error) from None
+            raise proofs.to_error(error, about=insert) from None
 
     def _change_in_parts(
         self, delete: Collection[Triple], insert: Collection[Triple], lenient: bool

@@ -42,10 +42,18 @@ def test_a_proof_is_complete_after_encoding(reasoner):
     assert [getattr(arrived, field) for field in rest] == [getattr(proof, field) for field in rest]
 
 
-def test_nameless_individuals_are_numbered_in_texts():
+@pytest.mark.parametrize(
+    ("about", "first"),
+    [
+        ([], "[1]"),
+        ([("<urn:cup7>", "<urn:at>", "_:f19b")], "[1] (at of cup7)"),
+        ([("<urn:a1>", "<urn:at>", "_:f19b"), ("_:x", "<urn:at>", "_:f19b")], "[1]"),
+    ],
+)
+def test_nameless_individuals_are_numbered_in_texts(about, first):
     text = "_:f19b has x 1 (asserted), a1 has position _:c3-d.e (asserted), and _:f19b is one."
-    assert proofs.number_nameless(text) == (
-        "[1] has x 1 (asserted), a1 has position [2] (asserted), and [1] is one."
+    assert proofs.number_nameless(text, about) == (
+        f"{first} has x 1 (asserted), a1 has position [2] (asserted), and [1] is one."
     )
 
 

@@ -20,6 +20,7 @@ iris = st.lists(st.builds("<{}{}>".format, namespaces, locals_), unique=True, ma
     ("namespace", "prefix"),
     [
         (SOMA, "soma"),
+        ("http://schema.org/", "schema"),
         ("http://x.org/onto/lab.owl#", "lab"),
         ("http://x.org/onto/v1.2/", "onto"),
         ("http://www.example.org/", "example"),

@@ -83,9 +83,8 @@ def filter_document(
     """Return the triples of a document that the map accepts. Numbers may be of any numeric datatype.
 
     A literal outside the range of its property gets a datatype of the range if its text is a value of that.
-    Blank nodes of spatial classes get IRIs, except with alignments, where they are unnamed parts. Entities
-    that would have the name of another one get a name with a prefix. Poses of alignments are in the map
-    frame; `find_frame` returns those of the map.
+    Blank nodes of spatial classes get IRIs. Entities that would have the name of another one get a name with
+    a prefix. Poses of alignments are in the map frame; `find_frame` returns those of the map.
 
     Raises UnknownClass with all individuals of unknown classes, unless `skip_unknown`. In that case
     individuals that have only unknown classes are left out, with the triples that describe only them, and the
@@ -117,9 +116,7 @@ def filter_document(
         text = classes.index.unknown_classes({c: _with_blank_nodes_counted(n) for c, n in users.items()})
         raise errors.UnknownClass(f"{of_file.filename}: {text}" if of_file.filename else text)
     named: list[str] = []
-    if not classes.alignments and (
-        nameless := dict(sorted((s, o) for s, _, o in types_said if is_blank(s) and o in spatial))
-    ):
+    if nameless := dict(sorted((s, o) for s, _, o in types_said if is_blank(s) and o in spatial)):
         labels = _make_iris(triples, nameless, of_file.filename)
         triples = list(blank_nodes.relabel(triples, labels))
         by_property = entity_triples.group_by_property(triples)

@@ -12,6 +12,7 @@ from semmap.nodes.kb_node.entities.aligned_values import LABELS
 from semmap.nodes.kb_node.entities.property_names import PropertyNames
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.nodes.kb_node.reasoner.data_ranges import DataRange, read_common
+from semmap.nodes.kb_node.reasoner.terms import is_reserved
 from semmap.nodes.kb_node.sparql.queries.text import query_prefixes
 from semmap.ontology import vocabulary as v
 from semmap.ontology.model_choice import require_model
@@ -50,6 +51,8 @@ _FIELDS: Mapping[str, str] = {
 EQUALITY = frozenset((v.OWL_SAME_AS, v.iri(f"{v.OWL}differentFrom")))
 """Properties that no command changes."""
 _TYPE = frozenset(("type", "class"))
+_UNTYPED = v.PROPERTY_KINDS[-1]
+"""rdf:Property: a data or object property, which its range determines."""
 _TEXT = frozenset((v.XSD_STRING,))
 _OF_A_STAR = frozenset((v.LEXICAL_REFERENCE, *v.COORDINATE_XYZ, *v.ORIENTATION_WXYZ, *v.SIZE_XYZ))
 
@@ -66,6 +69,8 @@ class Property(NamedTuple):
     functional: bool
     ranges: frozenset[Term]
     data_range: DataRange | None = None
+    is_open: bool = False
+    """Whether its values may be individuals and literals: it is only an rdf:Property, without a range."""
 
 
 class PropertyTable:
@@ -88,22 +93,26 @@ class PropertyTable:
         self._class_names = class_names
         self._prefixes = query_prefixes(known_prefixes)
         typed = [(s, o) for s, _, o in reasoner.asserted(None, v.RDF_TYPE) if s.startswith("<")]
-        classes = {s for s, o in typed if o == v.OWL_CLASS}
+        classes = {s for s, o in typed if o in (v.OWL_CLASS, v.RDFS_CLASS)}
         self._of_the_tbox = {s for s, o in typed if o == v.OWL_NAMED_INDIVIDUAL or o in classes}
         declared = {
-            p: kind == v.OWL_DATATYPE_PROPERTY
-            for kind in (v.OWL_OBJECT_PROPERTY, v.OWL_DATATYPE_PROPERTY)
+            p: kind
+            for kind in reversed(v.PROPERTY_KINDS)  # the more specific ones count
             for p, _, _ in reasoner.asserted(None, v.RDF_TYPE, kind)
             if p.startswith("<") and p not in _OF_A_STAR
         }
         if v.MODEL in names.names:
-            declared[v.MODEL] = True
+            declared[v.MODEL] = v.OWL_DATATYPE_PROPERTY
         self._structural = STRUCTURAL.keys() | edges | frozenset(LABELS) | {v.HAS_EXTENT, v.MODEL}
         self.by_iri: dict[Term, Property] = {}
-        for p, is_data in sorted(declared.items()):
-            if p in STRUCTURAL or p in edges:
+        for p, kind in sorted(declared.items()):
+            if p in STRUCTURAL or p in edges or kind == v.OWL_ANNOTATION_PROPERTY or is_reserved(p):
                 continue
             ranges = _TEXT if p == v.MODEL else self.ranges(p)
+            of_classes = (
+                any(o in classes for o in ranges) if kind == _UNTYPED else kind == v.OWL_OBJECT_PROPERTY
+            )
+            is_data = not of_classes
             self.by_iri[p] = Property(
                 iri=p,
                 name=names.names[p],
@@ -111,6 +120,7 @@ class PropertyTable:
                 functional=self.is_functional(p),
                 ranges=ranges,
                 data_range=read_common(ranges, reasoner.asserted) if is_data else None,
+                is_open=kind == _UNTYPED and not ranges,
             )
 
     def read_values(self, asserted: Mapping[Term, Iterable[Term]]) -> dict[str, property_values.Stated]:
@@ -187,16 +197,17 @@ class PropertyTable:
         """
         if prop.iri == v.MODEL:
             require_model(text)
+        if not prop.is_data or prop.is_open:
+            term = self._term(text)
+            if term is not None:
+                if any(self._reasoner.asserted(term)):
+                    return term
+            elif (found := named(text) or self._individual(prop, text)) is not None:
+                return found
+            if (other := find_other(text)) is not None:
+                return other
         if prop.is_data:
             return property_values.literal(prop.name, prop.data_range, text)
-        term = self._term(text)
-        if term is not None:
-            if any(self._reasoner.asserted(term)):
-                return term
-        elif (found := named(text) or self._individual(prop, text)) is not None:
-            return found
-        if (other := find_other(text)) is not None:
-            return other
         allowed = sorted(v.entity_name(i) for i in self._allowed(prop))
         hint = errors.did_you_mean(text, (*allowed, *names))
         if not hint and 0 < len(allowed) <= _FEW:
@@ -277,10 +288,12 @@ class PropertyTable:
         return words
 
     def _term(self, word: str) -> Term | None:
-        """Return a term that is written as such or with a known prefix, or None for another word."""
+        """Return a term that is written as an IRI or with a known prefix, or None for another word."""
         prefix, colon, name = word.partition(":")
         if word.startswith("<") and word.endswith(">"):
             return word
+        if name.startswith("//"):
+            return v.iri(word)
         return v.iri(self._prefixes[prefix] + name) if colon and prefix in self._prefixes else None
 
     def _note(self, words: dict[str, set[Term]], term: Term) -> None:

@@ -36,7 +36,7 @@ from semmap.nodes.kb_node.reasoner.tbox.split import (
     is_inert,
     is_schema,
 )
-from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, SAME_AS, TYPE
+from semmap.nodes.kb_node.reasoner.terms import DIFFERENT_FROM, SAME_AS, TYPE, iri, is_named
 
 
 class Refused(Exception):
@@ -77,6 +77,10 @@ class CompiledEngine:
         closure = closed or Closure(active)
         if closure.clash is not None:
             raise Refused(self._prover.prove(closure.leaves(None), None))
+        equal = [t for t in closure.match(None, SAME_AS) if t[0] != t[2] and is_named(t[2])]
+        below = closure.match(None, iri("rdfs:subPropertyOf"), SAME_AS)
+        if equal and any(p != SAME_AS for p, _, _ in below):  # the axioms would mention either of the two
+            raise NotCompilable(f"the schema alone equates individuals: {' '.join(min(equal))}")
         self.rules = swrl.read_triples(self._schema_triples)
         """The SWRL rules of the schema."""
         self._schema = Schema(closure, self.rules.supported)

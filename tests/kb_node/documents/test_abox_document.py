@@ -184,7 +184,11 @@ def filtered_names(classes, text):
     return sorted({v.entity_name(s) for s, p, o in filtered.triples if o == v.dm("Chair")}), filtered
 
 
-def test_blank_nodes_of_spatial_classes_get_names_that_stay(classes):
+@pytest.mark.parametrize("namespace", ["", "https://w3id.org/bot#"], ids=["plain", "with an alignment"])
+def test_blank_nodes_of_spatial_classes_get_names_that_stay(namespace):
+    terms = turtle(f"<{namespace}Zone> a owl:Class .") if namespace else []
+    classes = ClassTable(Reasoner([*home.TBOX, *terms]))
+    assert bool(classes.alignments) == bool(namespace)
     text = ":k a dm:Kitchen . [] a dm:Chair ; dm:near :k ; dm:hasPosition [ dm:float_coordinates_x '1' ] ."
     names, filtered = filtered_names(classes, text)
     (name,) = names

@@ -75,6 +75,30 @@ def test_an_individual_with_a_made_name_is_listed_and_found_by_that(tmp_path, mo
     home.close(made)
 
 
+@pytest.mark.parametrize(
+    ("range_", "word", "value"),
+    [
+        ("", "kitchen1", ("kitchen1",)),
+        ("", v.bare(v.entity_iri("kitchen1")), ("kitchen1",)),
+        ("", "to be cleaned", ("to be cleaned",)),
+        ("rdfs:range xsd:integer", "7", (7,)),
+        ("rdfs:range dm:Color", "rosso", ("color_red",)),
+        ("a owl:AnnotationProperty", "7", None),
+    ],
+)
+def test_an_rdf_property_takes_what_its_range_allows(tmp_path, monkeypatch, range_, word, value):
+    plain = turtle(f"dm:plain a <{v.RDF}Property> ; {range_} .")
+    monkeypatch.setattr(stating, "TBOX", [*stating.TBOX, *plain])
+    made = stating.new_map(tmp_path)
+    if value is None:
+        with pytest.raises(errors.BadRequest, match="unknown property 'plain'"):
+            stated(made, "plain", word)
+    else:
+        stated(made, "plain", word)
+        assert properties(made) == {"plain": value}
+    home.close(made)
+
+
 def test_an_unknown_individual_is_rejected_with_suggestions(stateful_map):
     with pytest.raises(errors.UnknownName, match="hasColor takes color_blue, color_red"):
         stated(stateful_map, "hasColor", "xyzzy")

@@ -139,9 +139,9 @@ def entity_card(e: Described, properties: Iterable[PropertyInfo] = ()) -> Table:
         **({"perception": e.conflict} if e.conflict else {}),
         **({"shape": "world"} if e.shape == "world" else {"model": "-" if e.place else _model(e)}),
         "last change": provenance_text(e.provenance),
-        "pose set": provenance_text(e.pose_provenance),
+        **({"pose set": provenance_text(e.pose_provenance)} if e.pose is not None else {}),
         "class and size set": provenance_text(e.shape_provenance),
-        "label set": provenance_text(e.reference_provenance),
+        **_label_set(e),
         **({"joints set": provenance_text(e.joint_provenance)} if e.joint_provenance is not None else {}),
         **({"switches set": provenance_text(e.switch_provenance)} if e.switch_provenance is not None else {}),
     }
@@ -171,9 +171,15 @@ def _individual_card(e: Described, properties: Iterable[PropertyInfo]) -> Table:
         or "-",
         "last change": provenance_text(e.provenance),
         "class set": provenance_text(e.shape_provenance),
-        "label set": provenance_text(e.reference_provenance),
+        **_label_set(e),
     }
     return _card(rows, _stated(e, {p.name: p for p in properties}), after)
+
+
+def _label_set(e: Described) -> dict[str, str]:
+    """Return the row of the last change of the labels, if the entity has any."""
+    has_labels = e.preferred_reference or e.alternative_references
+    return {"label set": provenance_text(e.reference_provenance)} if has_labels else {}
 
 
 def _live(e: Entity) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from types import MappingProxyType
 from typing import Final
 
-from semmap.ontology.prefixes import WELL_KNOWN, Prefixes
+from semmap.ontology.prefixes import WELL_KNOWN, Prefixes, other_scheme
 from semmap.schemas import errors
 
 PREFIXES: Final = dict(WELL_KNOWN)
@@ -38,7 +38,12 @@ _REASONS = (
 
 def query_prefixes(of_tbox: Prefixes) -> dict[str, str]:
     """Return the prefixes that a query need not declare with a TBox that has these prefixes."""
-    return {**of_tbox, **PREFIXES}
+    well_known = {
+        prefix: namespace
+        for prefix, namespace in PREFIXES.items()
+        if of_tbox.get(prefix) != other_scheme(namespace)
+    }
+    return {**of_tbox, **well_known}
 
 
 def require_reading(query: str) -> str:

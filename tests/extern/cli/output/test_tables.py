@@ -1,6 +1,7 @@
 """Tables in a terminal: cells are complete at any width."""
 
 import io
+import re
 import time
 from collections import Counter
 
@@ -98,6 +99,11 @@ def test_a_card_of_what_is_not_in_space_has_what_refers_to_it_and_no_pose():
     ):
         assert text in card
     assert "pose set" not in card
+    assert "label set" in card
+    bare = drawn(
+        show.entity_card(structs.replace(Described.of(entity("c")), pose=None, preferred_reference="")), 80
+    )
+    assert not re.search("(pose|label) set", bare)
     assert show.entity_line([entity("chair1"), person]) == "1 entity and 1 individual not in space"
 
 

@@ -71,6 +71,11 @@ INSTEAD = {
         "vocabulary",
     ),
     "classes that are the same": (":Cup owl:sameAs :Becher .", "classes or properties are compared"),
+    "members of an enumeration that are equal by another name": (
+        ":One owl:equivalentClass [ owl:oneOf ( :i ) ] ; rdfs:subClassOf [ owl:onProperty :eq ; owl:hasValue :j ] ."
+        " :eq rdfs:subPropertyOf owl:sameAs .",
+        "equates individuals",
+    ),
     "an individual that is a word of the vocabulary": (
         ":x :one :y , rdf:type . :one a owl:FunctionalProperty .",
         "the same as another",

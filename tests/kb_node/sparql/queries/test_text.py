@@ -50,6 +50,13 @@ def test_invalid_queries_are_rejected(query):
         text.require_reading(query)
 
 
+def test_the_prefixes_of_a_tbox_do_not_replace_known_ones_except_by_another_scheme():
+    known = text.query_prefixes(
+        {"schema": "http://schema.org/", "owl": "http://x.org/owl#", "x": "http://x/"}
+    )
+    assert known == {**text.PREFIXES, "schema": "http://schema.org/", "x": "http://x/"}
+
+
 def test_only_select_can_be_watched():
     with pytest.raises(errors.BadRequest, match=r"only a SELECT query can be watched, and this is .* ASK"):
         text.require_select("ASK { ?s ?p ?o }")
