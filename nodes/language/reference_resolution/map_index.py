@@ -210,11 +210,11 @@ class MapIndex:
             found.update(self.members.get(class_name, {}))
         return found
 
-    def several_of(self, key: str, language: Language) -> str:
-        """Return the singular of a noun if only that denotes several entities (glasses), else `key`."""
+    def several_of(self, key: str, language: Language, least: int = 1) -> str:
+        """Return the singular of a noun (glasses) if it denotes `least` entities and the plural none."""
         one = self.nouns[language].describing.singular_of(key)
-        is_one = one == key or self.find_by_noun(key, language) or len(self.find_by_noun(one, language)) < 2
-        return key if is_one else one
+        is_one = not self.find_by_noun(key, language) and len(self.find_by_noun(one, language)) >= least
+        return one if is_one else key
 
     def is_exact_match(self, name: str, key: str, language: Language) -> bool:
         """Return whether the key is the entity's name, a whole label or its own class (not a superclass)."""

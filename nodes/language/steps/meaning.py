@@ -120,7 +120,7 @@ class Meanings(EntityTests):
             "one",
             "ones",
         )
-        if phrase.owner is None and (one := self._index.several_of(phrase.key, "english")) != phrase.key:
+        if phrase.owner is None and (one := self._index.several_of(phrase.key, "english", 2)) != phrase.key:
             phrase.key, phrase.is_plural = one, True  # but my glasses are for seeing
         names = self._alike(phrase, is_any)
         meaning.is_place = bool(names) and all(self._index.items[name].is_place for name in names)
