@@ -218,6 +218,7 @@ class Meanings(EntityTests):
             and not relations
             and not phrase.attributes
             and not phrase.purpose
+            and ((phrase.of or phrase.owner) is None or len(names) == len(meaning.alike))
             and (not phrase.superlative or phrase.noun in ("one", "ones"))
         ) or (is_any and wants_one and len(meaning.names) > 1):
             meaning.names = ()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from semmap.nodes.language.steps.clause import Clause, Role
+from semmap.nodes.language.steps.phrase import NounPhrase
 from semmap.nodes.language.steps.questions import QuestionReader
 from semmap.nodes.language.steps.times import starts_time
 
@@ -14,8 +15,7 @@ class MessageReader(QuestionReader):
         """Read *tell me ...*: to whom, what, and of what."""
         words = self._words
         if clause.verb.lower() in ("inform", "notify") or not self._g.match("question", words, i):
-            phrase = self._np.read(i)
-            following = phrase is not None and phrase.end
+            phrase = self._recipient(i)
             if (
                 phrase is not None
                 and clause.verb.lower()
@@ -37,16 +37,33 @@ class MessageReader(QuestionReader):
                 )
                 and self._words[i : i + 1] not in (("what",), ("which",))
             ):
-                clause.roles.append(Role("Addressee", i, phrase.end, phrase.head, [phrase]))
-                i = int(following or i)
-            elif words[i : i + 1] == ("to",) and (to := self._np.read(i + 1)) is not None:
-                clause.roles.append(Role("Addressee", i, to.end, to.head, [to]))
-                i = to.end
+                i = self._add_recipients(clause, i, phrase)
+            elif words[i : i + 1] == ("to",) and (to := self._recipient(i + 1)) is not None:
+                i = self._add_recipients(clause, i, to)
         if clause.verb.lower() == "let" and words[i : i + 1] in (("know",), ("hear",)):
             i += 1
         while words[i : i + 1] == ("about",) or (words[i : i + 1] == ("know",)):
             i += 1
         return self._told(clause, i)
+
+    def _recipient(self, i: int) -> NounPhrase | None:
+        """Return the recipient of a message at `i`; a question ends the phrase."""
+        self._np.takes_question = True
+        phrase = self._np.read(i)
+        self._np.takes_question = False
+        return phrase
+
+    def _add_recipients(self, clause: Clause, i: int, phrase: NounPhrase) -> int:
+        """Add the recipient of a message, and those after *and* or *or*; return the index after them."""
+        found, end = [phrase], phrase.end
+        while end < len(self._words) and self._g.is_a(self._words[end], "and") and not self._ends_clause(end):
+            other = self._recipient(end + 1)
+            if other is None or not (other.kind == "speaker" or self._is_person(other)):
+                break
+            (phrase.alternatives if self._words[end] == "or" else found).append(other)
+            end = other.end
+        clause.roles.append(Role("Addressee", i, end, phrase.head, found))
+        return end
 
     def _told(self, clause: Clause, i: int) -> int:
         """Read what is to be told: a question, a property of a thing, a thing, or words."""
@@ -98,14 +115,13 @@ class MessageReader(QuestionReader):
         words = self._words
         if self._t.is_translated and words[i : i + 1] == ("to",):  # chiedi a Anna
             i += 1
-        phrase = self._np.read(i)
+        phrase = self._recipient(i)
         if (
             phrase is not None
             and words[i : i + 1] != ("for",)
             and (self._is_person(phrase) or phrase.kind in ("pronoun", "speaker"))
         ):
-            clause.roles.append(Role("Addressee", i, phrase.end, phrase.head, [phrase]))
-            i = phrase.end
+            i = self._add_recipients(clause, i, phrase)
         elif (
             phrase is not None
             and phrase.key == ""

@@ -67,11 +67,13 @@ class NounGroupReader:
         `starts_clause` returns whether a new clause begins at an index, and `is_person` whether a phrase
         denotes a person. `above` maps classes to their superclasses.
         """
-        self.takes_that = False
         self.is_negated = False
+        self.takes_that = False
         """Whether *that* may begin a message in the clause that is read, and not a relative clause."""
         self.takes_with = False
         """Whether *with* after a thing belongs to the verb: fill the glass WITH water."""
+        self.takes_question = False
+        """Whether a question may follow the recipient of a message: tell Otto WHICH IS THE BIGGEST."""
         self.takes_predicate = False
         """Whether a further word after the noun is what a question asks of it: is the fridge OPEN."""
         self._t, self._g, self._nouns, self._starts_clause = text, grammar, nouns, starts_clause

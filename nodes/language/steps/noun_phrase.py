@@ -206,7 +206,7 @@ class NounPhraseReader(PronounReader):
     def _after_the_noun(self, phrase: NounPhrase, with_places: bool) -> None:
         """Read what follows the noun: places, relative clauses, participles, purposes, exceptions."""
         g, words = self._g, self._words
-        while (i := phrase.end) < len(words):
+        while (i := phrase.end) < len(words) and not self._asks(phrase, i):
             if length := quantities.limit_after(g, words, phrase):
                 phrase.end = i + length
             elif end := self._limited(phrase, i):
@@ -273,10 +273,24 @@ class NounPhraseReader(PronounReader):
                 if other is None:
                     return
                 self._add_whole(phrase, other)
+                phrase.end += self._is_person(other) and words[other.end : other.end + 1] == ("'s",)
             elif with_places and (place := self._place(i)) is not None:
                 self._add_place(phrase, place)
             else:
                 return
+
+    def _asks(self, phrase: NounPhrase, i: int) -> bool:
+        """Return whether a question follows the recipient of a message at `i`: (tell Otto) WHO IS THERE.
+
+        After a common noun, *who* says which person is told: tell the man WHO IS THERE; but who she is.
+        """
+        if not self.takes_question or not self._g.match("question", self._words, i):
+            return False
+        is_name = not phrase.determiner and self._t.tokens[phrase.head].is_capital
+        if self._words[i] != "who" or is_name or not self._is_person(phrase):
+            return True
+        asked = self.read(i + 1, with_places=False)
+        return asked is not None and any(self._g.is_a(word, "be") for word in self._words[asked.end :][:1])
 
     def _add_place(self, phrase: NounPhrase, place: PlacePhrase) -> None:
         """Add where a thing is; an exception after that is one of the thing."""
@@ -422,7 +436,7 @@ class NounPhraseReader(PronounReader):
             phrase.name, phrase.end = self._t.between(j + 1, end), end
             return True
         if has_be:
-            end = max(self._group_end(j), j + 1)
+            end = max(self._group_end(j + g.match("determiner", words, j)), j + 1)
             phrase.attributes.append(("not " if negated else "") + self._t.between(j, end))
             phrase.end = end
             return True

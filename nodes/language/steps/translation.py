@@ -162,5 +162,8 @@ def _translated(text: str, start: int, end: int, scene: Scene) -> Iterator[Token
         is_inserted = glossed.first > glossed.last
         first, last = (end, end) if is_inserted else (spans[glossed.first - 1][0], spans[glossed.last - 1][1])
         is_plural = glossed.is_plural and glossed.text == "the"
-        for word in ("these",) if is_plural else glossed.text.split():
-            yield Token(word, first, last, not is_inserted and text[first].isupper() and first > start)
+        is_capital = not is_inserted and text[first].isupper() and first > start
+        is_name = is_capital and grammar().number(glossed.text) is not None  # Otto, and not otto
+        english = text[first:last].lower() if is_name else glossed.text
+        for word in ("these",) if is_plural else english.split():
+            yield Token(word, first, last, is_capital)
