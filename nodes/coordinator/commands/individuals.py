@@ -15,7 +15,7 @@ from semmap.nodes.coordinator.kb_coroutines import KbCoroutine, ask
 from semmap.schemas import changes, errors
 from semmap.schemas.commands import Get, Rename, Update
 from semmap.schemas.commits import Edit, Transaction
-from semmap.schemas.entities import Entity
+from semmap.schemas.entities import Entity, composed
 from semmap.schemas.relations import Described
 from semmap.schemas.replies import Changed
 
@@ -32,15 +32,21 @@ _OF_SPACE: Final = {
 def find_individual(view: MapView, word: str) -> KbCoroutine[Entity]:
     """Return the individual with this name or IRI, or the entity with this IRI.
 
-    Raises UnknownName, also for labels and classes of entities; BadRequest for a name of several individuals.
+    Raises UnknownName, also for labels and classes; BadRequest for a name of several individuals.
     """
     found: Described | None = None
     with suppress(errors.UnknownName):
         found = yield from ask(Get(name=word))
-    if found is not None and not found.in_space:
-        return found
-    is_iri = found is not None and found.iri == word.removeprefix("<").removesuffix(">")
-    return view.entity(found.name if found is not None and is_iri else word)
+    if found is None or not _is_named(found, word):
+        return view.entity(word)
+    return view.entity(found.name) if found.in_space else found
+
+
+def _is_named(found: Entity, word: str) -> bool:
+    """Return whether a word is a name or the IRI of what was found by it, and not its label or class."""
+    _, colon, local = word.rpartition(":")
+    is_prefixed = bool(colon and local) and found.iri.endswith(local)
+    return is_prefixed or composed(word) in (found.name, *found.other_names, found.iri, f"<{found.iri}>")
 
 
 def find_meant(view: MapView, word: str) -> KbCoroutine[Entity]:

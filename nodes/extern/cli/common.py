@@ -354,8 +354,12 @@ class InputPath(click.Path):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return the path. Raises BadFile."""
         path = Path(value)
-        if not path.exists():
-            raise errors.BadFile(f"there is no file or folder {path}")
+        try:
+            path.stat()
+        except (FileNotFoundError, NotADirectoryError):
+            raise errors.BadFile(f"there is no file or folder {path}") from None
+        except OSError as error:  # such as a name that is too long
+            raise errors.BadFile(f"{path} cannot be read: {error.strerror}") from None
         return path
 
 

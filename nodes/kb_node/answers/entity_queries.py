@@ -134,12 +134,13 @@ class CurrentState:
         return structs.replace(found, on_nothing=_on_nothing(self._map.places.space(), entity))
 
     def _resolve(self, word: str) -> Entity:
-        """Return the entity of this name, label or class, or else the individual that is not in space."""
-        try:
-            return self._map.resolve(word)
-        except errors.UnknownName:
+        """Return the entity or individual of this name or IRI, or else the only one of this label or class.
+
+        Labels and classes of entities precede those of individuals that are not in space.
+        """
+        for find in (self._map.described, self._map.resolve):
             with suppress(errors.UnknownName):
-                return self._map.described(word)
+                return find(word)
         everyone = (*self._map.entities(), *self._map.individuals.list())
         return self._map.described(resolve_single(everyone, word))
 

@@ -90,7 +90,8 @@ def filter_document(
     individuals that have only unknown classes are left out, with the triples that describe only them, and the
     others, such as properties, lose the unknown classes. Raises BadFile for a TBox and for poses in a cycle.
     """
-    triples, of_frames = express_in_map_frame(list(triples), classes.alignments, find_frame)
+    stated = list(triples)
+    triples, of_frames = express_in_map_frame(stated, classes.alignments, find_frame)
     by_property = entity_triples.group_by_property(triples)
     if _has_other_numbers(by_property, classes.number_datatypes):
         triples = _with_numbers(triples, classes.number_datatypes)
@@ -117,7 +118,8 @@ def filter_document(
         raise errors.UnknownClass(f"{of_file.filename}: {text}" if of_file.filename else text)
     named: list[str] = []
     if nameless := dict(sorted((s, o) for s, _, o in types_said if is_blank(s) and o in spatial)):
-        labels = _make_iris(triples, nameless, of_file.filename)
+        of_content = stated if classes.alignments else triples  # poses in the map frame change with the map
+        labels = _make_iris(of_content, nameless, of_file.filename)
         triples = list(blank_nodes.relabel(triples, labels))
         by_property = entity_triples.group_by_property(triples)
         types_said = by_property[v.RDF_TYPE]

@@ -30,7 +30,7 @@ _LIFTED_M: Final = 0.004
 """Candidates are tested this far above the surface, so that they do not touch it."""
 _STEP_M: Final = 0.02
 _LEAST_STEPS: Final = 8
-"""Steps along a small surface, and along the shorter side of a large object."""
+"""Steps along a small surface."""
 _MOST_TRIES: Final = 4000
 """Candidates on one surface; a larger surface has a coarser grid."""
 _BASE_SHARE: Final = 0.95
@@ -113,10 +113,9 @@ class _Search:
 
         `box` encloses it with the margin to its neighbours.
         """
-        step_m = max(_STEP_M, math.sqrt(area(form.base)) / _LEAST_STEPS)
         for level in self._levels:
             start = self._target.centre[:2] if self._placing == "next_to" else _middle(level.outline)
-            for x, y in _grid(level.outline, start, step_m):
+            for x, y in _grid(level.outline, start):
                 z = level.height - form.bottom
                 base = [(x + dx, y + dy) for dx, dy in form.base]
                 if not covers(level.outline, base):
@@ -266,18 +265,15 @@ def _middle(outline: Sequence[Point]) -> Point:
     return (min(xs) + max(xs)) / 2, (min(ys) + max(ys)) / 2
 
 
-def _grid(outline: Sequence[Point], start: Point, step_m: float) -> list[Point]:
-    """Return points within a convex outline, along its first side, nearest to `start` first.
-
-    They are `step_m` apart, less on a small surface, more on a very large one.
-    """
+def _grid(outline: Sequence[Point], start: Point) -> list[Point]:
+    """Return points within a convex outline, along its first side, nearest to `start` first."""
     (ax, ay), (bx, by) = outline[0], outline[1]
     length = math.hypot(bx - ax, by - ay) or 1.0
     ux, uy = (bx - ax) / length, (by - ay) / length
     along = [(x - start[0]) * ux + (y - start[1]) * uy for x, y in outline]
     across = [(y - start[1]) * ux - (x - start[0]) * uy for x, y in outline]
     side = math.sqrt(area(outline))
-    step = max(side / math.sqrt(_MOST_TRIES), min(step_m, side / _LEAST_STEPS))
+    step = max(side / math.sqrt(_MOST_TRIES), min(_STEP_M, side / _LEAST_STEPS))
     points = [
         (start[0] + i * step * ux - j * step * uy, start[1] + i * step * uy + j * step * ux)
         for i in range(math.ceil(min(along) / step), math.floor(max(along) / step) + 1)

@@ -2,6 +2,7 @@
 
 import pytest
 
+from semmap.ontology import vocabulary as v
 from semmap.schemas import commands as c
 from semmap.schemas import errors
 from tests.kb_node.home import transaction, turtle
@@ -36,6 +37,24 @@ def test_a_property_is_set_by_the_label_or_class_of_only_one_thing(people, word)
     people.change(c.Add(class_="Chair", at=(3.0, 0.0, 0.0), ref="seat"))
     with pytest.raises(errors.BadRequest, match="is ambiguous: chair1 and chair2; name one of them"):
         people.change(c.Unset(name=word, property="isOpen"))
+
+
+@pytest.mark.parametrize(
+    "command",
+    [c.Remove(names=("Author",)), c.Rename(name="the poet", new="x"), c.Update(name="poet", ref="x")],
+)
+def test_an_individual_is_not_removed_renamed_or_updated_by_its_class_or_label(people, semantic_map, command):
+    label = f"<{v.RDFS}label>"
+    semantic_map.commit(transaction(3, turtle(f'<urn:x:dante> a <urn:Author> ; {label} "poet" .')))
+    with pytest.raises(errors.UnknownName, match=r"no entity is named '(Author|the poet|poet)'"):
+        people.change(command)
+
+
+def test_the_name_of_an_individual_precedes_labels_of_entities(people):
+    people.change(c.Update(name="chair1", ref="anna"))
+    made = people.change(c.Set(name="anna", property="isOpen", values=(True,)))
+    assert made.text == "anna: isOpen: not set → true"
+    assert people.change(c.Remove(names=("anna",))).text == "removed 1: anna"
 
 
 def test_a_dry_run_changes_nothing_and_says_what_would_change(people, semantic_map):

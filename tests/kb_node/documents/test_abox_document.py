@@ -7,6 +7,7 @@ from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
+from semmap.schemas.entities import Pose
 from tests.kb_node import home, stating
 from tests.kb_node.home import turtle
 
@@ -201,6 +202,27 @@ def test_blank_nodes_of_spatial_classes_get_names_that_stay(namespace):
     assert again.notes == filtered.notes[1:]
     assert filtered_names(classes, text)[0] == names
     assert filtered_names(classes, text.replace("'1'", "'2'"))[0] != names
+
+
+def test_the_name_of_a_blank_node_stays_if_the_frame_of_its_pose_has_moved():
+    soma, knowrob = "http://www.ease-crc.org/ont/SOMA.owl#", "http://knowrob.org/kb/knowrob.owl#"
+    classes = ClassTable(Reasoner([*home.TBOX, *turtle(f"<{soma}hasLocalization> a owl:ObjectProperty .")]))
+    text = (
+        f"[] a dm:Chair ; <{soma}hasLocalization> [ <{soma}hasSpaceRegion> [ <{knowrob}relativeTo> :base ;"
+        f" <{knowrob}translation> '1 0 0' ; <{knowrob}quaternion> '0 0 0 1' ] ] ."
+    )
+    first, moved = (
+        abox_document.filter_document(
+            turtle(text),
+            classes,
+            skip_unknown=False,
+            find_frame=lambda _, x=x: Pose(position_m=(x, 0.0, 0.0)),
+        )
+        for x in (0.0, 2.0)
+    )
+    assert first.triples != moved.triples
+    assert first.notes[-1] == moved.notes[-1]
+    assert first.notes[-1].startswith("1 blank node stored with names: chair_")
 
 
 def test_blank_nodes_that_are_alike_get_different_names(classes):

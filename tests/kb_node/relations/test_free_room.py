@@ -74,6 +74,13 @@ def test_a_long_object_is_turned_to_fit():
     assert math.degrees(found.pose.yaw_rad) == pytest.approx(90.0)
 
 
+def test_a_large_object_is_put_where_it_just_fits():
+    board = thing("board1", (0.0, 0.0, 0.0), "", size=(2.0, 1.0, 0.4))
+    box = thing("box1", (0.0, -0.18, 0.4), "", size=(1.99, 0.64, 0.2))
+    found = put(Space([board, box]), "on", "board1", "bar1", "", size_m=(1.9, 0.3, 0.1))
+    assert 0.3 < found.pose.position_m[1] < 0.35
+
+
 def test_a_given_orientation_is_kept():
     turned = thing("x1", (0.0, 0.0, 0.0), "", yaw=0.3).pose.orientation_wxyz
     assert put(Space([TABLE]), "on", "table1", orientation=turned).pose.orientation_wxyz == turned

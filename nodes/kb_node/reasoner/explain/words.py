@@ -67,6 +67,8 @@ _UNCOUNTABLE: Final = frozenset(
     )
 )
 """Nouns without an article, also as the last word of a label. All nouns in -ware are uncountable, too."""
+_LIKE_YOU: Final = re.compile(r"U[A-Z]|(?i:eu|uni(?![dmn])|u[^\Waeiounp][aeiou])")
+"""The beginning of a noun that is spoken as "you": a unit, a utensil, a USB hub, but an umbrella."""
 _BOOLEAN: Final = PREFIXES["xsd"] + "boolean"
 
 
@@ -190,7 +192,8 @@ def article(noun: str) -> str:
         return noun
     if is_uncountable(noun):
         return noun
-    return f"{'an' if noun[0] in 'aeiouAEIO' else 'a'} {noun}"
+    begins_with_vowel = noun[0] in "aeiouAEIOU" and not _LIKE_YOU.match(noun)
+    return f"{'an' if begins_with_vowel else 'a'} {noun}"
 
 
 @lru_cache(maxsize=4096)

@@ -83,6 +83,7 @@ def test_json_is_for_programs(tmp_path, capsys):
     ("arguments", "said"),
     [
         (["missing.pcd"], "there is no file or folder missing.pcd"),
+        (["x" * 300], "xx cannot be read: File name too long"),
         (["boxes.pcd", "boxes.pcd", "--labels", "labels.npy"], "a single frame"),
         (["boxes.pcd", "--labels", "labels.txt"], "labels.npy"),
         (["boxes.pcd", "--labels", "nowhere/labels.npy"], "cannot be written"),
