@@ -71,7 +71,9 @@ def _or_folders(function: Callable[..., None]) -> Callable[..., None]:
 
             try:
                 with limited_memory():
-                    _folders(Path(name), folder, as_json=format == "json", **options)
+                    _folders(
+                        INPUT_PATH.convert(name, None, None), folder, as_json=format == "json", **options
+                    )
             except MemoryError:  # also of an image, or of a folder in the TUM format
                 raise errors.BadFile(
                     f"{name} needs more memory to read than this machine can give it"
@@ -126,8 +128,6 @@ def _folders(
     intrinsics: Path | None,
 ) -> None:
     """Write the frames of a recording. Frames that cannot be used are skipped and reported."""
-    if not path.exists():
-        raise errors.BadFile(f"there is no file or folder {path}")
     extras.require("semmap frames RECORDING DIR", "ros", "perception")
     from semmap.nodes.extern.frame_folders import bag_frames, tum
     from semmap.nodes.extern.frame_folders.frames import make, require_empty
