@@ -30,11 +30,11 @@ from semmap.nodes import bus
 from semmap.nodes.extern.fleet import facts as f
 from semmap.nodes.extern.fleet.query import sparql as ask_mirror
 from semmap.nodes.extern.fleet.server import SparqlServer
-from semmap.nodes.extern.testing import free_endpoint
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import Journal
 from semmap.nodes.kb_node.storage.seed import seed
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.ontology import HOUSEHOLD_TTL
 from semmap.schemas import keys
 from semmap.schemas.bridge import CopyQuery, MapCopy, Recall

@@ -27,7 +27,8 @@ import zenoh
 
 from semmap.nodes import bus
 from semmap.nodes.extern.client import Client, connect
-from semmap.nodes.extern.testing import free_endpoint, own_system
+from semmap.nodes.extern.testing import own_system
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.schemas import codec, errors, keys
 from semmap.schemas.replies import Ack
 

@@ -33,7 +33,8 @@ from playwright.sync_api import Browser, Page, sync_playwright
 from benchmarks.table import Row, as_json, lines
 from semmap.nodes import bus
 from semmap.nodes.extern.client import Client
-from semmap.nodes.extern.testing import free_endpoint, own_system
+from semmap.nodes.extern.testing import own_system
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.schemas import keys
 from semmap.schemas.commits import Commit
 from semmap.schemas.scenes import Poses

@@ -27,7 +27,8 @@ from playwright.sync_api import sync_playwright
 
 from benchmarks.page import FLAGS, opened, page_of
 from semmap.nodes.extern.client import Client
-from semmap.nodes.extern.testing import free_endpoint, own_system
+from semmap.nodes.extern.testing import own_system
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.schemas import errors
 
 _COLUMNS = ("minute", "commits", "process_mb", "heap_mb", "elements", "listeners")

@@ -29,7 +29,6 @@ from playwright.sync_api import Browser, Frame, Page, ViewportSize, WebSocket, s
 from benchmarks.page import page_of
 from benchmarks.table import Row, as_json, lines
 from semmap.nodes import bus
-from semmap.nodes.extern.testing import free_endpoint
 from semmap.nodes.extern.web.scene.bodies import Bodies
 from semmap.nodes.extern.web.scene.camera import first_view
 from semmap.nodes.extern.web.scene.drawables import Drawable
@@ -37,6 +36,7 @@ from semmap.nodes.extern.web.scene.meshes import glb
 from semmap.nodes.runtime.loop import Node
 from semmap.nodes.sim_node.models.facets import surface_of
 from semmap.nodes.sim_node.models.library import Model, build
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.schemas import codec, keys
 from semmap.schemas.bridge import SnapshotQuery
 from semmap.schemas.commands import Classes

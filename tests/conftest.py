@@ -31,13 +31,13 @@ from hypothesis import HealthCheck, settings
 
 from semmap.nodes.extern.cli.app import execute
 from semmap.nodes.extern.client import Client, connect
-from semmap.nodes.extern.testing import free_endpoint
 from semmap.nodes.kb_node.reasoner import compiled
 from semmap.nodes.kb_node.reasoner.rules.closure import Closure
 from semmap.nodes.kb_node.storage.journal import FILENAME
 from semmap.nodes.kb_node.storage.seed import seed
 from semmap.nodes.runtime.loop import Node
 from semmap.nodes.runtime.memory import uncollected
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
 from semmap.schemas import errors, keys
 from semmap.schemas.replies import SystemStatus

@@ -15,8 +15,8 @@ import pytest
 from semmap.nodes import bus
 from semmap.nodes.extern import connection
 from semmap.nodes.extern.client import connect
-from semmap.nodes.extern.testing import free_endpoint
 from semmap.nodes.identity import Identity, authority
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.schemas import codec, commands, errors, keys
 from semmap.schemas.commits import Commit
 from semmap.schemas.health import Health

@@ -8,12 +8,13 @@ from pathlib import Path
 import pytest
 
 from semmap.nodes.extern.client import connect
-from semmap.nodes.extern.testing import free_endpoint, own_system
+from semmap.nodes.extern.testing import own_system
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 from semmap.nodes.kb_node.undo import undo
 from semmap.nodes.supervisor.control import Supervisor
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.schemas import errors
 from semmap.schemas.bridge import TakeBack
 from semmap.schemas.commands import History

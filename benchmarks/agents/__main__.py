@@ -14,7 +14,7 @@ from benchmarks.agents.agent import Agent, talking
 from benchmarks.agents.tasks import TASKS, Kind, Task, prepare
 from benchmarks.table import Row, as_json, lines
 from semmap import Client
-from semmap.nodes.extern.testing import free_endpoint
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.schemas import codec
 from semmap.testing import own_system
 

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from benchmarks.agents.agent import Agent, talking
 from semmap import Client
-from semmap.nodes.extern.testing import free_endpoint
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.testing import own_system
 
 _HEAD: Final = """# Example session of an agent

@@ -19,7 +19,7 @@ from benchmarks.episodes.day import ACTORS, Day, Record
 from benchmarks.episodes.questions import Expected
 from benchmarks.table import Row, as_json, lines
 from semmap import Client, connect
-from semmap.nodes.extern.testing import free_endpoint
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.schemas import errors
 from semmap.testing import own_system
 

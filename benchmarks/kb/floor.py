@@ -21,7 +21,7 @@ import psutil
 import zenoh
 
 from semmap.nodes import bus
-from semmap.nodes.extern.testing import free_endpoint
+from semmap.nodes.supervisor.ports import free_endpoint
 
 _PAGE_BYTES = 4096 + 24
 """The size of a page in SQLite's log, with its header."""

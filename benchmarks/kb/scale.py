@@ -19,7 +19,8 @@ import psutil
 from benchmarks.kb import big_files, limits
 from benchmarks.kb.made import timed
 from semmap.nodes.extern.client import Client
-from semmap.nodes.extern.testing import free_endpoint, own_system
+from semmap.nodes.extern.testing import own_system
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.replies import NodeStatus

@@ -25,7 +25,7 @@ from playwright.sync_api import Page, sync_playwright
 from semmap.nodes.extern.client import Client, connect
 from semmap.nodes.extern.plan.floor import floor_of
 from semmap.nodes.extern.plan.svg import drawing
-from semmap.nodes.extern.testing import free_endpoint
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.schemas import commands
 from semmap.schemas.commands import Command
 from semmap.schemas.entities import orientation_from_yaw

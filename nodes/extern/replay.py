@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import socket
 from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
@@ -11,6 +10,7 @@ from msgspec import structs
 
 from semmap.nodes.extern.journal_copy import journal_copy, private_folder
 from semmap.nodes.runtime import extras, playback_clock
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.nodes.supervisor.settings import SETTINGS, Replay, Settings
 from semmap.ontology import EMPTY_WORLD, FLAT_WORLD, HOUSEHOLD_TTL
 from semmap.schemas import codec, errors
@@ -59,7 +59,7 @@ def replay(
         settings = structs.replace(
             read_settings(data, world),
             data=str(folder),
-            listen=listen or _free_endpoint(),
+            listen=listen or free_endpoint(),
             truth="replayed",
             sim=sim,
             record=record,
@@ -133,9 +133,3 @@ def read_settings(data: Path, world: Path | None = None) -> Settings:
         world=str(scene.resolve()),
         models=None if before is None else before.models,
     )
-
-
-def _free_endpoint() -> str:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"

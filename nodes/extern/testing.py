@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-import random
-import socket
 import subprocess
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 from semmap.nodes.extern.client import Client, connect
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.schemas import errors
 
 _READY = "stop "
 """The beginning of the last line that `semmap up` prints at its start."""
 _END_S = 60.0
 """Timeout of the stop [s]; then the supervisor is killed, and its nodes end after it."""
-_FIRST_PORT, _AFTER_PORTS = 20_000, 32_000
-_dice = random.SystemRandom()
 
 
 @contextmanager
@@ -56,16 +53,3 @@ def own_system(
                 process.wait(_END_S)
             except subprocess.TimeoutExpired:
                 process.kill()
-
-
-def free_endpoint() -> str:
-    """Return an endpoint with a free port of this machine.
-
-    The port is outside the range of outgoing connections, so that none of them takes it before a system
-    listens there.
-    """
-    while True:
-        port = _dice.randrange(_FIRST_PORT, _AFTER_PORTS)
-        with socket.socket() as probe, suppress(OSError):
-            probe.bind(("127.0.0.1", port))
-            return f"tcp/127.0.0.1:{port}"

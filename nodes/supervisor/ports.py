@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import contextlib
+import fcntl
+import os
+import random
 import re
 import shlex
 import socket
-from typing import Final
+import tempfile
+from functools import cache
+from pathlib import Path
+from typing import IO, Final
 
 from semmap.nodes.supervisor import registry
 from semmap.schemas import errors
 
 _LIVE_PORT: Final = 9876
+_FIRST_PORT, _AFTER_PORTS = 20_000, 32_000
+_dice = random.SystemRandom()
+_drawn: set[int] = set()
 
 
 def require_free(endpoint: str) -> None:
@@ -57,3 +66,25 @@ def find_live_view() -> str:
             probe.bind(("127.0.0.1", port))
             return f"127.0.0.1:{probe.getsockname()[1]}"
     raise AssertionError("port 0 can always be bound")
+
+
+def free_endpoint() -> str:
+    """Return an endpoint with a free port of this machine, which no other process draws meanwhile.
+
+    The port is outside the range of outgoing connections, so that none of them takes it before a system
+    listens there. It is locked until this process ends.
+    """
+    while True:
+        port = _dice.randrange(_FIRST_PORT, _AFTER_PORTS)
+        with socket.socket() as probe, contextlib.suppress(OSError):
+            probe.bind(("127.0.0.1", port))
+            if port not in _drawn:
+                fcntl.lockf(_locks(), fcntl.LOCK_EX | fcntl.LOCK_NB, 1, port)
+                _drawn.add(port)
+                return f"tcp/127.0.0.1:{port}"
+
+
+@cache
+def _locks() -> IO[bytes]:
+    """Return a file that the processes of this user share, in which each port has a byte to lock."""
+    return (Path(tempfile.gettempdir()) / f"semmap-ports-{os.getuid()}").open("ab")

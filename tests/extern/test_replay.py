@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from semmap.nodes.extern.client import connect
-from semmap.nodes.extern.testing import free_endpoint
 from semmap.nodes.kb_node.semantic_map import SemanticMap
 from semmap.nodes.kb_node.storage.journal import FILENAME, Journal
 from semmap.nodes.recorder.recorded_commits import read_commits
+from semmap.nodes.supervisor.ports import free_endpoint
 from tests.conftest import _begun, until
 from tests.kb_node.home import chair, transaction
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from semmap.nodes.extern.client import Client, connect
-from semmap.nodes.extern.testing import free_endpoint
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.schemas import errors
 from semmap.schemas.replies import NodeStatus
 from tests.conftest import System, running

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import socket
+import subprocess
+import sys
+from types import SimpleNamespace
 
 import pytest
 
@@ -55,3 +58,21 @@ def test_the_live_view_has_another_port_if_its_own_is_taken(monkeypatch, taken):
     monkeypatch.setattr(ports, "_LIVE_PORT", taken)
     host, _, port = ports.find_live_view().partition(":")
     assert (host, int(port) != taken) == ("127.0.0.1", True)
+
+
+def test_a_free_port_is_given_to_one_process_only_before_anything_listens_there(monkeypatch):
+    draw = (
+        "from semmap.nodes.supervisor.ports import free_endpoint; print(free_endpoint(), flush=True); input()"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", draw], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as other:
+        ours, theirs = port_of(ports.free_endpoint()), port_of(other.stdout.readline())
+        draws = iter([ours, theirs, *range(ours + 1, ports._AFTER_PORTS)])
+        monkeypatch.setattr(ports, "_dice", SimpleNamespace(randrange=lambda *_: next(draws)))
+        assert port_of(ports.free_endpoint()) not in (ours, theirs)
+        other.communicate("\n")
+
+
+def port_of(endpoint):
+    return int(endpoint.rpartition(":")[2])

@@ -15,7 +15,7 @@ import pyoxigraph
 
 from semmap.nodes.extern.fleet import facts as f
 from semmap.nodes.extern.fleet.server import SparqlServer
-from semmap.nodes.extern.testing import free_endpoint
+from semmap.nodes.supervisor.ports import free_endpoint
 from tests.conftest import PATIENCE_S
 
 Graph = frozenset[tuple[str, str, str]]

@@ -4,7 +4,7 @@ import json
 import os
 import subprocess
 
-from semmap.nodes.extern.testing import free_endpoint
+from semmap.nodes.supervisor.ports import free_endpoint
 from tests.extern.mcp.conftest import SEMMAP, by_stdio, run
 
 

@@ -16,7 +16,7 @@ from semmap.nodes import bus
 from semmap.nodes.bus.rmw import RosNode
 from semmap.nodes.extern.ros import messages
 from semmap.nodes.extern.ros.types import decode, encode, topic
-from semmap.nodes.extern.testing import free_endpoint
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.schemas import codec
 from semmap.schemas.scenes import CameraFrame
 from tests.conftest import PATIENCE_S, until

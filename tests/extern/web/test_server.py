@@ -4,8 +4,8 @@ import sys
 import pytest
 
 from semmap.nodes import bus
-from semmap.nodes.extern.testing import free_endpoint
 from semmap.nodes.extern.web.server import WebConfig, run
+from semmap.nodes.supervisor.ports import free_endpoint
 from semmap.schemas import errors
 
 
