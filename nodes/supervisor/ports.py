@@ -12,7 +12,7 @@ import socket
 import tempfile
 from functools import cache
 from pathlib import Path
-from typing import IO, Final
+from typing import Final
 
 from semmap.nodes.supervisor import registry
 from semmap.schemas import errors
@@ -85,6 +85,7 @@ def free_endpoint() -> str:
 
 
 @cache
-def _locks() -> IO[bytes]:
-    """Return a file that the processes of this user share, in which each port has a byte to lock."""
-    return (Path(tempfile.gettempdir()) / f"semmap-ports-{os.getuid()}").open("ab")
+def _locks() -> int:
+    """Open a file that the processes of this user share, in which each port has a byte to lock."""
+    path = Path(tempfile.gettempdir()) / f"semmap-ports-{os.getuid()}"
+    return os.open(path, os.O_WRONLY | os.O_CREAT, 0o600)
