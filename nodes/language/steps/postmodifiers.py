@@ -230,7 +230,7 @@ class PostmodifierReader(PronounReader):
     def _is_with(self, i: int) -> bool:
         """Return whether *with* at `i` describes a thing, and is not of the verb, a hand or a person.
 
-        What a person does or where one is, is no property of a thing: close the oven with Anna gone.
+        The state or place of a person is not a property of a thing: close the oven with Anna gone.
         """
         other = self.read(i + 1, with_places=False)
         if other is not None and self._is_person(other):
