@@ -252,7 +252,7 @@ _FEW: Final = 1000
 
 
 class Reserved(Struct, frozen=True, gc=False, kw_only=True, forbid_unknown_fields=True):
-    """Properties of entities that edits must not change, neither directly nor by an inverse property.
+    """Properties of entities that edits must not change, neither directly nor by a property that implies one.
 
     `why` ends the error "PROPERTY of NAME ..."; `{name}` in it is the name of the entity.
     """

@@ -65,7 +65,9 @@ class Coordinator:
         self._config = config
         self._kb = KbClient(node)
         self._dispatcher = CommandDispatcher(self._kb.ask)
-        self._scheduler = Scheduler(self._change_together, node.has_gone)
+        self._scheduler = Scheduler(
+            self._change_together, node.has_gone, lambda word: word in self._dispatcher.map.entities
+        )
         self._reconciler = Reconciler(config, self._dispatcher, self._follow, self._ask_sim, node.report)
         self._completion = Completion(config.truth, self._dispatcher, self._reconciler)
         self._watched = self._completion.watch(self._scheduler.change)

@@ -4,7 +4,8 @@ Changes of different entities are independent. Those that wait are sent to the k
 and the next group is sent while one is under way.
 
 All other commands wait until the commands before them are done, and the commands after a change wait for it.
-This includes entities without a name or a position, because both depend on the other entities.
+This includes entities without a name or a position, because both depend on the other entities, and entities
+that are given by a label, a class or an IRI, because they may be those of other changes.
 """
 
 from __future__ import annotations
@@ -51,14 +52,16 @@ class Scheduler:
         self,
         together: Callable[[Sequence[Change], HasGone], Future[Results]],
         client: Callable[[], HasGone] = lambda: never,
+        is_name: Callable[[str], bool] = lambda _: True,
     ) -> None:
         """`together(changes, has_gone)` executes a group of changes, or one that is sent alone.
 
         `has_gone()` returns whether all their clients have gone. `client()` returns that function for the
-        client of the change that is being scheduled.
+        client of the change that is being scheduled. `is_name(word)` returns whether an entity has this name.
         """
         self._together = together
         self._client = client
+        self._is_name = is_name
         self._waiting: deque[_Waiting] = deque()
         self._under_way: list[Group] = []
 
@@ -109,7 +112,7 @@ class Scheduler:
         members: list[Change] = []
         for waiting in islice(self._waiting, MAX_GROUP_SIZE):
             change = waiting.change
-            name = None if change is None else _entity(change)
+            name = None if change is None else self._entity(change)
             if change is not None and name is None and not members and not self._under_way:
                 return [change]
             if change is None or name is None or name in names:
@@ -120,7 +123,7 @@ class Scheduler:
 
     def _begin(self, members: Sequence[_Waiting]) -> None:
         changes = [member.change for member in members if member.change is not None]
-        group = frozenset(map(_entity, changes))
+        group = frozenset(map(self._entity, changes))
         self._under_way.append(group)
 
         def on_done(done: Future[Results]) -> None:
@@ -135,18 +138,17 @@ class Scheduler:
             results.set_exception(error)
         results.add_done_callback(on_done)
 
-
-def _entity(change: Change) -> str | None:
-    """Return the entity that a change is about; None if the change depends on others or is sent alone."""
-    if isinstance(change, ObservedState):
-        return change.names[0] if len(change.names) == 1 else None
-    if isinstance(change, Add):
-        return change.name if change.at is not None and not change.dry_run else None
-    if isinstance(change, Update) and not (change.on is change.in_ is change.next_to is None):
+    def _entity(self, change: Change) -> str | None:
+        """Return the entity that a change is about; None if it depends on others or is sent alone."""
+        if isinstance(change, ObservedState):
+            return change.names[0] if len(change.names) == 1 else None
+        if isinstance(change, Add):
+            return change.name if change.at is not None and not change.dry_run else None
+        if isinstance(change, Update) and not (change.on is change.in_ is change.next_to is None):
+            return None
+        if isinstance(change, (Update, Set, Unset, Track)) and not change.dry_run:
+            return change.name if self._is_name(change.name) else None
         return None
-    if isinstance(change, (Update, Set, Unset, Track)) and not change.dry_run:
-        return change.name
-    return None
 
 
 def _result(result: Changed | Exception) -> Changed:

@@ -15,6 +15,7 @@ from itertools import islice
 from typing import NamedTuple
 
 from semmap.nodes.kb_node.progress import split_batches
+from semmap.nodes.kb_node.proofs import number_nameless
 from semmap.nodes.kb_node.reasoner import Change, Inconsistent, Reasoner
 from semmap.nodes.kb_node.reasoner.explain import sentences
 from semmap.nodes.kb_node.reasoner.explanations import Explanation
@@ -237,7 +238,9 @@ class DerivedFacts:
             sentences.mark_measured(found.text, measured, words),
         )
         seen = "asserted" if self._is_asserted(fact) else "measured"
-        return f"'{clause}' ({seen}) is suppressed, because it would contradict the map: {reason}"
+        return number_nameless(
+            f"'{clause}' ({seen}) is suppressed, because it would contradict the map: {reason}"
+        )
 
     def follow(
         self,

@@ -74,7 +74,7 @@ def require_unchanged(transaction: Transaction, entities: Mapping[str, Entity]) 
 def require_unreserved(
     transaction: Transaction, entities: Mapping[str, Entity], triples: Iterable[Triple], reasoner: Reasoner
 ) -> None:
-    """Raise Refused if triples that a transaction changes state a reserved property, or its inverse."""
+    """Raise Refused if triples that a transaction changes state or imply a reserved property."""
     reserved = {
         (v.iri(entity.iri), property_): (name, one.why)
         for one in transaction.reserved
@@ -85,9 +85,23 @@ def require_unreserved(
     if not reserved:
         return
     for s, p, o in triples:
-        inverses = (q for t in reasoner.asserted(p, v.OWL_INVERSE_OF) for q in t[2:])
-        others = (t[0] for t in reasoner.asserted(None, v.OWL_INVERSE_OF, p))
-        for subject, property_ in ((s, p), *((o, q) for q in chain(inverses, others))):
+        for property_, is_swapped in _implied(p, reasoner):
             name = v.local_name(property_)
-            if found := reserved.get((subject, name)):
+            if found := reserved.get((o if is_swapped else s, name)):
                 raise errors.Refused(f"{name} of {found[0]} {found[1].replace('{name}', found[0])}")
+
+
+def _implied(property_: Term, reasoner: Reasoner) -> set[tuple[Term, bool]]:
+    """Return the properties that a property implies, and whether they swap subject and object."""
+    found: set[tuple[Term, bool]] = set()
+    pending = [(property_, False)]
+    while pending:
+        if (role := pending.pop()) in found:
+            continue
+        found.add(role)
+        p, is_swapped = role
+        wider = chain(*(find(p, v.RDFS_SUB_PROPERTY_OF) for find in (reasoner.asserted, reasoner.inferred)))
+        pending += ((t[2], is_swapped) for t in wider)
+        pending += ((t[2], not is_swapped) for t in reasoner.asserted(p, v.OWL_INVERSE_OF))
+        pending += ((t[0], not is_swapped) for t in reasoner.asserted(None, v.OWL_INVERSE_OF, p))
+    return found

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from semmap.nodes.extern.client import Client, _prepare
-from semmap.nodes.extern.client_commands import CommandMethod, CommandMethods
+from semmap.nodes.extern.client_commands import CommandMethods
+from semmap.nodes.extern.command_method import CommandMethod
 from semmap.schemas import commands, errors, replies
 from semmap.schemas.entities import Entity
 

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 import semmap
-from semmap.nodes.extern.client_commands import CommandMethod, CommandMethods
+from semmap.nodes.extern.client_commands import CommandMethods
+from semmap.nodes.extern.command_method import CommandMethod
 from semmap.nodes.runtime import extras
 
 ROOT = Path(__file__).parents[2]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Final, NamedTuple
 
 from msgspec import structs
@@ -9,6 +10,7 @@ from msgspec import structs
 from semmap.nodes.coordinator.commands import transactions
 from semmap.nodes.coordinator.commands.commit import commit, make_reply
 from semmap.nodes.coordinator.commands.entity_changes import UNCHANGED, notes_for, resolve_update
+from semmap.nodes.coordinator.commands.individuals import find_meant
 from semmap.nodes.coordinator.commands.joint_state import normalize_property, properties_in, require_openable
 from semmap.nodes.coordinator.commands.map_view import MapView
 from semmap.nodes.coordinator.commands.registration import handles
@@ -28,10 +30,13 @@ _NOT_HERE: Final = ("wait", "frame", "on", "in_", "next_to")
 _DEFAULTS: Final = {name: getattr(Update(name="_"), name) for name in (*_OF_ALL, *_NOT_HERE)}
 
 
+_Change = Update | Set | Unset
+
+
 class _Wanted(NamedTuple):
     """One change of a batch."""
 
-    change: Update | Set | Unset
+    change: _Change
     entity: Entity
     found: ClassInfo | None
     """The new class of the entity, if it changes."""
@@ -43,8 +48,13 @@ def batch(view: MapView, command: Batch) -> KbCoroutine[Changed]:
     """Make all changes, or none. Raises the error of the first change that is rejected."""
     if not command.changes:
         raise errors.BadRequest("the batch has no changes; give an update, a set or an unset")
-    _require_each_once(command)
-    wanted = [_wanted(view, command, change) for change in command.changes]
+    changes: list[_Change] = []
+    for change in command.changes:
+        _require_bare(change)
+        name = yield from _find_name(view, change)
+        changes.append(structs.replace(change, name=name, source=command.source, agent=command.agent))
+    _require_each_once(changes)
+    wanted = [_wanted(view, change) for change in changes]
     made = yield from commit(view, transactions.combine(command, [one.transaction for one in wanted]))
     names = tuple(dict.fromkeys(one.entity.name for one in wanted))
     return make_reply(
@@ -52,16 +62,25 @@ def batch(view: MapView, command: Batch) -> KbCoroutine[Changed]:
     )
 
 
-def _wanted(view: MapView, command: Batch, change: Update | Set | Unset) -> _Wanted:
-    _require_bare(change)
-    signed = structs.replace(change, source=command.source, agent=command.agent)
-    if isinstance(signed, Update):
-        entity, found = resolve_update(view, signed)
-        return _Wanted(signed, entity, found, transactions.update(signed, entity, found))
-    if isinstance(signed, Set):
-        require_openable(view, signed)
-        return _Wanted(signed, view.entity(signed.name), None, transactions.set_property(signed))
-    return _Wanted(signed, view.entity(signed.name), None, transactions.unset_property(signed))
+def _find_name(view: MapView, change: _Change) -> KbCoroutine[str]:
+    """Return the name of the entity of a change. Raises Refused for an individual that is not in space."""
+    found = yield from find_meant(view, change.name, by_label=not isinstance(change, Update))
+    if not found.in_space:
+        raise errors.Refused(
+            f"{found.name} is not in space, and a batch changes only entities; use:"
+            f" semmap {change.VERB} {found.name}"
+        )
+    return found.name
+
+
+def _wanted(view: MapView, change: _Change) -> _Wanted:
+    if isinstance(change, Update):
+        entity, found = resolve_update(view, change)
+        return _Wanted(change, entity, found, transactions.update(change, entity, found))
+    if isinstance(change, Set):
+        require_openable(view, change)
+        return _Wanted(change, view.entity(change.name), None, transactions.set_property(change))
+    return _Wanted(change, view.entity(change.name), None, transactions.unset_property(change))
 
 
 def _notes(view: MapView, wanted: list[_Wanted], made: Effects | None) -> list[str]:
@@ -83,10 +102,10 @@ def _describe(names: tuple[str, ...], made: Effects | None) -> str:
     return f"changed {len(done)}: {wording.few(done)}{also}"
 
 
-def _require_each_once(command: Batch) -> None:
+def _require_each_once(changes: Iterable[_Change]) -> None:
     """Raise BadRequest if two changes affect the same property, because all changes happen together."""
     known: set[tuple[str, str]] = set()
-    for change in command.changes:
+    for change in changes:
         touched = {(change.name, normalize_property(word)): word for word in _words(change)}
         if isinstance(change, Update):
             touched[change.name, ""] = ""
@@ -99,7 +118,7 @@ def _require_each_once(command: Batch) -> None:
         known |= touched.keys()
 
 
-def _words(change: Update | Set | Unset) -> tuple[str, ...]:
+def _words(change: _Change) -> tuple[str, ...]:
     """Return the properties that a change affects, as they are written."""
     if not isinstance(change, Update):
         return (change.property,)

@@ -104,11 +104,10 @@ def _add(view: MapView, command: Add, found: ClassInfo) -> KbCoroutine[Changed]:
 @handles(Update)
 def update(view: MapView, command: Update) -> KbCoroutine[Changed]:
     """Change an entity, or an individual that is not in space; omitted fields keep their values."""
-    if command.name not in view.entities:
-        known = yield from individuals.find_individual(view, command.name)
-        if not known.in_space:
-            return (yield from individuals.update_individual(view, known, command))
-        command = structs.replace(command, name=known.name)
+    known = yield from individuals.find_meant(view, command.name)
+    if not known.in_space:
+        return (yield from individuals.update_individual(view, known, command))
+    command = structs.replace(command, name=known.name)
     entity, found = resolve_update(view, command)
     command, where, notes = yield from place(view, command, entity.name, found)
     made = yield from commit(view, transactions.update(command, entity, found))
@@ -165,7 +164,7 @@ def unset(view: MapView, command: Unset) -> KbCoroutine[Changed]:
 
 
 def _change_property(view: MapView, command: Set | Unset) -> KbCoroutine[Changed]:
-    entity = view.entities.get(command.name) or (yield from individuals.find_meant(view, command.name))
+    entity = yield from individuals.find_meant(view, command.name, by_label=True)
     if entity.in_space:
         command = structs.replace(command, name=entity.name)
     if isinstance(command, Set):
@@ -231,7 +230,7 @@ def rename(view: MapView, command: Rename) -> KbCoroutine[Changed]:
 
     Raises Refused if its name is fixed by something else, NameTaken.
     """
-    entity = view.entities.get(command.name) or (yield from individuals.find_individual(view, command.name))
+    entity = yield from individuals.find_meant(view, command.name)
     if command.new == entity.name:
         return make_reply(None, f"unchanged: the name is already {entity.name}", names=(entity.name,))
     if command.new in view.entities:
@@ -290,8 +289,7 @@ def remove(view: MapView, command: Remove) -> KbCoroutine[Changed]:
         raise errors.BadRequest("name at least one entity to remove")
     leaving = list[Entity]()
     for name in dict.fromkeys(command.names):
-        found = view.entities.get(name)
-        leaving.append(found or (yield from individuals.find_individual(view, name)))
+        leaving.append((yield from individuals.find_meant(view, name)))
     require_authority(command, leaving)
     attachment_rules.require_no_attachments([e.name for e in leaving if e.in_space], view.held)
     return (yield from _remove(view, command, f"remove {' '.join(e.name for e in leaving)}", leaving))

@@ -29,15 +29,23 @@ _OF_SPACE: Final = {
 """The fields of an update that only entities have, with their defaults."""
 
 
-def find_individual(view: MapView, word: str) -> KbCoroutine[Entity]:
-    """Return the individual with this name or IRI, or the entity with this IRI.
+def find_meant(view: MapView, word: str, *, by_label: bool = False) -> KbCoroutine[Entity]:
+    """Return the entity or individual that a word of a command means: the one with this name or IRI.
 
-    Raises UnknownName, also for labels and classes; BadRequest for a name of several individuals.
+    With `by_label`, also the only one with this label or class. Changes of names, labels and classes do not
+    use it, because these differ afterwards, and neither does a removal.
+
+    Raises UnknownName; BadRequest for a word of several.
     """
-    found: Described | None = None
-    with suppress(errors.UnknownName):
-        found = yield from ask(Get(name=word))
-    if found is None or not _is_named(found, word):
+    if word in view.entities:
+        return view.entities[word]
+    try:
+        found: Described = yield from ask(Get(name=word))
+    except errors.UnknownName:
+        if by_label:
+            raise
+        return view.entity(word)  # raises it with the names of that label
+    if not (by_label or _is_named(found, word)):
         return view.entity(word)
     return view.entity(found.name) if found.in_space else found
 
@@ -47,15 +55,6 @@ def _is_named(found: Entity, word: str) -> bool:
     _, colon, local = word.rpartition(":")
     is_prefixed = bool(colon and local) and found.iri.endswith(local)
     return is_prefixed or composed(word) in (found.name, *found.other_names, found.iri, f"<{found.iri}>")
-
-
-def find_meant(view: MapView, word: str) -> KbCoroutine[Entity]:
-    """Return the individual or entity with this name or IRI, or the only entity with this label or class.
-
-    Raises UnknownName, or BadRequest if there are several.
-    """
-    found: Described = yield from ask(Get(name=word))
-    return view.entity(found.name) if found.in_space else found
 
 
 def rename_individual(view: MapView, was: Entity, command: Rename) -> KbCoroutine[Changed]:

@@ -34,7 +34,8 @@ _OF_STARS = (v.COORDINATES, v.THREE_DIM_SIZE, v.PREFERRED_REFERENCE, v.ALTERNATI
 _FEW = 5
 _DESCRIBING = (v.RDF_TYPE, v.OWL_SAME_AS, v.RDFS_LABEL, v.SKOS_PREF_LABEL)
 """Properties of an individual that is not merely a misspelt name."""
-_NAMELESS = re.compile(r"_:\S+")
+_NAMELESS = "a nameless individual"
+_LABEL = re.compile(r"_:\S+")
 _DEPTH = 8
 """Depth to which the parts of a blank node are compared."""
 _WHOLES = (v.COORDINATE_XYZ, v.ORIENTATION_WXYZ, v.SIZE_XYZ)
@@ -228,7 +229,7 @@ def find_undescribed(
 def undescribed_note(found: Mapping[Term, Triple]) -> str:
     """Return one sentence on the undescribed individuals."""
     few = ", ".join(
-        f"{_display_name(term)} ({_NAMELESS.sub('a nameless individual', v.to_words(triple))})"
+        f"{_display_name(term)} ({_LABEL.sub(_NAMELESS, v.to_words(triple))})"
         for term, triple in [*found.items()][:_FEW]
     )
     more = f" and {len(found) - _FEW} more" if len(found) > _FEW else ""
@@ -311,8 +312,19 @@ def _unknown_properties(by_property: Mapping[Term, list[Triple]], classes: Class
     unknown = used - declared
     if not unknown:
         return []
+    nameless = {
+        s: f"{_NAMELESS} of class {v.local_name(o)}"
+        for s, _, o in by_property.get(v.RDF_TYPE, ())
+        if is_blank(s) and not is_blank(o)
+    }
+
+    def name(s: Term) -> str:
+        return nameless.get(s, _NAMELESS) if is_blank(s) else v.local_name(s)
+
     users = {
-        v.local_name(p): [v.local_name(s) for s, _, _ in by_property[p]] for p in by_property if p in unknown
+        v.local_name(p): [*dict.fromkeys(name(s) for s, _, _ in by_property[p])]
+        for p in by_property
+        if p in unknown
     }
     known = declared | classes.properties
     return [errors.unknown_properties(users, map(v.local_name, sorted(known)))]

@@ -13,6 +13,7 @@ from typing import Any, Final
 
 from semmap.nodes.kb_node.reasoner import datatypes
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.lexical_forms import Value
 from semmap.nodes.kb_node.reasoner.terms import (
     FIRST,
     NIL,
@@ -105,7 +106,7 @@ class Enumeration(DataRange):
         return tuple(self._members)
 
     @cached_property
-    def _known(self) -> set[datatypes.Value | None]:
+    def _known(self) -> set[Value | None]:
         return set(map(datatypes.value, self._members))
 
     def contains(self, term: Term) -> bool | None:

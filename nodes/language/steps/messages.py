@@ -15,7 +15,7 @@ class MessageReader(QuestionReader):
         """Read *tell me ...*: to whom, what, and of what."""
         words = self._words
         if clause.verb.lower() in ("inform", "notify") or not self._g.match("question", words, i):
-            phrase = self._recipient(i)
+            phrase = self._np.read_recipient(i)
             if (
                 phrase is not None
                 and clause.verb.lower()
@@ -38,7 +38,7 @@ class MessageReader(QuestionReader):
                 and self._words[i : i + 1] not in (("what",), ("which",))
             ):
                 i = self._add_recipients(clause, i, phrase)
-            elif words[i : i + 1] == ("to",) and (to := self._recipient(i + 1)) is not None:
+            elif words[i : i + 1] == ("to",) and (to := self._np.read_recipient(i + 1)) is not None:
                 i = self._add_recipients(clause, i, to)
         if clause.verb.lower() == "let" and words[i : i + 1] in (("know",), ("hear",)):
             i += 1
@@ -46,18 +46,11 @@ class MessageReader(QuestionReader):
             i += 1
         return self._told(clause, i)
 
-    def _recipient(self, i: int) -> NounPhrase | None:
-        """Return the recipient of a message at `i`; a question ends the phrase."""
-        self._np.takes_question = True
-        phrase = self._np.read(i)
-        self._np.takes_question = False
-        return phrase
-
     def _add_recipients(self, clause: Clause, i: int, phrase: NounPhrase) -> int:
         """Add the recipient of a message, and those after *and* or *or*; return the index after them."""
         found, end = [phrase], phrase.end
         while end < len(self._words) and self._g.is_a(self._words[end], "and") and not self._ends_clause(end):
-            other = self._recipient(end + 1)
+            other = self._np.read_recipient(end + 1)
             if other is None or not (other.kind == "speaker" or self._is_person(other)):
                 break
             (phrase.alternatives if self._words[end] == "or" else found).append(other)
@@ -115,7 +108,7 @@ class MessageReader(QuestionReader):
         words = self._words
         if self._t.is_translated and words[i : i + 1] == ("to",):  # chiedi a Anna
             i += 1
-        phrase = self._recipient(i)
+        phrase = self._np.read_recipient(i)
         if (
             phrase is not None
             and words[i : i + 1] != ("for",)

@@ -72,7 +72,7 @@ class NounGroupReader:
         """Whether *that* may begin a message in the clause that is read, and not a relative clause."""
         self.takes_with = False
         """Whether *with* after a thing belongs to the verb: fill the glass WITH water."""
-        self.takes_question = False
+        self._ends_at_question = False
         """Whether a question may follow the recipient of a message: tell Otto WHICH IS THE BIGGEST."""
         self.takes_predicate = False
         """Whether a further word after the noun is what a question asks of it: is the fridge OPEN."""

@@ -56,6 +56,24 @@ def test_unchanged_entities_are_reported(home):
     assert (again.text, again.commit) == ("unchanged: already up to date", None)
 
 
+def test_set_and_unset_in_a_batch_take_what_they_take_alone(home, semantic_map):
+    home.change(
+        c.Batch(changes=(c.Update(name="chair1", ref="seat"), c.Unset(name="chair2", property="isOpen")))
+    )
+    iri = semantic_map.entity("chair3").iri
+    unset = c.Unset(name=iri, property="isOpen")
+    reply = home.change(c.Batch(changes=(*opened("seat", "chair2"), unset)))
+    assert reply.text == "changed 3: chair1, chair2 and chair3"
+    assert states(home) == {"chair1": True, "chair2": True, "chair3": None}
+    for changes, said in (
+        (opened("chair"), "'chair' is ambiguous"),
+        (opened("seat", "chair1"), "changes isOpen of chair1 twice"),
+        ((c.Update(name="seat", ref="x"),), "no entity is named 'seat'; did you mean chair1?"),
+    ):
+        with pytest.raises((errors.BadRequest, errors.UnknownName), match=said):
+            home.change(c.Batch(changes=changes))
+
+
 @pytest.mark.parametrize(
     ("last", "error"),
     [

@@ -551,7 +551,10 @@ def in_their_turn(dispatcher: CommandDispatcher, changes: list) -> list:
         settle(future, lambda: dispatcher._ask(call))
         return future
 
-    turns = Scheduler(lambda group, _: run_async(dispatcher.run_together(group), ask_later))
+    turns = Scheduler(
+        lambda group, _: run_async(dispatcher.run_together(group), ask_later),
+        is_name=lambda word: word in dispatcher.map.entities,
+    )
     futures = [turns.change(change) for change in changes]
     turns.run_ready()
     return [future.exception() or future.result() for future in futures]
@@ -582,6 +585,16 @@ def test_changes_together_are_as_if_made_one_after_the_other(dispatcher, semanti
     assert {e.name: e for e in semantic_map.entities()} == dispatcher.map.entities
     assert dispatcher.map.seq == semantic_map.seq == 4
     assert dispatcher.map.entity("a").pose == Pose(position_m=(3.0, 0.0, 0.0))
+
+
+def test_changes_of_one_entity_by_its_label_and_its_name_keep_their_order(dispatcher):
+    add(dispatcher, name="a", ref="seat")
+    changes = [
+        c.Set(name=word, property="isOpen", values=(value,))
+        for word, value in (("seat", True), ("a", False), ("a chair", True), ("a", False))
+    ]
+    assert [made.commit for made in in_their_turn(dispatcher, changes)] == [2, 3, 4, 5]
+    assert dispatcher.map.entity("a").properties["isOpen"] is False
 
 
 def test_a_change_costs_one_request_also_with_an_id(dispatcher, monkeypatch):

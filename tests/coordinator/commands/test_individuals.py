@@ -115,6 +115,12 @@ def test_an_update_gives_an_individual_no_place(people, fields, message):
         people.change(c.Update(name="anna", **fields))
 
 
+def test_a_batch_does_not_change_an_individual(people):
+    opened = c.Set(name="anna", property="isOpen", values=(True,))
+    with pytest.raises(errors.Refused, match="a batch changes only entities; use: semmap set anna"):
+        people.change(c.Batch(changes=(opened,)))
+
+
 def test_an_entity_is_updated_by_its_iri(people, semantic_map):
     people.change(c.Update(name=semantic_map.entity("chair1").iri, ref="stool"))
     assert semantic_map.entity("chair1").preferred_reference == "stool"

@@ -132,6 +132,9 @@ def test_a_property_that_may_be_misspelt_is_reported(classes):
     triples = [(v.entity_iri("cup1"), v.dm("hasPositoin"), v.entity_iri("x"))]
     (note,) = abox_document.filter_document(triples, classes, skip_unknown=False).notes
     assert "unknown property 'hasPositoin' (of cup1; did you mean hasPosition" in note
+    text = "[] a dm:Property ; dm:hue 1 . [] a dm:Property ; dm:hue 2 ."
+    (note,) = abox_document.filter_document(turtle(text), classes, skip_unknown=False).notes
+    assert note == "unknown property 'hue' (of a nameless individual of class Property)"
 
 
 HALF = ":p a dm:Coordinates ; dm:float_coordinates_x '1'^^xsd:float"

@@ -1,4 +1,4 @@
-"""The scene of one tab: drawing, selection, picking and dragging."""
+"""The scene of one tab: drawing, selection and picking."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import numpy as np
 from msgspec import structs
 from viser import CameraHandle, ClientHandle
 
-from semmap.nodes.drawing.figures import is_still
 from semmap.nodes.extern.web.differences import Mark
 from semmap.nodes.extern.web.page import Page, Place
 from semmap.nodes.extern.web.scene.annotations import (
@@ -25,8 +24,9 @@ from semmap.nodes.extern.web.scene.annotations import (
 from semmap.nodes.extern.web.scene.assets import Assets
 from semmap.nodes.extern.web.scene.bodies import Bodies
 from semmap.nodes.extern.web.scene.camera import FOV_RAD, View, extent, first_view, fit_view, select_labels
+from semmap.nodes.extern.web.scene.dragging import Dragging
 from semmap.nodes.extern.web.scene.drawables import BOX, Drawable, Key, label_of, middle_of, top_of
-from semmap.nodes.extern.web.scene.gizmo import Gizmo, Phase, place_on_support
+from semmap.nodes.extern.web.scene.gizmo import Gizmo, Phase
 from semmap.nodes.extern.web.scene.map_overlay import difference_boxes, path_lines
 from semmap.nodes.extern.web.scene.picking import Solid, corners_of, edges_of, first_hit
 from semmap.nodes.extern.web.scene.relation_overlay import RelationOverlay
@@ -34,11 +34,9 @@ from semmap.nodes.extern.web.scene.rooms import Rooms
 from semmap.nodes.extern.web.scene.sensor_overlay import SensorOverlay
 from semmap.nodes.extern.web.scene.switches import SWITCHED_ON, Switch
 from semmap.nodes.extern.web.scene.tab_drawables import TabDrawables
-from semmap.schemas import errors, keys
-from semmap.schemas.commands import Move
+from semmap.schemas import errors
 from semmap.schemas.entities import Pose, Size, Vector
 from semmap.schemas.relations import ViewPoint
-from semmap.schemas.scenes import Body, SceneQuery
 
 _SELECTED: Final[Rgb] = (255, 120, 0)
 _BOX: Final[Rgb] = (120, 130, 150)
@@ -55,9 +53,6 @@ _LABELS_S: Final = 0.25
 _DRAW_DELAY_S: Final = 0.03
 """Delay of the scene after a change, so that the panels, which are faster, are drawn first."""
 _MODIFIERS: Final = (None, "shift", "cmd/ctrl", "cmd/ctrl+shift")
-_POSE_DELAY_S: Final = 0.2
-"""Time after which the new pose of a moved body has been received."""
-_NO_ROOM: Final = "{name}: no free space, the position overlaps {other}; {name} was moved back"
 _MARKED: Final = "changed "
 """Prefix of the keys of labels for differences."""
 _NAMED: Final = 50
@@ -82,7 +77,6 @@ class TabScene:
         self._drawables = TabDrawables(page, assets)
         self._marked: dict[str, LabelText] = {}
         """Labels of entities that differ from the moment compared with, by name."""
-        self._dragging = ""
         self._picking: asyncio.Future[Place | None] | None = None
         self._labelling: asyncio.TimerHandle | None = None
         self._drawing: asyncio.TimerHandle | None = None
@@ -114,6 +108,7 @@ class TabScene:
         """Draw everything in a frame that has connected."""
         if self._client is not None:
             self._relations.close()
+            self._dragging.close()
         self._client, scene = client, client.scene
         scene.configure_default_lights(cast_shadow=False)
         scene.configure_environment_map(None)
@@ -127,8 +122,15 @@ class TabScene:
         self._differences = Lines(scene, "/differences/lines", width=2.5)
         self._paths = Lines(scene, "/drives", width=3.0)
         self._difference_labels = Labels(scene, "/differences/names")
-        self._dragged = Bodies(scene, self._glb_of, "/dragged")
-        self._gizmo = Gizmo(scene, self._on_loop(self._on_drag), lambda: self._is_open(client.client_id))
+        self._dragging: Dragging = Dragging(
+            self.page,
+            Gizmo(scene, self._on_loop(self._on_drag), lambda: self._is_open(client.client_id)),
+            Bodies(scene, self._glb_of, "/dragged"),
+            self._drawables.bodies,
+            lambda: self._things,
+            self._solids,
+            self._draw,
+        )
         self._sensors = SensorOverlay(scene, self.page.live)
         self._relations: RelationOverlay = RelationOverlay(
             scene, self.page, self.on, lambda: self._things, lambda: self._view(client), self._label_soon
@@ -151,7 +153,7 @@ class TabScene:
             self._relations.close()
             _cancel(self._drawing, self._labelling)
             self._drawing = self._labelling = None
-            self._dragging = ""
+            self._dragging.close()
             self._sensors.close()
             self._end_picking(None)
 
@@ -257,9 +259,8 @@ class TabScene:
         if self._client is None:
             return
         self._things = self._drawables.create()
-        if self._dragging in self._things:
-            ghost = structs.replace(self._things[self._dragging], appearance="ghost")
-            self._things[self._dragging] = ghost
+        if (dragged := self._dragging.name) in self._things:
+            self._things[dragged] = structs.replace(self._things[dragged], appearance="ghost")
         with self._client.atomic():
             self._bodies.show(self._things)
             self._rooms.show(self.page.state.entities)
@@ -312,7 +313,7 @@ class TabScene:
         )
         boxes = self._things.values() if "boxes" in self.on else ()
         self._boxes.show([(join_segments(edges_of(t.pose, t.size_m) for t in boxes), _BOX)])
-        self._put_gizmo(selected)
+        self._dragging.put_gizmo({} if self._picking is not None else selected)
         self._relations.draw()
         self._draw_differences()
         self._draw_paths()
@@ -401,7 +402,7 @@ class TabScene:
 
         The hit is computed here, because batches of viser 1.1 report false hits at (0, 0, 0).
         """
-        if self._dragging:
+        if self._dragging.name:
             return
         hit = first_hit(origin, direction, self._solids())
         if self._picking is not None:
@@ -418,7 +419,7 @@ class TabScene:
     def _on_select(self) -> None:
         if self._client is not None and not self._is_deferred():
             self._relations.clear()
-            self._gizmo.remove()
+            self._dragging.gizmo.remove()
             self._mark()
             self._relations.request()
 
@@ -442,14 +443,18 @@ class TabScene:
 
     def cancel_interaction(self) -> bool:
         """Cancel picking or dragging; return whether there was any."""
-        was_busy = self._picking is not None or bool(self._dragging)
+        was_picking = self._picking is not None
         self._end_picking(None)
-        if self._dragging and self._client is not None:
-            self._dragging = ""
-            self._dragged.show({})
-            self._gizmo.remove()
-            self._draw()
-        return was_busy
+        was_dragging = self._client is not None and self._dragging.cancel()
+        return was_picking or was_dragging
+
+    def _on_drag(self, phase: Phase, pose: Pose) -> None:
+        self._dragging.on_drag(phase, pose)
+
+    def preview(self, poses: Mapping[str, Pose]) -> None:
+        """Draw these entities at other poses, too; those of an earlier call disappear."""
+        if self._client is not None:
+            self._dragging.preview(poses)
 
     def _solids(self, without: str = "") -> list[Solid]:
         surface_of = self._assets.surface_of
@@ -463,86 +468,6 @@ class TabScene:
             for name, thing in self._things.items()
             if name != without
         ]
-
-    # Dragging
-
-    def _put_gizmo(self, selected: Mapping[str, Drawable]) -> None:
-        if self._dragging:
-            return
-        is_movable = self.page.moment.is_now and self.page.is_allowed("move") and self._picking is None
-        name = next(iter(selected)) if is_movable and len(selected) == 1 else ""
-        if name in self._drawables.bodies():
-            self._gizmo.put(selected[name].pose, selected[name].size_m)
-        else:
-            self._gizmo.remove()
-
-    def _on_drag(self, phase: Phase, pose: Pose) -> None:
-        if phase == "start":
-            self._begin_drag()
-        if not self._dragging or self._client is None:
-            return
-        if phase == "end":
-            self.page.start_task(self._move(self._dragging, pose))
-        else:
-            self._copy(pose)
-
-    def _begin_drag(self) -> None:
-        names = [name for name in self.page.selected if name in self._things]
-        if len(names) == 1:
-            self._dragging = names[0]
-            self._draw()
-
-    def _copy(self, pose: Pose) -> None:
-        """Draw the object where it is dragged; a ghost is drawn at its original pose."""
-        thing = self._things.get(self._dragging)
-        if thing is not None:
-            solid = structs.replace(thing, appearance="solid", pose=pose)
-            self._dragged.show({self._dragging: solid})
-
-    def preview(self, poses: Mapping[str, Pose]) -> None:
-        """Draw these entities at other poses, too; those of an earlier call disappear."""
-        if self._client is not None and not self._dragging:
-            self._dragged.show(
-                {
-                    name: structs.replace(self._things[name], appearance="solid", pose=pose)
-                    for name, pose in poses.items()
-                    if name in self._things
-                }
-            )
-
-    async def _move(self, name: str, pose: Pose) -> None:
-        """Move the body to the pose where it was released; after a rejection it returns."""
-        thing = self._things[name]
-        before = self.page.state.poses.get(name, thing.pose)
-        body = self._drawables.bodies().get(name)
-        was_ghost = body is not None and body.ghost
-        if is_still(before, pose):  # a click on the arrows
-            self.cancel_interaction()
-            return
-        target = place_on_support(pose, thing.size_m, self._solids(without=name))
-        self._copy(target)
-        reply = await self.page.change(Move(name=name, at=target.position_m, yaw=target.yaw_rad, carry=True))
-        ghost = None if reply is None or was_ghost else await self._find_ghost(name)
-        if ghost is not None:
-            back = Move(name=name, at=before.position_m, yaw=before.yaw_rad, carry=True)
-            if await self.page.change(back) is not None:
-                self.page.notify(
-                    _NO_ROOM.format(name=name, other=ghost.in_the_way or "another body"), "warning"
-                )
-        if reply is not None:
-            await asyncio.sleep(_POSE_DELAY_S)
-        self._dragging = ""
-        if self._client is not None:
-            self._dragged.show({})
-            self._draw()
-
-    async def _find_ghost(self, name: str) -> Body | None:
-        """Return the body if it is non-colliding, because another body occupies its position."""
-        try:
-            scene = await self.page.live.query(keys.SIM, SceneQuery())
-        except errors.SemmapError:
-            return None
-        return next((body for body in scene.bodies if body.name == name and body.ghost), None)
 
     # Switches
 

@@ -19,6 +19,7 @@ from semmap.nodes.kb_node.reasoner.abox.steps import Steps
 from semmap.nodes.kb_node.reasoner.abox.store import DERIVED, Store
 from semmap.nodes.kb_node.reasoner.explain.reasons import Applied, Claim, Edge, Member, Reason, Same
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.lexical_forms import Value
 from semmap.nodes.kb_node.reasoner.tbox.axioms import DIFFERENT, Group, Role
 from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
 from semmap.nodes.kb_node.reasoner.terms import is_literal
@@ -54,7 +55,7 @@ class ABox:
         self.reasons_by_edge: dict[int, list[Reason]] = {}
         self.reasons_by_node: dict[int, list[Reason]] = {}
         self._order = count()
-        self.spellings: dict[datatypes.Value, list[int]] = {}
+        self.spellings: dict[Value, list[int]] = {}
         self.has_unknown_equals = False
         """Whether a literal without a known value was ever equal to another. Then spellings are compared."""
         self.overlaid: list[Triple] = []
@@ -93,7 +94,7 @@ class ABox:
         """Return whether a node is a literal."""
         return self.store.kind[node].excluded is not None
 
-    def value(self, node: int) -> datatypes.Value | None:
+    def value(self, node: int) -> Value | None:
         """Return the value of a literal; None for an individual."""
         if not self.is_literal(node):
             return None

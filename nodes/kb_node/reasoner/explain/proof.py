@@ -13,6 +13,7 @@ from semmap.nodes.kb_node.reasoner import datatypes
 from semmap.nodes.kb_node.reasoner.explain.sentences import proof_sentence
 from semmap.nodes.kb_node.reasoner.explain.words import PLACEHOLDER, Words
 from semmap.nodes.kb_node.reasoner.explanations import Explanation, Step, Term, Triple
+from semmap.nodes.kb_node.reasoner.lexical_forms import Value
 from semmap.nodes.kb_node.reasoner.rules import swrl
 from semmap.nodes.kb_node.reasoner.rules.closure import Closure
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
@@ -101,7 +102,7 @@ def _shape(triples: Sequence[Triple], goal: Triple | None) -> tuple[tuple[object
     return (goal is None, *shape), tuple(numbers)
 
 
-def _number(term: Term, numbers: dict[Term, object], fixed: set[datatypes.Value | None]) -> object:
+def _number(term: Term, numbers: dict[Term, object], fixed: set[Value | None]) -> object:
     """Return the key of a term in a shape. For a literal it includes the datatype and equal literals."""
     if not is_literal(term):
         return len(numbers)

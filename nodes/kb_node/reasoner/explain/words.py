@@ -32,21 +32,15 @@ _PREPOSITIONS: Final = _LINKS | {
 """Last words of a verb phrase that are not a noun: "contains zone" is "contains it as zone"."""
 _VERBS_OF_VALUES: Final = frozenset(
     (
-        "weighs",
-        "costs",
-        "measures",
-        "lasts",
-        "holds",
-        "contains",
-        "opens",
-        "closes",
-        "starts",
-        "begins",
-        "ends",
-        "expires",
+        *("weighs", "costs", "measures", "lasts", "holds", "contains"),
+        *("opens", "closes", "starts", "begins", "ends", "expires"),
     )
 )
-"""Verbs that begin names of data properties. Other words in s are nouns there ("hours")."""
+"""First words of data properties that are verbs: those of measures and of beginnings and ends.
+
+A list, because neither the ending nor the TBox distinguishes them from plurals ("hours", "seats"), which are
+more frequent in names of data properties. The verbs that take a value without a preposition are few.
+"""
 _NO_VERB: Final = ("ss", "us", "is", "as", "os")
 """Endings in s of words that are not verbs."""
 _PLAIN_VALUES: Final = frozenset(

@@ -15,6 +15,7 @@ from itertools import combinations
 from semmap.nodes.kb_node.reasoner import datatypes
 from semmap.nodes.kb_node.reasoner.data_ranges import Definition, read_all
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.lexical_forms import Value
 from semmap.nodes.kb_node.reasoner.rules import builtins, swrl
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts, Reason
 from semmap.nodes.kb_node.reasoner.rules.matching import Pattern, Plan, bind, pattern, patterns, plan, unify
@@ -40,7 +41,7 @@ class Closure(Facts):
         self._index: dict[Pattern, dict[Triple, None]] = {k: v.copy() for k, v in base._index.items()}
         self._triggers: dict[Pattern, list[Plan]] = {k: list(v) for k, v in base._triggers.items()}
         self._watchers: dict[Pattern, list[Rule]] = {k: list(v) for k, v in base._watchers.items()}
-        self._literals: dict[datatypes.Value, list[Term]] = {k: list(v) for k, v in base._literals.items()}
+        self._literals: dict[Value, list[Term]] = {k: list(v) for k, v in base._literals.items()}
         self._datatypes: list[Term] = list(base._datatypes)
         self._compared: list[Term] = list(base._compared)
         self._ranges: dict[Term, Definition] = dict(base._ranges)

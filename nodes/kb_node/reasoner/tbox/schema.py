@@ -16,6 +16,7 @@ from itertools import combinations
 from semmap.nodes.kb_node.reasoner import data_ranges, datatypes
 from semmap.nodes.kb_node.reasoner.data_ranges import Definition
 from semmap.nodes.kb_node.reasoner.explanations import Term, Triple
+from semmap.nodes.kb_node.reasoner.lexical_forms import Value
 from semmap.nodes.kb_node.reasoner.rules import swrl
 from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.reasoner.rules.rule_table import NUMBERS
@@ -40,7 +41,7 @@ class Schema:
         self.intersections: list[tuple[int, int]] = []
         self.values: dict[int, tuple[int, Term]] = {}
         self.nominals: dict[Term, int] = {}
-        self.literals: dict[datatypes.Value, int] = {}
+        self.literals: dict[Value, int] = {}
         self.negatives: dict[int, Term] = {}
         """Classes of individuals that must not have a value, with their negative assertion."""
         self.listed: dict[Term, list[Term]] = {}
