@@ -27,9 +27,12 @@ def room_pose(points: Floats) -> Transform | None:
     assumed to be approximately upright.
     """
     level = level_plane(find_planes(points, None, np.random.default_rng(0))[0])
-    if level is None:
+    if level is None or level.normal[1] >= -_UP:  # it may be a wall
         floor = _small_floor(points)
-        return None if floor is None else standing_on(floor)
+        if floor is not None:
+            return standing_on(floor)
+    if level is None:
+        return None
     pose = standing_on(level)
     pose[2, 3] += _DEEP_M  # before all planes are known, none is the floor
     # a low table is above a larger support, like the top of a thing: the floor

@@ -33,6 +33,7 @@ _LEAST_SHARE_UNKNOWN = 0.2
 _LEAST_SIDE_M = 0.35
 _LEAST_RAISED_SIDE_M = 0.2  # of a support higher above another one than things are tall
 _LEAST_WALL_M = 1.0  # of its shorter side; a smaller one is the side of things
+_MOST_BEHIND = 0.5  # of all points; behind the side of a thing there are more
 _STRAY = 0.02
 _UPRIGHT_COS = np.cos(np.radians(8))
 _LEVEL_COS = np.cos(np.radians(80))
@@ -107,10 +108,11 @@ def find_planes(
             break
         free &= ~on
         search.leave_out(on)
-        kind = _kind(normal, offset, map_from_camera, first=not planes)
-        if kind is None:
-            continue
         height = _height(points, normal, offset)
+        kind = _kind(normal, offset, map_from_camera, first=not planes)
+        is_side = map_from_camera is None and (height < -thickness).sum() > _MOST_BEHIND * everything
+        if kind is None or is_side:
+            continue
         level = kind == "support" and map_from_camera is not None
         for piece in pieces_of(on, points, height, thickness, least) if level else [on]:
             count = int(piece.sum())
@@ -119,7 +121,7 @@ def find_planes(
             if level and sides[1] < _LEAST_SIDE_M:  # another plane may have cut it, such as a thing's side
                 solid = _piece_around(piece, np.abs(height) < thickness)
                 sides = _sides(_some(points, solid, int(solid.sum())), normal)
-            if planes and sides[1] < _least_side_m(kind, float(offset), planes):
+            if (planes or kind == "wall") and sides[1] < _least_side_m(kind, float(offset), planes):
                 continue
             planes.append(Plane(normal.astype(np.float64), float(offset), kind, count, sides))
             of_plane[piece] = len(planes)
