@@ -5,12 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from semmap.nodes.perception_node.input.cloud import Transform
-from semmap.nodes.perception_node.segmentation.planes import Plane, find_planes
+from semmap.nodes.perception_node.segmentation.planes import LEAST_SHARE, Plane, find_planes, thickness_m
 from semmap.nodes.perception_node.segmentation.working_image import Floats
 
 _UP = 0.2
 _DOWN = 0.9
 """A floor's normal points up in the image, or at a camera that looks straight down."""
+_STEEPEST = 0.5
+"""The same of a floor that is little of the image, which no slope may be taken for."""
+_MOST_BELOW = 0.025
+"""Maximum share of points below a floor: reflections and errors."""
 _FURNITURE_M = 0.15
 """A level plane this far above another is furniture; closer planes may be parts of a thing."""
 _DEEP_M = 100.0
@@ -23,6 +27,10 @@ def room_pose(points: Floats) -> Transform | None:
     assumed to be approximately upright.
     """
     level = level_plane(find_planes(points, None, np.random.default_rng(0))[0])
+    if level is None or level.normal[1] >= -_UP:  # it may be a wall
+        floor = _small_floor(points)
+        if floor is not None:
+            return standing_on(floor)
     if level is None:
         return None
     pose = standing_on(level)
@@ -34,6 +42,16 @@ def room_pose(points: Floats) -> Transform | None:
         return None
     pose[2, 3] = heights[-1]
     return pose
+
+
+def _small_floor(points: Floats) -> Plane | None:
+    """Return the floor of an image (3, h, w) of which it is little: a level plane with nothing below it."""
+    planes, _ = find_planes(points, None, np.random.default_rng(0), least_share=LEAST_SHARE)
+    for plane in planes:
+        height = plane.height_m(points) / thickness_m(points[2])
+        if plane.normal[1] < -_STEEPEST and (height < -2).sum() < _MOST_BELOW * np.isfinite(height).sum():
+            return plane
+    return None
 
 
 def level_plane(planes: tuple[Plane, ...]) -> Plane | None:

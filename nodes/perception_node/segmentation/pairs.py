@@ -30,12 +30,15 @@ _UNKNOWN = -1.0  # below all known values, so that a tree can test for it
 
 
 def candidates(statistics: Statistics, reach_m: float = 0.35) -> NDArray[np.bool_]:
-    """Return (P, P) which pairs may be one object: adjacent in the image, or separated by an occluder."""
+    """Return (P, P) which pairs may be one object: adjacent in the image, or separated by an occluder.
+
+    More sight lines between two patches must end at an occluder than pass between them to what is behind.
+    """
     between = statistics.between
     wide = between[..., s.WIDE] + between[..., s.TOUCH] > 0
     middles = statistics.inside[:, s.POINT] / statistics.inside[:, s.COUNT, None]
     near = np.linalg.norm(middles[:, None] - middles[None], axis=-1) < reach_m
-    may: NDArray[np.bool_] = wide | (near & (between[..., s.BLOCKED] > 0))
+    may: NDArray[np.bool_] = wide | (near & (between[..., s.BLOCKED] > between[..., s.OPEN]))
     np.fill_diagonal(may, False)
     return may
 

@@ -28,10 +28,12 @@ _LEAST_AREA_M2 = 1e-5
 _TRIALS = 240
 _REACH_CELLS = 60  # the three points of a hypothesis lie this near one another
 _MOST_PLANES = 6
-_LEAST_SHARE = 0.04  # of all points, for a plane that gravity explains
-_LEAST_SHARE_UNKNOWN = 0.2  # if gravity is unknown, and it may be a box's side
+LEAST_SHARE = 0.04  # of all points, for a plane that gravity explains
+_LEAST_SHARE_UNKNOWN = 0.2
 _LEAST_SIDE_M = 0.35
+_LEAST_RAISED_SIDE_M = 0.2  # of a support higher above another one than things are tall
 _LEAST_WALL_M = 1.0  # of its shorter side; a smaller one is the side of things
+_MOST_BEHIND = 0.5  # of all points; behind the side of a thing there are more
 _STRAY = 0.02
 _UPRIGHT_COS = np.cos(np.radians(8))
 _LEVEL_COS = np.cos(np.radians(80))
@@ -80,17 +82,20 @@ def find_planes(
     rng: np.random.Generator,
     *,
     keep_tops: bool = False,
+    least_share: float | None = None,
 ) -> tuple[tuple[Plane, ...], Labels]:
     """Return the planes of an image (3, h, w), and the plane of each cell from 1, 0 for none.
 
-    The tops of things on a larger support are not supports, unless `keep_tops` is set.
+    The tops of things on a larger support are not supports, unless `keep_tops` is set. A plane has at least
+    `least_share` of all points, by default more if gravity is unknown, because it may be the side of a box.
     """
     of_plane = np.zeros(points.shape[1:], np.int32)
     thickness = thickness_m(points[2])
     free = np.isfinite(thickness)
     everything = int(free.sum())
-    share = _LEAST_SHARE_UNKNOWN if map_from_camera is None else _LEAST_SHARE
-    least = max(_FEWEST_CELLS, share * everything)
+    if least_share is None:
+        least_share = _LEAST_SHARE_UNKNOWN if map_from_camera is None else LEAST_SHARE
+    least = max(_FEWEST_CELLS, least_share * everything)
     if everything < least:
         return (), of_plane
     search = _Search(points, free, rng)
@@ -103,10 +108,11 @@ def find_planes(
             break
         free &= ~on
         search.leave_out(on)
-        kind = _kind(normal, offset, map_from_camera, first=not planes)
-        if kind is None:
-            continue
         height = _height(points, normal, offset)
+        kind = _kind(normal, offset, map_from_camera, first=not planes)
+        is_side = map_from_camera is None and (height < -thickness).sum() > _MOST_BEHIND * everything
+        if kind is None or is_side:
+            continue
         level = kind == "support" and map_from_camera is not None
         for piece in pieces_of(on, points, height, thickness, least) if level else [on]:
             count = int(piece.sum())
@@ -115,7 +121,7 @@ def find_planes(
             if level and sides[1] < _LEAST_SIDE_M:  # another plane may have cut it, such as a thing's side
                 solid = _piece_around(piece, np.abs(height) < thickness)
                 sides = _sides(_some(points, solid, int(solid.sum())), normal)
-            if planes and sides[1] < (_LEAST_WALL_M if kind == "wall" else _LEAST_SIDE_M):
+            if (planes or kind == "wall") and sides[1] < _least_side_m(kind, float(offset), planes):
                 continue
             planes.append(Plane(normal.astype(np.float64), float(offset), kind, count, sides))
             of_plane[piece] = len(planes)
@@ -126,6 +132,15 @@ def find_planes(
     number = np.zeros(len(planes) + 1, np.int32)
     number[kept] = np.arange(1, len(kept) + 1)
     return tuple(planes[n - 1] for n in kept), number[of_plane]
+
+
+def _least_side_m(kind: Kind, offset_m: float, planes: Sequence[Plane]) -> float:
+    """Return the least shorter side of a plane in addition to others that were found."""
+    if kind == "wall":
+        return _LEAST_WALL_M
+    lowest = min((plane.offset_m for plane in planes if plane.kind in ("floor", "support")), default=offset_m)
+    is_raised = kind == "support" and offset_m - lowest > _TALLEST_M
+    return _LEAST_RAISED_SIDE_M if is_raised else _LEAST_SIDE_M
 
 
 def _tops_of_things(

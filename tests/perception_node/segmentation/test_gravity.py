@@ -74,3 +74,30 @@ def test_a_table_of_any_height_stands_on_the_floor(height_m):
     found = room_pose(grid_of(seen.cloud).points)
     assert found is not None
     assert found[2, 3] == pytest.approx(pose[2, 3], abs=0.02)
+
+
+def test_a_small_high_table_is_no_thing_and_carries_things():
+    table = ((-0.22, -0.14, 0.62), (0.22, 0.14, 0.66))
+    boxes = ((-0.15, -0.05, 0.66), (-0.07, 0.03, 0.8)), ((0.02, -0.05, 0.66), (0.12, 0.05, 0.74))
+    seen = boxes_on_table(
+        table, *boxes, pose=camera_pose((0.1, -0.9, 1.3), (0.0, 0.0, 0.6)), table=((-3, -3, -0.05), (3, 3, 0))
+    )
+    first, second = (likeliest_label(seen, number) for number in (2, 3))
+    assert 0 < first != second > 0
+
+
+def likeliest_label(seen, number):
+    return np.bincount(segment_cloud(seen.cloud).labels[seen.truth == number]).argmax()
+
+
+@pytest.mark.parametrize("close_box", [False, True])
+def test_a_floor_that_is_little_of_the_image_tells_how_a_camera_stands(close_box):
+    wall, box = ((-3, 2, 0), (3, 2.1, 3)), ((-0.2, 1.0, 0), (0.1, 1.3, 0.4))
+    close = ((0.05, -0.35, 0), (0.8, -0.1, 0.6))
+    pose = camera_pose((0.0, -1.0, 0.45), (0.0, 1.5, 0.45 if close_box else 0.8))
+    seen = boxes_on_table(
+        wall, box, *([close] if close_box else []), pose=pose, table=((-3, -3, -0.05), (3, 3, 0))
+    )
+    found = room_pose(grid_of(seen.cloud).points)
+    assert found[2] == pytest.approx(pose[2], abs=0.02)
+    assert likeliest_label(seen, 2) > 0

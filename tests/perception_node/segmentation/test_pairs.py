@@ -192,13 +192,20 @@ def test_what_is_hidden_counts_by_the_root_of_the_cells():
         ({}, 0.1, False),
         ({s.BLOCKED: 1.0}, 0.34, True),
         ({s.BLOCKED: 1.0}, 0.36, False),
+        ({s.BLOCKED: 2.0, s.OPEN: 1.0}, 0.1, True),
+        ({s.BLOCKED: 1.0, s.OPEN: 1.0}, 0.1, False),
     ],
 )
 def test_pairs_may_be_one_if_they_touch_or_are_near_and_parted_by_something(border, x, may):
-    one = block((0.0, 0.0, 0.0), (0.1, 0.1, 0.1), (2, 2, 2))
-    other = block((x, 0.0, 0.0), (x + 0.1, 0.1, 0.1), (2, 2, 2))
-    found = candidates(statistics(one, other, border=dict.fromkeys(PLAIN_BORDER, 0.0) | border))
+    found = candidates(statistics(*blocks_apart(x), border=dict.fromkeys(PLAIN_BORDER, 0.0) | border))
     assert found.tolist() == [[False, may], [may, False]]
-    assert candidates(
-        statistics(one, other, border=dict.fromkeys(PLAIN_BORDER, 0.0) | border), 9.0
-    ).any() == (bool(border))
+
+
+def test_the_reach_of_pairs_that_something_parts_can_be_chosen():
+    border = dict.fromkeys(PLAIN_BORDER, 0.0) | {s.BLOCKED: 1.0}
+    assert candidates(statistics(*blocks_apart(0.36), border=border), 9.0).any()
+
+
+def blocks_apart(x):
+    one = block((0.0, 0.0, 0.0), (0.1, 0.1, 0.1), (2, 2, 2))
+    return one, block((x, 0.0, 0.0), (x + 0.1, 0.1, 0.1), (2, 2, 2))
