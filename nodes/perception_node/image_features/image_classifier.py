@@ -26,7 +26,7 @@ class ImageClassifier:
 
     `leaves`: L classes of recognition. `weights`: (2 FEATURES, G) and `biases`: (G,) score the looks.
     `looks`: (G, L) and `imagenet`: (CLASSES, L), how far a thing with a look or of a class of ImageNet may be
-    of each class, from 0 to 1. Classes of ImageNet that are of none of ours are no things of a household.
+    of each class, from 0 to 1. Classes of ImageNet without any of ours are not household things.
     """
 
     leaves: tuple[str, ...]

@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-_EVERY = 4
+_EVERY = 16
 """Every so many rows are compared."""
 _EVEN = 0.6
-"""Share of neighbours of one colour in a rendering. It was 0.9 or more in renderings, 0.35 or less in photographs."""
+"""Least share of equal neighbours in a rendering. Renderings had 0.80 to 0.99, photographs 0.01 to 0.31."""
 
 
 def is_photograph(colours: NDArray[np.uint8]) -> bool:
     """Return whether an image (H, W, 3) is from a real camera.
 
-    The noise of a sensor makes neighbouring pixels differ, and surfaces of a renderer have even colours. Pixels
-    without a measurement, which are black, and overexposed ones are not counted.
+    The noise of a sensor makes neighbouring pixels differ, and surfaces of a renderer have even colours.
+    Pixels without a measurement, which are black, and overexposed ones are not counted.
     """
     rows = colours[::_EVERY]
     pixels = rows[:, 1:]

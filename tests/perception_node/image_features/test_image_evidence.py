@@ -72,7 +72,9 @@ def test_photographs_are_named_with_images_and_renderings_without():
     seen = replace(unsure, images=ImageEvidence(Banana(), shipped()))
     rendered = shot().clouds
     photographed = [replace(cloud, colors=_with_noise(cloud.colors)) for cloud in rendered]
-    plain, named = (observe_clouds(clouds, seen).observations.observations for clouds in (rendered, photographed))
+    plain, named = (
+        observe_clouds(clouds, seen).observations.observations for clouds in (rendered, photographed)
+    )
     assert not any("Banana" in o.candidates for o in plain)
     assert any(max(o.candidates, key=o.candidates.get) == "Banana" for o in named)
 
