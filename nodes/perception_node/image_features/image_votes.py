@@ -15,10 +15,10 @@ ImageFits = Callable[[Sequence[int]], Numbers]
 _DROPPED = 0.7
 _LEAST = 1e-6
 """Keeps logarithms finite; 0.001 and more let images name a thing that its shape rules out."""
-_SHAPE, _IMAGE, _UNKNOWN = 0.3, 1.25, 0.06
+_SHAPE, _IMAGE, _UNKNOWN = 0.3, 1.2, 0.2
 """Weights of the logarithms of the probabilities by shape and colours and of those by photographs, and the
 weight of `Object`. They maximise the likelihood of real table scenes and of renderings of other meshes: 0.27
-to 0.30, 1.17 to 1.46 and 0.03 to 0.09 in four folds. In renderings, shape had a weight of its own: 1.1."""
+to 0.31, 1.04 to 1.33 and 0.10 to 0.29 in four folds. In renderings, shape had a weight of its own: 1.2."""
 
 
 def with_image_votes(chances: Numbers, learnt: RecognitionModel, fits: ImageFits) -> Numbers:

@@ -1,4 +1,4 @@
-"""Tells photographs from renderings."""
+"""Distinguishes photographs from renderings."""
 
 from __future__ import annotations
 
