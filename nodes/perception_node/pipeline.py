@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.image_features.image_votes import ImageFits
+from semmap.nodes.perception_node.image_features.photographs import is_photograph
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.masks import Masks
 from semmap.nodes.perception_node.recognition.detector_labels import LabelMap
@@ -180,14 +181,16 @@ def _recognised(
 def _image_fits(
     sights: Sequence[SegmentedView], numbers: Sequence[NDArray[np.int32]], learnt: RecognitionModel
 ) -> ImageFits | None:
-    """Return what images of things say about them; `numbers` as for `_recognised`."""
+    """Return what photographs of things say about them, if there are any; `numbers` as for `_recognised`."""
     images = learnt.images
+    if images is None:
+        return None
     views = [
-        (sight.cloud.colors, number)
+        (colours, number)
         for sight, number in zip(sights, numbers, strict=True)
-        if sight.cloud.colors is not None and sight.cloud.organised
+        if (colours := sight.cloud.colors) is not None and sight.cloud.organised and is_photograph(colours)
     ]
-    if images is None or not views:
+    if not views:
         return None
 
     def fits(things: Sequence[int]) -> NDArray[np.float64]:

@@ -18,17 +18,15 @@ SHIPPED = Path(__file__).with_name("images.npz")
 
 _FLOOR = 0.01
 """The least that an image says for a class, since most classes are not among those that it was trained on."""
-_RENDERED = 0.98
-"""From this probability on, an image is one of our renderings, whose surfaces tell nothing."""
 
 
 @dataclass(frozen=True)
 class ImageClassifier:
     """A linear classifier of looks, and the classes that have them.
 
-    `leaves`: L classes of recognition. `weights`: (2 FEATURES, G) and `biases`: (G,) score the looks, the
-    last of which is that of our own renderings. `looks`: (G, L) and `imagenet`: (CLASSES, L), how far a
-    thing with a look or of a class of ImageNet may be of each class, from 0 to 1.
+    `leaves`: L classes of recognition. `weights`: (2 FEATURES, G) and `biases`: (G,) score the looks.
+    `looks`: (G, L) and `imagenet`: (CLASSES, L), how far a thing with a look or of a class of ImageNet may be
+    of each class, from 0 to 1. Classes of ImageNet without any of ours are not household things.
     """
 
     leaves: tuple[str, ...]
@@ -39,16 +37,14 @@ class ImageClassifier:
     story: str
 
     def __call__(self, whole: Outputs, alone: Outputs) -> Numbers:
-        """Return (N, L) how well images fit each leaf, all 1 if they tell nothing.
+        """Return (N, L) how well images of household things fit each leaf.
 
         The images `alone` show the same things with grey surroundings.
         """
-        look = np.exp(log_softmax(classifier_input(whole, alone) @ self.weights + self.biases))
-        rendered, others = look[:, -1:], look[:, :-1]
-        others = others / np.maximum(others.sum(axis=1, keepdims=True), 1e-9)
-        named = (_probabilities(whole) + _probabilities(alone)) / 2.0
-        fits = others @ self.looks[:-1] + named @ self.imagenet + _FLOOR
-        return np.where(rendered > _RENDERED, 1.0, fits)
+        looks = np.exp(log_softmax(classifier_input(whole, alone) @ self.weights + self.biases))
+        things = self.imagenet.any(axis=1)
+        named = [np.exp(log_softmax(of.scores[:, things].astype(float))) for of in (whole, alone)]
+        return np.asarray(looks @ self.looks + np.mean(named, axis=0) @ self.imagenet[things] + _FLOOR)
 
     @property
     def least(self) -> float:
@@ -60,10 +56,6 @@ def classifier_input(whole: Outputs, alone: Outputs) -> Numbers:
     """Return (N, 2 FEATURES) the features of both images, each of unit length."""
     parts = [outputs.features.astype(float) for outputs in (whole, alone)]
     return np.concatenate([part / np.linalg.norm(part, axis=1, keepdims=True) for part in parts], axis=1)
-
-
-def _probabilities(outputs: Outputs) -> Numbers:
-    return np.exp(log_softmax(outputs.scores.astype(float)))
 
 
 def save(learnt: ImageClassifier, path: Path) -> None:

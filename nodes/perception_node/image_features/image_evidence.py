@@ -67,8 +67,7 @@ class ImageEvidence:
         columns = [learnt.classes.index(leaf) for leaf in self.classifier.leaves]
         found = {n: crops for n, number in enumerate(numbers) if (crops := crops_of(views, number))}
         for n, fits in self._classified(found).items():
-            if (fits != 1.0).any():
-                rows[n] = self.classifier.least
+            rows[n] = self.classifier.least
             rows[n, columns] = fits
         return rows
 

@@ -1,8 +1,7 @@
 """Learn what images say about classes: `python -m semmap.nodes.training.recognition.learn_images`.
 
 The images are renderings of third-party objects with their textures, changed in many ways so that they
-resemble photographs. Each object is a look of its own. Renderings of our own models, which have plain
-surfaces, are one more look, of which nothing is concluded.
+resemble photographs. Each object is a look of its own.
 """
 
 from __future__ import annotations
@@ -30,20 +29,15 @@ from semmap.nodes.perception_node.image_features.image_evidence import Network
 from semmap.nodes.perception_node.image_features.network import load_network
 from semmap.nodes.perception_node.recognition.recognition_model import UNKNOWN
 from semmap.nodes.perception_node.views.boxes import Numbers
-from semmap.nodes.training.recognition.gathering import photographed
 from semmap.nodes.training.recognition.imagenet_classes import classes_by_number
-from semmap.nodes.training.scenes.arrangement import training_scenes
 from semmap.nodes.training.scenes.foreign_things import ForeignThing, foreign_things
 from semmap.nodes.training.scenes.textured_scenes import Studio, scenes
-
-OWN = ""
-"""The look of our own models."""
 
 _FEWEST = 150
 _DISTANCE_M = (0.5, 1.6)
 _LONGEST = (35, 160)
 """The longer side of things in images of other cameras [pixel]."""
-_OWN_WEIGHT, _DECAY, _SCALE, _STEPS = 8.0, 3e-4, 20.0, 30
+_DECAY, _SCALE, _STEPS = 3e-4, 20.0, 30
 
 _LOOK_ALIKE = {
     "Box": {"Box": 1.0, "Carton": 1.0, "Cereals": 0.5}
@@ -61,7 +55,7 @@ _PLAIN_BLOCKS = ("ycb 036_wood_block", "ycb 061_foam_brick")
 
 
 class Picture(NamedTuple):
-    """The image of one thing (H, W, 3), its pixels (H, W), and its look: a foreign thing, or `OWN`."""
+    """The image of one thing (H, W, 3), its pixels (H, W), and its look: the name of a foreign thing."""
 
     look: str
     colours: NDArray[np.uint8]
@@ -77,15 +71,6 @@ def pictures_of_foreign(
         _, rgb, _, owner = studio.shoot(stood, float(rng.uniform(*_DISTANCE_M)), rng)
         for number, one in enumerate(stood, 1):
             yield from _picture(one.thing.name, rgb, owner == number)
-
-
-def pictures_of_own(count: int, rng: np.random.Generator) -> Iterator[Picture]:
-    """Yield renderings of our own models and forms in training scenes."""
-    for shot, _ in photographed(training_scenes(count, [], rng), rng):
-        for cloud, owner in zip(shot.clouds, shot.owners, strict=True):
-            for number in range(1, len(shot.bodies) + 1):
-                if cloud.colors is not None:
-                    yield from _picture(OWN, cloud.colors, owner == number)
 
 
 def _picture(look: str, colours: NDArray[np.uint8], own: NDArray[np.bool_]) -> Iterator[Picture]:
@@ -136,15 +121,12 @@ def inputs_of(pictures: Sequence[Picture], network: Network) -> Numbers:
 
 def learn(inputs: Numbers, looks: Sequence[str], things: Sequence[ForeignThing]) -> ImageClassifier:
     """Train the classifier of looks (N,) on inputs (N, 2 FEATURES)."""
-    names = [*sorted(set(looks) - {OWN}), OWN]
+    names = sorted(set(looks))
     target = np.array([names.index(look) for look in looks])
-    weight = np.bincount(target, minlength=len(names))[target] ** -0.7
-    own = target == len(names) - 1
-    if own.any():
-        weight[own] = _OWN_WEIGHT / own.sum() * np.median(np.bincount(target)) ** 0.3
+    weight = np.bincount(target)[target] ** -0.7
     weights, biases = _logistic(inputs, target, weight / weight.sum(), len(names))
     like = {thing.name: _classes_like(thing) for thing in things}
-    named, imagenet = [like[name] for name in names[:-1]], classes_by_number()
+    named, imagenet = [like[name] for name in names], classes_by_number()
     leaves = sorted({class_ for classes in (*named, *imagenet.values()) for class_ in classes})
     table, known = np.zeros((len(names), len(leaves))), np.zeros((CLASSES, len(leaves)))
     for row, classes in enumerate(named):
@@ -152,8 +134,7 @@ def learn(inputs: Numbers, looks: Sequence[str], things: Sequence[ForeignThing])
             table[row, leaves.index(class_)] = share
     for number, ours in imagenet.items():
         known[number, [leaves.index(class_) for class_ in ours]] = 1.0
-    foreign = f"{len(looks) - own.sum()} images of {len(named)} foreign things"
-    story = f"{foreign}, {own.sum()} of our own models"
+    story = f"{len(looks)} images of {len(names)} foreign things"
     return ImageClassifier(tuple(leaves), weights, biases, table, known, story)
 
 
@@ -193,14 +174,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("foreign", type=Path, help="a folder of foreign things")
     parser.add_argument("--tables", type=int, default=110, help="tables of eight foreign things")
-    parser.add_argument("--scenes", type=int, default=36, help="scenes of our own models")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, default=SHIPPED)
     options = parser.parse_args()
     rng, network = np.random.default_rng(options.seed), load_network()
     things = [thing for thing in foreign_things(options.foreign) if thing.learnable]
-    pictures = [*pictures_of_foreign(things, options.tables, rng), *pictures_of_own(options.scenes, rng)]
-    changed = [varied(picture, rng) for picture in pictures]
+    changed = [varied(picture, rng) for picture in pictures_of_foreign(things, options.tables, rng)]
     changed = [picture for picture in changed if picture.own.any()]
     learnt = learn(inputs_of(changed, network), [picture.look for picture in changed], things)
     save(learnt, options.out)
