@@ -94,9 +94,7 @@ def test_undescribed_individuals_are_rejected_if_the_load_is_strict(semantic_map
     with pytest.raises(errors.UnknownName) as caught:
         document_change.make_document_transaction(semantic_map, document(strict=True), turtle(many))
     assert caught.value.text == (
-        "referenced but not described: "
-        + ", ".join(f"k{i} (a{i} isLocatedIn k{i})" for i in range(5))
-        + more
+        "referenced but not described: " + ", ".join(f"k{i} (a{i} isLocatedIn k{i})" for i in range(5)) + more
     )
 
 
