@@ -72,13 +72,3 @@ def test_pixels_at_borders_go_to_their_own_surface():
             labels = np.where(np.abs(own[here] - z) < 0.01, seen.truth[here], labels)
     wrong = (spread(grid, labels) != seen.truth) & np.isfinite(own)
     assert wrong.mean() < 0.002
-
-
-@pytest.mark.parametrize(("row", "column"), [(11, 21), (10, 21), (11, 20)])
-def test_points_behind_the_surface_of_their_cell_have_the_label_of_the_surface_beside_it(row, column):
-    points = np.ones((480, 640, 3), np.float32)
-    points[..., 2] = 2.0
-    points[:row, :column, 2] = 1.0
-    grid = grid_of(Cloud(points))
-    labels = np.where(grid.points[2] == 1.0, 1, 2).astype(np.int32)
-    assert (spread(grid, labels) == np.where(points[..., 2] == 1.0, 1, 2)).all()
