@@ -116,7 +116,7 @@ def find_planes(
         level = kind == "support" and map_from_camera is not None
         for piece in pieces_of(on, points, height, thickness, least) if level else [on]:
             count = int(piece.sum())
-            solid = piece if kind == "floor" else _largest_piece(piece)  # things cut a floor into islands
+            solid = piece if kind == "floor" else largest_piece(piece)  # things cut a floor into islands
             sides = _sides(_some(points, solid, count), normal)
             if level and sides[1] < _LEAST_SIDE_M:  # another plane may have cut it, such as a thing's side
                 solid = _piece_around(piece, np.abs(height) < thickness)
@@ -170,7 +170,7 @@ def _some(points: Floats, where: Mask, count: int) -> Floats:
     return points.reshape(3, -1).take(cells, axis=1)
 
 
-def _largest_piece(on: Mask) -> Mask:
+def largest_piece(on: Mask) -> Mask:
     """Return the largest connected part: level tops of several things are not a table."""
     parts, count = ndimage.label(on)
     if count < 2:

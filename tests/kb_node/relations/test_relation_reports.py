@@ -10,7 +10,7 @@ MAP = [
     ROOM,
     CORNER,
     TABLE,
-    thing("cup1", (0.0, 0.0, TOP + 0.001)),
+    thing("cup1", (0.0, 0.0, TOP + 0.00104)),
     thing("cup2", (0.0, 0.3, TOP)),
     thing("cup3", (0.15, 0.0, TOP)),
     thing("box1", (0.0, 0.0, 0.0)),

@@ -1,4 +1,4 @@
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -26,6 +26,12 @@ def test_each_look_fits_its_own_classes_best():
     for look in range(len(found.biases)):
         (fits,) = found(*outputs(look))
         assert found.looks[look, fits.argmax()] == found.looks[look].max()
+
+
+def test_a_look_that_is_more_frequent_fits_better():
+    looks = np.eye(len(shipped().biases))
+    (apart,) = replace(shipped(), biases=1e4 * looks[0])(*outputs(1))
+    assert apart == pytest.approx(shipped()(*outputs(0))[0], abs=1e-3)
 
 
 def test_classes_of_imagenet_count():

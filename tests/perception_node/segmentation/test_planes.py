@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from semmap.nodes.perception_node.segmentation.planes import find_planes, pieces_of
+from semmap.nodes.perception_node.segmentation.planes import find_planes, largest_piece, pieces_of
 from semmap.nodes.perception_node.segmentation.working_image import grid_of
 from tests.perception_node.segmentation.scenes import boxes_on_table, camera_pose
 
@@ -131,3 +131,11 @@ def test_a_piece_of_too_few_cells_is_none(least):
     height = np.where(on, np.float32(0.0), np.float32(-1.0))
     pieces = pieces_of(on, points, height, np.full(on.shape, 0.01, np.float32), least)
     assert len(pieces) == (1 if least == 1 else 0)
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_the_largest_of_several_pieces_is_kept(order):
+    on = np.array([[1, 0, 1, 1, 1, 0, 1, 1], [1, 0, 1, 0, 1, 0, 1, 0]], bool)[:, ::order]
+    kept = np.array([[0, 0, 1, 1, 1, 0, 0, 0], [0, 0, 1, 0, 1, 0, 0, 0]], bool)[:, ::order]
+    assert (largest_piece(on) == kept).all()
+    assert (largest_piece(kept) == kept).all()

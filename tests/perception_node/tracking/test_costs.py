@@ -14,6 +14,7 @@ from semmap.nodes.perception_node.tracking.costs import (
     class_difference,
     cost_anywhere,
     cost_in_place,
+    cost_nearby,
     cost_of_height,
     is_complete_despite_cut,
     size_difference,
@@ -218,3 +219,22 @@ def test_a_front_costs_at_most_two_thirds_for_its_distance(aside_m, way):
     oven = Target(at(1, 1, 0.0), (0.8, 0.9, 1.8), "Object")
     front = seen("Object", at(1 + aside_m, 1, 0.0), (0.02, 0.9, 1.8))
     assert cost_in_place(oven, front, CLASSES) == pytest.approx(way + 0.15)
+
+
+RED, BLUE = (0.8, 0.1, 0.1), (0.1, 0.1, 0.8)
+
+
+@pytest.mark.parametrize(
+    ("other", "color", "is_like"),
+    [
+        (seen("Cup", at(1.1, 1)), RED, True),
+        (seen("Cup", at(1.1, 1)), None, True),
+        (seen("Cup", at(1.1, 1)), BLUE, False),
+        (seen("Cup", at(1.5, 1)), RED, False),
+        (seen("Book", at(1.1, 1), SIZES["Cup"]), RED, False),
+        (seen("Cup", at(1.1, 1), (0.3, 0.3, 0.3)), RED, False),
+    ],
+)
+def test_a_new_thing_near_a_hidden_one_is_it_if_kind_size_and_colour_agree(other, color, is_like):
+    hidden, other = CUP._replace(color_rgb=RED), structs.replace(other, color_rgb=color)
+    assert cost_nearby(hidden, other, CLASSES, 0.3) == (pytest.approx(0.1) if is_like else FORBIDDEN)

@@ -49,6 +49,14 @@ def test_a_patch_of_the_table_is_no_thing_unless_it_has_another_colour(view):
     assert doubts_of(replace(view, cloud=replace(view.cloud, colors=colors)), patch_of(view)) == [""]
 
 
+def test_a_thing_is_doubted_also_after_one_that_is_too_small_for_it(view):
+    labels = 2 * patch_of(view)
+    labels[401:404, 401:404] = 1
+    small, patch = doubts_of(view, labels)
+    assert small == "only 9 points"
+    assert "mm above a surface with" in patch
+
+
 def test_height_alone_decides_without_colours(view):
     plain = replace(view, cloud=replace(view.cloud, colors=None))
     assert doubts_of(plain) == [""]

@@ -32,7 +32,7 @@ def _placed(
     "now",
     [
         _placed((4.1, -2.7, 0.3)),
-        _placed((4.1, -2.7, 1.9)),
+        _placed((4.1, -2.7, HERE[1])),
         _placed((4.1, -2.7, 0.3), TURNED),
         _placed((4.1, -2.7, 0.3), size=(0.4, 0.3, 0.8)),
         _placed((4.1, -2.7, 0.3), size=None),

@@ -33,6 +33,16 @@ def test_invalid_compressed_data_is_malformed(body, text):
         body_encoding.decode(body, Departed)
 
 
+@pytest.mark.parametrize("compressed_from", [0, 1 << 20])
+def test_names_are_found_in_a_body_without_decoding_it(monkeypatch, compressed_from):
+    monkeypatch.setattr(body_encoding, "_PIECE", 10)
+    body = body_encoding.encode(
+        Departed(name="chair1", types=("Table", "Kitchen")), compressed_from=compressed_from
+    )
+    wanted = {b"chair1", b"Table", b"Kitchen", b"Cup"}
+    assert body_encoding.find_contained(body, wanted) == wanted - {b"Cup"}
+
+
 def test_a_decompression_bomb_is_rejected(monkeypatch):
     monkeypatch.setattr(body_encoding, "LARGEST", 1000)
     with pytest.raises(errors.BadRequest, match="larger than 0 MB"):

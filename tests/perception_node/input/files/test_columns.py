@@ -62,7 +62,7 @@ def test_axes_of_nobody_s_are_told_with_how_many_points_lie_behind():
 @pytest.mark.parametrize(("factor", "unit"), [(1000.0, "millimetres"), (100.0, "centimetres")])
 def test_other_units_are_told_with_the_factor(factor, unit):
     with pytest.raises(ValueError, match=rf"the unit is probably {unit}: multiply them by {1 / factor:g}"):
-        read(SEEN * factor)
+        read(np.concatenate([SEEN * factor, np.zeros((8, 3))]))  # zeros are not measured
 
 
 def test_missing_columns_are_named():

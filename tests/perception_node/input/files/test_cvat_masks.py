@@ -45,6 +45,7 @@ def test_a_box_may_be_turned_around_its_middle(tmp_path):
             "",
             "its runs do not fill its box",
         ),
+        ('<mask label="cup" rle="0" left="0" top="0" width="0" height="2"/>', "", "do not fill its box"),
         ('<mask label="cup" rle="4" left="5" top="0" width="2" height="2"/>', "", "the box leaves the image"),
         ('<box label="cup" xtl="1"/>', "", "a box of 'cup' is invalid"),
         ("<box", "", "not XML"),

@@ -14,8 +14,6 @@ class TimeAnswers(LocationAnswers):
     def _when(self) -> PastAnswer:
         asked = self._q.asked
         episodes = self._episodes()
-        if self._claim.event or self._q.asked == "when":
-            episodes = [e for e in episodes if e.since_ns >= self._span.first_ns or self._q.order == "last"]
         if not episodes:
             return PastAnswer(asked=asked, text=self._never(), count=0)
         is_event = self._is_event() and not self._claim.is_there

@@ -143,7 +143,7 @@ class Timeline:
         episodes: dict[str, list[Episode]] = {}
         for name in names:
             spans = [span for relation in kinds for span in found[name, relation, other]]
-            episodes[name] = [self._episode(name, what, *span) for span in _join(spans)]
+            episodes[name] = [self._episode(name, what, *span) for span in join_spans(spans)]
             if "isLocatedIn" in kinds and self.is_live(name):
                 episodes[name] = self._with_visits(name, other, what, episodes[name])
         return episodes
@@ -231,7 +231,7 @@ def is_event(change: Change, kind: str) -> bool:
     return True
 
 
-def _join(spans: list[tuple[int, int | None]]) -> list[tuple[int, int | None]]:
+def join_spans(spans: list[tuple[int, int | None]]) -> list[tuple[int, int | None]]:
     """Return intervals in order, those that overlap or follow each other as one."""
     joined: list[tuple[int, int | None]] = []
     for since, until in sorted(spans, key=lambda span: span[0]):
