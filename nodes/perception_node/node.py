@@ -159,7 +159,7 @@ class Perception:
             self._on_complaint(text)
         seen = self._compare(seen, clouds, camera_moves=found.camera_moves)
         if self._exemplar_commands is not None:
-            self._exemplar_commands.see(found.things, seen.observations)
+            self._exemplar_commands.see(found, seen.observations)
         self._ask_for_fit(seen, clouds, found)
         if time.monotonic() >= self._cloud_due and self._cloud_is_wanted():
             self._cloud_due = time.monotonic() + _CLOUD_S

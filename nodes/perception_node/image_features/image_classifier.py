@@ -21,6 +21,9 @@ _FLOOR = 0.01
 _RENDERED = 0.98
 """From this probability on, an image is one of our renderings, whose surfaces tell nothing."""
 
+_HALF = ("weights", "looks", "imagenet", "centre")
+"""The arrays that are stored in half precision."""
+
 
 @dataclass(frozen=True)
 class ImageClassifier:
@@ -28,7 +31,8 @@ class ImageClassifier:
 
     `leaves`: L classes of recognition. `weights`: (2 FEATURES, G) and `biases`: (G,) score the looks, the
     last of which is that of our own renderings. `looks`: (G, L) and `imagenet`: (CLASSES, L), how far a
-    thing with a look or of a class of ImageNet may be of each class, from 0 to 1.
+    thing with a look or of a class of ImageNet may be of each class, from 0 to 1. `centre`: (FEATURES,) the
+    mean features of images with grey surroundings, for comparisons of two of them.
     """
 
     leaves: tuple[str, ...]
@@ -36,6 +40,7 @@ class ImageClassifier:
     biases: Numbers
     looks: Numbers
     imagenet: Numbers
+    centre: Numbers
     story: str
 
     def __call__(self, whole: Outputs, alone: Outputs) -> Numbers:
@@ -58,8 +63,13 @@ class ImageClassifier:
 
 def classifier_input(whole: Outputs, alone: Outputs) -> Numbers:
     """Return (N, 2 FEATURES) the features of both images, each of unit length."""
-    parts = [outputs.features.astype(float) for outputs in (whole, alone)]
-    return np.concatenate([part / np.linalg.norm(part, axis=1, keepdims=True) for part in parts], axis=1)
+    return np.concatenate([unit_features(whole), unit_features(alone)], axis=1)
+
+
+def unit_features(outputs: Outputs) -> Numbers:
+    """Return (N, FEATURES) the features of images, each of unit length."""
+    features = outputs.features.astype(float)
+    return np.asarray(features / np.linalg.norm(features, axis=1, keepdims=True))
 
 
 def _probabilities(outputs: Outputs) -> Numbers:
@@ -68,7 +78,7 @@ def _probabilities(outputs: Outputs) -> Numbers:
 
 def save(learnt: ImageClassifier, path: Path) -> None:
     """Write the classifier as a compressed NumPy archive, with matrices in half precision."""
-    arrays = {name: getattr(learnt, name).astype(np.float16) for name in ("weights", "looks", "imagenet")}
+    arrays = {name: getattr(learnt, name).astype(np.float16) for name in _HALF}
     text = json.dumps({"story": learnt.story, "leaves": learnt.leaves})
     np.savez_compressed(path, description=np.array(text), biases=learnt.biases.astype(np.float32), **arrays)
 
@@ -81,7 +91,7 @@ def load(path: Path = SHIPPED) -> ImageClassifier:
             return ImageClassifier(
                 leaves=tuple(text["leaves"]),
                 story=text["story"],
-                **{name: arrays[name].astype(float) for name in ("weights", "biases", "looks", "imagenet")},
+                **{name: arrays[name].astype(float) for name in ("biases", *_HALF)},
             )
     except (OSError, EOFError, ValueError, KeyError) as error:
         raise BadFile(f"{path} is not a valid image classifier: {error}") from None

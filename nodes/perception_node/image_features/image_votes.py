@@ -14,7 +14,8 @@ ImageFits = Callable[[Sequence[int]], Numbers]
 
 _CERTAIN = 0.97
 """A thing that shape and colours recognise with more than this probability needs no image."""
-_DROPPED = 0.7
+MOST_CLUTTER = 0.7
+"""The images of things that are clutter with more than this probability are not used."""
 _LEAST = 1e-6
 """Keeps logarithms finite; 0.001 and more let images name a thing that its shape rules out."""
 _SHAPE = 0.5
@@ -36,7 +37,7 @@ def with_image_votes(chances: Numbers, learnt: RecognitionModel, fits: ImageFits
     if learnt.exemplars is not None:
         fixed[len(learnt.classes) - len(learnt.exemplars.exemplars) :] = True
     named = np.delete(chances, [clutter, unknown], axis=1).max(axis=1, initial=0.0)
-    doubtful = np.flatnonzero((named <= _CERTAIN) & (chances[:, clutter] <= _DROPPED))
+    doubtful = np.flatnonzero((named <= _CERTAIN) & (chances[:, clutter] <= MOST_CLUTTER))
     if not doubtful.size:
         return chances
     logs = _SHAPE * np.log(chances[doubtful][:, ~fixed] + _LEAST)
