@@ -28,6 +28,8 @@ from semmap.nodes.perception_node.recognition.exemplars import with_exemplars
 from semmap.nodes.perception_node.recognition.features import features_of
 from semmap.nodes.perception_node.recognition.recognise import recognise
 from semmap.nodes.perception_node.recognition.vote import leaf_probabilities
+from semmap.nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
+from semmap.nodes.perception_node.tracking.costs import FORBIDDEN, Target, cost_anywhere
 from semmap.nodes.perception_node.views.boxes import Numbers
 from semmap.nodes.perception_node.views.merged_thing import Thing
 from semmap.schemas.perception import Observation
@@ -41,6 +43,7 @@ class _Frame:
     """The things of a frame, and for each object of its `truth.json` the thing in its middle, from 0."""
 
     things: tuple[Thing, ...]
+    observations: tuple[Observation, ...]
     features: list[Numbers]
     images: ThingImages | None
     matches: tuple[int | None, ...]
@@ -82,7 +85,10 @@ def measure(data: Path, learnt: RecognitionModel) -> list[Row]:
     looks = [look for many in THINGS.values() for look in many]
     found = sum(frames[look.frame].matches[look.number] is not None for look in looks)
     rows = [Row(f"shown once: {len(THINGS)} things, {len(looks)} looks: found at all", found / len(looks))]
-    for images, how in ((False, "shape and colours"), (True, "with images")):
+    ways = ((False, "shape and colours"), (True, "with images"))
+    for images, how in ways:  # first, while only the images of doubtful things are known, as in a system
+        rows += _rows_of_moves(frames, learnt, how, images=images)
+    for images, how in ways:
         rows += _rows(frames, learnt, how, images=images)
     return rows
 
@@ -93,6 +99,7 @@ def _frame(folder: Path, learnt: RecognitionModel) -> _Frame:
     at = [int(seen.labels[0][one["v"] // frame.step, one["u"] // frame.step]) for one in truth]
     return _Frame(
         seen.things,
+        seen.observations.observations,
         features_of(seen.things) if seen.things else [],
         seen.images,
         tuple(number - 1 if number else None for number in at),
@@ -129,6 +136,50 @@ def _rows(frames: Frames, learnt: RecognitionModel, how: str, *, images: bool) -
             less=True,
         ),
     ]
+
+
+def _rows_of_moves(frames: Frames, learnt: RecognitionModel, how: str, *, images: bool) -> list[Row]:
+    """Return how often tracking takes a thing of one frame that is gone for its look in another frame."""
+    classes = ClassHierarchy({name: frozenset(above) for name, above in learnt.ancestors.items()}, {}, {})
+    right, taken, moves = defaultdict[str, list[bool]](list), 0, 0
+    for name, looks in THINGS.items():
+        for look in looks:
+            if not frames[look.frame].is_single(look.number):
+                continue
+            for other in looks:
+                if other.frame != look.frame:
+                    true = frames[other.frame].matches[other.number]
+                    found = _moved(
+                        frames[look.frame], look.number, frames[other.frame], classes, images=images
+                    )
+                    right[name].append(found is not None and found == true)
+                    taken += found not in (None, true)
+                    moves += 1
+    return [
+        Row(f"moved, {how}: keeps its identity", _mean_share(right)),
+        Row(f"moved, {how}: another one is taken for it", taken / max(1, moves), less=True),
+    ]
+
+
+def _moved(
+    before: _Frame, number: int, after: _Frame, classes: ClassHierarchy, *, images: bool
+) -> int | None:
+    """Return the thing of a frame, from 0, that tracking takes for an object of another frame."""
+    match = before.matches[number]
+    if match is None or not after.observations:
+        return None
+    seen = before.observations[match]
+    target = Target(seen.pose, seen.size_m, seen.class_, seen.whole, color_rgb=seen.color_rgb)
+    alike = np.full(len(after.observations), np.nan)
+    if images and before.images is not None and after.images is not None:
+        things = range(len(after.observations))
+        alike = after.images.evidence.classifier.similarities(
+            before.images.known_features([match]), after.images.known_features(things)
+        )[0]
+    pairs = zip(after.observations, alike.tolist(), strict=True)
+    costs = [cost_anywhere(target, one, classes, cosine) for one, cosine in pairs]
+    best = int(np.argmin(costs))
+    return best if costs[best] < FORBIDDEN else None
 
 
 def _mean_share(right: Mapping[str, list[bool]]) -> float:

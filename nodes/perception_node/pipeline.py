@@ -18,6 +18,7 @@ from semmap.nodes.perception_node.recognition.joining import join_parts
 from semmap.nodes.perception_node.recognition.recognise import Clutter, recognise
 from semmap.nodes.perception_node.recognition.recognition_model import RecognitionModel, shipped
 from semmap.nodes.perception_node.recognition.vote import leaf_probabilities
+from semmap.nodes.perception_node.tracking.observed_images import NO_IMAGES, ObservedImages
 from semmap.nodes.perception_node.views.foot_supports import supports_at_feet
 from semmap.nodes.perception_node.views.furniture_planes import join_legs
 from semmap.nodes.perception_node.views.fusion import Member, group_segments, same_thing_logits
@@ -73,6 +74,14 @@ class FrameResult:
     def camera_moves(self) -> bool:
         """Return whether a camera of this frame moves."""
         return any(view.camera in self.remembered.moving for view in self.observations.views)
+
+    @property
+    def observed_images(self) -> ObservedImages:
+        """Return what the network has found in the images of the observations, for tracking."""
+        if self.images is None:
+            return NO_IMAGES
+        known = self.images.known_features(range(len(self.things)))
+        return ObservedImages(known, self.images.evidence.classifier.similarities)
 
 
 def observe(clouds: Sequence[Cloud], learnt: RecognitionModel) -> Observations:

@@ -55,6 +55,17 @@ class ImageClassifier:
         fits = others @ self.looks[:-1] + named @ self.imagenet + _FLOOR
         return np.where(rendered > _RENDERED, 1.0, fits)
 
+    def similarities(self, kept: Numbers, seen: Numbers) -> Numbers:
+        """Return (V, N) cosines of stored features (V, FEATURES) and seen ones (N, FEATURES).
+
+        They are relative to the mean of other things, and NaN where either are zeros.
+        """
+        return self._directions(kept) @ self._directions(seen).T
+
+    def _directions(self, features: Numbers) -> Numbers:
+        apart = np.where(features.any(axis=1, keepdims=True), features - self.centre, np.nan)
+        return np.asarray(apart / np.linalg.norm(apart, axis=1, keepdims=True))
+
     @property
     def least(self) -> float:
         """Return how well an image fits a class that is not among the leaves."""

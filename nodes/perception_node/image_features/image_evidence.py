@@ -132,17 +132,16 @@ class ThingImages:
         found = [nothing if result is None else result.features for result in self._results(things)]
         return np.array(found).reshape(len(things), FEATURES)
 
+    def known_features(self, things: Sequence[int]) -> Numbers:
+        """Return (N, FEATURES) as `features`, but zeros for things that the network has not processed."""
+        known = [n for n, thing in enumerate(things) if self.numbers[thing] in self._done]
+        rows = np.zeros((len(things), FEATURES))
+        rows[known] = self.features([things[n] for n in known])
+        return rows
+
     def similarities(self, kept: Numbers, things: Sequence[int]) -> Numbers:
-        """Return (V, N) cosines of stored features (V, FEATURES) and those of things.
-
-        They are relative to the mean of other things, and NaN where either are zeros.
-        """
-        return self._directions(kept) @ self._directions(self.features(things)).T
-
-    def _directions(self, features: Numbers) -> Numbers:
-        known = features.any(axis=1, keepdims=True)
-        apart = np.where(known, features - self.evidence.classifier.centre, np.nan)
-        return np.asarray(apart / np.linalg.norm(apart, axis=1, keepdims=True))
+        """Return (V, N) cosines of stored features (V, FEATURES) and those of things; NaN without."""
+        return self.evidence.classifier.similarities(kept, self.features(things))
 
     def _results(self, things: Sequence[int]) -> list[ImageResult | None]:
         asked = [self.numbers[thing] for thing in things]

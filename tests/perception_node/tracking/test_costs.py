@@ -218,3 +218,24 @@ def test_a_front_costs_at_most_two_thirds_for_its_distance(aside_m, way):
     oven = Target(at(1, 1, 0.0), (0.8, 0.9, 1.8), "Object")
     front = seen("Object", at(1 + aside_m, 1, 0.0), (0.02, 0.9, 1.8))
     assert cost_in_place(oven, front, CLASSES) == pytest.approx(way + 0.15)
+
+
+@pytest.mark.parametrize(
+    ("now", "alike", "matches"),
+    [
+        (seen("Cup", at(4, 4)), math.nan, True),
+        (seen("Cup", at(4, 4)), 0.3, True),
+        (seen("Cup", at(4, 4)), 0.2, False),
+        (seen("Bottle", at(4, 4), SIZES["Cup"]), 0.4, False),
+        (seen("Bottle", at(4, 4), SIZES["Cup"]), 0.6, True),
+        (seen(ANYTHING, at(4, 4), SIZES["Cup"], whole=False), 0.6, True),
+        (seen("Cup", at(4, 4), BOX), 0.9, False),
+    ],
+)
+def test_images_tell_things_apart_and_replace_class_and_colour_elsewhere(now, alike, matches):
+    assert (cost_anywhere(CUP, now, CLASSES, alike) < FORBIDDEN) == matches
+
+
+def test_the_more_alike_image_costs_less():
+    now = seen("Cup", at(4, 4))
+    assert cost_anywhere(CUP, now, CLASSES, 0.9) < cost_anywhere(CUP, now, CLASSES, 0.4)
