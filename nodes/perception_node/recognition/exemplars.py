@@ -24,7 +24,8 @@ _LEAST_WITH_IMAGE = 0.02
 """The same for similarities that include those of images."""
 _SHAPE, _IMAGE, _BIAS = 0.35, 15.0, -6.7
 """The logarithm of the odds that a thing is an exemplar is a weighted sum of that by shape and colours and of
-the cosine of the images. The weights maximise the likelihood on real frames of 31 things in four folds."""
+the cosine of the images. The weights maximise the likelihood of real frames of 31 things (0.31 to 0.37, 14 to
+17 in four folds), and the bias gives as few false names as before if several things are shown."""
 
 
 @dataclass(frozen=True)
