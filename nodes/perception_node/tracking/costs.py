@@ -91,15 +91,16 @@ def cost_anywhere(
 
     The position has little weight. A thing back in its place may be less similar. An unknown thing is only
     recognised elsewhere if it is completely visible and has the same colour. `alike`: the cosine of the
-    images, NaN if one is not known. Like images replace class and colour, and unlike ones forbid a match.
+    images, NaN if one is not known. Like images replace class and colour, and unlike ones forbid a match
+    elsewhere.
     """
     box = target.box
-    if box is None or alike < _UNLIKE:
+    if box is None:
         return FORBIDDEN
     vague = ANYTHING in (seen.class_, target.class_) and not alike > _ALIKE
     mismatch = size_difference(target._replace(size_m=box.size_m), seen)
     related = classes.related(target.class_, seen.class_) or alike > _ALIKE
-    matches = related and mismatch <= (_OF_ANY_KIND if vague else _OF_A_KIND)
+    matches = related and not alike < _UNLIKE and mismatch <= (_OF_ANY_KIND if vague else _OF_A_KIND)
     if vague and not (seen.whole and _is_of_like_color(target, seen)):
         matches = False
     if not matches and cost_in_place(target, seen, classes) == FORBIDDEN:

@@ -226,6 +226,7 @@ def test_a_front_costs_at_most_two_thirds_for_its_distance(aside_m, way):
         (seen("Cup", at(4, 4)), math.nan, True),
         (seen("Cup", at(4, 4)), 0.3, True),
         (seen("Cup", at(4, 4)), 0.2, False),
+        (seen("Cup", at(1, 1)), 0.2, True),
         (seen("Bottle", at(4, 4), SIZES["Cup"]), 0.4, False),
         (seen("Bottle", at(4, 4), SIZES["Cup"]), 0.6, True),
         (seen(ANYTHING, at(4, 4), SIZES["Cup"], whole=False), 0.6, True),
