@@ -15,6 +15,7 @@ from benchmarks.perception import (
     live,
     real_frames,
     recorded,
+    shown_once,
     simulated,
     static,
     tables,
@@ -22,6 +23,7 @@ from benchmarks.perception import (
     unknown,
 )
 from benchmarks.perception.table import Row, lines
+from semmap.nodes.perception_node.image_features.image_evidence import with_images
 from semmap.nodes.perception_node.recognition.recognition_model import shipped
 
 PARTS = (
@@ -35,6 +37,7 @@ PARTS = (
     "foreign",
     "fitted",
     "learnt",
+    "shown",
     "tracking",
     "live",
 )
@@ -88,7 +91,9 @@ def main() -> None:
     if "fitted" in parts:
         rows += fitted.measure(words.scenes, shipped())
     if "learnt" in parts:
-        rows += exemplars.measure(words.things, words.scenes // 2, shipped())
+        rows += exemplars.measure(words.things, words.scenes // 2, with_images(shipped()))
+    if "shown" in parts:
+        rows += shown_once.measure(data.resolve(), shipped())
     if "unknown" in parts:
         rows += unknown.measure(words.scenes, words.samples, words.training_scenes)
     if "tracking" in parts:

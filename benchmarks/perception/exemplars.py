@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from benchmarks.perception.foreign import matched
 from benchmarks.perception.simulated import LEAST_PIXELS
 from benchmarks.perception.table import Row
-from semmap.nodes.perception_node.exemplar_views import exemplar_view_of, find_shown_thing
+from semmap.nodes.perception_node.exemplar_views import ExemplarView, find_shown_thing, view_of_shown
+from semmap.nodes.perception_node.image_features.efficientnet import FEATURES
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.projection import cloud_of
 from semmap.nodes.perception_node.pipeline import RecognitionModel, observe_views
@@ -107,9 +108,14 @@ def _exemplars(
         if shown is None:
             print(f"{thing.name} is not found where it stands alone")
             continue
-        view = exemplar_view_of(shown, learnt)
-        found[thing.name] = Exemplar(number, thing.name, (), view.features[None], view.size_m, "", 0)
+        found[thing.name] = exemplar_of(number, thing.name, view_of_shown(shown, cloud, learnt))
     return found
+
+
+def exemplar_of(number: int, name: str, view: ExemplarView) -> Exemplar:
+    """Return an exemplar of one view, of a class with this name."""
+    image = view.image if view.image.size else np.zeros(FEATURES)
+    return Exemplar(number, name, (), view.features[None], view.size_m, "", 0, image[None])
 
 
 def _table(things: Sequence[ForeignThing], rng: np.random.Generator) -> list[Stood]:

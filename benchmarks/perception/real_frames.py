@@ -23,21 +23,29 @@ _SINGLE, _PHANTOMS = 0.85, 0.6
 
 def measure(data: Path, before: str = "") -> list[Row]:
     """Return the figures of both sets; with `before`, those of that commit come first."""
-    tools = data.parent / "tools"
-    if not (data / "real").is_dir() or not (tools / "score_names.py").exists():
-        print(f"no real frames in {data}, or no scorer in {tools}: set SEMMAP_DATA")
-        return []
-    rows: list[Row] = []
-    with TemporaryDirectory() as folder:
-        sets = {"real": data / "real", "mosd": Path(folder) / "mosd"}
-        names = data / "mosd" / "names.json"
-        _run([tools / "mosd_frames.py", data / "mosd", names, sets["mosd"]])
+    tools, rows = data.parent / "tools", list[Row]()
+    with frame_sets(data) as sets:
         for name, frames in sets.items():
             if before:
                 with _checked_out(before) as code:
                     rows += _rows(f"{name} at {before}", _score(tools, frames, code))
             rows += _rows(name, _score(tools, frames, _HERE))
     return rows
+
+
+@contextmanager
+def frame_sets(data: Path) -> Iterator[dict[str, Path]]:
+    """Lay out both sets as folders of frames, by name; none without the data or the tools beside it."""
+    tools = data.parent / "tools"
+    if not (data / "real").is_dir() or not (tools / "score_names.py").exists():
+        print(f"no real frames in {data}, or no scorer in {tools}: set SEMMAP_DATA")
+        yield {}
+        return
+    with TemporaryDirectory() as folder:
+        sets = {"real": data / "real", "mosd": Path(folder) / "mosd"}
+        names = data / "mosd" / "names.json"
+        _run([tools / "mosd_frames.py", data / "mosd", names, sets["mosd"]])
+        yield sets
 
 
 def _rows(name: str, counts: Mapping[str, float]) -> list[Row]:

@@ -7,6 +7,7 @@ import os
 from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -18,6 +19,7 @@ from semmap.nodes.perception_node.fitting.fit_observations import fit_all
 from semmap.nodes.perception_node.fitting.model_surfaces import ClassSurfaces
 from semmap.nodes.perception_node.input.files.frame_folders import FileFrame, read_frame
 from semmap.nodes.perception_node.input.masks import Masks
+from semmap.nodes.perception_node.input.robot_mask import read_robot
 from semmap.nodes.perception_node.pipeline import FrameResult, RecognitionModel, observe_clouds
 from semmap.nodes.perception_node.views.boxed import FEWEST_POINTS
 from semmap.schemas.errors import SemmapError
@@ -46,18 +48,20 @@ def perceive_folders(
     learnt: RecognitionModel,
     detector: Detector | None = None,
     surfaces: ClassSurfaces | None = None,
+    robot: Path | None = None,
 ) -> Iterator[DatasetFrame]:
     """Yield the observations of the frames in these folders, in order.
 
     An error of a frame is in its row, even an unexpected one, so that no frame ends the run.
 
-    With `surfaces`, the models of classes are fitted to the things of each frame.
+    With `surfaces`, the models of classes are fitted to the things of each frame. `robot` names the file in
+    each folder with the state of the robot, which is left out.
     """
     cores = os.cpu_count() or 1
     under_way: deque[Future[DatasetFrame]] = deque()
     with ThreadPoolExecutor(cores) as threads:
         for folder in folders:
-            under_way.append(threads.submit(_perceive, folder, learnt, detector, surfaces))
+            under_way.append(threads.submit(_perceive, folder, learnt, detector, surfaces, robot))
             if len(under_way) >= _AHEAD * cores:
                 yield under_way.popleft().result()
         while under_way:
@@ -65,10 +69,14 @@ def perceive_folders(
 
 
 def _perceive(
-    folder: Path, learnt: RecognitionModel, detector: Detector | None, surfaces: ClassSurfaces | None
+    folder: Path,
+    learnt: RecognitionModel,
+    detector: Detector | None,
+    surfaces: ClassSurfaces | None,
+    robot: Path | None,
 ) -> DatasetFrame:
     try:
-        return _perceive_folder(folder, learnt, detector, surfaces)
+        return _perceive_folder(folder, learnt, detector, surfaces, robot)
     except SemmapError as error:
         text = error.text
     except Exception as error:
@@ -78,9 +86,15 @@ def _perceive(
 
 
 def _perceive_folder(
-    folder: Path, learnt: RecognitionModel, detector: Detector | None, surfaces: ClassSurfaces | None
+    folder: Path,
+    learnt: RecognitionModel,
+    detector: Detector | None,
+    surfaces: ClassSurfaces | None,
+    robot: Path | None,
 ) -> DatasetFrame:
     frame = read_frame(folder)
+    if robot is not None:
+        frame = replace(frame, cloud=read_robot(folder / robot).remove_from(frame.cloud))
     masks = None
     if detector is not None:
         masks = detector.masks_of(frame.cloud, frame.shape, frame.step, folder)

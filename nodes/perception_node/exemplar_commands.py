@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from semmap.nodes.perception_node.exemplar_store import ExemplarStore
 from semmap.nodes.perception_node.exemplar_views import ExemplarView, exemplar_view_of
+from semmap.nodes.perception_node.image_features.image_evidence import ThingImages
+from semmap.nodes.perception_node.pipeline import FrameResult
 from semmap.nodes.perception_node.recognition.recognition_model import RecognitionModel
+from semmap.nodes.perception_node.recognition.similarity import WIDTH
 from semmap.nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
 from semmap.nodes.perception_node.views.merged_thing import Thing
 from semmap.nodes.runtime.loop import Node
@@ -20,6 +24,14 @@ from semmap.schemas.perception import Observation
 
 _NOW_S = 3.0
 """Observations that are older are not current."""
+
+
+class _Current(NamedTuple):
+    """A thing, when it was seen (by the monotonic clock), and its images."""
+
+    at_s: float
+    thing: Thing
+    images: ThingImages | None
 
 
 class ExemplarCommands:
@@ -36,7 +48,7 @@ class ExemplarCommands:
         self._store = store
         self._classes = classes
         self._on_change = on_change
-        self._seen: dict[str, tuple[float, Thing]] = {}
+        self._seen: dict[str, _Current] = {}
         on_change(store.learnt)
         node.serve(
             keys.PERCEPTION,
@@ -47,17 +59,19 @@ class ExemplarCommands:
             ),
         )
 
-    def see(self, things: Sequence[Thing], observations: Sequence[Observation]) -> None:
+    def see(self, found: FrameResult, observations: Sequence[Observation]) -> None:
         """Store the things of a frame by the entities that they were assigned to."""
         now = time.monotonic()
-        self._seen = {name: (at, thing) for name, (at, thing) in self._seen.items() if now - at < _NOW_S}
-        for thing, seen in zip(things, observations, strict=False):
+        self._seen = {name: current for name, current in self._seen.items() if now - current.at_s < _NOW_S}
+        for n, (thing, seen) in enumerate(zip(found.things, observations, strict=False)):
             if seen.entity:
-                self._seen[seen.entity] = now, thing
+                images = None if found.images is None else found.images.select([n])
+                self._seen[seen.entity] = _Current(now, thing, images)
 
     def _learn(self, command: Learn) -> LessonTold:
         if command.entity is not None:
-            views = [exemplar_view_of(self._current(command.entity), self._store.learnt)]
+            current = self._current(command.entity)
+            views = [exemplar_view_of(current.thing, self._store.learnt, current.images)]
             shown = command.shown or f"entity {command.entity}"
         else:
             views, shown = [_view(one) for one in command.views], command.shown or "views"
@@ -77,9 +91,9 @@ class ExemplarCommands:
         classes = self._classes()
         return tuple(sorted(classes.ancestors.get(class_, ()), key=lambda a: (-classes.depth(a), a)))
 
-    def _current(self, name: str) -> Thing:
+    def _current(self, name: str) -> _Current:
         now = time.monotonic()
-        there = {entity: thing for entity, (at, thing) in self._seen.items() if now - at < _NOW_S}
+        there = {entity: current for entity, current in self._seen.items() if now - current.at_s < _NOW_S}
         if name not in there:
             sees = (
                 f"visible are: {wording.few(sorted(there), 5)}"
@@ -87,17 +101,19 @@ class ExemplarCommands:
                 else "no entity of the map is visible"
             )
             raise errors.Refused(f"{name} is not visible to perception; {sees}")
-        if not there[name].whole:
+        if not there[name].thing.whole:
             raise errors.Refused(f"only a part of {name} is in view; point a camera at all of it")
         return there[name]
 
 
 def view_message(view: ExemplarView) -> ShownView:
     """Return a view as a message."""
-    return ShownView(features=view.features.astype("<f4").tobytes(), size_m=view.size_m)
+    features = np.concatenate([view.features, view.image])
+    return ShownView(features=features.astype("<f4").tobytes(), size_m=view.size_m)
 
 
 def _view(message: ShownView) -> ExemplarView:
     if len(message.features) % 4:
         raise errors.BadRequest("the features of a view must be 32-bit floats")
-    return ExemplarView(np.frombuffer(message.features, "<f4").astype(float), message.size_m)
+    features = np.frombuffer(message.features, "<f4").astype(float)
+    return ExemplarView(features[:WIDTH], message.size_m, features[WIDTH:])

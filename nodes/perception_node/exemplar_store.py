@@ -12,8 +12,10 @@ from pathlib import Path
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
 from semmap.nodes.perception_node.exemplar_views import ExemplarView
+from semmap.nodes.perception_node.image_features.efficientnet import FEATURES
 from semmap.nodes.perception_node.recognition import similarity
 from semmap.nodes.perception_node.recognition.exemplars import Exemplar, with_exemplars
 from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN, RecognitionModel
@@ -77,7 +79,8 @@ class ExemplarStore:
                 f"the limit of {_MOST} exemplars is reached; remove some with: semmap forget NUMBER"
             )
         features = np.array([view.features for view in views], np.float32).astype(float)
-        if features.ndim != 2 or features.shape[1] != WIDTH or not np.isfinite(features).all():
+        images = [view.image if view.image.size else np.zeros(FEATURES) for view in views]
+        if not (_are_rows(features, WIDTH) and all(_are_rows(image[None], FEATURES) for image in images)):
             raise BadRequest(f"a view must have {WIDTH} features; create it with the same version of semmap")
         long, short, height = np.median([view.size_m for view in views], axis=0).tolist()
         exemplar = Exemplar(
@@ -88,6 +91,7 @@ class ExemplarStore:
             size_m=(long, short, height),
             shown=shown,
             stamp_ns=time.time_ns(),
+            images=np.array(images, np.float16).astype(float),
         )
         self._keep((*self._exemplars, exemplar))
         return _to_message(exemplar)
@@ -132,6 +136,10 @@ def known_class(word: str, ancestors: Mapping[str, Sequence[str]]) -> str:
     )
 
 
+def _are_rows(features: NDArray[np.floating], width: int) -> bool:
+    return features.ndim == 2 and features.shape[1] == width and bool(np.isfinite(features).all())
+
+
 def _plain(word: str) -> str:
     return "".join(c for c in word.casefold() if c.isalnum())
 
@@ -155,6 +163,9 @@ def _read(path: Path) -> tuple[Exemplar, ...]:
         with np.load(path, allow_pickle=False) as arrays:
             entries = msgspec.json.decode(str(arrays["description"]), type=list[_Entry])
             views = arrays["views"].astype(float)
+            images = np.zeros((len(views), FEATURES))  # of files without images
+            if "images" in arrays:
+                images[:] = arrays["images"]
         counts = [entry.views for entry in entries]
         if views.shape != (sum(counts), WIDTH):
             raise ValueError("its views are of another version")
@@ -162,9 +173,9 @@ def _read(path: Path) -> tuple[Exemplar, ...]:
         raise BadFile(
             f"{path} has no exemplars of this version ({error}); move it away and repeat `semmap learn`"
         ) from None
-    parts = [views[end - count : end] for end, count in zip(np.cumsum(counts), counts, strict=True)]
+    parts = [slice(end - count, end) for end, count in zip(np.cumsum(counts), counts, strict=True)]
     return tuple(
-        Exemplar(**{**msgspec.structs.asdict(entry), "views": part})
+        Exemplar(**msgspec.structs.asdict(entry) | {"views": views[part], "images": images[part]})
         for entry, part in zip(entries, parts, strict=True)
     )
 
@@ -176,12 +187,13 @@ def _write(path: Path, exemplars: Sequence[Exemplar]) -> None:
         | {"views": len(exemplar.views)}
         for exemplar in exemplars
     ]
-    views = [exemplar.views for exemplar in exemplars]
+    views, images = ([getattr(one, name) for one in exemplars] for name in ("views", "images"))
     buffer = io.BytesIO()
     np.savez_compressed(
         buffer,
         description=np.array(json.dumps(entries)),
         views=np.concatenate([*views, np.empty((0, WIDTH))]).astype(np.float32),
+        images=np.concatenate([*images, np.empty((0, FEATURES))]).astype(np.float16),
     )
     beside = path.with_name(f"{path.name}.partly")
     try:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from semmap.nodes.perception_node.image_features.image_evidence import ThingImages
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.files.frame_folders import frames_in, read_frame
 from semmap.nodes.perception_node.pipeline import parts_in
@@ -37,19 +39,39 @@ _INSIDE = 0.7
 class ExemplarView:
     """The appearance of a thing in one frame.
 
-    `features`: (WIDTH,). `size_m`: its size as estimated from this frame [m].
+    `features`: (WIDTH,). `size_m`: its size as estimated from this frame [m]. `image`: (FEATURES,) the
+    features of its image, or (0,) without the network.
     """
 
     features: Numbers
     size_m: Size
+    image: Numbers = field(default_factory=lambda: np.zeros(0))
 
 
-def exemplar_view_of(thing: Thing, learnt: RecognitionModel) -> ExemplarView:
-    """Return the view of a thing as recognition stores it."""
+class ShownThing(NamedTuple):
+    """A thing that was found in a cloud, and its pixels (H, W)."""
+
+    thing: Thing
+    own: NDArray[np.bool_]
+
+
+def exemplar_view_of(
+    thing: Thing, learnt: RecognitionModel, images: ThingImages | None = None
+) -> ExemplarView:
+    """Return the view of a thing as recognition stores it. `images`: those of the thing alone."""
     features = features_of([thing])
     expected = expected_sizes(leaf_probabilities(learnt, features), learnt.sizes_m)[0]
     x, y, z = completed(thing, side_features(thing, expected), learnt.sides).size_m.tolist()
-    return ExemplarView(views_of(features)[0], (max(x, y), min(x, y), z))
+    image = np.zeros(0) if images is None else images.features([0])[0]
+    return ExemplarView(views_of(features)[0], (max(x, y), min(x, y), z), image)
+
+
+def view_of_shown(shown: ShownThing, cloud: Cloud, learnt: RecognitionModel) -> ExemplarView:
+    """Return the view of a thing that was found in a cloud, with its image."""
+    images = None
+    if learnt.images is not None and cloud.colors is not None and cloud.organised:
+        images = learnt.images.of([(cloud.colors, shown.own.astype(np.int32))], [1])
+    return exemplar_view_of(shown.thing, learnt, images)
 
 
 def views_in_frames(
@@ -65,14 +87,14 @@ def views_in_frames(
         try:
             frame = read_frame(frame_folder)
             box = None if box_px is None else _thinned(box_px, frame.shape, frame.step)
-            thing = find_shown_thing(frame.cloud, learnt, box)
-            if thing is None:
+            shown = find_shown_thing(frame.cloud, learnt, box)
+            if shown is None:
                 what = "no compact free-standing thing" if box is None else "nothing in that box"
                 raise errors.BadFile(f"{frame_folder.name}: {what}; {_HINT[box is None]}")
         except errors.BadFile as error:
             wrong.append(error)
             continue
-        views.append(exemplar_view_of(thing, learnt))
+        views.append(view_of_shown(shown, frame.cloud, learnt))
     if not views:
         raise wrong[0]
     if not wrong:
@@ -86,9 +108,15 @@ _HINT = {
 }
 
 
-def find_shown_thing(cloud: Cloud, learnt: RecognitionModel, box_px: BoxPx | None = None) -> Thing | None:
+def find_shown_thing(
+    cloud: Cloud, learnt: RecognitionModel, box_px: BoxPx | None = None
+) -> ShownThing | None:
     """Return the largest compact thing in a cloud, or all that lies in a box; None if there is none."""
     parts = parts_in([segment_cloud(cloud)])
+
+    def own_pixels(numbers: Sequence[int]) -> NDArray[np.bool_]:
+        return np.isin(parts.labels[0], [number + 1 for number in numbers])
+
     if box_px is not None:
         inside = [
             n
@@ -96,9 +124,11 @@ def find_shown_thing(cloud: Cloud, learnt: RecognitionModel, box_px: BoxPx | Non
             if share >= _INSIDE and not parts.things[n].carrier
         ]
         segments = [segment for n in inside for segment in parts.things[n].segments]
-        return thing_of(segments, parts.supports) if segments else None
-    things, _, _ = join_parts(parts.things, parts.same_thing_logits, learnt, parts.join)
-    return max((thing for thing in things if is_compact(thing)), key=lambda thing: thing.count, default=None)
+        return ShownThing(thing_of(segments, parts.supports), own_pixels(inside)) if segments else None
+    things, _, members = join_parts(parts.things, parts.same_thing_logits, learnt, parts.join)
+    compact = [n for n, thing in enumerate(things) if is_compact(thing)]
+    best = max(compact, key=lambda n: things[n].count, default=None)
+    return None if best is None else ShownThing(things[best], own_pixels(members[best]))
 
 
 def _shares(labels: NDArray[np.int32], box_px: BoxPx) -> Sequence[float]:

@@ -43,6 +43,7 @@ from semmap.nodes.perception_node.segmented_cloud import segmented_cloud
 from semmap.nodes.perception_node.tracking.association import associate, rename_new_entity
 from semmap.nodes.perception_node.tracking.class_hierarchy import ANYTHING, ClassHierarchy, hierarchy_of
 from semmap.nodes.perception_node.tracking.map_updates import subject_of
+from semmap.nodes.perception_node.tracking.observed_images import NO_IMAGES, ObservedImages
 from semmap.nodes.perception_node.tracking.occupancy import occupancy_in
 from semmap.nodes.perception_node.tracking.tracks import Tracks
 from semmap.nodes.runtime.loop import Node, open_node
@@ -157,9 +158,9 @@ class Perception:
             self._on_complaint(wording.unknown_labels(found.unknown_labels))
         for text in found.failures:
             self._on_complaint(text)
-        seen = self._compare(seen, clouds, camera_moves=found.camera_moves)
+        seen = self._compare(seen, clouds, camera_moves=found.camera_moves, images=found.observed_images)
         if self._exemplar_commands is not None:
-            self._exemplar_commands.see(found.things, seen.observations)
+            self._exemplar_commands.see(found, seen.observations)
         self._ask_for_fit(seen, clouds, found)
         if time.monotonic() >= self._cloud_due and self._cloud_is_wanted():
             self._cloud_due = time.monotonic() + _CLOUD_S
@@ -198,7 +199,12 @@ class Perception:
         self._classes = replace(self._classes, usual_m=self._usual_m)
 
     def _compare(
-        self, seen: Observations, clouds: Sequence[Cloud], *, camera_moves: bool = False
+        self,
+        seen: Observations,
+        clouds: Sequence[Cloud],
+        *,
+        camera_moves: bool = False,
+        images: ObservedImages = NO_IMAGES,
     ) -> Observations:
         """Update the map from observations and publish them; `camera_moves`: a camera of these moves.
 
@@ -213,6 +219,7 @@ class Perception:
                 occupancy_in(clouds),
                 self._classes,
                 tracking.for_moving_camera if camera_moves else tracking,
+                images,
             )
             self._tracks = result.tracks
             named = zip(seen.observations, result.entities, strict=True)

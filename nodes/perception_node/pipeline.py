@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from semmap.nodes.perception_node.image_features.image_votes import ImageFits
+from semmap.nodes.perception_node.image_features.image_evidence import ThingImages
 from semmap.nodes.perception_node.image_features.photographs import is_photograph
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.masks import Masks
@@ -19,6 +19,7 @@ from semmap.nodes.perception_node.recognition.joining import join_parts
 from semmap.nodes.perception_node.recognition.recognise import Clutter, recognise
 from semmap.nodes.perception_node.recognition.recognition_model import RecognitionModel, shipped
 from semmap.nodes.perception_node.recognition.vote import leaf_probabilities
+from semmap.nodes.perception_node.tracking.observed_images import NO_IMAGES, ObservedImages
 from semmap.nodes.perception_node.views.foot_supports import supports_at_feet
 from semmap.nodes.perception_node.views.furniture_planes import join_legs
 from semmap.nodes.perception_node.views.fusion import Member, group_segments, same_thing_logits
@@ -56,7 +57,7 @@ class FrameResult:
     things of the observations, in the same order. `dropped` are the things that are not reported, with the
     reason. `unused_masks` are the numbers of a detector's masks in each cloud that cover no surface.
     `notes` are doubts about the clouds and their poses. `failures` are the reasons why a detector gave no
-    masks.
+    masks. `images` are those of `things`, if their packages are installed and the clouds have colours.
     """
 
     observations: Observations
@@ -68,11 +69,20 @@ class FrameResult:
     unused_masks: tuple[tuple[int, ...], ...] = ()
     notes: tuple[str, ...] = ()
     failures: tuple[str, ...] = ()
+    images: ThingImages | None = None
 
     @property
     def camera_moves(self) -> bool:
         """Return whether a camera of this frame moves."""
         return any(view.camera in self.remembered.moving for view in self.observations.views)
+
+    @property
+    def observed_images(self) -> ObservedImages:
+        """Return what the network has found in the images of the observations, for tracking."""
+        if self.images is None:
+            return NO_IMAGES
+        known = self.images.known_features(range(len(self.things)))
+        return ObservedImages(known, self.images.evidence.classifier.similarities)
 
 
 def observe(clouds: Sequence[Cloud], learnt: RecognitionModel) -> Observations:
@@ -123,7 +133,8 @@ def observe_views(
     )
     things, chances, members = join_parts(parts.things, parts.same_thing_logits, learnt, parts.join)
     numbers = [_renumbered(label, members) for label in parts.labels]
-    found, reasons = _recognised(sights, numbers, things, chances, learnt, labels)
+    images = images_in(sights, numbers, len(things), learnt)
+    found, reasons = _recognised(sights, numbers, things, chances, learnt, labels, images)
     kept = [n for n, reason in enumerate(reasons) if not reason]
     observations = Observations(
         stamp_ns=max((sight.cloud.stamp_ns for sight in sights), default=0),
@@ -138,6 +149,7 @@ def observe_views(
         things=tuple(things[n] for n in kept),
         dropped=tuple((things[n], reason) for n, reason in enumerate(reasons) if reason),
         notes=tuple(note for sight in sights for note in sight.notes),
+        images=None if images is None else images.select(kept),
     )
 
 
@@ -151,7 +163,8 @@ def recognise_segments(
     things = [thing_of([segment], sight.supports) for segment in segments]
     numbers = _renumbered(sight.labels, [[segment.label - 1] for segment in segments])
     chances = leaf_probabilities(learnt, features_of(things))
-    found, reasons = _recognised([sight], [numbers], things, chances, learnt, labels)
+    images = images_in([sight], [numbers], len(things), learnt)
+    found, reasons = _recognised([sight], [numbers], things, chances, learnt, labels, images)
     return {
         segment.label: one if isinstance(one, Observation) and not reason else None
         for segment, one, reason in zip(segments, found, reasons, strict=True)
@@ -165,12 +178,13 @@ def _recognised(
     chances: NDArray[np.float64],
     learnt: RecognitionModel,
     labels: LabelMap | None,
+    images: ThingImages | None,
 ) -> tuple[list[Observation | Clutter], list[str]]:
     """Return an observation of each thing, and the reason why it is not reported, or an empty text.
 
     `numbers`: for each view (H, W) the number of the thing, from 1. `chances`: as for `recognise`.
     """
-    found = recognise(things, chances, learnt, labels, _image_fits(sights, numbers, learnt))
+    found = recognise(things, chances, learnt, labels, images)
     reasons = [
         one.reason if isinstance(one, Clutter) else "" if one.shown else doubt
         for one, doubt in zip(found, doubts(sights, numbers, things), strict=True)
@@ -178,12 +192,17 @@ def _recognised(
     return found, reasons
 
 
-def _image_fits(
-    sights: Sequence[SegmentedView], numbers: Sequence[NDArray[np.int32]], learnt: RecognitionModel
-) -> ImageFits | None:
-    """Return what photographs of things say about them, if there are any; `numbers` as for `_recognised`."""
-    images = learnt.images
-    if images is None:
+def images_in(
+    sights: Sequence[SegmentedView],
+    numbers: Sequence[NDArray[np.int32]],
+    count: int,
+    learnt: RecognitionModel,
+) -> ThingImages | None:
+    """Return the photographs of `count` things; None without any, or without the network.
+
+    `numbers` as for `_recognised`.
+    """
+    if learnt.images is None:
         return None
     views = [
         (colours, number)
@@ -192,11 +211,7 @@ def _image_fits(
     ]
     if not views:
         return None
-
-    def fits(things: Sequence[int]) -> NDArray[np.float64]:
-        return images.fits(views, [thing + 1 for thing in things], learnt)
-
-    return fits
+    return learnt.images.of(views, range(1, count + 1))
 
 
 def _renumbered(labels: NDArray[np.int32], members: Sequence[Sequence[int]]) -> NDArray[np.int32]:

@@ -15,13 +15,15 @@ from semmap.nodes.perception_node import exemplar_commands
 from semmap.nodes.perception_node.exemplar_commands import ExemplarCommands, view_message
 from semmap.nodes.perception_node.exemplar_store import ExemplarStore
 from semmap.nodes.perception_node.exemplar_views import ExemplarView, exemplar_view_of
-from semmap.nodes.perception_node.pipeline import observe_clouds, parts_in, shipped
+from semmap.nodes.perception_node.image_features.efficientnet import FEATURES
+from semmap.nodes.perception_node.pipeline import FrameResult, observe_clouds, parts_in, shipped
 from semmap.nodes.perception_node.recognition.similarity import WIDTH
 from semmap.nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
 from semmap.nodes.perception_node.views.segmented_view import segment_cloud
 from semmap.schemas import errors, keys
 from semmap.schemas.commands import Forget, Learn, Learned
 from semmap.schemas.exemplars import ShownView
+from semmap.schemas.perception import Observations
 from tests.perception_node.scenes import shot
 from tests.perception_node.things import CLASSES, at, seen
 
@@ -54,8 +56,12 @@ def asked(things, tmp_path):
     asked = Asked(tmp_path / "lessons.npz")
     store = ExemplarStore(asked.path, shipped())
     asked.commands = ExemplarCommands(asked, store, lambda: asked.hierarchy, asked.learnt.append)
-    asked.commands.see(things[:2], named("thing1", ""))
+    asked.commands.see(frame(things[:2]), named("thing1", ""))
     return asked
+
+
+def frame(things):
+    return FrameResult(Observations(stamp_ns=0, views=(), observations=()), (), things=tuple(things))
 
 
 def named(*names):
@@ -81,10 +87,11 @@ def test_what_is_seen_is_shown_listed_and_forgotten(asked, things):
 
 
 def test_views_from_elsewhere_are_shown(asked, things):
-    view = exemplar_view_of(things[0], shipped())
+    view = replace(exemplar_view_of(things[0], shipped()), image=np.full(FEATURES, 0.25))
     told = asked(Learn(class_="Gizmo", views=(view_message(view), view_message(view)), shown="2 frames"))
     assert (told.class_, told.views, told.shown) == ("Gizmo", 2, "2 frames")
     assert told.size_m == pytest.approx(view.size_m)
+    assert (asked.learnt[-1].exemplars.exemplars[0].images == 0.25).all()
 
 
 def test_a_class_that_perception_never_learnt_has_what_the_map_has_above_it(asked, things):
@@ -103,7 +110,7 @@ def test_the_ancestors_of_a_class_of_the_map_alone_are_the_most_specific_first(a
 
 def test_an_entity_that_an_image_edge_cuts_is_not_learned(asked, things):
     cut = replace(things[0], segments=tuple(replace(s, cut=True) for s in things[0].segments))
-    asked.commands.see([cut], named("thing1"))
+    asked.commands.see(frame([cut]), named("thing1"))
     with pytest.raises(errors.Refused, match="only a part of thing1 is in view"):
         asked(Learn(class_="Cup", entity="thing1"))
 
@@ -116,7 +123,7 @@ def test_what_was_seen_seconds_ago_is_not_visible_any_more(asked, things, monkey
         monkeypatch.setattr(exemplar_commands, "time", clock)
 
     wait_until(2.0)
-    asked.commands.see(things[1:2], named("thing2"))
+    asked.commands.see(frame(things[1:2]), named("thing2"))
     assert asked(Learn(class_="Cup", entity="thing1")).shown == "entity thing1"
     wait_until(4.0)
     with pytest.raises(errors.Refused, match="thing1 is not visible to perception; visible are: thing2"):

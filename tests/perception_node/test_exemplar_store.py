@@ -8,6 +8,7 @@ from msgspec import structs
 
 from semmap.nodes.perception_node.exemplar_store import ExemplarStore, known_class
 from semmap.nodes.perception_node.exemplar_views import ExemplarView
+from semmap.nodes.perception_node.image_features.efficientnet import FEATURES
 from semmap.nodes.perception_node.pipeline import shipped
 from semmap.nodes.perception_node.recognition.similarity import WIDTH
 from semmap.schemas.errors import BadFile, BadRequest, Refused
@@ -34,6 +35,20 @@ def test_what_was_shown_is_there_again(tmp_path):
     assert ExemplarStore(path, shipped()).learnt is shipped()
 
 
+def test_images_are_kept_and_files_of_versions_without_them_are_read(tmp_path):
+    path, image = tmp_path / "lessons.npz", np.linspace(0.0, 0.05, FEATURES)
+    store = ExemplarStore(path, shipped())
+    store.add("Toy", (), [*VIEWS[:1], ExemplarView(VIEWS[1].features, VIEWS[1].size_m, image)], "")
+    for one in (store, ExemplarStore(path, shipped())):
+        (exemplar,) = one.learnt.exemplars.exemplars
+        assert not exemplar.images[0].any()
+        assert exemplar.images[1] == pytest.approx(image, abs=1e-4)
+    with np.load(path) as arrays:
+        np.savez(path, description=arrays["description"], views=arrays["views"])
+    (exemplar,) = ExemplarStore(path, shipped()).learnt.exemplars.exemplars
+    assert (exemplar.images == np.zeros((2, FEATURES))).all()
+
+
 def test_what_cannot_be_is_refused_and_nothing_is_kept(tmp_path):
     book = ExemplarStore(tmp_path / "lessons.npz", shipped())
     with pytest.raises(Refused, match="no exemplar with number 1; none is stored"):
@@ -44,6 +59,8 @@ def test_what_cannot_be_is_refused_and_nothing_is_kept(tmp_path):
         book.add("Toy", (), [ExemplarView(np.zeros(7), (1.0, 1.0, 1.0))], "")
     with pytest.raises(BadRequest, match=f"a view must have {WIDTH} features"):
         book.add("Toy", (), [ExemplarView(np.full(WIDTH, np.nan), (1.0, 1.0, 1.0))], "")
+    with pytest.raises(BadRequest, match="create it with the same version"):
+        book.add("Toy", (), [ExemplarView(np.zeros(WIDTH), (1.0, 1.0, 1.0), np.zeros(7))], "")
     assert not list(tmp_path.iterdir())
     book.add("Toy", (), VIEWS, "")
     with pytest.raises(Refused, match="no exemplar with number 7; stored are: 1"):

@@ -19,14 +19,16 @@ def around(kind):
 
 def test_the_largest_compact_thing_is_shown():
     largest = max(KINDS, key=lambda kind: around(kind)[1])
-    thing = find_shown_thing(shot().clouds[0], shipped())
+    thing, own = find_shown_thing(shot().clouds[0], shipped())
+    assert np.count_nonzero(own) == pytest.approx(thing.count, rel=0.02)
     assert thing.count == pytest.approx(around(largest)[1], rel=0.2)
 
 
 @pytest.mark.parametrize("kind", ["apple", "bottle"])
 def test_what_is_in_a_box_is_shown(kind):
     box, pixels = around(kind)
-    thing = find_shown_thing(shot().clouds[0], shipped(), box)
+    thing, own = find_shown_thing(shot().clouds[0], shipped(), box)
+    assert np.count_nonzero(own) == pytest.approx(thing.count, rel=0.02)
     assert thing.count == pytest.approx(pixels, rel=0.2)
     (body,) = [body for body in shot().bodies if body.name == kind]
     assert exemplar_view_of(thing, shipped()).size_m[2] == pytest.approx(body.size_m[2], abs=0.02)

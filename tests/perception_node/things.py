@@ -11,6 +11,7 @@ from msgspec import structs
 from semmap.nodes.perception_node.config import TrackingConfig
 from semmap.nodes.perception_node.tracking.association import associate
 from semmap.nodes.perception_node.tracking.class_hierarchy import ClassHierarchy
+from semmap.nodes.perception_node.tracking.observed_images import NO_IMAGES, ObservedImages
 from semmap.nodes.perception_node.tracking.occupancy import Occupancy
 from semmap.nodes.perception_node.tracking.tracks import Tracks
 from semmap.schemas.commands import Add, Command, Remove, Update
@@ -95,12 +96,15 @@ class Table:
     entities: dict[str, Entity] = field(default_factory=dict)
     tracks: Tracks = field(default_factory=Tracks)
     config: TrackingConfig = CONFIG
+    images: ObservedImages = NO_IMAGES
     hidden: bool = False
     """Make the occupancy of all places unknown."""
 
     def look(self) -> tuple[Command, ...]:
         """Process one frame, apply the commands to the map, and return them."""
-        result = associate(self.entities, self.tracks, self.things, self._occupancy, CLASSES, self.config)
+        result = associate(
+            self.entities, self.tracks, self.things, self._occupancy, CLASSES, self.config, self.images
+        )
         self.tracks, self.taken_for = result.tracks, result.entities
         for command in result.commands:
             self._obey(command)

@@ -42,8 +42,11 @@ AREAS = {
     "semmap": (),
 }
 
-WITH_AN_EXTRA = {"nodes/runtime/pictures.py": ("PIL",)}
-"""Shared modules that are imported only with an extra, and what that installs for them."""
+WITH_AN_EXTRA = {
+    "nodes/perception_node/input/robot_mask.py": ("mujoco",),
+    "nodes/runtime/pictures.py": ("PIL",),
+}
+"""Modules that are imported only with an extra of another folder, and what that installs for them."""
 
 
 DISTRIBUTIONS = {

@@ -11,7 +11,12 @@ from typing import NamedTuple
 import numpy as np
 
 from semmap.nodes.perception_node.image_features.crops import Bytes, LabelledImage, crops_of
-from semmap.nodes.perception_node.image_features.image_classifier import ImageClassifier, shipped
+from semmap.nodes.perception_node.image_features.efficientnet import FEATURES
+from semmap.nodes.perception_node.image_features.image_classifier import (
+    ImageClassifier,
+    shipped,
+    unit_features,
+)
 from semmap.nodes.perception_node.image_features.network import Outputs, available, load_network
 from semmap.nodes.perception_node.recognition.recognition_model import RecognitionModel
 from semmap.nodes.perception_node.views.boxes import Numbers
@@ -24,9 +29,15 @@ _SAME = 4.0
 Network = Callable[[Sequence[Bytes]], Outputs]
 
 
-class _Known(NamedTuple):
-    thumbnail: Numbers
+class ImageResult(NamedTuple):
+    """What the network finds in the images of a thing.
+
+    `fits`: (L,) how well they fit each leaf of the classifier. `features`: (FEATURES,) of unit length, of the
+    image with grey surroundings.
+    """
+
     fits: Numbers
+    features: Numbers
 
 
 class ImageMemory:
@@ -34,21 +45,21 @@ class ImageMemory:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._known: deque[_Known] = deque(maxlen=_KEPT)
+        self._known: deque[tuple[Numbers, ImageResult]] = deque(maxlen=_KEPT)
 
-    def find(self, thumbnail: Numbers) -> Numbers | None:
+    def find(self, thumbnail: Numbers) -> ImageResult | None:
         """Return the result for an image that looks like this one, or None."""
         with self._lock:
             if not self._known:
                 return None
-            apart = [float(np.abs(known.thumbnail - thumbnail).mean()) for known in self._known]
+            apart = [float(np.abs(known - thumbnail).mean()) for known, _ in self._known]
             nearest = int(np.argmin(apart))
-            return self._known[nearest].fits if apart[nearest] < _SAME else None
+            return self._known[nearest][1] if apart[nearest] < _SAME else None
 
-    def keep(self, thumbnail: Numbers, fits: Numbers) -> None:
+    def keep(self, thumbnail: Numbers, result: ImageResult) -> None:
         """Store the result for an image."""
         with self._lock:
-            self._known.append(_Known(thumbnail, fits))
+            self._known.append((thumbnail, result))
 
 
 @dataclass(frozen=True)
@@ -59,34 +70,82 @@ class ImageEvidence:
     classifier: ImageClassifier
     memory: ImageMemory | None = field(default=None, compare=False)
 
-    def fits(
-        self, views: Sequence[LabelledImage], numbers: Sequence[int], learnt: RecognitionModel
-    ) -> Numbers:
-        """Return (N, K) how well the images of things fit each leaf; all 1 if no view shows a thing."""
-        rows = np.ones((len(numbers), len(learnt.classes)))
-        columns = [learnt.classes.index(leaf) for leaf in self.classifier.leaves]
-        found = {n: crops for n, number in enumerate(numbers) if (crops := crops_of(views, number))}
-        for n, fits in self._classified(found).items():
-            rows[n] = self.classifier.least
-            rows[n, columns] = fits
-        return rows
+    def of(self, views: Sequence[LabelledImage], numbers: Sequence[int]) -> ThingImages:
+        """Return the images of the things with these numbers in some views."""
+        return ThingImages(self, views, tuple(numbers))
 
-    def _classified(self, crops: dict[int, tuple[Bytes, Bytes]]) -> dict[int, Numbers]:
-        """Return the fits of things by number, from memory where they look the same as before."""
-        done: dict[int, Numbers] = {}
+    def results(self, views: Sequence[LabelledImage], numbers: Sequence[int]) -> dict[int, ImageResult]:
+        """Return the results of things by number, without those that no view shows.
+
+        They come from memory where the things look the same as before.
+        """
+        crops = {number: pair for number in numbers if (pair := crops_of(views, number))}
+        done: dict[int, ImageResult] = {}
         thumbnails = {n: _thumbnail(*pair) for n, pair in crops.items()}
         if self.memory is not None:
             known = {n: self.memory.find(thumbnail) for n, thumbnail in thumbnails.items()}
-            done = {n: fits for n, fits in known.items() if fits is not None}
+            done = {n: result for n, result in known.items() if result is not None}
         new = [n for n in crops if n not in done]
         if new:
             outputs = self.network([crops[n][part] for part in (0, 1) for n in new])
-            halves = (Outputs(*(of[half] for of in outputs)) for half in _halves(len(new)))
-            done |= dict(zip(new, self.classifier(*halves), strict=True))
+            whole, alone = (Outputs(*(of[half] for of in outputs)) for half in _halves(len(new)))
+            found = map(ImageResult, self.classifier(whole, alone), unit_features(alone))
+            done |= dict(zip(new, found, strict=True))
             if self.memory is not None:
                 for n in new:
                     self.memory.keep(thumbnails[n], done[n])
         return done
+
+
+@dataclass(frozen=True)
+class ThingImages:
+    """The images of things in the views of one frame. The network processes each of them at most once.
+
+    `numbers`: the number of each thing in `views`.
+    """
+
+    evidence: ImageEvidence
+    views: Sequence[LabelledImage]
+    numbers: tuple[int, ...]
+    _done: dict[int, ImageResult | None] = field(default_factory=dict, compare=False)
+
+    def select(self, things: Sequence[int]) -> ThingImages:
+        """Return the images of some of the things, in this order."""
+        return replace(self, numbers=tuple(self.numbers[n] for n in things))
+
+    def fits(self, things: Sequence[int], learnt: RecognitionModel) -> Numbers:
+        """Return (N, K) how well the images of things fit each leaf; all 1 if no view shows a thing."""
+        classifier = self.evidence.classifier
+        rows = np.ones((len(things), len(learnt.classes)))
+        columns = [learnt.classes.index(leaf) for leaf in classifier.leaves]
+        for row, result in zip(rows, self._results(things), strict=True):
+            if result is not None:
+                row[:] = classifier.least
+                row[columns] = result.fits
+        return rows
+
+    def features(self, things: Sequence[int]) -> Numbers:
+        """Return (N, FEATURES) the features of things; zeros for one that no view shows."""
+        nothing = np.zeros(FEATURES)
+        found = [nothing if result is None else result.features for result in self._results(things)]
+        return np.array(found).reshape(len(things), FEATURES)
+
+    def known_features(self, things: Sequence[int]) -> Numbers:
+        """Return (N, FEATURES) as `features`, but zeros for things that the network has not processed."""
+        known = [n for n, thing in enumerate(things) if self.numbers[thing] in self._done]
+        rows = np.zeros((len(things), FEATURES))
+        rows[known] = self.features([things[n] for n in known])
+        return rows
+
+    def similarities(self, kept: Numbers, things: Sequence[int]) -> Numbers:
+        """Return (V, N) cosines of stored features (V, FEATURES) and those of things; NaN without."""
+        return self.evidence.classifier.similarities(kept, self.features(things))
+
+    def _results(self, things: Sequence[int]) -> list[ImageResult | None]:
+        asked = [self.numbers[thing] for thing in things]
+        new = [number for number in asked if number not in self._done]
+        self._done.update(dict.fromkeys(new) | self.evidence.results(self.views, new))
+        return [self._done[number] for number in asked]
 
 
 def _halves(count: int) -> tuple[slice, slice]:

@@ -12,7 +12,8 @@ from semmap.nodes.perception_node.views.boxes import Numbers
 ImageFits = Callable[[Sequence[int]], Numbers]
 """Returns for the numbers of things (N,) how well their images fit each leaf (N, K)."""
 
-_DROPPED = 0.7
+MOST_CLUTTER = 0.7
+"""The images of things that are clutter with more than this probability are not used."""
 _LEAST = 1e-6
 """Keeps logarithms finite; 0.001 and more let images name a thing that its shape rules out."""
 _SHAPE, _IMAGE, _UNKNOWN = 0.3, 1.2, 0.2
@@ -32,7 +33,7 @@ def with_image_votes(chances: Numbers, learnt: RecognitionModel, fits: ImageFits
     fixed[clutter] = True
     if learnt.exemplars is not None:
         fixed[len(learnt.classes) - len(learnt.exemplars.exemplars) :] = True
-    things = np.flatnonzero(chances[:, clutter] <= _DROPPED)
+    things = np.flatnonzero(chances[:, clutter] <= MOST_CLUTTER)
     if not things.size:
         return chances
     said = fits(things.tolist())[:, ~fixed]

@@ -6,11 +6,12 @@ size. No classifier is retrained.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from semmap.nodes.perception_node.image_features.efficientnet import FEATURES
 from semmap.nodes.perception_node.recognition.recognition_model import RecognitionModel
 from semmap.nodes.perception_node.recognition.similarity import Similarity, views_of
 from semmap.nodes.perception_node.views.boxes import Numbers
@@ -19,6 +20,15 @@ from semmap.schemas.entities import Size
 _SUREST = 0.999
 _LEAST = 1e-3
 """Smaller similarities count as 0, so that many exemplars do not suppress the votes."""
+_LEAST_WITH_IMAGE = 0.02
+"""The same for similarities that include those of images."""
+_SHAPE, _IMAGE, _BIAS = 0.35, 15.0, -6.7
+"""The logarithm of the odds that a thing is an exemplar is a weighted sum of that by shape and colours and of
+the cosine of the images. The weights maximise the likelihood of real frames of 31 things (0.31 to 0.37, 14 to
+17 in four folds), and the bias gives as few false names as before if several things are shown."""
+
+_SURE_ODDS = 0.7 / 0.3
+"""Images do not lower larger odds by shape and colours: from another side, one thing has another image."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +36,8 @@ class Exemplar:
     """Views of one thing, or of several that look alike, with their class.
 
     `number` identifies it. `ancestors`: the superclasses in the TBox. `views`: (N, WIDTH), see `similarity`.
-    `size_m`: long side, short side and height. `shown`: a description of the source.
+    `size_m`: long side, short side and height. `shown`: a description of the source. `images`: (N, FEATURES)
+    the features of the images of the views, zeros for a view without.
     """
 
     number: int
@@ -36,6 +47,7 @@ class Exemplar:
     size_m: Size
     shown: str
     stamp_ns: int
+    images: Numbers = field(default_factory=lambda: np.zeros((0, FEATURES)))
 
     @property
     def leaf(self) -> str:
@@ -60,6 +72,27 @@ class ExemplarMatcher:
         odds = like / (1.0 - like)
         rest = 1.0 / (1.0 + odds.sum(axis=1, keepdims=True))
         return np.concatenate([chances * rest, odds * rest], axis=1)
+
+    def with_images(self, chances: Numbers, similarities: Callable[[Numbers], Numbers]) -> Numbers:
+        """Return probabilities (N, K + L) in which exemplars with images are compared by these, too.
+
+        `similarities(images)`: (V, N) cosines of stored images and those of the things, NaN where unknown.
+        """
+        if not any(exemplar.images.any() for exemplar in self.exemplars):
+            return chances
+        votes, shown = np.split(chances, [-len(self.exemplars)], axis=1)
+        rest = votes.sum(axis=1, keepdims=True)
+        odds = shown / rest
+        ends = np.cumsum([len(exemplar.images) for exemplar in self.exemplars])[:-1]
+        cosines = np.split(similarities(np.concatenate([e.images for e in self.exemplars])), ends)
+        alike = np.column_stack([np.fmax.reduce(each, axis=0, initial=np.nan) for each in cosines])
+        together = _SHAPE * np.log(np.clip(odds, _LEAST, 1.0 / _LEAST)) + _IMAGE * alike + _BIAS
+        like = 1.0 / (1.0 + np.exp(-together))
+        like = np.where(like < _LEAST_WITH_IMAGE, 0.0, np.minimum(like, _SUREST))
+        found = like / (1.0 - like)
+        odds = np.where(np.isnan(alike) | (odds > _SURE_ODDS), np.fmax(odds, found), found)
+        left = 1.0 / (1.0 + odds.sum(axis=1, keepdims=True))
+        return np.concatenate([votes / rest * left, odds * left], axis=1)
 
     def _like(self, seen: Numbers, exemplar: Exemplar) -> Numbers:
         """Return (N,) the similarity of each thing to the most similar view of an exemplar."""

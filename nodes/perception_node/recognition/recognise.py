@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from semmap.nodes.perception_node.image_features.image_votes import ImageFits, with_image_votes
+from semmap.nodes.perception_node.image_features.image_evidence import ThingImages
+from semmap.nodes.perception_node.image_features.image_votes import MOST_CLUTTER, with_image_votes
 from semmap.nodes.perception_node.recognition.detector_labels import (
     LabelMap,
     as_general,
@@ -61,21 +62,34 @@ def recognise(
     chances: Numbers,
     learnt: RecognitionModel,
     labels: LabelMap | None = None,
-    fits: ImageFits | None = None,
+    images: ThingImages | None = None,
 ) -> list[Observation | Clutter]:
     """Return an observation of each thing that is not clutter.
 
     A free-standing thing is not clutter, but of unknown class. `chances`: (N, K) the probabilities of the
-    leaves. `labels` maps labels of detectors to classes. `fits`: what images of the things say.
+    leaves. `labels` maps labels of detectors to classes. `images`: those of the things.
     """
     labels = labels or LabelMap(learnt)
     chances = _no_clutter(things, reclassify_trimmed(things, chances, learnt), learnt)
-    if fits is not None:
-        chances = with_image_votes(chances, learnt, fits)
+    if images is not None:
+        chances = _shown_in_images(chances, learnt, images)
+        chances = with_image_votes(chances, learnt, lambda numbers: images.fits(numbers, learnt))
     own, chances = chances, with_detector_labels(chances, things, learnt, labels)
     expected = expected_sizes(chances, learnt.sizes_m)
     rows = zip(things, chances, own, expected, strict=True)
     return [_observation(*row, labels, learnt) for row in rows]
+
+
+def _shown_in_images(chances: Numbers, learnt: RecognitionModel, images: ThingImages) -> Numbers:
+    """Return probabilities (N, K) in which images help to recognise exemplars among what is not clutter."""
+    rows = np.flatnonzero(chances[:, learnt.classes.index(CLUTTER)] <= MOST_CLUTTER)
+    if learnt.exemplars is None or not rows.size:
+        return chances
+    chances = chances.copy()
+    chances[rows] = learnt.exemplars.with_images(
+        chances[rows], lambda kept: images.similarities(kept, rows.tolist())
+    )
+    return chances
 
 
 def _no_clutter(things: Sequence[Thing], chances: Numbers, learnt: RecognitionModel) -> Numbers:

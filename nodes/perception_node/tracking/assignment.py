@@ -19,6 +19,7 @@ from semmap.nodes.perception_node.tracking.costs import (
     cost_of_height,
     size_difference,
 )
+from semmap.nodes.perception_node.tracking.observed_images import NO_IMAGES, ObservedImages
 from semmap.nodes.perception_node.tracking.occupancy import Occupancy, OccupancyOf
 from semmap.nodes.perception_node.tracking.overlap import OrientedBox, may_be_same_thing, share
 from semmap.nodes.perception_node.tracking.tracks import Track
@@ -70,6 +71,7 @@ def match(
     occupancy_of: OccupancyOf,
     classes: ClassHierarchy,
     config: TrackingConfig,
+    images: ObservedImages = NO_IMAGES,
 ) -> Matching:
     """Match things in their places first, then vanished things elsewhere, then tentative tracks."""
 
@@ -127,7 +129,7 @@ def match(
         target = known[name].target
         if not may_have_moved(name, j) or _is_too_far(target, observations[j], config):
             return FORBIDDEN
-        return cost_anywhere(target, observations[j], classes)
+        return cost_anywhere(target, observations[j], classes, images.compare(known[name].track, j))
 
     def in_front(name: str, j: int) -> float:
         if not may_have_moved(name, j):

@@ -34,6 +34,7 @@ from semmap.nodes.perception_node.tracking.map_updates import (
     update_of,
     with_load,
 )
+from semmap.nodes.perception_node.tracking.observed_images import NO_IMAGES, ObservedImages
 from semmap.nodes.perception_node.tracking.occupancy import OccupancyOf
 from semmap.nodes.perception_node.tracking.overlap import (
     OrientedBox,
@@ -68,25 +69,29 @@ def associate(
     occupancy_of: OccupancyOf,
     classes: ClassHierarchy,
     config: TrackingConfig,
+    images: ObservedImages = NO_IMAGES,
 ) -> Association:
-    """Process one frame. `entities` are of the map; `occupancy_of` returns what is seen of a box."""
+    """Process one frame. `entities` are of the map; `occupancy_of` returns what is seen of a box.
+
+    `images` are those of the observations.
+    """
     candidates = {
         name: _candidate(entity, tracks.known.get(name), classes, config)
         for name, entity in entities.items()
         if not entity.place and entity.pose is not None
     }
     others = [Candidate(track, _target(track, classes)) for track in tracks.tentative]
-    matching = match(candidates, others, observations, occupancy_of, classes, config)
+    matching = match(candidates, others, observations, occupancy_of, classes, config, images)
     known = {
         name: _check_old_place(
-            _after(entities[name], candidate, matching, observations, classes, config),
+            _after(entities[name], candidate, matching, observations, classes, config, images),
             entities[name],
             occupancy_of,
             config,
         )
         for name, candidate in candidates.items()
     }
-    tentative = _tentative(tracks.tentative, matching, observations, occupancy_of, config)
+    tentative = _tentative(tracks.tentative, matching, observations, occupancy_of, config, images)
     stays = [
         entities[name]
         for name in candidates
@@ -184,12 +189,13 @@ def _after(
     observations: Sequence[Observation],
     classes: ClassHierarchy,
     config: TrackingConfig,
+    images: ObservedImages,
 ) -> Track:
     """Return the track of an entity after this frame."""
     track, name = candidate.track, entity.name
     if name not in matching.known:
         return track.miss(matching.occupancy[name], odd=name in matching.odd)
-    seen = observations[matching.known[name]]
+    seen, track = observations[matching.known[name]], images.remember(track, matching.known[name])
     mistaken = is_own(entity) and not classes.is_a(track.sized_as, entity.class_)
     if mistaken and is_complete_despite_cut(seen, candidate.target):
         return track.see_all(seen, config)
@@ -217,21 +223,22 @@ def _tentative(
     observations: Sequence[Observation],
     occupancy_of: OccupancyOf,
     config: TrackingConfig,
+    images: ObservedImages,
 ) -> list[Track]:
     """Return the tentative tracks, new ones at the end."""
     after = [
-        track.see(observations[matching.tentative[i]], config)
+        images.remember(track, matching.tentative[i]).see(observations[matching.tentative[i]], config)
         if i in matching.tentative
         else track.overlook(
             visible=config.still_camera or occupancy_of(track.pose, track.size_m) != "unknown"
         )
         for i, track in enumerate(tracks)
     ]
-    new = [observations[j] for j in matching.new]
-    return [
-        *(track for track in after if track.unseen < _FORGOTTEN_AFTER),
-        *(Track(o.pose, o.size_m).see(o, config) for o in new),
+    new = [
+        images.remember(Track(observations[j].pose, observations[j].size_m), j).see(observations[j], config)
+        for j in matching.new
     ]
+    return [*(track for track in after if track.unseen < _FORGOTTEN_AFTER), *new]
 
 
 def _leg_of(piece: OrientedBox, things: Mapping[str, OrientedBox]) -> str | None:

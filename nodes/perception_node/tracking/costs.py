@@ -29,6 +29,8 @@ _OUTSIZED, _USUAL = 0.5, 0.3
 """A thing is too large if it exceeds its class's size by the first (log), and typical within the second."""
 _OTHER_COLOR = 0.25
 """Mean colours (rgb up to 1) of one thing, from two sides or in other light, differ by less than this."""
+_UNLIKE, _ALIKE = 0.25, 0.5
+"""Images of one thing have a cosine above the first (98 % on real frames), those of two below the second."""
 _HIDDEN_PART = 0.3
 """Weight of a smaller extent of a partly visible thing."""
 
@@ -82,20 +84,23 @@ def _is_one_but_for_its_depth(target: Target, seen: Observation) -> bool:
     return before is not None and (is_front(before, now) or is_front(now, before))
 
 
-def cost_anywhere(target: Target, seen: Observation, classes: ClassHierarchy) -> float:
+def cost_anywhere(
+    target: Target, seen: Observation, classes: ClassHierarchy, alike: float = math.nan
+) -> float:
     """Return the cost of matching a thing that vanished; FORBIDDEN if it is of another kind.
 
     The position has little weight. A thing back in its place may be less similar. An unknown thing is only
-    recognised elsewhere if it is completely visible and has the same colour.
+    recognised elsewhere if it is completely visible and has the same colour. `alike`: the cosine of the
+    images, NaN if one is not known. Like images replace class and colour, and unlike ones forbid a match
+    elsewhere.
     """
     box = target.box
     if box is None:
         return FORBIDDEN
-    vague = ANYTHING in (seen.class_, target.class_)
+    vague = ANYTHING in (seen.class_, target.class_) and not alike > _ALIKE
     mismatch = size_difference(target._replace(size_m=box.size_m), seen)
-    matches = classes.related(target.class_, seen.class_) and mismatch <= (
-        _OF_ANY_KIND if vague else _OF_A_KIND
-    )
+    related = classes.related(target.class_, seen.class_) or alike > _ALIKE
+    matches = related and not alike < _UNLIKE and mismatch <= (_OF_ANY_KIND if vague else _OF_A_KIND)
     if vague and not (seen.whole and _is_of_like_color(target, seen)):
         matches = False
     if not matches and cost_in_place(target, seen, classes) == FORBIDDEN:
@@ -103,7 +108,8 @@ def cost_anywhere(target: Target, seen: Observation, classes: ClassHierarchy) ->
     horizontal, vertical = _apart(box.pose, box.size_m, seen)
     vaguely = vague and target.class_ != seen.class_
     class_cost = _VAGUE if vaguely else class_difference(target.class_, seen, classes)
-    return mismatch + class_cost + 0.1 * math.hypot(horizontal, vertical)
+    image_cost = 0.0 if math.isnan(alike) else _ALIKE - alike
+    return mismatch + class_cost + image_cost + 0.1 * math.hypot(horizontal, vertical)
 
 
 def cost_nearby(target: Target, seen: Observation, classes: ClassHierarchy, most_m: float) -> float:

@@ -15,6 +15,7 @@ from semmap.nodes.perception_node.tracking.fronts import is_front
 from semmap.nodes.perception_node.tracking.occupancy import Occupancy
 from semmap.nodes.perception_node.tracking.overlap import OrientedBox, share
 from semmap.nodes.perception_node.tracking.votes import Votes
+from semmap.nodes.perception_node.views.boxes import Numbers
 from semmap.schemas.entities import Pose, Size, Vector, distance_m, orientation_from_yaw
 from semmap.schemas.perception import Observation
 
@@ -52,7 +53,7 @@ class Track:
     image edge cuts. `outsized`: the map's size is too large. `fit`: the fitted model since it rests.
     `rejected_class`: the class that a fit rejected. `label`: the label of a detector that is not a class.
     `labels`: the votes of frames in which a detector labelled the thing, "" for a class. `color_rgb`: its
-    mean colour when it was last seen.
+    mean colour when it was last seen, and `image` (FEATURES,) the features of its image, if known.
     """
 
     pose: Pose
@@ -80,6 +81,7 @@ class Track:
     sighted: int = 0
     missed: int = 0
     color_rgb: Vector | None = None
+    image: Numbers | None = field(default=None, compare=False)
 
     @property
     def agreement(self) -> int:
@@ -115,6 +117,7 @@ class Track:
             sighted=self.sighted + 1,
             missed=self.missed,
             color_rgb=seen.color_rgb or self.color_rgb,
+            image=self.image,
         )
 
     def _count_label(self, seen: Observation) -> Track:

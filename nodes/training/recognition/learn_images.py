@@ -18,7 +18,7 @@ from scipy import ndimage
 from scipy.optimize import minimize
 
 from semmap.nodes.perception_node.image_features.crops import crops_of
-from semmap.nodes.perception_node.image_features.efficientnet import CLASSES
+from semmap.nodes.perception_node.image_features.efficientnet import CLASSES, FEATURES
 from semmap.nodes.perception_node.image_features.image_classifier import (
     SHIPPED,
     ImageClassifier,
@@ -135,7 +135,8 @@ def learn(inputs: Numbers, looks: Sequence[str], things: Sequence[ForeignThing])
     for number, ours in imagenet.items():
         known[number, [leaves.index(class_) for class_ in ours]] = 1.0
     story = f"{len(looks)} images of {len(names)} foreign things"
-    return ImageClassifier(tuple(leaves), weights, biases, table, known, story)
+    centre = inputs[:, FEATURES:].mean(axis=0)
+    return ImageClassifier(tuple(leaves), weights, biases, table, known, centre, story)
 
 
 def _classes_like(thing: ForeignThing) -> dict[str, float]:

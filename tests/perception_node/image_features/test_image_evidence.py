@@ -1,6 +1,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from semmap.nodes.perception_node.image_features import image_evidence
 from semmap.nodes.perception_node.image_features.efficientnet import CLASSES, FEATURES
@@ -35,8 +36,8 @@ class Banana:
         return Outputs(np.ones((len(images), FEATURES), np.float32), scores)
 
 
-def fits(evidence, colours=SCENE, things=(1, 2)):
-    return evidence.fits([(colours, LABELS)], things, shipped_model())
+def fits(evidence, colours=SCENE, things=(0, 1)):
+    return evidence.of([(colours, LABELS)], (1, 2, 3)).fits(things, shipped_model())
 
 
 def test_what_images_say_is_told_by_leaf():
@@ -48,7 +49,7 @@ def test_what_images_say_is_told_by_leaf():
 
 def test_a_thing_without_an_image_has_no_evidence():
     network = Banana()
-    assert (fits(ImageEvidence(network, shipped()), things=(3,)) == 1.0).all()
+    assert (fits(ImageEvidence(network, shipped()), things=(2,)) == 1.0).all()
     assert network.images == 0
 
 
@@ -64,6 +65,18 @@ def test_a_thing_that_rests_is_looked_up_and_one_that_changes_is_not():
     changed[5:25, 5:25] = 255 - changed[5:25, 5:25] // 4
     fits(evidence, changed)
     assert network.images == 6
+
+
+def test_features_come_from_the_same_run_as_the_classes_and_are_compared():
+    network = Banana()
+    images = ImageEvidence(network, shipped()).of([(SCENE, LABELS)], (1, 2, 3)).select((2, 0))
+    images.fits((0, 1), shipped_model())
+    features = images.features((0, 1))
+    assert network.images == 2
+    assert (features.any(axis=1) == [False, True]).all()
+    (nothing, same), (none, other) = images.similarities(np.stack([features[1], -features[1]]), (0, 1))
+    assert np.isnan([nothing, none]).all()
+    assert (same, other < 0.0) == (pytest.approx(1.0), True)
 
 
 def test_photographs_are_named_with_images_and_renderings_without():

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from semmap.nodes.perception_node.image_features.efficientnet import FEATURES
 from semmap.nodes.perception_node.pipeline import parts_in, shipped
 from semmap.nodes.perception_node.recognition.exemplars import Exemplar, with_exemplars
 from semmap.nodes.perception_node.recognition.features import features_of
@@ -64,6 +65,35 @@ def test_what_would_be_nothing_known_or_no_thing_is_called_as_it_was_shown(thing
     votes[0, shipped().classes.index(leaf)] = 1.0
     chances = knowing.exemplars.add_probabilities(features_of(things[:1]), votes)
     assert recognise(things[:1], chances, knowing)[0].class_ == MUG.class_
+
+
+@pytest.mark.parametrize(
+    ("shape", "image", "shown"),
+    [
+        (0.0, 0.8, True),
+        (0.1, 0.5, True),
+        (0.6, 0.0, False),
+        (0.9, 0.0, True),
+        (0.9, np.nan, True),
+        (0.0, np.nan, False),
+    ],
+)
+def test_images_decide_whether_it_is_an_exemplar_where_both_have_one(things, shape, image, shown):
+    seen = replace(MUG, images=np.ones((2, FEATURES)))
+    knowing = with_exemplars(shipped(), [seen], likely(shape)).exemplars
+    votes = np.full((1, len(shipped().classes)), 1.0 / len(shipped().classes))
+    before = knowing.add_probabilities(features_of(things[:1]), votes)
+    after = knowing.with_images(before, lambda kept: np.array([[np.nan], [image]]))
+    assert after.sum() == pytest.approx(1.0)
+    assert (after[0, -1] > 0.4) == shown
+    if np.isnan(image):
+        assert after == pytest.approx(before)
+
+
+def test_exemplars_without_images_are_compared_as_before(things):
+    knowing = with_exemplars(shipped(), [MUG], likely(0.9)).exemplars
+    before = knowing.add_probabilities(features_of(things[:1]), np.ones((1, 1)))
+    assert knowing.with_images(before, lambda kept: pytest.fail("an image was asked for")) is before
 
 
 def test_lessons_of_a_class_that_is_known_count_for_it(things):

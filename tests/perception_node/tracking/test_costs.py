@@ -238,3 +238,25 @@ RED, BLUE = (0.8, 0.1, 0.1), (0.1, 0.1, 0.8)
 def test_a_new_thing_near_a_hidden_one_is_it_if_kind_size_and_colour_agree(other, color, is_like):
     hidden, other = CUP._replace(color_rgb=RED), structs.replace(other, color_rgb=color)
     assert cost_nearby(hidden, other, CLASSES, 0.3) == (pytest.approx(0.1) if is_like else FORBIDDEN)
+
+
+@pytest.mark.parametrize(
+    ("now", "alike", "matches"),
+    [
+        (seen("Cup", at(4, 4)), math.nan, True),
+        (seen("Cup", at(4, 4)), 0.3, True),
+        (seen("Cup", at(4, 4)), 0.2, False),
+        (seen("Cup", at(1, 1)), 0.2, True),
+        (seen("Bottle", at(4, 4), SIZES["Cup"]), 0.4, False),
+        (seen("Bottle", at(4, 4), SIZES["Cup"]), 0.6, True),
+        (seen(ANYTHING, at(4, 4), SIZES["Cup"], whole=False), 0.6, True),
+        (seen("Cup", at(4, 4), BOX), 0.9, False),
+    ],
+)
+def test_images_tell_things_apart_and_replace_class_and_colour_elsewhere(now, alike, matches):
+    assert (cost_anywhere(CUP, now, CLASSES, alike) < FORBIDDEN) == matches
+
+
+def test_the_more_alike_image_costs_less():
+    now = seen("Cup", at(4, 4))
+    assert cost_anywhere(CUP, now, CLASSES, 0.9) < cost_anywhere(CUP, now, CLASSES, 0.4)

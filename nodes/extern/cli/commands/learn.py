@@ -230,6 +230,7 @@ def _read_views(
 ) -> tuple[list[ExemplarView], tuple[str, ...]]:
     extras.require("semmap learn --frames", "perception")
     from semmap.nodes.perception_node.exemplar_views import views_in_frames
+    from semmap.nodes.perception_node.image_features.image_evidence import with_images
     from semmap.nodes.perception_node.recognition.recognition_model import shipped
 
-    return views_in_frames(frames, shipped(), box)
+    return views_in_frames(frames, with_images(shipped()), box)

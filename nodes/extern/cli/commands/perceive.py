@@ -104,6 +104,12 @@ def _path_option(
     "Masks of a detector (COCO, labelme, CVAT, YOLO, image, .npz); with --frames, their name in each folder.",
     type=_ANY_PATH,
 )
+@_path_option(
+    "--mask-robot",
+    "FILE.json",
+    "Leave out the robot: model (MJCF, URDF), joints, map_from_base; with --frames, the name in each folder.",
+    type=_ANY_PATH,
+)
 @detector_options
 @_path_option(
     "--label-map", "FILE.json", 'Labels of the detector and their classes, as in {"coffee mug": "Cup"}.'
@@ -125,6 +131,7 @@ def perceive(
     topic: str | None,
     every: float,
     masks: Path | None,
+    mask_robot: Path | None,
     label_map: Path | None,
     masks_only: bool,
     fit: bool,
@@ -142,13 +149,15 @@ def perceive(
     extras.require("semmap perceive", "perception")
     if fit:
         _require_open3d()
+    if mask_robot is not None:
+        extras.require("semmap perceive --mask-robot", "sim")
     detector = detector_of(masks, label_map, masks_only=masks_only, each_core=frames is not None, **model)
     if frames is not None:
         if files or any(option is not None for option in (intrinsics, up, pose)):
             raise errors.BadRequest(
                 "--frames excludes FILE, --intrinsics, --up and --pose; each frame has its own camera.json"
             )
-        _dataset(frames, labels, rows, detector, _learnt(data), format, fit=fit)
+        _dataset(frames, labels, rows, detector, _learnt(data), format, mask_robot, fit=fit)
         return
     if rows is not None:
         raise errors.BadRequest("--json requires --frames; for files use --format json")
@@ -162,6 +171,7 @@ def perceive(
 
     from semmap.nodes.perception_node.fitting.fit_observations import fit_view
     from semmap.nodes.perception_node.fitting.model_surfaces import shipped as surfaces
+    from semmap.nodes.perception_node.input.robot_mask import read_robot
     from semmap.nodes.perception_node.input.viewpoint import Placement
     from semmap.nodes.perception_node.pipeline import recognise_segments
     from semmap.nodes.perception_node.views.masked import with_masks
@@ -173,9 +183,9 @@ def perceive(
     for option, value in (("--labels", labels), ("--masks", masks)):
         if value is not None and len(first) != 1:
             raise errors.BadRequest(f"{option} requires a single frame")
-    records = []
+    records, robot = [], None if mask_robot is None else read_robot(mask_robot)
     for file, cloud in chain(first, clouds):
-        sight = segment_cloud(cloud)
+        sight = segment_cloud(cloud if robot is None else robot.remove_from(cloud))
         for note in sight.notes:
             print_error(f"note: {file}: {note}")
         if detector is not None:
@@ -276,6 +286,7 @@ def _dataset(
     detector: Detector | None,
     learnt: RecognitionModel,
     format: str,
+    robot: Path | None,
     *,
     fit: bool,
 ) -> None:
@@ -297,7 +308,7 @@ def _dataset(
             raise errors.BadFile(f"{labels} cannot be created: {error.strerror}") from None
     rows, unknown, printed_s, began_s = [], set[str](), 0.0, time.monotonic()
     noted = dict[str, list[str]]()
-    for found in perceive_folders(folders, learnt, detector, surfaces() if fit else None):
+    for found in perceive_folders(folders, learnt, detector, surfaces() if fit else None, robot):
         rows.append(found.row)
         unknown.update(found.unknown_labels)
         for note in found.row.notes:

@@ -113,7 +113,7 @@ def read_camera(path: Path) -> PinholeCamera:
     return camera
 
 
-def pose_of(numbers: tuple[Any, ...] | None) -> Transform | None:
+def pose_of(numbers: tuple[Any, ...] | None, name: str = "map_from_camera") -> Transform | None:
     """Return the (4, 4) pose of sixteen numbers or four rows. Raises ValueError if it is invalid."""
     if numbers is None:
         return None
@@ -122,7 +122,7 @@ def pose_of(numbers: tuple[Any, ...] | None) -> Transform | None:
     except (TypeError, ValueError):
         found = np.empty(0)
     if found.size != 16 or not is_pose(found.reshape(4, 4)):
-        raise ValueError("map_from_camera is not a 4 x 4 pose matrix: rotation, position, last row 0 0 0 1")
+        raise ValueError(f"{name} is not a 4 x 4 pose matrix: rotation, position, last row 0 0 0 1")
     return found.reshape(4, 4)
 
 

@@ -184,6 +184,23 @@ def test_notes_on_a_frame_are_printed_once_and_are_in_its_row(tmp_path, capsys):
     assert doubt in json.loads(printed.out)[0]["notes"][0]
 
 
+def test_the_robot_of_each_frame_is_left_out(tmp_path, capsys):
+    for name in ("without", "with"):
+        write_frame(tmp_path / "frames" / name)
+    camera = tmp_path / "frames" / "with" / "camera.json"
+    pose = np.diag([1.0, -1.0, -1.0, 1.0]).tolist()
+    camera.write_text(json.dumps(json.loads(camera.read_text()) | {"map_from_camera": pose}))
+    (tmp_path / "ball.xml").write_text(
+        '<mujoco><worldbody><geom size="50" pos="0 0 -50.1"/></worldbody></mujoco>'
+    )
+    (camera.parent / "robot.json").write_text('{"model": "../../ball.xml"}')
+    words = ["--json", str(tmp_path / "out.json"), "--mask-robot", "robot.json"]
+    assert execute(["perceive", "--frames", str(tmp_path / "frames"), *words]) == 0
+    with_robot, without = json.loads((tmp_path / "out.json").read_text())
+    assert (with_robot["objects"], with_robot["error"]) == ([], "")
+    assert "robot.json cannot be read" in without["error"]
+
+
 def test_masks_segment_a_frame_and_an_unknown_label_is_reported(tmp_path, capsys):
     write_frame(tmp_path / "frames" / "first")
     (height, width), box = SEEN.truth.shape, np.isin(SEEN.truth, [1])
