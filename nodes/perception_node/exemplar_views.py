@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from semmap.nodes.perception_node.image_features.image_evidence import ThingImages
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.files.frame_folders import frames_in, read_frame
-from semmap.nodes.perception_node.pipeline import parts_in
+from semmap.nodes.perception_node.pipeline import images_in, parts_in
 from semmap.nodes.perception_node.recognition.features import features_of
 from semmap.nodes.perception_node.recognition.free_standing import is_compact
 from semmap.nodes.perception_node.recognition.joining import join_parts
@@ -40,7 +40,7 @@ class ExemplarView:
     """The appearance of a thing in one frame.
 
     `features`: (WIDTH,). `size_m`: its size as estimated from this frame [m]. `image`: (FEATURES,) the
-    features of its image, or (0,) without the network.
+    features of its image, or (0,) without a photograph or the network.
     """
 
     features: Numbers
@@ -67,11 +67,8 @@ def exemplar_view_of(
 
 
 def view_of_shown(shown: ShownThing, cloud: Cloud, learnt: RecognitionModel) -> ExemplarView:
-    """Return the view of a thing that was found in a cloud, with its image."""
-    images = None
-    if learnt.images is not None and cloud.colors is not None and cloud.organised:
-        images = learnt.images.of([(cloud.colors, shown.own.astype(np.int32))], [1])
-    return exemplar_view_of(shown.thing, learnt, images)
+    """Return the view of a thing that was found in a cloud, with its image if that is a photograph."""
+    return exemplar_view_of(shown.thing, learnt, images_in([cloud], [shown.own.astype(np.int32)], 1, learnt))
 
 
 def views_in_frames(

@@ -114,9 +114,9 @@ class ThingImages:
         return replace(self, numbers=tuple(self.numbers[n] for n in things))
 
     def fits(self, things: Sequence[int], learnt: RecognitionModel) -> Numbers:
-        """Return (N, K) how well the images of things fit each leaf; all 1 if no view shows a thing."""
+        """Return (N, K) how well the images of things fit each leaf; NaN for one that no view shows."""
         classifier = self.evidence.classifier
-        rows = np.ones((len(things), len(learnt.classes)))
+        rows = np.full((len(things), len(learnt.classes)), np.nan)
         columns = [learnt.classes.index(leaf) for leaf in classifier.leaves]
         for row, result in zip(rows, self._results(things), strict=True):
             if result is not None:
