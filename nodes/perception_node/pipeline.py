@@ -211,7 +211,7 @@ def images_in(
     ]
     if not views:
         return None
-    return learnt.images.of(views, range(1, count + 1))
+    return ThingImages(learnt.images, views, tuple(range(1, count + 1)))
 
 
 def _renumbered(labels: NDArray[np.int32], members: Sequence[Sequence[int]]) -> NDArray[np.int32]:

@@ -70,10 +70,6 @@ class ImageEvidence:
     classifier: ImageClassifier
     memory: ImageMemory | None = field(default=None, compare=False)
 
-    def of(self, views: Sequence[LabelledImage], numbers: Sequence[int]) -> ThingImages:
-        """Return the images of the things with these numbers in some views."""
-        return ThingImages(self, views, tuple(numbers))
-
     def results(self, views: Sequence[LabelledImage], numbers: Sequence[int]) -> dict[int, ImageResult]:
         """Return the results of things by number, without those that no view shows.
 
