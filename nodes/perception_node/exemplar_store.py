@@ -78,8 +78,7 @@ class ExemplarStore:
             raise Refused(
                 f"the limit of {_MOST} exemplars is reached; remove some with: semmap forget NUMBER"
             )
-        features = [view.features for view in views]
-        images = [view.image if view.image.size else np.zeros(FEATURES) for view in views]
+        features, images = [view.features for view in views], [view.image for view in views]
         if not views or not (_are_rows(features, WIDTH) and _are_rows(images, FEATURES)):
             raise BadRequest(f"a view must have {WIDTH} features; create it with the same version of semmap")
         long, short, height = np.median([view.size_m for view in views], axis=0).tolist()

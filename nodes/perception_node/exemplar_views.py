@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from semmap.nodes.perception_node.image_features.efficientnet import FEATURES
 from semmap.nodes.perception_node.image_features.image_evidence import ThingImages
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.files.frame_folders import frames_in, read_frame
@@ -40,12 +41,12 @@ class ExemplarView:
     """The appearance of a thing in one frame.
 
     `features`: (WIDTH,). `size_m`: its size as estimated from this frame [m]. `image`: (FEATURES,) the
-    features of its image, or (0,) without a photograph or the network.
+    features of its image, zeros without a photograph or the network.
     """
 
     features: Numbers
     size_m: Size
-    image: Numbers = field(default_factory=lambda: np.zeros(0))
+    image: Numbers = field(default_factory=lambda: np.zeros(FEATURES))
 
 
 class ShownThing(NamedTuple):
@@ -62,8 +63,8 @@ def exemplar_view_of(
     features = features_of([thing])
     expected = expected_sizes(leaf_probabilities(learnt, features), learnt.sizes_m)[0]
     x, y, z = completed(thing, side_features(thing, expected), learnt.sides).size_m.tolist()
-    image = np.zeros(0) if images is None else images.features([0])[0]
-    return ExemplarView(views_of(features)[0], (max(x, y), min(x, y), z), image)
+    view = ExemplarView(views_of(features)[0], (max(x, y), min(x, y), z))
+    return view if images is None else replace(view, image=images.features([0])[0])
 
 
 def view_of_shown(shown: ShownThing, cloud: Cloud, learnt: RecognitionModel) -> ExemplarView:
