@@ -12,8 +12,8 @@ from semmap.schemas.entities import Size
 class ShownView(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One view of an object.
 
-    `features`: little-endian 32-bit floats; their number depends on the version of perception. `size_m`: long
-    side, short side, height.
+    `features`: little-endian 32-bit floats, of shape and colours and then of the image, zeros without; their
+    number depends on the version of perception. `size_m`: long side, short side, height.
     """
 
     features: Annotated[bytes, Meta(max_length=1 << 14)]

@@ -19,7 +19,6 @@ from benchmarks.perception.foreign import matched
 from benchmarks.perception.simulated import LEAST_PIXELS
 from benchmarks.perception.table import Row
 from semmap.nodes.perception_node.exemplar_views import ExemplarView, find_shown_thing, view_of_shown
-from semmap.nodes.perception_node.image_features.efficientnet import FEATURES
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.projection import cloud_of
 from semmap.nodes.perception_node.pipeline import RecognitionModel, observe_views
@@ -114,8 +113,7 @@ def _exemplars(
 
 def exemplar_of(number: int, name: str, view: ExemplarView) -> Exemplar:
     """Return an exemplar of one view, of a class with this name."""
-    image = view.image if view.image.size else np.zeros(FEATURES)
-    return Exemplar(number, name, (), view.features[None], view.size_m, "", 0, image[None])
+    return Exemplar(number, name, (), view.features[None], view.size_m, "", 0, view.image[None])
 
 
 def _table(things: Sequence[ForeignThing], rng: np.random.Generator) -> list[Stood]:

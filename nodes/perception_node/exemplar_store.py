@@ -78,20 +78,19 @@ class ExemplarStore:
             raise Refused(
                 f"the limit of {_MOST} exemplars is reached; remove some with: semmap forget NUMBER"
             )
-        features = np.array([view.features for view in views], np.float32).astype(float)
-        images = [view.image if view.image.size else np.zeros(FEATURES) for view in views]
-        if not (_are_rows(features, WIDTH) and all(_are_rows(image[None], FEATURES) for image in images)):
+        features, images = [view.features for view in views], [view.image for view in views]
+        if not views or not (_are_rows(features, WIDTH) and _are_rows(images, FEATURES)):
             raise BadRequest(f"a view must have {WIDTH} features; create it with the same version of semmap")
         long, short, height = np.median([view.size_m for view in views], axis=0).tolist()
         exemplar = Exemplar(
             number=max((one.number for one in self._exemplars), default=0) + 1,
             class_=class_,
             ancestors=tuple(ancestors),
-            views=features,
+            views=np.array(features, np.float32).astype(float),
             size_m=(long, short, height),
             shown=shown,
             stamp_ns=time.time_ns(),
-            images=np.array(images, np.float16).astype(float),
+            images=np.array(images, np.float32).astype(float),
         )
         self._keep((*self._exemplars, exemplar))
         return _to_message(exemplar)
@@ -136,8 +135,8 @@ def known_class(word: str, ancestors: Mapping[str, Sequence[str]]) -> str:
     )
 
 
-def _are_rows(features: NDArray[np.floating], width: int) -> bool:
-    return features.ndim == 2 and features.shape[1] == width and bool(np.isfinite(features).all())
+def _are_rows(features: Sequence[NDArray[np.floating]], width: int) -> bool:
+    return all(row.shape == (width,) and np.isfinite(row).all() for row in features)
 
 
 def _plain(word: str) -> str:
@@ -193,7 +192,7 @@ def _write(path: Path, exemplars: Sequence[Exemplar]) -> None:
         buffer,
         description=np.array(json.dumps(entries)),
         views=np.concatenate([*views, np.empty((0, WIDTH))]).astype(np.float32),
-        images=np.concatenate([*images, np.empty((0, FEATURES))]).astype(np.float16),
+        images=np.concatenate([*images, np.empty((0, FEATURES))]).astype(np.float32),
     )
     beside = path.with_name(f"{path.name}.partly")
     try:

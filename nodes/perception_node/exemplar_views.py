@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from semmap.nodes.perception_node.image_features.efficientnet import FEATURES
 from semmap.nodes.perception_node.image_features.image_evidence import ThingImages
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.files.frame_folders import frames_in, read_frame
-from semmap.nodes.perception_node.pipeline import parts_in
+from semmap.nodes.perception_node.pipeline import images_in, parts_in
 from semmap.nodes.perception_node.recognition.features import features_of
 from semmap.nodes.perception_node.recognition.free_standing import is_compact
 from semmap.nodes.perception_node.recognition.joining import join_parts
@@ -40,12 +41,12 @@ class ExemplarView:
     """The appearance of a thing in one frame.
 
     `features`: (WIDTH,). `size_m`: its size as estimated from this frame [m]. `image`: (FEATURES,) the
-    features of its image, or (0,) without the network.
+    features of its image, zeros without a photograph or the network.
     """
 
     features: Numbers
     size_m: Size
-    image: Numbers = field(default_factory=lambda: np.zeros(0))
+    image: Numbers = field(default_factory=lambda: np.zeros(FEATURES))
 
 
 class ShownThing(NamedTuple):
@@ -62,16 +63,13 @@ def exemplar_view_of(
     features = features_of([thing])
     expected = expected_sizes(leaf_probabilities(learnt, features), learnt.sizes_m)[0]
     x, y, z = completed(thing, side_features(thing, expected), learnt.sides).size_m.tolist()
-    image = np.zeros(0) if images is None else images.features([0])[0]
-    return ExemplarView(views_of(features)[0], (max(x, y), min(x, y), z), image)
+    view = ExemplarView(views_of(features)[0], (max(x, y), min(x, y), z))
+    return view if images is None else replace(view, image=images.features([0])[0])
 
 
 def view_of_shown(shown: ShownThing, cloud: Cloud, learnt: RecognitionModel) -> ExemplarView:
-    """Return the view of a thing that was found in a cloud, with its image."""
-    images = None
-    if learnt.images is not None and cloud.colors is not None and cloud.organised:
-        images = learnt.images.of([(cloud.colors, shown.own.astype(np.int32))], [1])
-    return exemplar_view_of(shown.thing, learnt, images)
+    """Return the view of a thing that was found in a cloud, with its image if that is a photograph."""
+    return exemplar_view_of(shown.thing, learnt, images_in([cloud], [shown.own.astype(np.int32)], 1, learnt))
 
 
 def views_in_frames(

@@ -133,7 +133,7 @@ def observe_views(
     )
     things, chances, members = join_parts(parts.things, parts.same_thing_logits, learnt, parts.join)
     numbers = [_renumbered(label, members) for label in parts.labels]
-    images = images_in(sights, numbers, len(things), learnt)
+    images = images_in([sight.cloud for sight in sights], numbers, len(things), learnt)
     found, reasons = _recognised(sights, numbers, things, chances, learnt, labels, images)
     kept = [n for n, reason in enumerate(reasons) if not reason]
     observations = Observations(
@@ -163,7 +163,7 @@ def recognise_segments(
     things = [thing_of([segment], sight.supports) for segment in segments]
     numbers = _renumbered(sight.labels, [[segment.label - 1] for segment in segments])
     chances = leaf_probabilities(learnt, features_of(things))
-    images = images_in([sight], [numbers], len(things), learnt)
+    images = images_in([sight.cloud], [numbers], len(things), learnt)
     found, reasons = _recognised([sight], [numbers], things, chances, learnt, labels, images)
     return {
         segment.label: one if isinstance(one, Observation) and not reason else None
@@ -193,7 +193,7 @@ def _recognised(
 
 
 def images_in(
-    sights: Sequence[SegmentedView],
+    clouds: Sequence[Cloud],
     numbers: Sequence[NDArray[np.int32]],
     count: int,
     learnt: RecognitionModel,
@@ -206,12 +206,12 @@ def images_in(
         return None
     views = [
         (colours, number)
-        for sight, number in zip(sights, numbers, strict=True)
-        if (colours := sight.cloud.colors) is not None and sight.cloud.organised and is_photograph(colours)
+        for cloud, number in zip(clouds, numbers, strict=True)
+        if (colours := cloud.colors) is not None and cloud.organised and is_photograph(colours)
     ]
     if not views:
         return None
-    return learnt.images.of(views, range(1, count + 1))
+    return ThingImages(learnt.images, views, tuple(range(1, count + 1)))
 
 
 def _renumbered(labels: NDArray[np.int32], members: Sequence[Sequence[int]]) -> NDArray[np.int32]:

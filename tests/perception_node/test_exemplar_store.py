@@ -56,7 +56,7 @@ def test_what_cannot_be_is_refused_and_nothing_is_kept(tmp_path):
     with pytest.raises(BadRequest, match="name a more specific class"):
         book.add("Object", (), VIEWS, "")
     with pytest.raises(BadRequest, match=f"a view must have {WIDTH} features"):
-        book.add("Toy", (), [ExemplarView(np.zeros(7), (1.0, 1.0, 1.0))], "")
+        book.add("Toy", (), [*VIEWS, ExemplarView(np.zeros(7), (1.0, 1.0, 1.0))], "")
     with pytest.raises(BadRequest, match=f"a view must have {WIDTH} features"):
         book.add("Toy", (), [ExemplarView(np.full(WIDTH, np.nan), (1.0, 1.0, 1.0))], "")
     with pytest.raises(BadRequest, match="create it with the same version"):

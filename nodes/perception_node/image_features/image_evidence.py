@@ -70,10 +70,6 @@ class ImageEvidence:
     classifier: ImageClassifier
     memory: ImageMemory | None = field(default=None, compare=False)
 
-    def of(self, views: Sequence[LabelledImage], numbers: Sequence[int]) -> ThingImages:
-        """Return the images of the things with these numbers in some views."""
-        return ThingImages(self, views, tuple(numbers))
-
     def results(self, views: Sequence[LabelledImage], numbers: Sequence[int]) -> dict[int, ImageResult]:
         """Return the results of things by number, without those that no view shows.
 
@@ -114,9 +110,9 @@ class ThingImages:
         return replace(self, numbers=tuple(self.numbers[n] for n in things))
 
     def fits(self, things: Sequence[int], learnt: RecognitionModel) -> Numbers:
-        """Return (N, K) how well the images of things fit each leaf; all 1 if no view shows a thing."""
+        """Return (N, K) how well the images of things fit each leaf; NaN for one that no view shows."""
         classifier = self.evidence.classifier
-        rows = np.ones((len(things), len(learnt.classes)))
+        rows = np.full((len(things), len(learnt.classes)), np.nan)
         columns = [learnt.classes.index(leaf) for leaf in classifier.leaves]
         for row, result in zip(rows, self._results(things), strict=True):
             if result is not None:

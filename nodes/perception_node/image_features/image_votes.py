@@ -1,4 +1,4 @@
-"""Combines the probabilities of the classifiers with what images say."""
+"""Combines the probabilities of the classifiers with the evidence of images."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, 
 from semmap.nodes.perception_node.views.boxes import Numbers
 
 ImageFits = Callable[[Sequence[int]], Numbers]
-"""Returns for the numbers of things (N,) how well their images fit each leaf (N, K)."""
+"""Returns for the numbers of things (N,) how well their images fit each leaf (N, K); NaN without an image."""
 
 MOST_CLUTTER = 0.7
 """The images of things that are clutter with more than this probability are not used."""
@@ -19,7 +19,7 @@ _LEAST = 1e-6
 _SHAPE, _IMAGE, _UNKNOWN = 0.3, 1.2, 0.2
 """Weights of the logarithms of the probabilities by shape and colours and of those by photographs, and the
 weight of `Object`. They maximise the likelihood of real table scenes and of renderings of other meshes: 0.27
-to 0.31, 1.04 to 1.33 and 0.10 to 0.29 in four folds. In renderings, shape had a weight of its own: 1.2."""
+to 0.31, 1.04 to 1.33 and 0.10 to 0.29 in four folds."""
 
 
 def with_image_votes(chances: Numbers, learnt: RecognitionModel, fits: ImageFits) -> Numbers:
@@ -34,14 +34,13 @@ def with_image_votes(chances: Numbers, learnt: RecognitionModel, fits: ImageFits
     if learnt.exemplars is not None:
         fixed[len(learnt.classes) - len(learnt.exemplars.exemplars) :] = True
     things = np.flatnonzero(chances[:, clutter] <= MOST_CLUTTER)
-    if not things.size:
-        return chances
-    said = fits(things.tolist())[:, ~fixed]
-    told = (said != 1.0).any(axis=1)
-    logs = _SHAPE * np.log(chances[things][:, ~fixed] + _LEAST) + _IMAGE * np.log(said)
+    of_images = fits(things.tolist())[:, ~fixed]
+    shown = np.isfinite(of_images).all(axis=1)
+    things, of_images = things[shown], of_images[shown]
+    logs = _SHAPE * np.log(chances[things][:, ~fixed] + _LEAST) + _IMAGE * np.log(of_images)
     logs[:, np.count_nonzero(~fixed[:unknown])] += np.log(_UNKNOWN)
     votes = np.exp(logs - logs.max(axis=1, keepdims=True))
     rest = chances[things][:, ~fixed].sum(axis=1, keepdims=True)
     pooled = chances.copy()
-    pooled[np.ix_(things[told], ~fixed)] = (rest * votes / votes.sum(axis=1, keepdims=True))[told]
+    pooled[np.ix_(things, ~fixed)] = rest * votes / votes.sum(axis=1, keepdims=True)
     return pooled

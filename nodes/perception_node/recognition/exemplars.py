@@ -27,9 +27,6 @@ _SHAPE, _IMAGE, _BIAS = 0.35, 15.0, -6.7
 the cosine of the images. The weights maximise the likelihood of real frames of 31 things (0.31 to 0.37, 14 to
 17 in four folds), and the bias gives as few false names as before if several things are shown."""
 
-_SURE_ODDS = 0.7 / 0.3
-"""Images do not lower larger odds by shape and colours: from another side, one thing has another image."""
-
 
 @dataclass(frozen=True)
 class Exemplar:
@@ -90,7 +87,7 @@ class ExemplarMatcher:
         like = 1.0 / (1.0 + np.exp(-together))
         like = np.where(like < _LEAST_WITH_IMAGE, 0.0, np.minimum(like, _SUREST))
         found = like / (1.0 - like)
-        odds = np.where(np.isnan(alike) | (odds > _SURE_ODDS), np.fmax(odds, found), found)
+        odds = np.where(np.isnan(alike), odds, found)
         left = 1.0 / (1.0 + odds.sum(axis=1, keepdims=True))
         return np.concatenate([votes / rest * left, odds * left], axis=1)
 

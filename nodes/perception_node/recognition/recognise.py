@@ -82,10 +82,9 @@ def recognise(
 
 def _shown_in_images(chances: Numbers, learnt: RecognitionModel, images: ThingImages) -> Numbers:
     """Return probabilities (N, K) in which images help to recognise exemplars among what is not clutter."""
-    rows = np.flatnonzero(chances[:, learnt.classes.index(CLUTTER)] <= MOST_CLUTTER)
-    if learnt.exemplars is None or not rows.size:
+    if learnt.exemplars is None:
         return chances
-    chances = chances.copy()
+    rows, chances = np.flatnonzero(chances[:, learnt.classes.index(CLUTTER)] <= MOST_CLUTTER), chances.copy()
     chances[rows] = learnt.exemplars.with_images(
         chances[rows], lambda kept: images.similarities(kept, rows.tolist())
     )

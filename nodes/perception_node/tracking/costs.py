@@ -85,22 +85,22 @@ def _is_one_but_for_its_depth(target: Target, seen: Observation) -> bool:
 
 
 def cost_anywhere(
-    target: Target, seen: Observation, classes: ClassHierarchy, alike: float = math.nan
+    target: Target, seen: Observation, classes: ClassHierarchy, cosine: float = math.nan
 ) -> float:
     """Return the cost of matching a thing that vanished; FORBIDDEN if it is of another kind.
 
     The position has little weight. A thing back in its place may be less similar. An unknown thing is only
-    recognised elsewhere if it is completely visible and has the same colour. `alike`: the cosine of the
+    recognised elsewhere if it is completely visible and has the same colour. `cosine`: that of the
     images, NaN if one is not known. Like images replace class and colour, and unlike ones forbid a match
     elsewhere.
     """
     box = target.box
     if box is None:
         return FORBIDDEN
-    vague = ANYTHING in (seen.class_, target.class_) and not alike > _ALIKE
+    vague = ANYTHING in (seen.class_, target.class_) and not cosine > _ALIKE
     mismatch = size_difference(target._replace(size_m=box.size_m), seen)
-    related = classes.related(target.class_, seen.class_) or alike > _ALIKE
-    matches = related and not alike < _UNLIKE and mismatch <= (_OF_ANY_KIND if vague else _OF_A_KIND)
+    related = classes.related(target.class_, seen.class_) or cosine > _ALIKE
+    matches = related and not cosine < _UNLIKE and mismatch <= (_OF_ANY_KIND if vague else _OF_A_KIND)
     if vague and not (seen.whole and _is_of_like_color(target, seen)):
         matches = False
     if not matches and cost_in_place(target, seen, classes) == FORBIDDEN:
@@ -108,7 +108,7 @@ def cost_anywhere(
     horizontal, vertical = _apart(box.pose, box.size_m, seen)
     vaguely = vague and target.class_ != seen.class_
     class_cost = _VAGUE if vaguely else class_difference(target.class_, seen, classes)
-    image_cost = 0.0 if math.isnan(alike) else _ALIKE - alike
+    image_cost = 0.0 if math.isnan(cosine) else _ALIKE - cosine
     return mismatch + class_cost + image_cost + 0.1 * math.hypot(horizontal, vertical)
 
 

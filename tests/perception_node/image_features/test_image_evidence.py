@@ -9,6 +9,7 @@ from semmap.nodes.perception_node.image_features.image_classifier import shipped
 from semmap.nodes.perception_node.image_features.image_evidence import (
     ImageEvidence,
     ImageMemory,
+    ThingImages,
     with_images,
 )
 from semmap.nodes.perception_node.image_features.network import Outputs
@@ -37,7 +38,7 @@ class Banana:
 
 
 def fits(evidence, colours=SCENE, things=(0, 1)):
-    return evidence.of([(colours, LABELS)], (1, 2, 3)).fits(things, shipped_model())
+    return ThingImages(evidence, [(colours, LABELS)], (1, 2, 3)).fits(things, shipped_model())
 
 
 def test_what_images_say_is_told_by_leaf():
@@ -49,7 +50,7 @@ def test_what_images_say_is_told_by_leaf():
 
 def test_a_thing_without_an_image_has_no_evidence():
     network = Banana()
-    assert (fits(ImageEvidence(network, shipped()), things=(2,)) == 1.0).all()
+    assert np.isnan(fits(ImageEvidence(network, shipped()), things=(2,))).all()
     assert network.images == 0
 
 
@@ -69,7 +70,7 @@ def test_a_thing_that_rests_is_looked_up_and_one_that_changes_is_not():
 
 def test_features_come_from_the_same_run_as_the_classes_and_are_compared():
     network = Banana()
-    images = ImageEvidence(network, shipped()).of([(SCENE, LABELS)], (1, 2, 3)).select((2, 0))
+    images = ThingImages(ImageEvidence(network, shipped()), [(SCENE, LABELS)], (1, 2, 3)).select((2, 0))
     images.fits((0, 1), shipped_model())
     features = images.features((0, 1))
     assert network.images == 2

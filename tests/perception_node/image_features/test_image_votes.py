@@ -45,9 +45,12 @@ def test_images_that_know_the_thing_as_of_no_class_leave_it_so():
     assert share(found, UNKNOWN) > 0.5
 
 
-def test_images_that_tell_nothing_change_nothing():
-    before = chances({"Cup": 0.6, UNKNOWN: 0.4})
-    np.testing.assert_array_equal(with_image_votes(before, MODEL, lambda n: np.ones_like(before)), before)
+def test_a_thing_without_an_image_keeps_its_probabilities():
+    before = np.repeat(chances({"Cup": 0.6, UNKNOWN: 0.4}), 2, axis=0)
+    seen = np.concatenate([fits({"Bottle": 1.0})([0]), np.full((1, len(MODEL.classes)), np.nan)])
+    first, second = with_image_votes(before, MODEL, lambda n: seen)
+    assert first[MODEL.classes.index("Bottle")] > 0.5
+    np.testing.assert_array_equal(second, before[1])
 
 
 def test_images_of_clutter_are_not_processed():
@@ -55,7 +58,7 @@ def test_images_of_clutter_are_not_processed():
 
     def see(things):
         asked.extend(things)
-        return np.ones((len(things), len(MODEL.classes)))
+        return np.full((len(things), len(MODEL.classes)), np.nan)
 
     rows = [{CLUTTER: 0.9, "Cup": 0.1}, {"Cup": 0.5, UNKNOWN: 0.5}]
     with_image_votes(np.concatenate([chances(row) for row in rows]), MODEL, see)

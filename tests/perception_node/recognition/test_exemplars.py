@@ -73,7 +73,7 @@ def test_what_would_be_nothing_known_or_no_thing_is_called_as_it_was_shown(thing
         (0.0, 0.8, True),
         (0.1, 0.5, True),
         (0.6, 0.0, False),
-        (0.9, 0.0, True),
+        (0.9, 0.0, False),
         (0.9, np.nan, True),
         (0.0, np.nan, False),
     ],
