@@ -5,7 +5,7 @@ and the next group is sent while one is under way.
 
 All other commands wait until the commands before them are done, and the commands after a change wait for it.
 This includes entities without a name or a position, because both depend on the other entities, and entities
-that are given by a label, a class or an IRI, because they may be those of other changes.
+that are given by a label or a class, because they may be those of other changes.
 """
 
 from __future__ import annotations

@@ -287,9 +287,11 @@ def remove(view: MapView, command: Remove) -> KbCoroutine[Changed]:
     """Remove entities: all of them, or none if one is unknown."""
     if not command.names:
         raise errors.BadRequest("name at least one entity to remove")
-    leaving = list[Entity]()
-    for name in dict.fromkeys(command.names):
-        leaving.append((yield from individuals.find_meant(view, name)))
+    found = dict[str, Entity]()
+    for word in command.names:
+        entity = yield from individuals.find_meant(view, word)
+        found[entity.iri] = entity
+    leaving = [*found.values()]
     require_authority(command, leaving)
     attachment_rules.require_no_attachments([e.name for e in leaving if e.in_space], view.held)
     return (yield from _remove(view, command, f"remove {' '.join(e.name for e in leaving)}", leaving))

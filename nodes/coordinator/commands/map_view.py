@@ -14,6 +14,7 @@ from semmap.nodes.coordinator.free_names import FreeNames
 from semmap.nodes.coordinator.free_places import FreePlaces
 from semmap.nodes.runtime import map_replica
 from semmap.nodes.runtime.class_names import ClassNames
+from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
 from semmap.schemas.attachments import holder_of
 from semmap.schemas.commands import Add, Batch, Explain
@@ -120,11 +121,11 @@ class MapView(map_replica.MapReplica[Effects]):
             self.primary_names.update(dict.fromkeys(entity.other_names, entity.name))
 
     def with_primary_names(self, command: C) -> C:
-        """Return a command in which other names of entities are replaced by the names of the map.
+        """Return a command in which other names and IRIs of entities are replaced by their names in the map.
 
         `explain` keeps them, because its proof is about the individual that has the name.
         """
-        if not self.primary_names or isinstance(command, Explain):
+        if isinstance(command, Explain):
             return command
         changed: dict[str, object] = {}
         for field in _NAMED.intersection(command.__struct_fields__):
@@ -143,7 +144,11 @@ class MapView(map_replica.MapReplica[Effects]):
         return structs.replace(command, **changed) if changed else command
 
     def _primary_name(self, word: str) -> str:
-        return word if word in self.entities else self.primary_names.get(word, word)
+        if word in self.entities:
+            return word
+        iri = word.removeprefix("<").removesuffix(">")
+        found = self.entities.get(v.entity_name(v.iri(iri))) if ":" in iri else None
+        return self.primary_names.get(word, word) if found is None or found.iri != iri else found.name
 
     def _apply(self, commit: Effects) -> None:
         """See `MapReplica._apply`."""

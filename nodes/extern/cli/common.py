@@ -188,17 +188,8 @@ def run_arguments(app: click.Command, words: list[str], client: Client | None = 
         return error.exit_status
     except click.exceptions.NoArgsIsHelpError as error:
         print(error.format_message())
-    except click.NoSuchOption as error:
-        report(_MISUSE, f"{where}{usage_errors.unknown_option(error)}")
-        return 2
-    except click.BadOptionUsage as error:
-        report(_MISUSE, f"{where}{usage_errors.missing_values(error, app, words[0])}")
-        return 2
-    except click.MissingParameter as error:
-        report(_MISUSE, f"{where}{usage_errors.missing_parameter(error)}")
-        return 2
     except click.ClickException as error:
-        report(_MISUSE, f"{where}{usage_errors.one_line(error)}")
+        report(_MISUSE, f"{where}{usage_errors.describe(error, app, ''.join(words[:1]))}")
         return 2
     except (click.Abort, KeyboardInterrupt):
         return 130

@@ -12,25 +12,36 @@ import click
 from semmap.schemas import errors
 
 
-def missing_values(error: click.BadOptionUsage, app: click.Command, name: str) -> str:
+def describe(error: click.ClickException, app: click.Command, name: str) -> str:
+    """Return the error text for a wrong use of `app`, or of its command `name`."""
+    if isinstance(error, click.NoSuchOption):
+        return _unknown_option(error)
+    if isinstance(error, click.BadOptionUsage):
+        return _missing_values(error, app, name)
+    if isinstance(error, click.MissingParameter):
+        return _missing_parameter(error)
+    return _one_line(error)
+
+
+def _missing_values(error: click.BadOptionUsage, app: click.Command, name: str) -> str:
     """Return the error text for an option with too few values. Click does not report the command."""
     command = app.get_command(click.Context(app), name) if isinstance(app, click.Group) else app
     for option in command.params if command is not None else ():
         if option.nargs > 1 and error.option_name in option.opts:
             values = f"{error.option_name} {option.metavar}"
             return f"{error.option_name} requires {option.nargs} values, separated by spaces: {values}"
-    return one_line(error)
+    return _one_line(error)
 
 
 def _choices_of(choice: click.Choice[Any]) -> str:
     return ", ".join(map(str, choice.choices))
 
 
-def missing_parameter(error: click.MissingParameter) -> str:
+def _missing_parameter(error: click.MissingParameter) -> str:
     """Return the error text for a missing argument or option, with the next step."""
     parameter, ctx = error.param, error.ctx
     if parameter is None or ctx is None:
-        return one_line(error)
+        return _one_line(error)
     if isinstance(parameter, click.Option):
         if isinstance(parameter.type, click.Choice):
             return f"missing option {parameter.opts[0]}; choose from: {_choices_of(parameter.type)}"
@@ -88,7 +99,7 @@ _NUMBERS: Final = (
 )
 
 
-def one_line(error: click.ClickException) -> str:
+def _one_line(error: click.ClickException) -> str:
     """Return the message of an error of click without its capital letter, full stop and brackets of names."""
     text = _OPTIONAL.sub(r"\1", error.format_message())
     for kind, words in _NUMBERS:
@@ -104,7 +115,7 @@ _OPTION_SYNONYMS: Final = {
 """Option names of other tools, and the options that correspond to them."""
 
 
-def unknown_option(error: click.NoSuchOption) -> str:
+def _unknown_option(error: click.NoSuchOption) -> str:
     """Return the error text for an unknown option, with a suggestion: `--format json` for `--json`."""
     text = f"unknown option '{error.option_name}'"
     options = [p for p in error.ctx.command.params if isinstance(p, click.Option)] if error.ctx else []

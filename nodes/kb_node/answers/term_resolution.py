@@ -74,7 +74,7 @@ def resolve_individual(semantic_map: SemanticMap, word: str) -> Term:
         if reasoner.mentioned({found}):
             return found
     else:
-        for usual in (v.entity_iri(word), v.dm(word)):
+        for usual in (v.entity_iri(word), v.dm(word), v.iri(word)):
             if reasoner.mentioned({usual}):
                 return usual
         namespaces = semantic_map.classes.prefixes

@@ -150,7 +150,7 @@ def _drop_tag(elements: list[Element]) -> bool:
 
 def _drop_cleft(main: list[Element]) -> Element | None:
     """Remove *was it Anna* before *who*, and return Anna."""
-    if len(main) < 5 or not main[3].is_a("ask", "who") or main[2].kind != "thing":
+    if len(main) < 5 or not main[3].is_a("ask", "who") or main[2].kind not in ("thing", "unknown"):
         return None
     if not main[0].is_a("mark", *TENSES) or not main[1].is_a("mark", "it"):
         return None
@@ -255,6 +255,8 @@ def _since_then(period: Period) -> Period:
 def _is_missing(question: PastQuestion, main: Sequence[Element]) -> bool:
     """Return whether a question asks what is no longer at a place: is gone, disappeared, is not there."""
     claim = question.claim
+    if question.asked == "whether" and claim.subjects and not question.is_current:
+        return False  # was the cup missing
     is_gone = claim.event == "remove" and not claim.agent and any(how == "from" for how, _ in claim.places)
     is_not_there = question.is_negated and any(e.is_a("mark", "there") for e in main)
     return claim.event == "missing" or is_gone or (question.asked == "what" and is_not_there)

@@ -50,6 +50,12 @@ def test_an_individual_is_not_removed_renamed_or_updated_by_its_class_or_label(p
         people.change(command)
 
 
+def test_an_entity_is_removed_once_by_its_name_and_iri(people):
+    iri = people.map.entities["chair1"].iri
+    made = people.change(c.Remove(names=(iri, "chair1", f"<{iri}>")))
+    assert (made.text, made.names) == ("removed 1: chair1", ("chair1",))
+
+
 def test_the_name_of_an_individual_precedes_labels_of_entities(people):
     people.change(c.Update(name="chair1", ref="anna"))
     made = people.change(c.Set(name="anna", property="isOpen", values=(True,)))

@@ -1,4 +1,4 @@
-"""The coordinator's view of the map: other names of entities."""
+"""The coordinator's view of the map: other names and IRIs of entities."""
 
 from __future__ import annotations
 
@@ -31,6 +31,7 @@ def view():
     [
         (c.Set(name="mug", property="isOpen", values=(True,)), {"name": "cup1"}),
         (c.Remove(names=("cup2", "mug")), {"names": ("cup2", "cup1")}),
+        (c.Remove(names=("urn:cup2", "<urn:cup1>", "x:cup1")), {"names": ("cup2", "cup1", "x:cup1")}),
         (c.Move(name="cup2", on="mug"), {"name": "cup2", "on": "cup1"}),
         (c.Attach(name="mug", to="cup2"), {"name": "cup1", "to": "cup2"}),
         (c.Rename(name="mug", new="cup3"), {"name": "cup1", "new": "cup3"}),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from datetime import datetime
 
 import pytest
 
@@ -44,7 +45,8 @@ def test_a_robot_is_tracked_while_it_drives_and_committed_where_it_stops(system)
         assert [point.name for point in trail.track][-1:] == ["robot1"]
         assert client.when("robot1", "isLocatedIn", "kitchen1").visits == trail.visits
         assert " m in dining_corner1, kitchen1 and flat1" in client.last_seen("robot1").text
-        assert "robot1 was at (7." in system.cli("trail", "robot1", "--at", "now")
+        then = datetime.fromtimestamp(trail.track[-1].ns / 1e9)
+        assert "robot1 was at (7." in system.cli("trail", "robot1", "--at", f"{then:%Y-%m-%dT%H:%M:%S}")
         assert "kitchen1" in system.cli("trail", "Robot", "--in", "kitchen1")
         assert "no live poses of chair1 are stored" in system.cli("trail", "chair1", status=1)
         assert "robot1 was never in bathroom1 (" in client.trail("robot1", in_="bathroom1").text

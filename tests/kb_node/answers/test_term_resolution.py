@@ -79,6 +79,7 @@ def test_a_term_is_written_as_such_or_with_a_known_prefix(rooms, word, term):
         ("oak", v.dm("oak")),
         ("dm:oak", v.dm("oak")),
         ("<urn:one#pine>", "<urn:one#pine>"),
+        ("urn:one#pine", "<urn:one#pine>"),
         ("Chair", v.dm("Chair")),
         ("door", v.entity_iri("door1")),  # the only one of its class
     ],

@@ -10,6 +10,7 @@ from typing import Any, Final, NoReturn
 
 import click
 
+from semmap.nodes.extern.cli import usage_errors
 from semmap.nodes.extern.cli.command import command
 from semmap.nodes.extern.cli.commands.edit import set_, unset, update
 from semmap.nodes.extern.cli.common import json_option, print_result, with_client
@@ -53,8 +54,8 @@ def read_changes(text: str) -> Iterator[Update | Set | Unset]:
             continue
         try:
             yield _change(shlex.split(line))
-        except (ValueError, click.ClickException, errors.SemmapError) as error:
-            fault = error.format_message() if isinstance(error, click.ClickException) else str(error)
+        except (ValueError, errors.SemmapError) as error:
+            fault = str(error)
             raise errors.BadRequest(f"line {number}: {fault[:1].lower()}{fault[1:].rstrip('.')}") from None
 
 
@@ -70,6 +71,8 @@ def _change(words: list[str]) -> Update | Set | Unset:
         return recorded.change
     except click.exceptions.Exit:
         pass
+    except click.ClickException as error:
+        raise errors.BadRequest(usage_errors.describe(error, command, words[0])) from None
     raise errors.BadRequest(f"'{words[0]} {' '.join(words[1:])}' is not a change")
 
 

@@ -32,8 +32,8 @@ unset door1 hasColor 'color red'
     ("line", "said"),
     [
         ("remove cup1", "line 2: 'remove' is not one of update, set, unset"),
-        ("set door1", "line 2: missing argument 'PROPERTY'"),
-        ("set door1 isOpen true --sudo", "line 2: no such option '?--sudo"),
+        ("set door1", "line 2: missing argument PROPERTY; usage: set .*NAME PROPERTY VALUE"),
+        ("set door1 isOpen true --sudo", "line 2: unknown option '--sudo'; see: set --help"),
         ("update chair1 --at 1 two 0", "line 2: .*'two' is not a number"),
         ("set door1 'isOpen", "line 2: no closing quotation"),
         ("update --help", "line 2: 'update --help' is not a change"),

@@ -49,8 +49,11 @@ class _Answering(Verdicts):
                 return self._changed()
             case "missing":
                 return self._missing()
-            case "what" | "how_many":
+            case "what":
                 return self._what()
+            case "how_many":
+                found = self._what()
+                return structs.replace(found, text=f"{found.count}: {found.text}")
             case "who":
                 return self._who()
             case "whether":

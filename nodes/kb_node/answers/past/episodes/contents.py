@@ -130,6 +130,4 @@ def list_contents(asked: str, names: Iterable[str], where: str, seq: int, ns: in
     what = few(found, _FEW) if found else ("no person" if asked == "who" else "nothing")
     was = "were" if len(found) > 1 else "was"
     text = f"{what} {was} {where} at {texts.clock(ns)} (commit {seq})"
-    if asked == "how_many":
-        text = f"{len(found)}: {text}" if found else f"0: {text}"
     return PastAnswer(asked=asked, text=text, names=found, count=len(found), evidence=evidence)

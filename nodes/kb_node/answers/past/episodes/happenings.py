@@ -80,8 +80,6 @@ def happened(
     what = "no person" if question.asked == "who" else "nothing"
     text = texts.listed(parts) if found else f"{what} {span.text}".strip()
     count = len(names)
-    if question.asked == "how_many":
-        text = f"{count}: {text}"
     return PastAnswer(asked=question.asked, text=text, names=names, count=count, evidence=tuple(found))
 
 

@@ -111,6 +111,8 @@ class Occurrences:
             return f"{_DONE[claim.event]} {where}".strip()
         if claim.event in ("put", "take") and not where:
             return _DONE[claim.event]
+        if claim.event == "missing":
+            return "missing"
         return claim.state or (f"moved {where}" if where.startswith("from ") else where)
 
     def preposition(self, place: Place) -> str:
@@ -164,11 +166,13 @@ class Occurrences:
     def _of_one(self, claim: Claim, name: str) -> list[Episode]:
         places = self.places(claim)
         what = self.what(claim, places)
+        if claim.event in _STATE_AFTER:  # also of who left it open
+            return self._changes_of_state(name, claim.event)
         if claim.state:
             return self._states(name, claim.state)
-        if claim.event in _STATE_AFTER:
-            return self._changes_of_state(name, claim.event)
-        if not claim.event or claim.event == "missing":
+        if claim.event == "missing":
+            return self._absences(name)
+        if not claim.event:
             return self._lasting(name, places)
         leaves = claim.event in _LEAVING or any(place.is_from() for place in places)
         is_within = all(place.how in ("in", "near", "at") for place in places)
@@ -206,6 +210,17 @@ class Occurrences:
             spans = self.there((name,), place)[name]
             found = spans if found is None else find_overlaps(found, spans)
         return found or []
+
+    def _absences(self, name: str) -> list[Episode]:
+        """Return when an entity was missing: from a removal until it was added again."""
+        added = self._timeline.events(name, "add", "added")
+        found = []
+        for gone in self._timeline.events(name, "remove", "missing"):
+            back = next((e for e in added if e.since_ns > gone.since_ns), None)
+            found.append(
+                gone if back is None else structs.replace(gone, until=back.since, until_ns=back.since_ns)
+            )
+        return found
 
     def _starts(self, name: str, place: Place) -> list[Episode]:
         """Return when an entity came to a place, each with the author of the commit."""

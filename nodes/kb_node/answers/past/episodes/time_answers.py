@@ -86,7 +86,7 @@ class TimeAnswers(LocationAnswers):
         episodes = self._episodes()
         if not episodes:
             return PastAnswer(asked="how_often", text=f"0 times: {self._never()}", count=0)
-        parts = [texts.span(e) if not self._claim.event else f"at {texts.begin(e)}" for e in episodes]
+        parts = [f"at {texts.begin(e)}" if self._is_event() else texts.span(e) for e in episodes]
         count = len(episodes)
         text = f"{count} time{'s' * (count > 1)}: {episodes[0].subject} was {episodes[0].what}"
         text = f"{text} {self._span.text}".strip() + f": {texts.listed(parts)}"

@@ -33,7 +33,7 @@ class Verdicts(ChangeAnswers):
         else:
             verdict, word = is_so, "yes" if is_so else "no"
         if episodes:
-            parts = [f"at {texts.begin(e)}" if self._claim.event else texts.span(e) for e in episodes]
+            parts = [f"at {texts.begin(e)}" if self._is_event() else texts.span(e) for e in episodes]
             text = f"{word}: {episodes[0].subject} was {episodes[0].what} {texts.listed(parts)}"
         else:
             text = f"{word}: {self._never()}"
