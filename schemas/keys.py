@@ -13,7 +13,7 @@ from urllib.parse import quote, unquote
 from semmap.schemas.commits import Commit, Effects
 from semmap.schemas.frames import FramePose
 from semmap.schemas.health import Health
-from semmap.schemas.live import LivePose, LivePoses
+from semmap.schemas.live import LivePose, LivePoses, RobotState
 from semmap.schemas.perception import DetectedMasks, Observations, SegmentedCloud
 from semmap.schemas.relations import Described
 from semmap.schemas.replies import Ack
@@ -74,6 +74,8 @@ LIVE_POSE = Topic(f"{ROOT}/live/*", LivePose, "newest")
 """The pose of one tracked entity, from any publisher."""
 LIVE_POSES = Topic(f"{ROOT}/live", LivePoses, "newest")
 """The poses of all tracked entities, published by the coordinator."""
+ROBOT_STATE = Topic(f"{ROOT}/robot/*", RobotState, "newest")
+"""The base and the joints of one robot, from the simulator or any publisher."""
 FRAME = Topic(f"{ROOT}/frame/**", FramePose, "newest")
 """The pose of a frame in its parent, from any publisher; a name with `/` has several chunks."""
 OBSERVATIONS = Topic(f"{PERCEPTION}/observations", Observations, "newest")
@@ -93,6 +95,7 @@ TOPICS = (
     POSES,
     LIVE_POSE,
     LIVE_POSES,
+    ROBOT_STATE,
     FRAME,
     CAMERA,
     OBSERVATIONS,
@@ -139,6 +142,11 @@ def live_pose_key(name: str) -> str:
 def of_live_pose(key: str) -> str:
     """Return the entity's name in such a key."""
     return unquote(last_chunk(key))
+
+
+def robot_state_key(name: str) -> str:
+    """Return the key on which the states of one robot are published."""
+    return f"{ROOT}/robot/{_chunk(name)}"
 
 
 def frame_key(name: str) -> str:

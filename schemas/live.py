@@ -1,4 +1,4 @@
-"""Live poses of tracked entities, which are not committed."""
+"""Live poses of tracked entities and states of robots, which are not committed."""
 
 from __future__ import annotations
 
@@ -28,6 +28,16 @@ class LivePose(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, om
     def require_pose(self) -> Pose:
         """Return the pose. Raises BadRequest for yaw with orientation, or for a non-unit quaternion."""
         return pose_of(self.at, self.yaw, self.orientation)
+
+
+class RobotState(LivePose, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+    """The base and the joints of a robot, published on `semmap/robot/<name>`.
+
+    The pose is that of the origin of its model (MJCF, URDF) in the map frame, and not of its bottom centre.
+    `joints` are the positions of its joints [rad, m] by their names in the model; those left out are at 0.
+    """
+
+    joints: dict[str, Radians] = {}
 
 
 class LivePoses(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

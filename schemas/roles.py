@@ -48,6 +48,7 @@ GRANTS: Final[tuple[Grant, ...]] = (
     *_topic(keys.POSES, publish=frozenset(("robot",))),
     *_topic(keys.LIVE_POSE, publish=frozenset(("robot",))),
     *_topic(keys.LIVE_POSES),
+    *_topic(keys.ROBOT_STATE, publish=frozenset(("robot",))),
     *_topic(keys.FRAME, publish=frozenset(("robot",))),
     *_topic(keys.HEALTH),
     Grant("publish", keys.health_key(keys.WEB), ANYBODY),

@@ -16,7 +16,7 @@ import asyncio
 import contextlib
 import functools
 import threading
-from collections.abc import AsyncIterator, Callable, Iterator, Sequence
+from collections.abc import AsyncIterator, Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, Final, Literal, TypeVar
@@ -86,6 +86,12 @@ class AsyncClient(CommandMethods):
     async def publish_pose(self, name: str, at: Sequence[float], **pose: Any) -> None:
         """Publish the current pose of a tracked entity, without waiting; see `Client.publish_pose`."""
         self._client.publish_pose(name, at, **pose)
+
+    async def publish_robot(
+        self, name: str, joints: Mapping[str, float], at: Sequence[float], **pose: Any
+    ) -> None:
+        """Publish the joints and the base of a robot, without waiting; see `Client.publish_robot`."""
+        self._client.publish_robot(name, joints, at, **pose)
 
     async def publish_frame(
         self, name: str, parent: str, at: Sequence[float] = (0.0, 0.0, 0.0), **pose: Any

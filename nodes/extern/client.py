@@ -17,7 +17,7 @@ import functools
 import os
 import queue
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
@@ -40,7 +40,7 @@ from semmap.schemas.commands import Clear, Command, Load, Status, Undo, Watch
 from semmap.schemas.commits import Commit
 from semmap.schemas.entities import Source
 from semmap.schemas.frames import FramePose
-from semmap.schemas.live import LivePose
+from semmap.schemas.live import LivePose, RobotState
 from semmap.schemas.moments import When, with_offset
 from semmap.schemas.replies import Changed
 
@@ -177,6 +177,28 @@ class Client(CommandMethods):
         """
         fields = {"at": at, "yaw": yaw, "orientation": orientation, "stamp_ns": stamp_ns}
         self._publish(keys.LIVE_POSE, keys.live_pose_key(name), LivePose, fields)
+
+    def publish_robot(
+        self,
+        name: str,
+        joints: Mapping[str, float],
+        at: Sequence[float],
+        *,
+        yaw: float | None = None,
+        orientation: Sequence[float] | None = None,
+        stamp_ns: int = 0,
+    ) -> None:
+        """Publish the joints and the base of a robot, which `semmap up --mask-robot` leaves out of frames.
+
+        `joints` are positions [rad, m] by name; those left out are 0. `at` is the origin of the robot's model
+        [m] in the map frame. `yaw`, `orientation` and `stamp_ns` are as for `publish_pose`; the stamp must be
+        within 0.1 s of that of a frame.
+
+        There is no reply: perception reports missing or invalid states in `client.status()`. Raises
+        BadRequest for an invalid state, and Refused if the certificate of this client does not permit it.
+        """
+        fields = {"joints": joints, "at": at, "yaw": yaw, "orientation": orientation, "stamp_ns": stamp_ns}
+        self._publish(keys.ROBOT_STATE, keys.robot_state_key(name), RobotState, fields)
 
     def publish_frame(
         self,

@@ -80,6 +80,14 @@ class DetectorConfig:
 
 
 @dataclass(frozen=True)
+class RobotMaskConfig:
+    """The robot that is left out of frames: its name on `semmap/robot/<name>`, and its MJCF or URDF file."""
+
+    name: str
+    model: Path
+
+
+@dataclass(frozen=True)
 class PerceptionConfig:
     """Settings of the perception node."""
 
@@ -91,3 +99,4 @@ class PerceptionConfig:
     """The file of exemplars. Without it, exemplars are lost at exit."""
     detector: DetectorConfig | None = None
     """A detector that runs on the colour images of all cameras without masks of an external one."""
+    robot: RobotMaskConfig | None = None

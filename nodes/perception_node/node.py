@@ -34,6 +34,7 @@ from semmap.nodes.perception_node.image_features.image_evidence import with_imag
 from semmap.nodes.perception_node.image_features.network import available as images_are_available
 from semmap.nodes.perception_node.input.cloud import Cloud
 from semmap.nodes.perception_node.input.frame_worker import FrameWorker
+from semmap.nodes.perception_node.input.live_robot import LiveRobot
 from semmap.nodes.perception_node.input.masks import Masks
 from semmap.nodes.perception_node.observer import Observer
 from semmap.nodes.perception_node.pipeline import FrameResult, shipped
@@ -83,13 +84,14 @@ class Perception:
         taught: Callable[[RecognitionModel], None] = lambda _: None,
         fit: FitTo | None = None,
         on_classes: Callable[[Sequence[ClassInfo]], None] = lambda _: None,
+        robot: LiveRobot | None = None,
     ) -> None:
         """Register subscribers and start the worker threads.
 
         `look(clouds, masks)` processes the clouds of one moment and a detector's masks. `usual_m` are the
         typical sizes of classes. `taught` is called when the exemplars change. `fit` aligns the model of a
         class with a thing; without it, there are no full poses. `on_classes` is called with the classes of
-        each snapshot of the map.
+        each snapshot of the map. `robot` is left out of all clouds.
         """
         self._node = node
         self._config = config
@@ -119,7 +121,10 @@ class Perception:
         )
         node.follow_newest(keys.DETECTIONS, self._on_detections)
         self._fits = None if fit is None else FitWorker(fit, self._forward_fit, self._complain)
-        self._worker = FrameWorker(look, self._forward, self._complain)
+        self._worker = FrameWorker(look, self._forward, self._complain, robot)
+        if robot is not None:
+            states = keys.ROBOT_STATE._replace(key=robot.key)
+            bus.follow(node.session, states, lambda _, state: robot.keep(state))
         bus.follow(node.session, keys.MASKS, lambda _, found: self._worker.keep_masks(found))
         for plane in ("rgb", "depth"):
             bus.follow_cameras(node.session, plane, self._worker.keep, self._complain)
@@ -302,6 +307,7 @@ def run(config: PerceptionConfig) -> None:
     detector = None
     if (of := config.detector) is not None:
         detector = DetectorModel(of.model, of.names, of.layout, of.least_score)
+    robot = None if config.robot is None else LiveRobot(config.robot.name, config.robot.model)
     with open_node("perception_node", config.network) as node:
         observer = Observer(learnt, LabelMap(learnt, config.labels), detector)
         fit = FitToModels(shipped_surfaces()) if available() else None
@@ -314,6 +320,7 @@ def run(config: PerceptionConfig) -> None:
             observer.set_model,
             fit,
             lambda classes: observer.set_labels(LabelMap(learnt, config.labels, classes)),
+            robot,
         )
         try:
             node.run()

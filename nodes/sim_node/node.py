@@ -19,6 +19,7 @@ from semmap.nodes.sim_node.models.model_reader import ModelReader
 from semmap.nodes.sim_node.models.sources import Models
 from semmap.nodes.sim_node.physics.build import run_in_background
 from semmap.nodes.sim_node.robots.base_controller import Outcome
+from semmap.nodes.sim_node.robots.robot import RobotSensor
 from semmap.nodes.sim_node.scene_state import FILENAME, SceneStore
 from semmap.nodes.sim_node.shape_sender import ShapeSender
 from semmap.nodes.sim_node.vision.video_renderer import Plane, SceneSnapshot, VideoRenderer
@@ -99,6 +100,11 @@ class Simulator:
         self._poses = bus.publisher(node.session, keys.POSES)
         self._renderer = VideoRenderer(config.cameras, bus.subscriber_check(node.session, keys.SEGMENTS))
         self._planes: dict[str, Any] = {}
+        self._sensor: RobotSensor | None = None
+        if config.robot is not None:
+            self._sensor = run_in_background(partial(RobotSensor, config.robot), node.tick)
+            key = keys.robot_state_key(config.robot.name)
+            self._states = bus.publisher(node.session, keys.ROBOT_STATE, key)
         self._driving: dict[str, Future[Driven]] = {}
         """The pending replies to drive commands, by robot."""
         node.serve(
@@ -265,7 +271,15 @@ class Simulator:
         return SceneSnapshot(*self._world.snapshot())
 
     def _render_cameras(self) -> None:
-        self._renderer.render_cameras(self._scene_snapshot, self._publish_plane)
+        self._renderer.render_cameras(self._measured_snapshot, self._publish_plane)
+
+    def _measured_snapshot(self) -> SceneSnapshot:
+        """Return the scene of the next frames, and publish the state of the robot in it."""
+        taken = self._scene_snapshot()
+        if self._sensor is not None:
+            state = self._sensor.state(taken.model, taken.data, taken.stamp_ns)
+            self._states.put(codec.encode(state), encoding=codec.encoding_of(state))
+        return taken
 
     def _publish_plane(self, plane: Plane) -> None:
         frame, pixels = plane

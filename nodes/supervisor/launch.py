@@ -198,7 +198,12 @@ def _sim_node(settings: Settings) -> None:
 
 
 def _perception_node(settings: Settings) -> None:
-    from semmap.nodes.perception_node.config import DetectorConfig, PerceptionConfig, TrackingConfig
+    from semmap.nodes.perception_node.config import (
+        DetectorConfig,
+        PerceptionConfig,
+        RobotMaskConfig,
+        TrackingConfig,
+    )
     from semmap.nodes.perception_node.exemplar_store import FILENAME
     from semmap.nodes.perception_node.node import run
 
@@ -210,8 +215,11 @@ def _perception_node(settings: Settings) -> None:
         detector = DetectorConfig(
             Path(settings.detector), names, settings.detector_layout, settings.detector_score
         )
+    robot = None
+    if settings.mask_robot is not None:
+        robot = RobotMaskConfig(settings.mask_robot_name, Path(settings.mask_robot))
     network = settings.network("perception_node")
-    run(PerceptionConfig(tracking, network, settings.label_map, lessons, detector))
+    run(PerceptionConfig(tracking, network, settings.label_map, lessons, detector, robot))
 
 
 def _recorder(settings: Settings) -> None:

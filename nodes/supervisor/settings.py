@@ -113,6 +113,9 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The layout of its outputs; empty to recognise it."""
     detector_score: Annotated[float, Meta(ge=0.0, le=1.0)] = LEAST_SCORE
     """The minimum score of its detections."""
+    mask_robot: str | None = None
+    """The MJCF or URDF file of the robot `mask_robot_name`, which perception leaves out of frames."""
+    mask_robot_name: Name = "robot1"
     web: bool = False
     """Whether the web page runs beside the nodes."""
     web_port: Annotated[int, Meta(ge=0, le=65_535)] = 8080

@@ -10,6 +10,7 @@ from msgspec import structs
 from semmap.nodes import bus
 from semmap.nodes.perception_node.config import PerceptionConfig
 from semmap.nodes.perception_node.input.cloud import Cloud
+from semmap.nodes.perception_node.input.live_robot import LiveRobot
 from semmap.nodes.perception_node.node import Perception, summary
 from semmap.nodes.perception_node.pipeline import FrameResult
 from semmap.nodes.runtime.loop import Node
@@ -18,6 +19,7 @@ from semmap.schemas.bridge import SnapshotQuery
 from semmap.schemas.commands import Add, Classes, LastSeen
 from semmap.schemas.commits import Commit, Snapshot
 from semmap.schemas.entities import ClassInfo, Provenance
+from semmap.schemas.live import RobotState
 from semmap.schemas.perception import DetectedMasks, MaskRun, Observations
 from semmap.schemas.replies import Changed, Sighting
 from tests.conftest import PATIENCE_S, free_endpoint, handling, until
@@ -143,7 +145,17 @@ def endpoint():
 
 
 @pytest.fixture
-def world(endpoint, monkeypatch):
+def robot(request, tmp_path):
+    """Return a robot that fills the view of the cameras, for the tests that have one."""
+    if not hasattr(request, "param"):
+        return None
+    model = tmp_path / "ball.xml"
+    model.write_text('<mujoco><worldbody><geom size="0.5" pos="0 0 0.55"/></worldbody></mujoco>')
+    return LiveRobot("robot1", model)
+
+
+@pytest.fixture
+def world(endpoint, monkeypatch, robot):
     monkeypatch.setattr(
         "semmap.nodes.perception_node.input.frame_worker._TAKE_S", 0.02
     )  # its end waits for that
@@ -152,7 +164,7 @@ def world(endpoint, monkeypatch):
     with bus.open_session(here) as session, bus.open_session(there) as other:
         world = World(session, other)
         node = Node("perception_node", other)
-        perception = Perception(node, PerceptionConfig(), everything_is_a_cup, {})
+        perception = Perception(node, PerceptionConfig(), everything_is_a_cup, {}, robot=robot)
         with handling(world.node), handling(node):
             until(lambda: world.health is not None and world.health.state == "ready", "it is ready")
             try:
@@ -314,3 +326,20 @@ def test_masks_that_do_not_fit_are_told_and_the_frame_is_looked_at_all_the_same(
         return world.seen and "of 32 x 48 pixels, the image of 64 x 48" in caplog.text
 
     until(told, "it says so")
+
+
+@pytest.mark.parametrize("robot", [True], indirect=True)
+def test_a_robot_is_left_out_as_soon_as_its_state_is_there(world, robot, caplog):
+    near = {"depth_m": 0.1}
+    world.film_until(lambda: "too near" in caplog.text, "the robot is looked at", **near)
+    note = "robot1 is not left out of frames: nothing received on semmap/robot/robot1"
+    assert caplog.text.count(note) == 1
+    assert not world.seen
+
+    def left_out():
+        state = RobotState(at=(3.0, 4.0, 5.0), stamp_ns=world._stamp_ns + 1_000_000)
+        world.session.put(robot.key, codec.encode(state))
+        world.film(**near)
+        return world.seen
+
+    until(left_out, "it is left out")

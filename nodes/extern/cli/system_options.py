@@ -213,6 +213,12 @@ def settings_options(function: Callable[..., None]) -> Callable[..., None]:
         help='Labels of a detector and their classes, as in {"coffee mug": "Cup"}.',
     )
     @click.option(
+        "--mask-robot",
+        metavar="[NAME=]MODEL",
+        help="Leave a robot out of camera frames: its MJCF or URDF file, or porter. Its states are those on"
+        " semmap/robot/NAME; default NAME: --robot-name.",
+    )
+    @click.option(
         "--class-map",
         type=click.Path(path_type=Path),
         default=None,

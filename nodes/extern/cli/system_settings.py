@@ -15,11 +15,13 @@ from semmap.nodes.extern.cli.detector_options import detector_settings
 from semmap.nodes.extern.cli.ontology_options import require_there
 from semmap.nodes.extern.files import read_label_map
 from semmap.nodes.identity.register import Register
+from semmap.nodes.runtime import extras
 from semmap.nodes.supervisor.parts import nodes_of
 from semmap.nodes.supervisor.settings import JOURNAL, SETTINGS, Settings, default_data
 from semmap.ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from semmap.schemas import codec, errors
 from semmap.schemas.endpoints import robot_name as checked_namespace
+from semmap.schemas.entities import is_name
 
 _ROBOTS = Path(__file__).parents[2] / "sim_node" / "robots"
 """The folder of the robot models that are included in semmap."""
@@ -47,7 +49,7 @@ def complete_settings(options: Mapping[str, Any], *, single: bool) -> Settings:
         **_map_and_world(options, before),
         "data": str(folder),
         "imports": {iri: str(file) for iri, file in options["imports"]},
-        "robot": _robot_file(options["robot"]),
+        "robot": None if options["robot"] is None else _robot_file(options["robot"]),
         "single": single,
         "models": _folder(options["models"]),
         "camera_hz": _camera_hz(options["camera_hz"], perception=nodes["perception"]),
@@ -56,6 +58,7 @@ def complete_settings(options: Mapping[str, Any], *, single: bool) -> Settings:
             *(options[f"detector{part}"] for part in ("", "_names", "_layout", "_score")),
             perception=nodes["perception"] or single,
         ),
+        **_mask_robot(options["mask_robot"], options["robot_name"], perception=nodes["perception"] or single),
         "label_map": {} if options["label_map"] is None else read_label_map(options["label_map"]),
         **_network(options, single=single),
     }
@@ -148,10 +151,8 @@ def _class_map(file: Path | None, before: Settings | None) -> dict[str, str]:
     return read_label_map(file, "bodies", "mug_blue")
 
 
-def _robot_file(word: str | None) -> str | None:
+def _robot_file(word: str) -> str:
     """Return the file of a robot, which is a path or the name of an included robot. Raises BadFile."""
-    if word is None:
-        return None
     shipped = _ROBOTS / f"{word}.xml"
     if word.isidentifier() and shipped.is_file():
         return str(shipped)
@@ -159,6 +160,26 @@ def _robot_file(word: str | None) -> str | None:
         names = ", ".join(sorted(path.stem for path in _ROBOTS.glob("*.xml")))
         raise errors.BadFile(f"there is no file {word}; included robots: {names}")
     return _existing(Path(word))
+
+
+def _mask_robot(word: str | None, robot: str, *, perception: bool) -> dict[str, Any]:
+    """Return the settings of a robot that perception leaves out, whose model was tried.
+
+    `robot` is the default name. Raises BadFile, BadRequest.
+    """
+    if word is None:
+        return {}
+    if not perception:
+        raise errors.BadRequest("--mask-robot requires --perception, or with --only the node perception")
+    extras.require("semmap up --mask-robot", "sim")
+    from semmap.nodes.perception_node.input.robot_mask import RobotBody
+
+    name, named, model = word.partition("=")
+    if named and not is_name(name):
+        raise errors.BadRequest(f"--mask-robot: '{name}' is not a name; use NAME=MODEL, as in robot1=porter")
+    file = _robot_file(model if named else word)
+    RobotBody(Path(file))
+    return {"mask_robot": file, "mask_robot_name": name if named else robot}
 
 
 def _part(only: str, *, single: bool, without: dict[str, bool]) -> tuple[str, ...]:

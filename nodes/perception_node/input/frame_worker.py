@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 
 from semmap.nodes.perception_node.input.cloud import FARTHEST_M, FEWEST_POINTS, NEAREST_M, Cloud
 from semmap.nodes.perception_node.input.frames import Frames, Pair, read_cloud, read_masks
+from semmap.nodes.perception_node.input.live_robot import LiveRobot
 from semmap.nodes.perception_node.input.masks import Masks
 from semmap.nodes.perception_node.input.projection import thinning
 from semmap.nodes.perception_node.pipeline import FrameResult
@@ -32,14 +33,16 @@ class FrameWorker:
         look: Callable[[Sequence[Cloud], Sequence[Masks | None]], FrameResult],
         on_look: Seen,
         complain: Callable[[str], None],
+        robot: LiveRobot | None = None,
     ) -> None:
-        """Start the thread. `look(clouds, masks)` processes one frame.
+        """Start the thread. `look(clouds, masks)` processes one frame, without the points on `robot`.
 
         `on_look` and `complain(text)` are called on the worker's thread.
         """
         self._look = look
         self._on_look = on_look
         self._complain = complain
+        self._robot = robot
         self._frames = Frames()
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="frames", daemon=True)
@@ -102,4 +105,11 @@ class FrameWorker:
             self._complain(
                 f"camera {frame.camera} has no depth values from {NEAREST_M:g} to {FARTHEST_M:g} m"
             )
-        return cloud
+        return cloud if self._robot is None else self._without_robot(self._robot, cloud)
+
+    def _without_robot(self, robot: LiveRobot, cloud: Cloud) -> Cloud:
+        try:
+            return robot.remove_from(cloud)
+        except BadRequest as error:
+            self._complain(error.text)
+            return cloud

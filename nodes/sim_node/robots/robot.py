@@ -1,4 +1,4 @@
-"""Adds a robot's MJCF to a world: one body with its parts, cameras and actuators."""
+"""Adds a robot's MJCF to a world, one body with its parts, cameras and actuators, and measures its state."""
 
 from __future__ import annotations
 
@@ -7,10 +7,14 @@ from pathlib import Path
 from typing import Final
 
 import mujoco
+import numpy as np
 
+from semmap.nodes.sim_node.bodies import Floats, pose_of
 from semmap.nodes.sim_node.config import RobotConfig
 from semmap.nodes.sim_node.physics import base_scene
+from semmap.schemas.entities import Pose, compose, inverse
 from semmap.schemas.errors import BadFile
+from semmap.schemas.live import RobotState
 
 SHIPPED: Final = {"porter": Path(__file__).with_name("porter.xml")}
 """The robots that ship with semmap, by name."""
@@ -58,3 +62,32 @@ def read(path: Path) -> mujoco.MjSpec:
     for light in list(spec.worldbody.lights):
         spec.delete(light)
     return spec
+
+
+class RobotSensor:
+    """Measures the base and the joints of a robot that `add_robot` added to the world."""
+
+    def __init__(self, robot: RobotConfig) -> None:
+        """Read the robot's file. Raises BadFile as `read` does."""
+        self.name = robot.name
+        own = read(robot.path).compile()
+        self._body_from_origin = inverse(_pose(own.body_pos[1], own.body_quat[1]))
+
+    def state(self, model: mujoco.MjModel, data: mujoco.MjData, stamp_ns: int) -> RobotState:
+        """Return the state of the robot in a world, with the names of the robot's file."""
+        body, prefix = model.body(self.name).id, f"{self.name}_"
+        single = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)
+        joints = {
+            name.removeprefix(prefix): float(data.qpos[model.jnt_qposadr[n]])
+            for n in range(model.njnt)
+            if model.jnt_type[n] in single
+            and model.body_rootid[model.jnt_bodyid[n]] == body
+            and (name := model.joint(n).name).startswith(prefix)
+        }
+        origin = compose(_pose(data.xpos[body], data.xquat[body]), self._body_from_origin)
+        at, turn = origin.position_m, origin.orientation_wxyz
+        return RobotState(at=at, orientation=turn, joints=joints, stamp_ns=stamp_ns)
+
+
+def _pose(at: Floats, turn: Floats) -> Pose:
+    return pose_of(np.concatenate([at, turn]))

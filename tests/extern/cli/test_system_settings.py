@@ -8,6 +8,7 @@ from msgspec import structs
 from semmap.nodes.extern.cli.app import execute
 from semmap.nodes.extern.cli.system_options import settings_options
 from semmap.nodes.extern.cli.system_settings import _settings_before
+from semmap.nodes.sim_node.robots.robot import SHIPPED
 from semmap.nodes.supervisor.settings import JOURNAL, SETTINGS, Settings
 from semmap.ontology import EMPTY_WORLD, FLAT_TTL, FLAT_WORLD, HOUSEHOLD_TTL
 from semmap.schemas import codec
@@ -84,9 +85,12 @@ def test_a_part_whose_map_is_elsewhere_remembers_its_world(data):
         (["up", "--only", "sim", "--no-sim"], "--only and --no-sim exclude each other"),
         (["up", "--only", "sim", "--perception"], "remove --perception"),
         (["node", "sim_node", "--only", "sim"], "--only applies to semmap up"),
+        (["up", "--mask-robot", "porter"], "--mask-robot requires --perception"),
+        (["up", "--perception", "--mask-robot", "r1=no.urdf"], "there is no file no.urdf; included robots: "),
+        (["up", "--perception", "--mask-robot", "=porter"], "--mask-robot: '' is not a name"),
     ],
 )
-def test_what_only_cannot_mean_is_refused(tmp_path, capsys, words, said):
+def test_what_only_and_mask_robot_cannot_mean_is_refused(tmp_path, capsys, words, said):
     assert execute([*words, "--data", str(tmp_path / "d")]) == 2
     assert said in capsys.readouterr().err
     assert not (tmp_path / "d").exists()
@@ -115,3 +119,15 @@ def test_the_flat_is_the_map_of_the_household_tbox(tmp_path, monkeypatch, words,
         files = files[:1]
     shown = CliRunner().invoke(show, ["--data", str(tmp_path / "data"), *words])
     assert shown.stdout == f"{abox} {world} {files}\n"
+
+
+@pytest.mark.parametrize(("word", "name"), [("porter", "cart"), ("arm1=porter", "arm1")])
+def test_a_robot_to_mask_is_that_of_the_world_unless_it_is_named(tmp_path, word, name):
+    @click.command()
+    @settings_options
+    def show(settings: Settings):
+        click.echo(f"{settings.mask_robot_name} {settings.mask_robot}")
+
+    words = ["--perception", "--truth", "perceived", "--robot-name", "cart", "--mask-robot", word]
+    shown = CliRunner().invoke(show, ["--data", str(tmp_path), *words])
+    assert shown.stdout == f"{name} {SHIPPED['porter']}\n"

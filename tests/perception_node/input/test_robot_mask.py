@@ -90,10 +90,11 @@ def test_a_urdf_is_read_and_what_is_before_it_stays(tmp_path):
 @pytest.mark.parametrize(
     ("state", "error"),
     [
-        ({"model": "none.xml"}, "cannot be read as MJCF or URDF"),
+        ({"model": "none.xml"}, "none.xml cannot be read: No such file"),
+        ({"model": "robot.json"}, "robot.json cannot be read as MJCF or URDF: "),
         ({"model": PORTER, "joints": {"knee": 1.0}}, "has no joint 'knee'; its joints: elbow"),
         ({"model": PORTER, "map_from_base": [1.0]}, "map_from_base is not a 4 x 4 pose"),
-        ({"joints": {}}, "is not the state of a robot"),
+        ({}, r"is not the state of a robot \(.*\): model is missing"),
     ],
 )
 def test_what_is_no_state_of_a_robot_is_told(tmp_path, state, error):

@@ -10,7 +10,7 @@ import pytest
 
 from semmap.nodes.sim_node.config import RobotConfig
 from semmap.nodes.sim_node.models.sources import Models
-from semmap.nodes.sim_node.robots.robot import SHIPPED
+from semmap.nodes.sim_node.robots.robot import SHIPPED, RobotSensor
 from semmap.nodes.sim_node.vision.view import camera_names, camera_view
 from semmap.nodes.sim_node.world_file import open_world
 from semmap.ontology import FLAT_WORLD
@@ -266,3 +266,27 @@ def test_who_lifts_it_ends_its_course(world):
     assert world.ended() == {"robot1": "stopped"}
     world.step(3.0)
     assert world.pose("robot1").position_m == pytest.approx(there.position_m, abs=0.02)
+
+
+def test_its_state_moves_the_model_of_its_file_to_where_it_is(tmp_path):
+    file = tmp_path / "arm.xml"
+    file.write_text(
+        """<mujoco><worldbody><body name="base" pos="0.1 0.2 0.5" quat="0.6 0.8 0 0"><geom size="0.1"/>
+        <joint type="free"/><body pos="0.3 0 0"><joint name="elbow"/><geom size="0.1"/>
+        <body name="hand" pos="0 0.4 0"><joint name="slide" type="slide"/><geom size="0.1"/>
+        </body></body></body></worldbody></mujoco>"""
+    )
+    robot = RobotConfig(file, name="r", at_m=(1.0, 2.0, 0.0), yaw_rad=0.7)
+    world = open_world(None, Models(), robot=robot)
+    world.data.joint("r_elbow").qpos, world.data.joint("r_slide").qpos = 0.4, 0.3
+    world.move([Placement(name="r", pose=Pose(position_m=(-1.0, 0.5, 0.0)))])
+    mujoco.mj_kinematics(world.model, world.data)
+    state = RobotSensor(robot).state(world.model, world.data, 7)
+    assert (state.joints.keys(), state.stamp_ns) == ({"elbow", "slide"}, 7)
+    own = mujoco.MjModel.from_xml_path(str(file))
+    data = mujoco.MjData(own)
+    for name, value in state.joints.items():
+        data.joint(name).qpos = value
+    mujoco.mj_kinematics(own, data)
+    hand = compose(state.require_pose(), Pose(position_m=tuple(data.body("hand").xpos)))
+    assert hand.position_m == pytest.approx(world.data.body("r_hand").xpos, abs=1e-6)
