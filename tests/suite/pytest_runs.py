@@ -11,8 +11,8 @@ from typing import IO
 
 from tests.suite.failures import Failure, read_failures
 
-IN_PARALLEL: tuple[str, ...] = ("-n", "3", "--dist", "worksteal", "--deal")
-"""Arguments for pytest. Three workers keep two cores busy, because many tests wait for a system."""
+IN_PARALLEL: tuple[str, ...] = ("-n", "4", "--dist", "worksteal", "--deal")
+"""Arguments for pytest. Four workers keep two cores busy, because many tests wait for a system."""
 _MEMORY = Path("/dev/shm")
 _ENOUGH_BYTES = 1 << 30
 """The suite's temporary files take about 100 MB."""
