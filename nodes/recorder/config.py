@@ -17,7 +17,9 @@ class RecorderConfig:
     """The settings of the recorder.
 
     `path` is the .rrd file, and `serve` the address for live viewers or None. `keep` limits the recordings
-    kept in the folder of `path`. `after` is the last commit of an earlier recording that this one continues.
+    kept in the folder of `path`. `after` is the last commit of an earlier recording that this one continues;
+    without one, the recording begins with the commits since `begun_ns`, the start of the system, or with the
+    last one before it.
     """
 
     path: Path
@@ -25,3 +27,4 @@ class RecorderConfig:
     serve: str | None = LIVE_VIEW
     keep: Retention = KEEP_ALL
     after: int | None = None
+    begun_ns: int = 0

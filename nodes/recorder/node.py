@@ -47,10 +47,11 @@ class Recorder:
         live: str,
         keep: Retention = KEEP_ALL,
         after: int | None = None,
+        begun_ns: int = 0,
     ) -> None:
         """Register the subscribers.
 
-        `live` describes the live view; `keep` and `after` are as in the configuration.
+        `live` describes the live view; `keep`, `after` and `begun_ns` are as in the configuration.
         """
         self._node = node
         self._recording = recording
@@ -72,6 +73,7 @@ class Recorder:
         node.every(0.5, self._tick)
         self._file_monitor, self._problem = FileMonitor(recording.path), ""
         self._keep, self._after, self._begun_s = keep, after, time.time()
+        self._begun_ns, self._first = begun_ns, 0
         self.is_full = False
         node.every(CHECK_S, self._check_file)
         node.every(_RETENTION_S, self._apply_retention)
@@ -98,7 +100,10 @@ class Recorder:
 
     def _on_map(self, begun: SnapshotLoaded) -> None:
         first = begun.before < 0
-        before = begun.before if not first else begun.seq - 1 if self._after is None else self._after
+        before = begun.before
+        if first:
+            self._first = begun.seq
+            before = max(0, begun.seq - _COMMITS_A_REQUEST) if self._after is None else self._after
         lost = missed_commits(before, begun.seq, self._unknown)
         self._unknown.clear()
         self._set_time(time.time_ns(), self._map.seq)
@@ -142,7 +147,7 @@ class Recorder:
         self._node.ask_later(keys.BRIDGE, query).add_done_callback(on_triples)
 
     def _fetch_commits(self, seqs: list[int]) -> None:
-        """Record commits that were missed, and the one that the recording starts with."""
+        """Record commits that were missed, and those that the recording starts with."""
         for start in range(0, len(seqs), _COMMITS_A_REQUEST):
             some = tuple(seqs[start : start + _COMMITS_A_REQUEST])
             self._node.ask_later(keys.BRIDGE, Recall(seqs=some)).add_done_callback(self._on_commits)
@@ -152,6 +157,9 @@ class Recorder:
             self._recording.note(f"some commits could not be recorded: {error}", warning=True)
             return
         for commit in future.result():
+            is_older = commit.seq < self._first and commit.stamp_ns < self._begun_ns
+            if is_older and self._after is None:
+                continue
             self._set_time(commit.stamp_ns, commit.seq)
             self._recording.commit(commit)
 
@@ -287,6 +295,6 @@ def run(config: RecorderConfig) -> int | None:
         open_node("recorder", config.network) as node,
         open_recording(config.path, serve) as recording,
     ):
-        recorder = Recorder(node, recording, live, config.keep, config.after)
+        recorder = Recorder(node, recording, live, config.keep, config.after, config.begun_ns)
         node.run()
         return recorder.recorded if recorder.is_full else None

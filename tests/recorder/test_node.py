@@ -6,6 +6,7 @@ import sys
 from contextlib import contextmanager, suppress
 
 import pytest
+from msgspec import structs
 
 from semmap.nodes import bus
 from semmap.nodes.recorder import node as recorder_node
@@ -136,11 +137,11 @@ def network(world):
 
 
 @contextmanager
-def recorder(world, path):
+def recorder(world, path, begun_ns=0):
     """A recorder in this process, ready."""
     with bus.open_session(network(world)) as session, open_recording(path, None) as recording:
         node = Node("recorder", session)
-        Recorder(node, recording, "no live view")
+        Recorder(node, recording, "no live view", begun_ns=begun_ns)
         with handling(node):
             world.await_commit(world.snapshot.seq)
             yield
@@ -164,6 +165,15 @@ def test_the_recording_holds_the_start_and_every_commit(world, tmp_path):
     assert positions(path, "chair1") == [[0.0, 0.0, 0.0]]
     assert positions(path, "cup7") == [[7.0, 0.0, 0.0]]
     assert column(path, "/map/bodies/cup7", "Clear:is_recursive") == [True]
+
+
+@pytest.mark.parametrize(("begun_seq", "first"), [(0, 1), (3, 3), (9, 5)])
+def test_the_recording_begins_with_the_first_commit_of_the_system(world, tmp_path, begun_seq, first):
+    path, past = tmp_path / "a.rrd", [commit(seq, entity("chair1")) for seq in range(1, 6)]
+    world.past = {one.seq: one for one in past}
+    world.snapshot = structs.replace(world.snapshot, seq=5)
+    with recorder(world, path, begun_ns=commit(begun_seq).stamp_ns):
+        until(lambda: seqs(path) == list(range(first, 6)), "the commits since the start are recorded")
 
 
 def test_the_graph_has_what_is_computed_of_places(world, tmp_path):
