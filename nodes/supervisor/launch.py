@@ -19,7 +19,7 @@ from semmap.nodes.bus import FOREVER_S, RESTART_S
 from semmap.nodes.runtime.memory import uncollected
 from semmap.nodes.supervisor.orphans import end_when_orphaned
 from semmap.nodes.supervisor.privacy import UMASK
-from semmap.nodes.supervisor.settings import SETTINGS, Settings
+from semmap.nodes.supervisor.settings import Settings
 from semmap.ontology import EMPTY_WORLD, FLAT_START_M, FLAT_WORLD
 from semmap.ontology.model_shapes import add_own
 from semmap.schemas import codec, errors
@@ -236,7 +236,7 @@ def _recorder(settings: Settings) -> None:
         serve=settings.live_view,
         keep=KEEP_ALL if settings.record_keep is None else Retention.read(settings.record_keep),
         after=None if after is None else int(after),
-        begun_ns=(Path(settings.data) / SETTINGS).stat().st_mtime_ns,  # written by each start of the system
+        begun_ns=settings.started_ns,
     )
     if (recorded := run(config)) is not None:  # continue in another file, in the same process
         os.environ[_RECORDED] = str(recorded)

@@ -48,6 +48,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """All settings of a system. Paths are absolute."""
 
     data: str
+    started_ns: int = 0
+    """When the system was started; its recording begins with the first commit since then."""
     tbox: str | tuple[str, ...]
     """The file of the TBox, or its files and folders."""
     imports: dict[str, str] = {}

@@ -56,6 +56,7 @@ def up(settings: Settings, say: Callable[[str], None]) -> None:
     Raises the reason if a node cannot start, and InternalError if supervisord ends by itself. All processes
     are stopped at the end. Processes left behind by a killed `up` are ended first.
     """
+    settings = structs.replace(settings, started_ns=time.time_ns())
     supervisor = Supervisor(Path(settings.data))
     with alone(supervisor.data):
         if supervisor.end_leftovers():
