@@ -331,8 +331,12 @@ def test_masks_that_do_not_fit_are_told_and_the_frame_is_looked_at_all_the_same(
 @pytest.mark.parametrize("robot", [True], indirect=True)
 def test_a_robot_is_left_out_as_soon_as_its_state_is_there(world, robot, caplog):
     near = {"depth_m": 0.1}
-    world.film_until(lambda: "too near" in caplog.text, "the robot is looked at", **near)
     note = "robot1 is not left out of frames: nothing received on semmap/robot/robot1"
+    world.film_until(
+        lambda: "too near" in caplog.text and note in caplog.text,
+        "the robot is looked at, with a note",
+        **near,
+    )
     assert caplog.text.count(note) == 1
     assert not world.seen
 
