@@ -73,7 +73,7 @@ class Recorder:
         node.every(0.5, self._tick)
         self._file_monitor, self._problem = FileMonitor(recording.path), ""
         self._keep, self._after, self._begun_s = keep, after, time.time()
-        self._begun_ns, self._first = begun_ns, 0
+        self._begun_ns, self._first = begun_ns if after is None else 0, 0
         self.is_full = False
         node.every(CHECK_S, self._check_file)
         node.every(_RETENTION_S, self._apply_retention)
@@ -157,11 +157,9 @@ class Recorder:
             self._recording.note(f"some commits could not be recorded: {error}", warning=True)
             return
         for commit in future.result():
-            is_older = commit.seq < self._first and commit.stamp_ns < self._begun_ns
-            if is_older and self._after is None:
-                continue
-            self._set_time(commit.stamp_ns, commit.seq)
-            self._recording.commit(commit)
+            if commit.seq >= self._first or commit.stamp_ns >= self._begun_ns:
+                self._set_time(commit.stamp_ns, commit.seq)
+                self._recording.commit(commit)
 
     # The scene
 
