@@ -68,6 +68,7 @@ class KnowledgeBase:
             LargeMap(journal, lambda: self.map.reasoner, node.soon),
             self.map.all_derived,
             lambda: Placements(placed=self.map.placed(), limits=self.map.classes.limits),
+            lambda: self.map.reasoner.closed,
         )
         self.map.on_failure = node.stop_failed
         self.map.prepare = self._sparql.prepare

@@ -39,6 +39,8 @@ class Load(Struct, frozen=True, kw_only=True, tag=True):
     infers: bool
     derived_changes: DerivedChanges = UNCHANGED
     """The computed and suppressed facts, if inference is needed."""
+    closure: bytes = b""
+    """The closure of the TBox as `facts.pack` writes it, if inference is needed and the closure is known."""
     placements: Placements | None = None
 
 

@@ -20,6 +20,7 @@ from typing import Any, overload
 from msgspec import msgpack
 
 from semmap.nodes.kb_node.derived_facts import UNCHANGED, DerivedChanges
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts, pack
 from semmap.nodes.kb_node.relations.facts.pair_properties import PairProperties
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.sparql.lanes import Lanes
@@ -61,11 +62,13 @@ class SparqlService:
         large_map: LargeMap | None = None,
         derived_changes: Callable[[], DerivedChanges] = DerivedChanges,
         placements: Callable[[], Placements] | None = None,
+        closed: Callable[[], Facts | None] = lambda: None,
     ) -> None:
         """Create the service; `asserted()` returns the present triples, and `publish` receives row changes.
 
         `derived_changes()` returns the computed and suppressed facts. `placements()` returns the poses, for
-        queries that need measurements.
+        queries that need measurements. `closed()` returns the closure of the TBox, if it is known: computing
+        it takes most of the start of the process.
 
         With a `large_map` the triples of a large map are in a store on disk. The store is created in the
         background: after a large commit immediately, otherwise at the first query. Inferred triples are
@@ -74,6 +77,7 @@ class SparqlService:
         self._asserted = asserted
         self._derived_changes = derived_changes
         self._placements = placements
+        self._closed = closed
         self._measured: frozenset[str] = frozenset()
         """The local names of the properties that must be measured."""
         self._measures = False
@@ -212,6 +216,7 @@ class SparqlService:
 
     def _load_into_memory(self, worker: _Worker) -> None:
         derived_changes = self._derived_changes() if self._infers else UNCHANGED
+        closed = self._closed() if self._infers else None
         asserted = tuple(self._asserted())
         placements = None
         if self._infers and self._placements is not None:
@@ -224,6 +229,7 @@ class SparqlService:
                 asserted=asserted,
                 infers=self._infers,
                 derived_changes=derived_changes,
+                closure=b"" if closed is None else pack(closed),
                 placements=placements,
             )
         )

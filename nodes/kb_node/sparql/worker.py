@@ -23,6 +23,7 @@ from typing import Any, Final
 
 from msgspec import msgpack, structs
 
+from semmap.nodes.kb_node.reasoner.rules.facts import unpack
 from semmap.nodes.kb_node.relations.facts.pair_properties import PairProperties
 from semmap.nodes.kb_node.sparql.protocol import (
     CommandReply,
@@ -129,9 +130,10 @@ class Worker:
         demand = self._dataset.demand
         self._dataset = Dataset(load.seq, load.asserted)
         self._dataset.demand = demand
-        self._consequences = (
-            Consequences(load.asserted, self._dataset, load.derived_changes) if load.infers else None
-        )
+        self._consequences = None
+        if load.infers:
+            closed = unpack(load.closure) if load.closure else None
+            self._consequences = Consequences(load.asserted, self._dataset, load.derived_changes, closed)
         self._derived = PairProperties(load.asserted if load.infers else ())
         self._measured = None
         if load.placements is not None:

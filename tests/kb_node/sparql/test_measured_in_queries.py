@@ -30,6 +30,7 @@ def started(flat, news):
         news.put,
         derived_changes=flat.all_derived,
         placements=lambda: Placements(placed=flat.placed(), limits=flat.classes.limits),
+        closed=lambda: flat.reasoner.closed,
     )
 
 

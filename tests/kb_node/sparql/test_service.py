@@ -42,7 +42,10 @@ class Home:
         self.there = {}
         self.derived_facts = DerivedFacts(self.reasoner)
         self.service = SparqlService(
-            lambda: self.reasoner.asserted(), self.news.put, derived_changes=lambda: self.derived_facts.all()
+            lambda: self.reasoner.asserted(),
+            self.news.put,
+            derived_changes=lambda: self.derived_facts.all(),
+            closed=lambda: self.reasoner.closed,
         )
 
     def commit(self, insert=(), retract=(), changed=(), removed=()):

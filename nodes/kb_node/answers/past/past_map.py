@@ -10,6 +10,7 @@ from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.documents.abox_document import undeclared_classes
 from semmap.nodes.kb_node.entities.class_table import ClassTable
 from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
@@ -37,6 +38,8 @@ class PastMap(NamedTuple):
     derived_changes: DerivedChanges = UNCHANGED
     placed: tuple[PlacedEntity, ...] = ()
     limits: Thresholds | None = None
+    closed: Facts | None = None
+    """The closure of the TBox, if it was computed."""
 
 
 def load_past_map(journal: Journal, past: HistoryReader, seq: int, *, inferred: bool) -> PastMap:
@@ -46,7 +49,8 @@ def load_past_map(journal: Journal, past: HistoryReader, seq: int, *, inferred: 
         return PastMap(seq, tuple(asserted))
     rebuilt = _rebuild(journal, past, seq, asserted)
     placed = tuple(map(PlacedEntity.of, rebuilt.there.values()))
-    return PastMap(seq, tuple(asserted), rebuilt.derived_facts.all(), placed, rebuilt.classes.limits)
+    limits, closed = rebuilt.classes.limits, rebuilt.reasoner.closed
+    return PastMap(seq, tuple(asserted), rebuilt.derived_facts.all(), placed, limits, closed)
 
 
 class _RebuiltMap(NamedTuple):
@@ -114,6 +118,7 @@ def query_past(journal: Journal, past: HistoryReader, query: Sparql) -> SparqlRe
         lambda _: None,
         derived_changes=lambda: then.derived_changes,
         placements=lambda: Placements(placed=then.placed, limits=then.limits or Thresholds()),
+        closed=lambda: then.closed,
     )
     try:
         return service.ask(query, then.seq).result()

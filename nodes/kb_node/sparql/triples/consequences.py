@@ -15,6 +15,7 @@ from itertools import chain
 
 from semmap.nodes.kb_node.derived_facts import UNCHANGED, DerivedChanges
 from semmap.nodes.kb_node.reasoner import Reasoner
+from semmap.nodes.kb_node.reasoner.rules.facts import Facts
 from semmap.nodes.kb_node.reasoner.tbox.split import is_schema
 from semmap.nodes.kb_node.sparql.triples.dataset import Dataset, Delta, as_stored
 from semmap.ontology import vocabulary as v
@@ -57,12 +58,19 @@ class Consequences:
     """The inferred triples of a dataset, exact after each commit. They include computed facts."""
 
     def __init__(
-        self, asserted: Iterable[Triple], dataset: Dataset, derived_changes: DerivedChanges = UNCHANGED
+        self,
+        asserted: Iterable[Triple],
+        dataset: Dataset,
+        derived_changes: DerivedChanges = UNCHANGED,
+        closed: Facts | None = None,
     ) -> None:
-        """Add to `dataset` what follows from the asserted and computed facts that are not suppressed."""
+        """Add to `dataset` what follows from the asserted and computed facts that are not suppressed.
+
+        `closed` is the closure of the TBox, if it is known.
+        """
         self._dataset = dataset
         suppressed = set(derived_changes.aside)
-        self._reasoner = Reasoner(t for t in asserted if t not in suppressed)
+        self._reasoner = Reasoner((t for t in asserted if t not in suppressed), closed=closed)
         self._reasoner.update_computed(add=derived_changes.come, suppress=derived_changes.aside)
         dataset.deny(derived_changes.aside)
         self._read_schema()

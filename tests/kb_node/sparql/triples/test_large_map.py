@@ -2,15 +2,16 @@
 
 import gzip
 import queue
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 
 import pyoxigraph as ox
 import pytest
 
 from semmap.nodes.kb_node.semantic_map import SemanticMap
-from semmap.nodes.kb_node.sparql import worker
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.sparql.triples import large_map
-from semmap.nodes.kb_node.sparql.triples.dataset import Delta
+from semmap.nodes.kb_node.sparql.triples.dataset import Delta, DiskDataset, as_stored
 from semmap.nodes.kb_node.sparql.triples.disk_stores import FOLDER, clone_path, clone_store
 from semmap.nodes.kb_node.sparql.triples.large_map import LargeMap
 from semmap.nodes.kb_node.storage import seed
@@ -324,18 +325,28 @@ def test_a_query_that_takes_too_long_is_cancelled_and_its_clone_deleted(node, tm
     assert node.count() == 303
 
 
-def test_a_long_log_is_merged_into_the_store(node, monkeypatch):
-    dataset = worker.DiskDataset
+def test_a_long_log_is_merged_into_the_store(node):
     assert node.count() == 3
     (path,) = stores(node)
-    kept = dataset(path, node.map.seq, node.map.seq)
+    seq = node.map.seq
     commit = node.commit("more", chair("more"))
-    kept.apply(Delta(seq=commit.seq, inserted=commit.inserted))
-    kept.merge_log([Delta(seq=commit.seq, inserted=commit.inserted)])
+    delta = Delta(seq=commit.seq, inserted=commit.inserted)
+    # as in the SPARQL process: one that has itself opened a store on disk must not fork
+    with ProcessPoolExecutor(1, get_context("spawn")) as pool:
+        merged = pool.submit(_read_after_merging, path, seq, delta).result(WAIT_S)
+    assert merged == [(s, p, as_stored(o)) for s, p, o in sorted(commit.inserted)]
+
+
+def _read_after_merging(path, seq, delta):
+    """Merge a commit into a store of `seq`, and return what the store then has about its subjects."""
+    kept = DiskDataset(path, seq, seq)
+    kept.apply(delta)
+    kept.merge_log([delta])
     opened = kept.open_in_reader()
-    assert opened.seq == commit.seq
-    triple = commit.inserted[0]
-    assert len(list(opened.store.quads_for_pattern(ox.NamedNode(v.bare(triple[0])), None, None))) > 0
+    assert opened.seq == delta.seq
+    subjects = {s for s, _, _ in delta.inserted}
+    found = [(str(q.subject), str(q.predicate), str(q.object)) for q in opened.store]
+    return sorted(triple for triple in found if triple[0] in subjects)
 
 
 def test_a_clone_does_not_change_the_store(tmp_path):
