@@ -224,6 +224,7 @@ def height(client, name) -> float:
     return next(body.pose.position_m[2] for body in scene.bodies if body.name == name)
 
 
+@pytest.mark.long
 def test_the_ring_turns_an_entity(tab, system, chair):
     with system.client() as client:
         view, entity = looking(tab, client), client.get(chair)
@@ -243,6 +244,7 @@ def test_the_ring_turns_an_entity(tab, system, chair):
         assert turned.position_m == pytest.approx(entity.pose.position_m, abs=0.06)
 
 
+@pytest.mark.long
 def test_the_vertical_arrow_lifts_an_entity(tab, system, chair):
     with system.client() as client:
         view, entity = looking(tab, client), client.get(chair)
