@@ -46,9 +46,9 @@ def test_a_thinned_cloud_leaves_few_holes():
 
 
 def test_points_behind_the_camera_fall_on_no_pixel():
-    points = np.array([[0, 0, 1], [0.01, 0, 1], [0, 0.01, 1], [0, 0, -1], [np.nan] * 3], np.float32)
-    _, pixel = as_image(Cloud(points[None]))
-    assert (pixel >= 0).tolist() == [True, True, True, False, False]
+    points = [[0, 0, 1], [0.01, 0, 1], [0, 0.01, 1], [0, 0, -1], [0, 0, 0], [0.1, 0.1, 0], [np.nan] * 3]
+    _, pixel = as_image(Cloud(np.array([points], np.float32)))
+    assert (pixel >= 0).tolist() == [True] * 3 + [False] * 4
 
 
 def test_nothing_seen():
