@@ -1,8 +1,11 @@
 import numpy as np
 
+from semmap.nodes.perception_node.recognition.exemplars import Exemplar, with_exemplars
 from semmap.nodes.perception_node.recognition.features import features_of
-from semmap.nodes.perception_node.recognition.recognise import reclassify_trimmed, trim
+from semmap.nodes.perception_node.recognition.recognise import reclassify_trimmed, recognise, trim
 from semmap.nodes.perception_node.recognition.recognition_model import shipped
+from semmap.nodes.perception_node.recognition.similarity import WIDTH
+from semmap.nodes.perception_node.recognition.similarity import shipped as similarity
 from semmap.nodes.perception_node.recognition.vote import leaf_probabilities
 from tests.perception_node.recognition.test_features import ALONE, WITH_A_SCRAP
 
@@ -30,3 +33,21 @@ def test_a_thing_without_scraps_stays_what_it_was():
 
 def test_nothing_is_nothing():
     assert reclassify_trimmed([], np.empty((0, len(shipped().classes))), shipped()).shape[0] == 0
+
+
+class NoImages:
+    """The images of things that no view shows."""
+
+    def fits(self, things, learnt):
+        return np.full((len(things), len(learnt.classes)), np.nan)
+
+    def similarities(self, kept, things):
+        return np.full((len(kept), len(things)), np.nan)
+
+
+def test_images_change_nothing_where_nothing_is_shown_whether_or_not_there_are_exemplars():
+    shown = Exemplar(1, "Vase", ("Object",), np.zeros((1, WIDTH)), (0.1, 0.1, 0.2), "shown", 0)
+    for learnt in (shipped(), with_exemplars(shipped(), [shown], similarity())):
+        chances = leaf_probabilities(learnt, features_of([ALONE]))
+        without = recognise([ALONE], chances, learnt)
+        assert recognise([ALONE], chances, learnt, images=NoImages()) == without
