@@ -2,13 +2,14 @@ import numpy as np
 import pytest
 
 from semmap.nodes.perception_node.input.cloud import Cloud
-from semmap.nodes.perception_node.pipeline import Parts, observe, observe_clouds
+from semmap.nodes.perception_node.pipeline import Parts, observe, observe_clouds, observe_views
 from semmap.nodes.perception_node.recognition.recognition_model import shipped
 from semmap.nodes.perception_node.views.merged_thing import thing_of
-from semmap.nodes.perception_node.views.segment_memory import Recalled
+from semmap.nodes.perception_node.views.segment_memory import Recalled, SegmentMemory
 from semmap.nodes.perception_node.views.segments import Segment, map_points
 from semmap.nodes.perception_node.views.supports import Support
 from tests.perception_node.scenes import HEIGHT_M, KINDS, shot
+from tests.perception_node.views.test_segment_memory import seen_from
 
 
 @pytest.fixture(scope="module")
@@ -125,3 +126,18 @@ def test_joined_parts_are_one_thing_on_the_support_below_both():
     assert both.segments == (*one.segments, *other.segments)
     assert both.box.low[2] == pytest.approx(0.69)
     assert both.box.size_m[:2].max() == pytest.approx(0.2, abs=0.01)
+
+
+def test_memory_completes_a_thing_in_view_and_keeps_what_is_out_of_view():
+    """A moving camera sees a board of 3 m in parts; at last it looks beside the remembered part."""
+    memory = SegmentMemory()
+    for x in (-0.8, -0.3, 0.4):
+        found = observe_views([seen_from(x)], shipped(), before=memory)
+        memory = found.remembered
+    (board,) = (*found.things, *(thing for thing, _ in found.dropped))
+    assert board.cells[:, 0].min() == pytest.approx(-1.5, abs=0.03)
+    assert board.whole
+    without = observe_views([seen_from(0.0, board=False)], shipped(), before=memory)
+    x = np.concatenate([segment.points[:, 0] for segment in without.remembered.segments])
+    assert np.abs(x).min() > 1.3
+    assert (x.min(), x.max()) == pytest.approx((-1.5, 1.5), abs=0.03)
