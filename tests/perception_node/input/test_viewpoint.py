@@ -130,3 +130,42 @@ def test_a_point_is_hidden_behind_another_or_outside_the_view(point, is_hidden):
 
 def test_all_points_are_hidden_from_a_camera_that_looks_away():
     assert hidden(np.array([[0.0, 0.0, -1.0], [0.0, 0.1, -2.0]]), np.eye(4)) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("up", "axis"),
+    [
+        ("x", (1, 0, 0)),
+        ("y", (0, 1, 0)),
+        ("z", (0, 0, 1)),
+        (None, (0, 0, 1)),
+        ("-x", (-1, 0, 0)),
+        ("-y", (0, -1, 0)),
+        ("-z", (0, 0, -1)),
+    ],
+)
+def test_the_axis_that_is_up_becomes_z_and_nothing_is_mirrored(up, axis):
+    turned = [Placement(up).place(np.float32([[one]]))[0][0, 0] for one in (axis, *np.eye(3))]
+    assert turned[0].tolist() == [0, 0, 1]
+    assert np.linalg.det(turned[1:]) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("levels_m", "lift_m"),
+    [
+        ({-1.0: 100, 0.5: 100}, 1.0),
+        ({-1.0: 100, -3.0: 2}, 1.0),
+        ({-1.0: 100, -3.0: 10}, 3.0),
+        ({-0.04: 100}, 0.0),
+        ({0.5: 100, 1.0: 5}, 0.0),
+        ({-1.01: 40, -0.99: 60}, 0.99),
+    ],
+)
+def test_the_lowest_level_of_many_points_is_lifted_to_zero_if_it_is_below(levels_m, lift_m):
+    heights = np.repeat([*levels_m], [*levels_m.values()])
+    points = np.stack([np.ones_like(heights), np.zeros_like(heights), heights], axis=-1)
+    camera = np.eye(4)
+    camera[:3, 3] = (0.1, 0.2, 0.3)
+    placed, pose = Placement("z", camera).place(points[None].astype(np.float32))
+    assert pose[:3, 3] == pytest.approx((0.1, 0.2, 0.3 + lift_m), abs=0.016)
+    assert placed[0] == pytest.approx(points - camera[:3, 3], abs=1e-6)

@@ -66,16 +66,19 @@ def test_a_thing_on_a_top_is_one_segment_and_no_part_of_the_top(thing):
 PITCH_M = 0.01
 
 
-def islands(*things, away_m=1.0, kind="support", shape=(70, 80)):
-    """Return what is found on a plane `away_m` below a camera, given windows (rows, columns, height [m])."""
+def islands(*things, away_m=1.0, kinds=("support",), shape=(70, 80)):
+    """Return what is found on a plane `away_m` below a camera, given windows (rows, columns, height [m]).
+
+    The cells are of the last of several planes.
+    """
     height = np.zeros(shape)
     for rows, columns, high_m in things:
         height[rows, columns] = high_m
     row, column = np.indices(shape) * PITCH_M
     points = np.stack([column, row, away_m - height]).astype(np.float32)
-    plane = Plane(np.array([0.0, 0.0, -1.0]), -away_m, kind, height.size, (0.8, 0.7))
+    planes = [Plane(np.array([0.0, 0.0, -1.0]), -away_m, kind, height.size, (0.8, 0.7)) for kind in kinds]
     on = np.abs(height) < max(0.009, 0.006 * away_m**2)
-    return thin_things(points, [plane], on.astype(np.int32))
+    return thin_things(points, planes, on * np.int32(len(planes)))
 
 
 def square(side, first=20):
@@ -119,7 +122,8 @@ def test_each_island_has_a_number_and_walls_have_none():
     labels = islands(*both)
     assert {labels[14, 14], labels[54, 54]} == {1, 2}
     assert np.count_nonzero(labels) == 2 * 64
-    assert not islands(*both, kind="wall").any()
+    assert not islands(*both, kinds=("wall",)).any()
+    np.testing.assert_array_equal(islands(*both, kinds=("wall", "floor")), labels)
 
 
 def test_the_hole_of_a_ring_is_a_part_of_it():
