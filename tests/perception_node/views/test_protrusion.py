@@ -54,11 +54,13 @@ def test_a_patch_of_the_table_is_no_thing_unless_it_has_another_colour(view):
 BARE = 400
 
 
-def level_view(side, *, rise_m=0.0, shade=120, dips_m=0.0, around=True):
+def level_view(side, *, rise_m=0.0, shade=120, dips_m=0.0, around=True, tall_cells=None):
     """Return a view from 1 m above a level surface with a square patch that rises, of another brightness."""
     labels = np.zeros((160, 160), np.int32)
     labels[80 : 80 + side, 80 : 80 + side] = 1
     height = np.where(labels > 0, rise_m, 0.0)
+    if tall_cells is not None:  # of those that are compared, in the first row of the patch
+        height[84:, 80:] = height[80:, 80 + 4 * tall_cells :] = 0.0
     height[::8, :40] -= dips_m
     if not around:
         height[labels == 0] = np.nan
@@ -81,6 +83,8 @@ def level_view(side, *, rise_m=0.0, shade=120, dips_m=0.0, around=True):
         (20, {"rise_m": 0.01}, "rises 10 mm above a surface with 3 mm of noise"),
         (20, {"rise_m": 0.013}, ""),
         (20, {"rise_m": 0.013, "dips_m": 0.006}, "rises 13 mm above a surface with 6 mm of noise"),
+        (20, {"rise_m": 0.013, "tall_cells": 3}, ""),
+        (20, {"rise_m": 0.013, "tall_cells": 2}, "rises 0 mm above a surface with 3 mm of noise"),
         (20, {"shade": 126}, "rises 0 mm above a surface with 3 mm of noise"),
         (20, {"shade": 140}, ""),
         (20, {"rise_m": 0.009, "shade": 126}, ""),
