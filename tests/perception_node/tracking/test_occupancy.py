@@ -94,13 +94,16 @@ def test_a_place_is_judged_by_where_its_rays_end(size, shares, occupancy):
     assert occupancy_in([cloud])(stands(0.0, 0.0, AHEAD_M), size) == occupancy
 
 
-@pytest.mark.parametrize(("yaw", "occupancy"), [(0.7, "free"), (0.3, "occupied"), (-0.7, "occupied")])
-def test_only_rays_through_the_turned_box_count(yaw, occupancy):
+@pytest.mark.parametrize(
+    ("yaw", "half_m", "occupancy"),
+    [(0.7, 0.38, "free"), (0.7, 0.25, "occupied"), (0.3, 0.38, "occupied"), (-0.7, 0.38, "occupied")],
+)
+def test_all_rays_through_a_turned_box_count_and_no_others(yaw, half_m, occupancy):
     """The camera looks through a diagonal slot, along the height of a long box."""
     u, v = np.meshgrid(np.arange(WIDTH) + 0.5 - WIDTH / 2, np.arange(HEIGHT) + 0.5 - HEIGHT / 2)
     along = np.abs(u * np.cos(0.7) + v * np.sin(0.7)) * AHEAD_M / FOCAL
     aside = np.abs(v * np.cos(0.7) - u * np.sin(0.7)) * AHEAD_M / FOCAL
-    depth = np.where((along < 0.38) & (aside < 0.07), PASSED_M, ON_IT_M).astype(np.float32)
+    depth = np.where((along < half_m) & (aside < 0.07), PASSED_M, ON_IT_M).astype(np.float32)
     box = stands(0.0, 0.0, AHEAD_M, yaw), (0.9, 0.12, 0.12)
     assert occupancy_in([cloud_of(depth, None, INTRINSICS, np.eye(4))])(*box) == occupancy
 
