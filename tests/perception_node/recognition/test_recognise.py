@@ -1,9 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
+import pytest
 
 from semmap.nodes.perception_node.recognition.exemplars import Exemplar, with_exemplars
 from semmap.nodes.perception_node.recognition.features import features_of
 from semmap.nodes.perception_node.recognition.recognise import reclassify_trimmed, recognise, trim
-from semmap.nodes.perception_node.recognition.recognition_model import shipped
+from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, UNKNOWN, shipped
 from semmap.nodes.perception_node.recognition.similarity import WIDTH
 from semmap.nodes.perception_node.recognition.similarity import shipped as similarity
 from semmap.nodes.perception_node.recognition.vote import leaf_probabilities
@@ -51,3 +54,38 @@ def test_images_change_nothing_where_nothing_is_shown_whether_or_not_there_are_e
         chances = leaf_probabilities(learnt, features_of([ALONE]))
         without = recognise([ALONE], chances, learnt)
         assert recognise([ALONE], chances, learnt, images=NoImages()) == without
+
+
+def test_what_is_reported_is_as_likely_as_among_things_that_are_no_clutter():
+    learnt = shipped()
+    chances = np.zeros((1, len(learnt.classes)))
+    for leaf, chance in {"Book": 0.4, UNKNOWN: 0.1, CLUTTER: 0.5}.items():
+        chances[0, learnt.classes.index(leaf)] = chance
+    (book,) = recognise([ALONE], chances, learnt)
+    assert (book.class_, book.probability) == ("Book", pytest.approx(0.8))
+    assert book.candidates == pytest.approx({"Book": 0.8, UNKNOWN: 0.2})
+    assert (book.points, book.whole, book.shown) == (ALONE.count, True, False)
+
+
+@pytest.mark.parametrize(
+    ("cut", "lifted_m", "clutter", "class_"),
+    [
+        (True, 0.0, 0.69, "Book"),
+        (True, 0.0, 0.71, None),
+        (True, 0.1, 0.34, "Book"),
+        (True, 0.1, 0.36, None),
+        (False, 0.1, 0.69, "Book"),
+        (False, 0.1, 0.71, None),
+        (False, 0.0, 0.71, UNKNOWN),
+    ],
+)
+def test_clutter_is_not_reported_unless_it_stands_free(cut, lifted_m, clutter, class_):
+    learnt = shipped()
+    segments = tuple(replace(segment, cut=cut) for segment in ALONE.segments)
+    chances = np.zeros((1, len(learnt.classes)))
+    chances[0, [learnt.classes.index("Book"), learnt.classes.index(CLUTTER)]] = 1.0 - clutter, clutter
+    (found,) = recognise([replace(ALONE, segments=segments, lifted_m=lifted_m)], chances, learnt)
+    if class_ is None:
+        assert found.reason.startswith(f"classified as clutter ({clutter:.2f})")
+    else:
+        assert found.class_ == class_
