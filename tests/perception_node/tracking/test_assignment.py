@@ -140,6 +140,8 @@ def test_a_segment_of_several_things_is_none_of_them():
     both = seen("Book", at(1.1, 1), (0.4, 0.2, 0.2))
     found = matched(known, [both], FILLED)
     assert (found.known, found.new) == ({}, [])
+    like_it = thing("Book", at(1.1, 1), (0.4, 0.2, 0.2))
+    assert matched(known | {"c": like_it}, [both], FILLED).known == {"c": 0}
     apart = {"a": known["a"], "b": thing("Book", at(4, 4), (0.2, 0.2, 0.2))}
     assert matched(apart, [both], FILLED).known == {}
     table = seen("Object", at(1.1, 1, 0.0), (2.0, 2.0, 1.0))
