@@ -10,6 +10,9 @@ from semmap.nodes.perception_node.recognition.recognition_model import CLUTTER, 
 from semmap.nodes.perception_node.recognition.similarity import WIDTH
 from semmap.nodes.perception_node.recognition.similarity import shipped as similarity
 from semmap.nodes.perception_node.recognition.vote import leaf_probabilities
+from semmap.nodes.perception_node.views.boxes import in_frame
+from semmap.nodes.perception_node.views.merged_thing import thing_of
+from semmap.nodes.perception_node.views.supports import Support
 from tests.perception_node.recognition.test_features import ALONE, WITH_A_SCRAP
 
 
@@ -89,3 +92,18 @@ def test_clutter_is_not_reported_unless_it_stands_free(cut, lifted_m, clutter, c
         assert found.reason.startswith(f"classified as clutter ({clutter:.2f})")
     else:
         assert found.class_ == class_
+
+
+@pytest.mark.parametrize("yaw_deg", [-80.0, -20.0, 10.0, 40.0, 70.0])
+def test_the_long_side_is_along_x_and_the_yaw_within_a_quarter_turn(yaw_deg):
+    learnt, yaw = shipped(), np.radians(yaw_deg)
+    segment = ALONE.segments[0]
+    turned = replace(segment, points=in_frame(segment.points, -yaw).astype(np.float32))
+    chances = np.zeros((1, len(learnt.classes)))
+    chances[0, learnt.classes.index("Book")] = 1.0
+    (found,) = recognise([thing_of([turned], [Support(0.0)])], chances, learnt)
+    assert found.pose.yaw_rad == pytest.approx(yaw, abs=0.03)
+    assert found.size_m[0] > found.size_m[1]
+    assert found.pose.position_m[:2] == pytest.approx(
+        (0.1 * np.cos(yaw) - 0.05 * np.sin(yaw), 0.1 * np.sin(yaw) + 0.05 * np.cos(yaw)), abs=0.03
+    )
