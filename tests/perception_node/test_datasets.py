@@ -11,6 +11,9 @@ from PIL import Image
 
 from semmap.nodes.perception_node import datasets
 from semmap.nodes.perception_node.detector import Detector
+from semmap.nodes.perception_node.input.files.frame_folders import FileFrame
+from semmap.nodes.perception_node.input.masks import DetectorLabel, Masks
+from semmap.nodes.perception_node.input.projection import cloud_of
 from semmap.nodes.perception_node.recognition.detector_labels import LabelMap
 from semmap.nodes.perception_node.recognition.recognition_model import shipped
 from semmap.schemas.perception import FrameRow
@@ -110,3 +113,34 @@ def test_a_mask_without_depth_is_listed(tmp_path):
     ]
     (told,) = [one for one in row.dropped if "mask" in one.reason]
     assert (told.box_px, told.points) == ((10, 10, 50, 40), 0)
+
+
+class BoxDetector:
+    """A detector that finds the same boxes in every image, in every second pixel."""
+
+    labels = LabelMap(shipped())
+
+    def masks_of(self, cloud, shape, step, folder):
+        self.seen = shape, step, folder.name
+        boxes = ((10, 8, 20, 18), (300, 5, 310, 15))
+        labels = DetectorLabel("cup", 0.9), DetectorLabel("mug", 0.8)
+        return Masks(np.zeros(cloud.points_camera.shape[:2], np.int32), labels, boxes=boxes)
+
+
+def test_a_box_without_a_thing_is_listed_with_its_place_in_the_whole_image(tmp_path, monkeypatch):
+    monkeypatch.setattr(datasets, "read_frame", lambda folder: thinned_frame())
+    detector = BoxDetector()
+    (row,) = rows([tmp_path / "a"], detector)
+    assert detector.seen == ((61, 605), 2, "a")
+    fault = "has no segment that fits it: the thing is flat, hidden, or without depth"
+    assert [(one.reason, one.box_px, one.points) for one in row.dropped] == [
+        (f"box 1 ('cup') {fault}", (20, 16, 40, 36), 0),
+        (f"box 2 ('mug') {fault}", (600, 10, 605, 30), 0),
+    ]
+
+
+def thinned_frame():
+    """Return the frame of every second pixel of a wall, in an image of 605 x 61."""
+    intrinsics = np.array([[300.0, 0, 151.5], [0, 300.0, 15.5], [0, 0, 1]])
+    cloud = cloud_of(np.full((31, 303), 1.0, np.float32), None, intrinsics, None)
+    return FileFrame(cloud, 2, (61, 605))

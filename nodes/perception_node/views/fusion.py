@@ -23,7 +23,7 @@ Member = tuple[int, int]
 def group_segments(sights: Sequence[SegmentedView]) -> list[list[Member]]:
     """Group segments by thing."""
     members, same = matching_segments(sights)
-    return _groups(same | same.T, members)
+    return _groups(same, members)
 
 
 def same_thing_logits(
@@ -96,6 +96,6 @@ def _labels_of(points: NDArray[np.float32], sight: SegmentedView) -> NDArray[np.
 
 
 def _groups(same: NDArray[np.bool_], members: Sequence[Member]) -> list[list[Member]]:
-    """Return the connected components of a symmetric relation (N, N)."""
+    """Return the connected components of a relation (N, N)."""
     count, root = connected_components(same, directed=False)
     return [[members[int(at)] for at in np.flatnonzero(root == r)] for r in range(count)]

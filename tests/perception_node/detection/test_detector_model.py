@@ -127,7 +127,9 @@ def test_boxes_of_yolox_may_be_decoded_already(tmp_path):
 
 
 def test_a_segmenter_gives_masks_inside_of_its_boxes(tmp_path):
-    boxes = yolov8([(*PADDED, CUP, 0.9)], classes=80 + 32)
+    in_the_padding, beside = (320.0, 40.0, 100.0, 60.0), (-100.0, 320.0, 50.0, 60.0)
+    found = [(*PADDED, CUP, 0.9), (*in_the_padding, CUP, 0.8), (*beside, CUP, 0.7)]
+    boxes = yolov8(found, classes=80 + 32)
     boxes[0, 84, 0] = 1.0  # the weight of the first prototype
     protos = np.full((1, 32, 160, 160), -5.0, np.float32)
     protos[0, 0, 40:80, :] = 5.0  # rows 160 to 319 of the input, 80 to 239 of the image
@@ -136,6 +138,7 @@ def test_a_segmenter_gives_masks_inside_of_its_boxes(tmp_path):
     assert (layout, masks.boxes) == ("yolov8", ())
     assert (columns.min(), rows.min(), columns.max() + 1) == BOX[:3]
     assert abs(rows.max() + 1 - 240) <= 2
+    assert (len(masks.detector_labels), masks.labels.max()) == (3, 1)
 
 
 def test_a_segmenter_may_select_its_things_itself(tmp_path):

@@ -12,6 +12,10 @@ def test_yolo_pads_on_both_sides_with_grey_from_0_to_1():
     np.testing.assert_allclose(values[0, :, 8, 8], np.array([200, 100, 50]) / 255, atol=1e-6)
     np.testing.assert_allclose(values[0, :, [3, 12], 8], 114 / 255, atol=1e-6)
     assert placement == ((2.0, 2.0), (0, 4))
+    values, placement = model_input.YOLO.prepare(RED.transpose(1, 0, 2), 16, 16)
+    np.testing.assert_allclose(values[0, :, 8, [3, 12]], 114 / 255, atol=1e-6)
+    np.testing.assert_allclose(values[0, 0, 8, 4:12], 200 / 255, atol=1e-6)
+    assert placement == ((2.0, 2.0), (4, 0))
 
 
 def test_yolox_pads_at_the_end_and_takes_bgr_from_0_to_255():

@@ -61,6 +61,8 @@ def test_between_the_points_of_a_surface_is_on_it_and_beyond_its_edge_is_not():
     assert verified_share(between, own, at(), WITHIN_M) == pytest.approx(1.0)
     beyond = np.array([[0.2 + 0.02 + spacing_m(own), 0.0, 1.0]])
     assert verified_share(beyond, own, at(), WITHIN_M) == pytest.approx(math.exp(-4.0), abs=0.01)
+    above = np.array([[0.2 + 0.006 + spacing_m(own), 0.0, 1.008]])
+    assert verified_share(above, own, at(), WITHIN_M) == pytest.approx(math.exp(-1.0))
 
 
 def test_the_pose_turns_the_model():

@@ -12,6 +12,7 @@ from semmap.nodes.perception_node.fitting.fit import (
     MOST_POINTS,
     Fit,
     angle_between,
+    available,
     fit_models,
     quaternion,
     thinned,
@@ -29,6 +30,10 @@ def fit(class_, yaw, said_yaw, said_class=None):
     pose, size_m = box(surface, said_yaw)
     said = said_class or class_
     return fit_models(said, [model(said)], shown(surface, yaw), pose, size_m, [])
+
+
+def test_models_are_fitted_where_open3d_is_installed():
+    assert available()
 
 
 def off_deg(found, yaw):

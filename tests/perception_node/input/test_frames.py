@@ -106,6 +106,9 @@ def test_a_camera_that_has_fallen_silent_is_waited_for_only_once():
     for stamp_ns in range(2, 12):  # ten waits would be too many
         put(frames, "left", stamp_ns)
         assert taken(frames) == [("left", stamp_ns)]
+    put(frames, "left", 20)
+    put(frames, "right", 5)  # it is back, and its clock is its own now
+    assert [taken(frames), taken(frames)] == [[("right", 5)], [("left", 20)]]
 
 
 def test_a_frame_of_the_past_is_refused():

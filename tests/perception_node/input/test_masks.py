@@ -12,6 +12,7 @@ from semmap.nodes.perception_node.input.masks import (
     masks_from_image,
     masks_from_numbers,
     masks_from_runs,
+    masks_from_stack,
 )
 from semmap.schemas.perception import MaskImage, MaskRun
 
@@ -91,3 +92,13 @@ def test_a_label_image_has_names_or_none():
 def test_what_is_wrong_with_masks_is_said(made, said):
     with pytest.raises(ValueError, match=said):
         made()
+
+
+@pytest.mark.parametrize(
+    ("scores", "both"),
+    [((), 2), ((0.9, 0.5), 1), ((0.5, 0.9), 2)],
+    ids=["the last", "the first", "the second"],
+)
+def test_masks_of_a_stack_are_numbered_in_order_and_the_better_one_covers_the_other(scores, both):
+    stack = np.array([[[1, 1, 0]], [[0, 1, 1]]], bool)
+    assert masks_from_stack(stack, scores=scores).labels.tolist() == [[1, both, 2]]

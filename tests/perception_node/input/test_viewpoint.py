@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from semmap.nodes.perception_node.input.cloud import Cloud
-from semmap.nodes.perception_node.input.viewpoint import Placement, find_up, is_seen_from_origin
+from semmap.nodes.perception_node.input.viewpoint import Placement, find_up, hidden, is_seen_from_origin
 from semmap.nodes.perception_node.views.segments import map_points
 from tests.perception_node.segmentation.scenes import boxes_on_table, camera_pose
 from tests.perception_node.segmentation.test_patches import SCENES
@@ -94,3 +94,78 @@ def test_the_vertical_is_found_of_points_that_no_camera_at_the_origin_can_have_s
 def test_points_without_a_level_have_no_vertical():
     assert find_up(np.random.default_rng(0).normal(size=(5000, 3)).astype(np.float32)) is None
     assert find_up(np.zeros((5, 3), np.float32)) is None
+
+
+def test_points_without_a_measurement_say_nothing_of_the_vertical(scene):
+    cloud, points = scene
+    seen = points.reshape(-1, 3) + np.float32([0.0, 0.0, 0.01])
+    nothing = np.concatenate([np.zeros_like(seen), np.full_like(seen, np.nan)])
+    assert find_up(np.concatenate([nothing, seen])) == ("z", False)
+    assert not is_seen_from_origin(np.concatenate([nothing, seen]))
+    assert is_seen_from_origin(np.concatenate([nothing, cloud.points_camera.reshape(-1, 3)]))
+
+
+@pytest.mark.parametrize(
+    ("point", "is_hidden"),
+    [
+        ((0.0, 0.0, 1.02), False),
+        ((0.0, 0.0, 1.05), True),
+        ((0.0, 0.0, 0.5), False),
+        ((0.0, 0.0, 0.04), True),
+        ((0.0, 0.0, -1.0), True),
+        ((1.4, 0.0, 1.0), False),
+        ((1.6, 0.0, 1.0), True),
+        ((0.0, -1.6, 1.0), True),
+    ],
+)
+def test_a_point_is_hidden_behind_another_or_outside_the_view(point, is_hidden):
+    """A camera 2 m along the map's x axis sees a flat square of points in which the point lies."""
+    pose = np.eye(4)
+    pose[0, 3] = 2.0
+    grid = np.stack([*np.meshgrid(*[np.linspace(-1.0, 1.0, 31)] * 2), np.ones((31, 31))], axis=-1)
+    points = np.concatenate([grid.reshape(-1, 3), [point]]) + pose[:3, 3]
+    covers = 1 if point[2] == 0.5 else 0
+    assert hidden(points, pose) * len(points) == pytest.approx(is_hidden + covers)
+
+
+def test_all_points_are_hidden_from_a_camera_that_looks_away():
+    assert hidden(np.array([[0.0, 0.0, -1.0], [0.0, 0.1, -2.0]]), np.eye(4)) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("up", "axis"),
+    [
+        ("x", (1, 0, 0)),
+        ("y", (0, 1, 0)),
+        ("z", (0, 0, 1)),
+        (None, (0, 0, 1)),
+        ("-x", (-1, 0, 0)),
+        ("-y", (0, -1, 0)),
+        ("-z", (0, 0, -1)),
+    ],
+)
+def test_the_axis_that_is_up_becomes_z_and_nothing_is_mirrored(up, axis):
+    turned = [Placement(up).place(np.float32([[one]]))[0][0, 0] for one in (axis, *np.eye(3))]
+    assert turned[0].tolist() == [0, 0, 1]
+    assert np.linalg.det(turned[1:]) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("levels_m", "lift_m"),
+    [
+        ({-1.0: 100, 0.5: 100}, 1.0),
+        ({-1.0: 100, -3.0: 2}, 1.0),
+        ({-1.0: 100, -3.0: 10}, 3.0),
+        ({-0.04: 100}, 0.0),
+        ({0.5: 100, 1.0: 5}, 0.0),
+        ({-1.01: 40, -0.99: 60}, 0.99),
+    ],
+)
+def test_the_lowest_level_of_many_points_is_lifted_to_zero_if_it_is_below(levels_m, lift_m):
+    heights = np.repeat([*levels_m], [*levels_m.values()])
+    points = np.stack([np.ones_like(heights), np.zeros_like(heights), heights], axis=-1)
+    camera = np.eye(4)
+    camera[:3, 3] = (0.1, 0.2, 0.3)
+    placed, pose = Placement("z", camera).place(points[None].astype(np.float32))
+    assert pose[:3, 3] == pytest.approx((0.1, 0.2, 0.3 + lift_m), abs=0.016)
+    assert placed[0] == pytest.approx(points - camera[:3, 3], abs=1e-6)

@@ -78,10 +78,11 @@ def test_what_may_be_a_piece_does_not_stand_alone(thing):
 def test_what_is_below_a_tables_edge_may_be_its_leg():
     top = block(((0.0, 0.0, 0.0), (1.0, 1.6, 0.75)))
     table = replace(top, segments=(replace(top.segments[0], carrier=True),))
-    leg = block(((0.02, 0.02, 0.0), (0.1, 0.1, 0.3)))
+    edges = ((0.02, 0.8), (0.9, 0.8), (0.5, 0.02), (0.5, 1.5))
+    legs = [block(((x, y, 0.0), (x + 0.08, y + 0.08, 0.3))) for x, y in edges]
     bin_ = block(((0.3, 0.3, 0.0), (0.5, 0.5, 0.3)))
-    assert standing(leg, bin_) == [True, True]
-    assert standing(table, leg, bin_) == [False, False, True]
+    assert standing(*legs, bin_) == [True] * 5
+    assert standing(table, *legs, bin_) == [False] * 5 + [True]
 
 
 def test_what_stands_alone_is_an_object_however_much_it_looks_like_clutter():

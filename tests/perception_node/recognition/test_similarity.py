@@ -45,6 +45,19 @@ def test_the_columns_are_those_of_the_features(seen):
     assert grey == pytest.approx(1.0)
 
 
+def test_pairs_are_described_by_all_their_differences_and_by_sums_of_those_of_a_kind():
+    kept, seen = np.zeros((1, WIDTH)), np.full((1, WIDTH), 2.0)
+    (row,) = similarity.pair_features(kept, seen)
+    each, signed, summed, rest = np.split(row, [WIDTH, WIDTH + 18, WIDTH + 23])
+    assert (each == 2.0).all()
+    assert (signed == 2.0).all()
+    hues, greys, bands, levels, distances = summed / 2.0
+    assert (hues, greys, bands, levels, distances) == (12, 4, 12, 8, 10)
+    assert rest[:2] == pytest.approx(2.0 * np.sqrt(3.0))
+    assert rest[2:6] == pytest.approx(0.0, abs=1e-6)  # of the mean colours without brightness
+    assert rest[6:].tolist() == [0.0] * 5 + [2.0] * 5 + [2.0] * 3 + [0.0] * 2
+
+
 def test_a_thing_is_like_itself_from_elsewhere_and_unlike_others(seen):
     (one, other), _ = seen
     kinds = sorted(one.keys() & other.keys())

@@ -9,7 +9,12 @@ import pytest
 
 from semmap.nodes.perception_node.pipeline import observe_clouds
 from semmap.nodes.perception_node.recognition.recognition_model import shipped
-from semmap.nodes.perception_node.segmentation.gravity import level_plane, room_pose
+from semmap.nodes.perception_node.segmentation.gravity import (
+    doubt_vertical,
+    level_plane,
+    room_pose,
+    standing_on,
+)
 from semmap.nodes.perception_node.segmentation.planes import Plane
 from semmap.nodes.perception_node.segmentation.working_image import grid_of
 from semmap.nodes.perception_node.views.segmented_view import segment_cloud
@@ -101,3 +106,33 @@ def test_a_floor_that_is_little_of_the_image_tells_how_a_camera_stands(close_box
     found = room_pose(grid_of(seen.cloud).points)
     assert found[2] == pytest.approx(pose[2], abs=0.02)
     assert likeliest_label(seen, 2) > 0
+
+
+@pytest.mark.parametrize("down_deg", [0.0, 30.0, 60.0, 90.0])
+def test_the_map_stands_on_a_plane_below_the_camera_and_x_points_ahead(down_deg):
+    down = np.radians(down_deg)
+    floor = Plane(np.array([0.0, -np.cos(down), -np.sin(down)]), -1.5, "floor", 100, (2.0, 2.0))
+    forward = [np.cos(down), 0.0, -np.sin(down)]
+    expected = np.column_stack([[0.0, -1.0, 0.0], [-np.sin(down), 0.0, -np.cos(down)], forward])
+    pose = standing_on(floor)
+    np.testing.assert_allclose(pose[:3, :3], expected, atol=1e-9)
+    assert pose[:, 3].tolist() == [0.0, 0.0, 1.5, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("up", "doubt"),
+    [
+        ((0.0, -1.0, 0.0), ""),
+        ((0.0, -0.3, -0.95), ""),
+        ((0.0, 0.0, -1.0), "z points at the camera"),
+        ((0.0, 0.0, 1.0), "no plane is visible"),
+        ((0.0, 0.6, -0.8), "no level surface is visible"),
+        ((1.0, 0.0, 0.0), "no level surface is visible"),
+    ],
+)
+def test_a_vertical_is_in_doubt_unless_it_points_up_in_the_image(up, doubt):
+    pose = np.eye(4)
+    pose[2, :3] = up
+    told = doubt_vertical(pose)
+    assert told.split(",")[0].split(" is visible")[0] == doubt.split(" is visible")[0]
+    assert ("state the camera's pose" in told) == bool(doubt)

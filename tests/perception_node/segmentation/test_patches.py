@@ -51,3 +51,39 @@ def test_a_picture_may_be_smaller_than_what_is_looked_across(height, width):
     labels = patches(points, facing, np.ones((height, width), bool))
     assert labels.shape == (height, width)
     assert set(np.unique(labels)) == ({1} if height * width >= 12 else {0})
+
+
+def roof(bend_deg, *, step_m=0.0, pitch_m=0.002, side=12):
+    """Return points (3, h, w) of two planes that meet in a ridge, or a valley if negative, and normals."""
+    half = np.radians(bend_deg) / 2.0
+    column, row = np.meshgrid(np.arange(-side, side) + 0.5, np.arange(2 * side))
+    right = np.sign(column)
+    points = np.stack([column * np.cos(half), row, np.abs(column) * np.sin(half)]) * pitch_m
+    points[2] += 1.0 + step_m * (right > 0)
+    facing = np.stack([np.sin(half) * right, 0 * right, -np.cos(half) + 0 * right])
+    return points.astype(np.float32), facing.astype(np.float32)
+
+
+@pytest.mark.parametrize(
+    ("bend_deg", "step_m", "count"),
+    [
+        (0.0, 0.0, 1),
+        (25.0, 0.0, 1),
+        (40.0, 0.0, 2),
+        (-10.0, 0.0, 1),
+        (-25.0, 0.0, 2),
+        (0.0, 0.005, 1),
+        (0.0, 0.01, 2),
+        (0.0, -0.01, 2),
+    ],
+)
+@pytest.mark.parametrize("upright", [False, True])
+def test_a_patch_ends_at_valleys_sharp_ridges_and_steps(bend_deg, step_m, count, upright):
+    points, facing = roof(bend_deg, step_m=step_m)
+    if upright:
+        points, facing = (of.transpose(0, 2, 1)[[1, 0, 2]] for of in (points, facing))
+    labels = patches(points, facing, np.ones(points.shape[1:], bool))
+    left, right = (labels.T if upright else labels)[:, [0, -1]].T
+    assert labels.max() == count
+    assert labels.min() == 1
+    assert (left != right).all() == (count == 2)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from semmap.nodes.perception_node.segmentation import segment
-from semmap.nodes.perception_node.segmentation.planes import find_planes
+from semmap.nodes.perception_node.segmentation.planes import Plane, find_planes
 from semmap.nodes.perception_node.segmentation.thin_things import thin_things
 from semmap.nodes.perception_node.segmentation.working_image import grid_of
 from semmap.nodes.perception_node.views.segmented_view import segment_cloud
@@ -61,3 +61,71 @@ def test_a_thing_on_a_top_is_one_segment_and_no_part_of_the_top(thing):
     sight = segment_cloud(seen.cloud)
     label = np.bincount(sight.labels[seen.truth == 2]).argmax()
     assert label not in sight.carriers
+
+
+PITCH_M = 0.01
+
+
+def islands(*things, away_m=1.0, kinds=("support",), shape=(70, 80)):
+    """Return what is found on a plane `away_m` below a camera, given windows (rows, columns, height [m]).
+
+    The cells are of the last of several planes.
+    """
+    height = np.zeros(shape)
+    for rows, columns, high_m in things:
+        height[rows, columns] = high_m
+    row, column = np.indices(shape) * PITCH_M
+    points = np.stack([column, row, away_m - height]).astype(np.float32)
+    planes = [Plane(np.array([0.0, 0.0, -1.0]), -away_m, kind, height.size, (0.8, 0.7)) for kind in kinds]
+    on = np.abs(height) < max(0.009, 0.006 * away_m**2)
+    return thin_things(points, planes, on * np.int32(len(planes)))
+
+
+def square(side, first=20):
+    return slice(first, first + side), slice(first, first + side)
+
+
+@pytest.mark.parametrize(
+    ("side", "high_m", "away_m", "found"),
+    [
+        (8, 0.0055, 1.0, True),
+        (8, 0.003, 1.0, False),
+        (8, -0.006, 1.0, False),
+        (8, 0.0055, 2.0, False),
+        (8, 0.011, 2.0, True),
+        (8, 0.012, 1.0, False),
+        (7, 0.0055, 1.0, True),
+        (6, 0.0055, 1.0, False),
+        (4, 0.008, 1.0, False),
+    ],
+)
+def test_an_island_is_higher_than_the_noise_of_a_mean_and_of_enough_cells(side, high_m, away_m, found):
+    labels = islands((*square(side), high_m), away_m=away_m)
+    own = np.zeros_like(labels)
+    own[square(side)] = 1
+    np.testing.assert_array_equal(labels, own if found else 0)
+
+
+@pytest.mark.parametrize(("long", "found"), [(40, True), (60, False)])
+def test_an_island_is_shorter_than_half_a_metre(long, found):
+    assert islands((slice(20, 28), slice(10, 10 + long), 0.0055)).any() == found
+
+
+@pytest.mark.parametrize(("tall", "found"), [(1, True), (8, False)])
+def test_an_island_beside_higher_cells_is_their_foot(tall, found):
+    beside = slice(20, 20 + tall), slice(28, 30), 0.1
+    assert islands((*square(8), 0.0055), beside).any() == found
+
+
+def test_each_island_has_a_number_and_walls_have_none():
+    both = (*square(8, 10), 0.0055), (*square(8, 50), 0.0055)
+    labels = islands(*both)
+    assert {labels[14, 14], labels[54, 54]} == {1, 2}
+    assert np.count_nonzero(labels) == 2 * 64
+    assert not islands(*both, kinds=("wall",)).any()
+    np.testing.assert_array_equal(islands(*both, kinds=("wall", "floor")), labels)
+
+
+def test_the_hole_of_a_ring_is_a_part_of_it():
+    ring = (*square(20), 0.0055), (*square(4, 28), 0.0)
+    assert islands(*ring)[21:39, 21:39].all()

@@ -46,9 +46,9 @@ def test_a_thinned_cloud_leaves_few_holes():
 
 
 def test_points_behind_the_camera_fall_on_no_pixel():
-    points = np.array([[0, 0, 1], [0.01, 0, 1], [0, 0.01, 1], [0, 0, -1], [np.nan] * 3], np.float32)
-    _, pixel = as_image(Cloud(points[None]))
-    assert (pixel >= 0).tolist() == [True, True, True, False, False]
+    points = [[0, 0, 1], [0.01, 0, 1], [0, 0.01, 1], [0, 0, -1], [0, 0, 0], [0.1, 0.1, 0], [np.nan] * 3]
+    _, pixel = as_image(Cloud(np.array([points], np.float32)))
+    assert (pixel >= 0).tolist() == [True] * 3 + [False] * 4
 
 
 def test_nothing_seen():
@@ -90,3 +90,60 @@ def test_holes_in_a_surface_are_filled_and_edges_are_not_moved():
     assert image[3, 3].tolist() == [0.0, 0.0, 1.0]
     assert colors[3, 3].tolist() == [90, 90, 90]
     assert np.isnan(image[:, :2]).all()
+
+
+def flat_grid(begin, end, pitch, depth_m=2.0):
+    """Return points (N, 3) on a wall, in rays at this pitch from the corner `begin` to `end`."""
+    u, v = np.meshgrid(*(np.arange(a, b, pitch) + pitch / 2 for a, b in zip(begin, end, strict=True)))
+    return np.stack([u.ravel(), v.ravel(), np.ones(u.size)], axis=-1) * depth_m
+
+
+@pytest.mark.parametrize(("sparse", "pitch"), [(0.0, 0.004), (0.1, 0.004), (0.4, 0.008)])
+def test_the_image_is_as_dense_as_most_of_the_view(sparse, pitch):
+    border = 0.64 * sparse
+    dense = flat_grid((border, 0.0), (0.64, 0.64), 0.004)
+    points = np.concatenate([dense, flat_grid((0.0, 0.0), (border, 0.64), 0.008)])
+    image, _ = as_image(Cloud(points[None].astype(np.float32)))
+    assert image.points_camera.shape[:2] == pytest.approx((0.64 / pitch, 0.64 / pitch), abs=2)
+
+
+def test_a_pixel_has_the_mean_of_its_points_on_the_nearest_surface():
+    points = flat_grid((0.0, 0.0), (0.48, 0.48), 0.02)
+    count, one = len(points), 250
+    ray = points[one] / 2.0
+    points = np.concatenate([points, np.outer([2.02, 2.04, 2.5], ray)])
+    colors = np.full(points.shape, 100, np.uint8)
+    colors[count:] = [[110] * 3, [200] * 3, [200] * 3]
+    image, pixel = as_image(Cloud(points[None].astype(np.float32), colors[None]))
+    assert (pixel[count:] == pixel[one]).all()
+    points[one], colors[one] = 2.01 * ray, 105
+    np.testing.assert_allclose(image.points_camera.reshape(-1, 3)[pixel[:count]], points[:count], rtol=1e-5)
+    np.testing.assert_array_equal(image.colors.reshape(-1, 3)[pixel[:count]], colors[:count])
+
+
+@pytest.mark.parametrize(
+    ("around", "depth", "shade"),
+    [
+        ([1.0] * 8, 1.0, 35),
+        ([1.01, 1.0, 1.0, 1.0, 0, 0, 0, 0], 1.0025, 15),
+        ([1.0, 1.0, 1.0, 0, 0, 0, 0, 0], None, 0),
+        ([1.0, 1.0, 1.0, 1.02, 0, 0, 0, 0], None, 0),
+        ([1.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0], 1.0, 15),
+    ],
+)
+def test_a_hole_is_filled_if_four_neighbours_are_on_one_surface(around, depth, shade):
+    """The neighbours have the shades 0, 10, 20 and so on, row by row."""
+    points = np.full((3, 3, 3), np.nan, np.float32)
+    colors = np.zeros((3, 3, 3), np.uint8)
+    places = [(0, 0), (0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1), (2, 2)]
+    for number, ((row, column), z) in enumerate(zip(places, around, strict=True)):
+        colors[row, column] = 10 * number
+        if z:
+            points[row, column] = (0.1 * z, 0.2 * z, z)
+    fill_holes(points, colors)
+    middle = points[1, 1].tolist()
+    if depth is None:
+        assert np.isnan(middle).all()
+    else:
+        assert middle == pytest.approx([0.1 * depth, 0.2 * depth, depth])
+    assert colors[1, 1].tolist() == [shade] * 3

@@ -111,6 +111,16 @@ def test_a_part_of_a_thing_shows_that_it_is_there_and_is_not_new():
     assert found.odd == {"shelf1"}
 
 
+@pytest.mark.parametrize(
+    "missed", [{"odd": CONFIG.odd_frames}, {"unseen": CONFIG.vanished_frames}, {"unseen": CONFIG.gone_frames}]
+)
+def test_in_the_place_of_a_thing_that_is_gone_a_part_is_another_thing(missed):
+    shelf = thing("Object", size_m=(0.4, 0.4, 0.8), **missed)
+    part = seen("Object", at(1.05, 1.1, 0.7), (0.1, 0.1, 0.3), whole=False)
+    found = matched({"shelf1": shelf}, [part], FILLED)
+    assert (found.known, found.new) == ({}, [0])
+
+
 def test_another_kind_of_thing_in_its_place_does_not_show_that_it_is_there():
     book = seen("Book", at(1, 1), (0.08, 0.08, 0.4))
     found = matched({"cup1": thing()}, [book], EMPTY)
@@ -130,6 +140,8 @@ def test_a_segment_of_several_things_is_none_of_them():
     both = seen("Book", at(1.1, 1), (0.4, 0.2, 0.2))
     found = matched(known, [both], FILLED)
     assert (found.known, found.new) == ({}, [])
+    like_it = thing("Book", at(1.1, 1), (0.4, 0.2, 0.2))
+    assert matched(known | {"c": like_it}, [both], FILLED).known == {"c": 0}
     apart = {"a": known["a"], "b": thing("Book", at(4, 4), (0.2, 0.2, 0.2))}
     assert matched(apart, [both], FILLED).known == {}
     table = seen("Object", at(1.1, 1, 0.0), (2.0, 2.0, 1.0))

@@ -518,10 +518,12 @@ def test_a_leg_of_a_known_thing_is_no_new_entity(x, added):
     assert any(isinstance(command, Add) for command in table.observe(CONFIG.confirm_frames)) is added
 
 
-def test_a_thing_has_not_moved_where_its_place_is_still_filled():
+@pytest.mark.parametrize("size_m", [(1.4, 0.6, 0.9), None], ids=["of a size in the map", "of unknown size"])
+def test_a_thing_has_not_moved_where_its_place_is_still_filled(size_m):
     """A counter is next to another of the same height: the current observation is a part of both."""
     table = Table([seen("Object", at(1, 1, 0.0), (1.4, 0.6, 0.9))])
     table.observe(5)
+    table.told([structs.replace(table.entities["object1"], size_m=size_m)])
     rest = seen("Bottle", at(0.5, 1, 0.0), (0.4, 0.6, 0.9))
     table.things = [seen("Object", at(1.4, 1, 0.0), (1.4, 0.6, 0.9)), rest]
     told = table.observe(table.config.kept_frames - 2)

@@ -17,6 +17,9 @@ def test_the_class_table_tells_the_hierarchy_and_the_labels():
     classes = hierarchy_of([row], {})
     assert classes.is_a("Coffee_Cup", "Cup")
     assert not classes.is_a("Cup", "Coffee_Cup")
+    assert classes.related("Coffee_Cup", "Cup")
+    assert classes.related("Cup", "Coffee_Cup")
+    assert not classes.related("Cup", "Bottle")
     assert classes.label("Coffee_Cup") == "coffee cup"
     assert ClassHierarchy().label("Coffee_Cup") == "coffee cup"
     assert ClassHierarchy().is_a("Coffee_Cup", "Object")

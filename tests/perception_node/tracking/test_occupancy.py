@@ -61,6 +61,53 @@ def test_what_stands_behind_something_is_hidden():
     assert occupancy_in([picture([screen])])(stands(0.0, 0.1), CUP) == "unknown"
 
 
+AHEAD_M = 3.0
+SMALL, LARGE, LARGE_BUT_THIN = (0.3, 0.3, 0.3), (0.6, 0.6, 0.3), (0.6, 0.6, 0.09)
+PASSED_M, BEFORE_IT_M, ON_IT_M = 9.0, 1.0, AHEAD_M
+
+
+@pytest.mark.parametrize(
+    ("size", "shares", "occupancy"),
+    [
+        (SMALL, {PASSED_M: 1.0}, "free"),
+        (SMALL, {PASSED_M: 0.8, ON_IT_M: 0.2}, "free"),
+        (SMALL, {PASSED_M: 0.65, ON_IT_M: 0.35}, "occupied"),
+        (LARGE, {PASSED_M: 0.95, ON_IT_M: 0.05}, "free"),
+        (LARGE, {PASSED_M: 0.8, ON_IT_M: 0.2}, "occupied"),
+        (LARGE_BUT_THIN, {PASSED_M: 0.8, ON_IT_M: 0.2}, "free"),
+        (SMALL, {PASSED_M: 0.6, BEFORE_IT_M: 0.4}, "free"),
+        (SMALL, {PASSED_M: 0.4, BEFORE_IT_M: 0.6}, "unknown"),
+        (SMALL, {PASSED_M: 0.4, np.nan: 0.6}, "unknown"),
+        (SMALL, {AHEAD_M - 0.01: 1.0}, "occupied"),
+        (SMALL, {AHEAD_M - 0.05: 1.0}, "unknown"),
+        (SMALL, {AHEAD_M + 0.19: 1.0}, "occupied"),
+        (SMALL, {AHEAD_M + 0.23: 1.0}, "free"),
+        (LARGE, {AHEAD_M + 0.23: 1.0}, "occupied"),
+        (LARGE, {AHEAD_M + 0.32: 1.0}, "free"),
+        ((0.03, 0.03, 0.3), {PASSED_M: 1.0}, "unknown"),
+    ],
+)
+def test_a_place_is_judged_by_where_its_rays_end(size, shares, occupancy):
+    """The camera looks along the height of the box, which starts 3 m ahead."""
+    depth = np.random.default_rng(0).choice([*shares], (HEIGHT, WIDTH), p=[*shares.values()])
+    cloud = cloud_of(depth.astype(np.float32), None, INTRINSICS, np.eye(4))
+    assert occupancy_in([cloud])(stands(0.0, 0.0, AHEAD_M), size) == occupancy
+
+
+@pytest.mark.parametrize(
+    ("yaw", "half_m", "occupancy"),
+    [(0.7, 0.38, "free"), (0.7, 0.25, "occupied"), (0.3, 0.38, "occupied"), (-0.7, 0.38, "occupied")],
+)
+def test_all_rays_through_a_turned_box_count_and_no_others(yaw, half_m, occupancy):
+    """The camera looks through a diagonal slot, along the height of a long box."""
+    u, v = np.meshgrid(np.arange(WIDTH) + 0.5 - WIDTH / 2, np.arange(HEIGHT) + 0.5 - HEIGHT / 2)
+    along = np.abs(u * np.cos(0.7) + v * np.sin(0.7)) * AHEAD_M / FOCAL
+    aside = np.abs(v * np.cos(0.7) - u * np.sin(0.7)) * AHEAD_M / FOCAL
+    depth = np.where((along < half_m) & (aside < 0.07), PASSED_M, ON_IT_M).astype(np.float32)
+    box = stands(0.0, 0.0, AHEAD_M, yaw), (0.9, 0.12, 0.12)
+    assert occupancy_in([cloud_of(depth, None, INTRINSICS, np.eye(4))])(*box) == occupancy
+
+
 CHAIR = (0.45, 0.45, 0.9)
 
 

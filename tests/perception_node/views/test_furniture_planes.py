@@ -56,6 +56,27 @@ def test_what_stands_on_a_top_ends_there():
     assert (cut[:, :20][points[:, :20, 2] > 0.83] == 1).all()
 
 
+def test_each_piece_of_furniture_is_a_thing_with_its_fronts_and_the_room_is_none():
+    """Two tops are apart, the second has a front below it, and a wall goes on outside the picture."""
+    row, column = np.indices((40, 48))
+    top, other_top, front, wall = np.s_[:20, :16], np.s_[:20, 24:44], np.s_[20:, 26:42], np.s_[20:, :16]
+    points = np.stack([column * 0.05, row * 0.01, np.full(row.shape, 0.7)], axis=-1)
+    points[front] = np.stack([column * 0.05, 0.17 + 0 * row, 1.3 - row * 0.03], axis=-1)[front]
+    labels, planes = np.zeros((2, 40, 48), np.int32)
+    labels[:8, 17:21], labels[24:36, 18:22] = 1, 2
+    expected = labels.copy()
+    for number, (where, body) in enumerate(((top, 3), (other_top, 4), (front, 4), (wall, 0)), 1):
+        planes[where], expected[where] = number, body
+    kinds = [
+        Plane(np.array([0.0, 0.0, 1.0]), 0.7, kind, 300, (1.0, 0.2))
+        for kind in ("support", "support", "wall", "wall")
+    ]
+    seen = Segmentation(labels, tuple(kinds), planes, np.zeros((2, 2), np.float32))
+    cut, furniture = with_furniture(seen, points[::4, ::4].astype(np.float32))
+    assert furniture == {3, 4}
+    np.testing.assert_array_equal(cut, expected)
+
+
 def corners(low, high):
     return np.array(low, np.float32), np.array(high, np.float32)
 

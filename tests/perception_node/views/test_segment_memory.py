@@ -1,5 +1,7 @@
 """A board 3 m long in front of a wall, and a camera that moves along it and sees only a part at a time."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -93,6 +95,16 @@ def test_what_is_seen_as_two_things_is_no_longer_remembered_as_one():
     labels = np.where(sight.labels & left, 2, sight.labels)
     recalled = before.recalled([sight], [labels])
     assert all(len(rest.points) < 0.1 * len(before.segments[0].points) for rest, _ in recalled)
+
+
+def test_only_cameras_with_a_name_and_a_known_place_are_remembered():
+    sight = seen_from(0.0)
+    lacks = [
+        replace(sight, cloud=replace(sight.cloud, **lack))
+        for lack in ({"camera": ""}, {"intrinsics": None}, {"map_from_camera": None})
+    ]
+    assert SegmentMemory().after(lacks, [], []).first == {}
+    assert [*SegmentMemory().after([*lacks, sight], [], []).first] == ["head"]
 
 
 def test_memory_is_bounded(monkeypatch):

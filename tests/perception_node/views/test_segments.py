@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from semmap.nodes.perception_node.input.cloud import Cloud
-from semmap.nodes.perception_node.views.segments import MOST_POINTS, cut_out, in_map, map_points
+from semmap.nodes.perception_node.views.segments import ENDS_EVERY, MOST_POINTS, cut_out, in_map, map_points
 from tests.perception_node.segmentation.scenes import camera_pose
 
 POSE = camera_pose()
@@ -39,7 +39,21 @@ def test_each_label_is_a_segment_with_its_points_and_colours():
     np.testing.assert_array_equal(small.eye, POSE[:3, 3])
 
 
+def test_ends_are_points_in_the_two_outermost_rows_and_columns():
+    points = map_points(CLOUD, POSE)
+    large, small = cut_out(CLOUD, POSE, LABELS)
+    np.testing.assert_array_equal(large.ends, points[:2, 40:120].reshape(-1, 3)[::ENDS_EVERY])
+    assert small.ends.shape == (0, 3)
+    near_corner = np.zeros_like(LABELS)
+    near_corner[116:118, 156:158] = 1
+    assert not cut_out(CLOUD, POSE, near_corner)[0].cut
+    assert cut_out(CLOUD, POSE, np.roll(near_corner, 1, axis=0))[0].cut
+    assert cut_out(CLOUD, POSE, np.roll(near_corner, 1, axis=1))[0].cut
+
+
 def test_one_point_seen_again_and_again_is_no_segment():
     still = Cloud(np.ones((120, 160, 3), np.float32))
     assert cut_out(still, POSE, LABELS) == []
+    partly = Cloud(np.where(LABELS[..., None] == 2, np.float32(1.0), CLOUD.points_camera))
+    assert [segment.label for segment in cut_out(partly, POSE, LABELS)] == [5]
     assert cut_out(CLOUD, POSE, np.zeros_like(LABELS)) == []

@@ -40,6 +40,12 @@ def test_a_triangle_is_half_of_its_box():
     assert not found[7, 1:].any()
 
 
+def test_slanted_edges_cut_rows_anywhere():
+    row, column = np.indices((10, 12)) + 0.5
+    rhombus = abs(column - 7.2) / 4 + abs(row - 5.1) / 3 < 1
+    assert (mask([[7.2, 2.1, 11.2, 5.1, 7.2, 8.1, 3.2, 5.1]], 10, 12) == rhombus).all()
+
+
 def test_what_a_polygon_leaves_out_is_out():
     u = [0, 0, 8, 0, 8, 6, 6, 6, 6, 2, 2, 2, 2, 6, 0, 6]
     expected = boxed(0, 2, 0, 8) | boxed(0, 6, 0, 2) | boxed(0, 6, 6, 8)
