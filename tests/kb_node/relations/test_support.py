@@ -42,8 +42,14 @@ def test_supporters_are_found_through_others():
         (at(0.0, 1.0), 0.3, 1.0, "its bottom is 30.0 cm above a surface of table1"),
         (at(0.5, 1.0), 0.3, 0.5, "its bottom is 30.0 cm above a surface of table1"),
         (at(2.0, 0.5), 0.5, 0.0, "its bottom is 50.0 cm above the floor of kitchen1"),
-        (at(9.0, 0.5), 0.5, 0.0, "its bottom is at a height of 50.0 cm, and it is not in a place with a floor"),
-        (at(0.58, 0.72), 0.02, 0.1, "its bottom is 2.0 cm above a surface of table1, but 10% of its base is over it"),
+        (
+            at(9.0, 0.5), 0.5, 0.0,
+            "its bottom is at a height of 50.0 cm, and it is not in a place with a floor",
+        ),
+        (
+            at(0.58, 0.72), 0.02, 0.1,
+            "its bottom is 2.0 cm above a surface of table1, but 10% of its base is over it",
+        ),
     ],
 )  # fmt: skip
 def test_an_object_without_support(entity, gap_m, share, reason):
