@@ -4,7 +4,7 @@ import pytest
 
 from semmap.nodes.kb_node.relations.measuring.measures import Measure, is_rectangle_within, overlap
 from semmap.nodes.kb_node.relations.measuring.space import Space
-from semmap.nodes.kb_node.relations.measuring.support_contact import is_balanced, on, over
+from semmap.nodes.kb_node.relations.measuring.support_contact import is_balanced, is_in_open_hollow, on, over
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from tests.kb_node.relations.entities import thing
 
@@ -73,6 +73,24 @@ def test_a_top_is_balanced_if_its_centre_is_between_its_posts(posts, is_so):
     below = [solid((x, y, 0.0), (0.2, 0.2, 1.0)) for x, y in posts]
     assert is_balanced(top, below, 1.0) == is_so
     assert not is_balanced(top, below, 1.1), "they end below this height"
+
+
+@pytest.mark.parametrize(
+    ("x", "size", "above_m", "is_so"),
+    [
+        (0.0, (0.08, 0.08, 0.1), 0.0, True),
+        (0.0, (0.08, 0.08, 0.1), 0.1, False),  # it rests above the floor
+        (0.5, (0.08, 0.08, 0.1), 0.0, False),  # most of it is over the rim
+        (0.0, (1.0, 1.0, 1.0), 0.0, False),  # the larger one
+    ],
+)
+def test_an_object_in_a_tray_stands_on_its_floor(x, size, above_m, is_so):
+    tray = Space([thing("tray1", (0.0, 0.0, 0.0))]).solids["tray1"]
+    (hollow,) = tray.form.shape.interiors
+    made = Measure(True, height_m=hollow.low[2] + above_m)
+    cup = solid((x * tray.size[0], 0.0, made.height_m), size)
+    assert is_in_open_hollow(tray, cup, made) == is_so
+    assert not is_in_open_hollow(solid((0.0, 0.0, 0.0), tray.size), cup, made), "it has no hollow"
 
 
 @pytest.mark.parametrize(
