@@ -50,6 +50,8 @@ def test_sides_require_a_viewer(space):
         RelationCache(space).bearing("cup1")
     with pytest.raises(errors.BadRequest):
         RelationCache(space).related("isBehind", "cup1", "laptop1")
+    assert not RelationCache(space).has_viewer
+    assert RelationCache(space, View.at(0, 0, 0, 0)).has_viewer
 
 
 def test_an_entity_without_a_position_has_no_relations(space):

@@ -61,6 +61,8 @@ def test_a_distance_is_inclusive():
     assert found(near="box1", within=1.49) == []
     assert found(nearest=3, to="box1", within=1.5) == ["box2"]
     assert found(nearest=3, to="box1", within=1.49) == []
+    assert found(near="1,0,-0.4", within=0.4) == found(near="1,0,1.4", within=0.4) == ["box1"]
+    assert found(near="1,0,-0.4", within=0.3) == found(near="1,0,1.4", within=0.3) == []
     assert found(nearest=3, to="0,0,0", within=0.5) == ["box1"]
     assert found(nearest=3, to="0,0,0", within=3.0) == ["box1", "box2"]
     assert found(nearest=1, to="0,0,0", within=3.0) == ["box1"]

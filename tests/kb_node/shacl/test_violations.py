@@ -63,3 +63,47 @@ def test_without_shapes_or_consistency_nothing_is_evaluated():
     assert check(AssertionError(), shapes="").conforms is True
     found = check(AssertionError(), consistent=False)
     assert (found.conforms, found.notes) == (None, ("shapes not evaluated: the map is inconsistent",))
+
+
+P, Q, A, B = "<urn:x#p>", "<urn:y#p>", "<urn:a>", "<urn:b>"
+
+
+@pytest.mark.parametrize(
+    ("result", "message", "path", "value", "text"),
+    [
+        (
+            Result(A, "too few", P, B, "violation", "<urn:S>"),
+            "too few", "p", "bowl", "cup: too few; p; bowl",
+        ),
+        (
+            Result(A, "", P, '"5"', "violation", "<urn:S>", "sh:maxCount 1"),
+            "the value 5 of p violates sh:maxCount 1", "p", "5",
+            "cup: the value 5 of p violates sh:maxCount 1; correct the map or the shape S",
+        ),
+        (
+            Result(A, "", f"{P}/^{Q}", "", "violation", "_:b1", "sh:minCount 1"),
+            "the values of p/^y:p violate sh:minCount 1", "p/^y:p", "",
+            "cup: the values of p/^y:p violate sh:minCount 1; correct the map or the shape",
+        ),
+        (
+            Result("_:b2", "", "", A, "violation", "_:b1", "sh:class A"),
+            "cup violates sh:class A", "", "cup",
+            "an individual without a name: cup violates sh:class A; correct the map or the shape",
+        ),
+        (
+            Result(A, "", "", A, "violation", "_:b1", "sh:closed"),
+            "violates sh:closed", "", "",
+            "cup: violates sh:closed; correct the map or the shape",
+        ),
+    ],
+)  # fmt: skip
+def test_a_violation_in_one_line(result, message, path, value, text):
+    found = violations.to_violation(result, {A: "cup", B: "bowl"}.__getitem__, {Q: "y:p"})
+    assert (found.message, found.path, found.value, found.text) == (message, path, value, text)
+    assert found.shape == ("S" if result.shape == "<urn:S>" else "")
+    assert found.severity == "violation"
+    if not result.message:
+        assert (
+            violations.to_violation(result, {A: "cup"}.__getitem__, {Q: "y:p"}, "").text
+            == f"{found.name}: {message}"
+        )

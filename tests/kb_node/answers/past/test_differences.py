@@ -36,6 +36,21 @@ def test_changes_are_listed_by_entity(told):
     assert (found.first, found.last) == (5, 6)
 
 
+@pytest.mark.parametrize(
+    ("where", "changed", "relations"),
+    [
+        ({"on": "table1"}, ["cup1"], ["is no longer on table1"]),
+        ({"on": "table2"}, ["cup1"], ["is on table2"]),
+        ({"in_": "kitchen1"}, ["table2"], ["is no longer in kitchen1"]),
+        ({"on": "kitchen1"}, [], []),
+    ],
+)
+def test_a_diff_of_a_place_has_only_what_came_or_left(told, where, changed, relations):
+    found = told.diff("5", "8" if "in_" in where else "6", **where)
+    assert [change.name for change in found.changes] == changed
+    assert [relation.text for relation in found.relations] == relations
+
+
 def test_a_move_there_and_back_leaves_no_change_of_the_pose(told):
     found = told.diff("5")
     kinds = [(change.name, change.kind) for change in found.changes]

@@ -217,6 +217,10 @@ by a key
 a key of a subclass
     :Person owl:hasKey (:number) . :Child rdfs:subClassOf :Person
     :Child owl:hasKey (:number)
+in a class above one whose definition is met
+    :A owl:equivalentClass [ owl:onProperty :p ; owl:minCardinality TWO ] ; rdfs:subClassOf :B .
+      :a :p :b , :c . :b owl:differentFrom :c
+    :a a :A , :B
 same in all
     :A rdfs:subClassOf HAS(:p :v) . :a a :A
     :a a HAS(:p :v)
@@ -380,6 +384,9 @@ a negative assertion without a target
 a class without axioms
     :a a :A
     [] owl:complementOf :A
+a class that is declared, without axioms
+    :a a :A
+    [] a owl:Class ; owl:complementOf :A
 a restriction with a name
     :r rdfs:subClassOf SOME(:p :A) . SOME(:p :A) rdfs:subClassOf :r
     :r owl:onProperty :p ; owl:someValuesFrom :A

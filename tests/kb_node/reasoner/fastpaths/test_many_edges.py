@@ -256,6 +256,16 @@ def test_a_chain_is_derived_in_any_order_of_insertion(first, then):
     assert not any(reasoner.inferred(triple(":flat :isIn :cup")[0], triple(":flat :isIn :cup")[1]))
 
 
+@pytest.mark.parametrize("more", [":a :isOn :k", ":a :isIn :k", ":k :bears :a", ":a :isPartOf :k"])
+def test_a_chain_is_derived_beside_other_edges_of_its_ends(more):
+    one, other = Reasoner(HOME), Reasoner(HOME)
+    facts = triples(f":a :isOn :b . :b :isIn :k . {more} .")
+    together(one, add=facts)
+    singly(other, add=facts)
+    assert state(one) == state(other)
+    assert one.holds(triple(":a :isIn :k"))
+
+
 def test_free_rows_are_used_before_new_edges_are_allocated():
     said, seen = at_home(6, 7)
     reasoner = Reasoner(said)

@@ -17,6 +17,7 @@ from semmap.nodes.kb_node.relations.measuring.space import Space
 from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
 from semmap.ontology import vocabulary as v
 from semmap.schemas.entities import Pose
+from semmap.schemas.relations import Relation
 from tests.kb_node import home
 from tests.kb_node.relations.entities import CORNER, ROOM, TABLE, TOP, thing
 
@@ -93,6 +94,20 @@ def test_no_object_is_on_itself():
     found = find_contradiction(Space([TABLE]), ("table1", "isOn", "table1"))
     assert found is not None
     assert found.text == "table1 was asserted to be on table1; an object cannot be on, in or inside itself"
+    assert found.gap_m == 0.0
+
+
+def test_a_contradiction_has_the_distance():
+    cup = thing("cup1", (1.0, 2.0, 0.0))
+    assert find_contradiction(Space([TABLE, cup]), ("cup1", "isOn", "table1")) == Relation(
+        relation="isOn",
+        subject="cup1",
+        object="table1",
+        holds=False,
+        gap_m=1.4499,
+        share=0.0,
+        text="cup1 was asserted to be on table1; it stands 1.45 m from it",
+    )
 
 
 def test_inverse_properties_give_the_same_fact():

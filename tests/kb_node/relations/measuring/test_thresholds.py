@@ -38,3 +38,18 @@ def test_a_tbox_can_change_a_threshold():
 def test_an_invalid_threshold_is_rejected(text):
     with pytest.raises(errors.BadRequest, match="invalid leastShare of isInside"):
         said(isInside_leastShare=text)
+
+
+def test_each_threshold_has_a_greatest_value():
+    most = {
+        "isOn_steepestNormal": 89.0,
+        "isNear_greatestGap": 100.0,
+        "isNear_greatestGapToSize": 100.0,
+        "isLeaningAgainst_leastTilt": 45.0,
+    }
+    for about in ANNOTATIONS:
+        name = f"{about.property}_{about.annotation}"
+        value = most.get(name, 1.0)
+        assert getattr(said(**{name: f"{value}"}), about.field) == value
+        with pytest.raises(errors.BadRequest, match=f"use a number from 0 to {value:g}"):
+            said(**{name: f"{value + 0.01}"})
