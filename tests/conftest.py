@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import atexit
 import contextlib
+import faulthandler
 import functools
 import io
 import os
@@ -88,13 +89,17 @@ def handling(node: Node) -> Iterator[None]:
 
 
 def until(condition: Callable[[], Any], what: str) -> Any:
-    """Wait until `condition()` is true and return its value; fail after a timeout."""
+    """Wait until `condition()` is true and return its value; fail after a timeout.
+
+    The report then includes where each thread of this process was, with the captured output.
+    """
     deadline, pause_s = time.monotonic() + PATIENCE_S, 0.005
     while time.monotonic() < deadline:
         if result := condition():
             return result
         time.sleep(pause_s)
         pause_s = min(2 * pause_s, 0.1)
+    faulthandler.dump_traceback()
     return pytest.fail(f"timeout after {PATIENCE_S:g} s: {what}")
 
 
