@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import http.client
 import re
+import signal
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -12,6 +13,9 @@ import psutil
 import pytest
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
+
+from tests.conftest import PATIENCE_S
+from tests.page.conftest import serving
 
 SOCKETS = ("/_nicegui_ws/socket.io/?EIO=4&transport=websocket", "/scene/some-page")
 
@@ -80,6 +84,16 @@ def test_the_page_listens_on_one_loopback_port_and_viser_on_none(web):
         c.laddr for c in psutil.Process(web.process.pid).net_connections("inet") if c.status == "LISTEN"
     ]
     assert [(at.ip, at.port) for at in listening] == [("127.0.0.1", web.port)]
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_server_that_is_stopped_leaves_no_files(system, monkeypatch, tmp_path, number):
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    with serving(system.endpoint) as web:
+        assert [*tmp_path.iterdir()]
+        web.process.send_signal(number)
+        web.process.wait(PATIENCE_S)
+    assert not [*tmp_path.iterdir()]
 
 
 def test_the_socket_of_viser_is_private_to_the_user(web):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
+import signal
 import socket
 import sys
 import tempfile
@@ -174,8 +175,15 @@ def _hidden_modules(*modules: str) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _temporary_storage() -> Iterator[None]:
-    """Have NiceGUI use a temporary folder for its storage, which the page does not need."""
+    """Have NiceGUI use a temporary folder for its storage, which the page does not need.
+
+    uvicorn raises SIGTERM again at its end, which by default ends the process before the folder is removed.
+    """
     logging.getLogger("nicegui").setLevel(logging.WARNING)
-    with tempfile.TemporaryDirectory(prefix="semmap-web-") as folder:
-        os.environ["NICEGUI_STORAGE_PATH"] = folder
-        yield
+    before = signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))
+    try:
+        with tempfile.TemporaryDirectory(prefix="semmap-web-") as folder:
+            os.environ["NICEGUI_STORAGE_PATH"] = folder
+            yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
