@@ -67,8 +67,8 @@ class SparqlService:
         """Create the service; `asserted()` returns the present triples, and `publish` receives row changes.
 
         `derived_changes()` returns the computed and suppressed facts. `placements()` returns the poses, for
-        queries that need measurements. `closed()` returns the closure of the TBox, if it is known: computing
-        it takes most of the start of the process.
+        queries that need measurements. `closed()` returns the closure of the TBox, if it is known, so that
+        the process does not compute it again.
 
         With a `large_map` the triples of a large map are in a store on disk. The store is created in the
         background: after a large commit immediately, otherwise at the first query. Inferred triples are
