@@ -13,7 +13,6 @@ import signal
 import socket
 import subprocess
 import sys
-import tempfile
 import time
 import xmlrpc.client
 from collections.abc import Callable
@@ -26,6 +25,7 @@ from supervisor.xmlrpc import SupervisorTransport
 from semmap.nodes.runtime.isolated_process import CPU_S
 from semmap.nodes.runtime.notify import NOTIFY_VARIABLE
 from semmap.nodes.runtime.requests_in_work import IN_WORK_VARIABLE
+from semmap.nodes.runtime.sockets import socket_folder
 from semmap.nodes.supervisor import orphans, registry
 from semmap.nodes.supervisor.privacy import UMASK, make_private
 from semmap.nodes.supervisor.settings import SETTINGS, Settings
@@ -51,8 +51,6 @@ _VARIABLE = "SEMMAP_UP_"
 """The prefix of variables with paths. In the configuration itself, characters such as `%` have a meaning."""
 FILES = 1024
 """Files that a process must be able to open. supervisord raises its own limit to this number."""
-_LONGEST_SOCKET = 100
-"""Bytes: the kernel limits paths of sockets to about 107, on macOS to 103."""
 _NO_RESTART = "0,1,2"
 """Exit statuses after which a restart would fail again: stopped, rejected, bad request."""
 
@@ -245,8 +243,8 @@ class Supervisor:
     def _temporary(self, suffix: str) -> Path:
         """Return the path of a socket in the temporary folder, because socket paths must be short."""
         digest = hashlib.sha256(os.fsencode(self.data.resolve())).hexdigest()[:12]
-        path = Path(tempfile.gettempdir()) / _SOCKET.format(digest, suffix)
-        return path if len(os.fsencode(path)) <= _LONGEST_SOCKET else Path("/tmp") / path.name
+        name = _SOCKET.format(digest, suffix)
+        return socket_folder(name) / name
 
     def _rpc(self) -> Any:
         return xmlrpc.client.ServerProxy("http://127.0.0.1", transport=_Transport(self.socket))

@@ -9,6 +9,7 @@ import asyncio
 import contextlib
 import os
 import re
+import select
 import shutil
 import subprocess
 import threading
@@ -63,6 +64,7 @@ def serving(endpoint: str, *words: str) -> Iterator[Web]:
     with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         try:
+            assert select.select([process.stdout], [], [], START_MS / 1000)[0], "the page is not ready"
             line = process.stdout.readline()
             assert line.startswith("http"), line
             threading.Thread(target=process.stdout.read, daemon=True).start()

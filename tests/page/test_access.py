@@ -86,14 +86,23 @@ def test_the_page_listens_on_one_loopback_port_and_viser_on_none(web):
     assert [(at.ip, at.port) for at in listening] == [("127.0.0.1", web.port)]
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-def test_a_server_that_is_stopped_leaves_no_files(system, monkeypatch, tmp_path, number):
-    monkeypatch.setenv("TMPDIR", str(tmp_path))
+@pytest.mark.parametrize(
+    ("number", "folder"),
+    [
+        (signal.SIGTERM, "temporary"),
+        (signal.SIGINT, "longer than the path of a socket " * 4),
+    ],
+    ids=["SIGTERM", "SIGINT, in a folder with a long path"],
+)
+def test_a_server_that_is_stopped_leaves_no_files(system, monkeypatch, tmp_path, number, folder):
+    temporary = tmp_path / folder
+    temporary.mkdir()
+    monkeypatch.setenv("TMPDIR", str(temporary))
     with serving(system.endpoint) as web:
-        assert [*tmp_path.iterdir()]
+        assert [*temporary.iterdir()]
         web.process.send_signal(number)
         web.process.wait(PATIENCE_S)
-    assert not [*tmp_path.iterdir()]
+    assert not [*temporary.iterdir()]
 
 
 def test_the_socket_of_viser_is_private_to_the_user(web):

@@ -15,13 +15,17 @@ import tempfile
 import threading
 from collections.abc import Awaitable, Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import viser
 import websockets.asyncio.server
 from viser.infra import WebsockClientConnection
 from websockets.asyncio.server import ServerConnection
 
+from semmap.nodes.runtime.sockets import socket_folder
+
+_PREFIX: Final = "semmap-scene-"
+_SOCKET: Final = "viser.sock"
 _page: contextvars.ContextVar[str] = contextvars.ContextVar("page", default="")
 _patching = threading.Lock()
 
@@ -38,8 +42,9 @@ class SceneServer:
     """A viser server on a Unix socket."""
 
     def __init__(self) -> None:
-        self._folder = Path(tempfile.mkdtemp(prefix="semmap-scene-"))
-        self.at = self._folder / "viser.sock"
+        folder = socket_folder(f"{_PREFIX}{'x' * 8}/{_SOCKET}")
+        self._folder = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
+        self.at = self._folder / _SOCKET
         """The path of the socket, in a folder that only this user can open."""
         with _unix_socket(self.at), contextlib.redirect_stdout(io.StringIO()):
             self.viser = _Private(host="127.0.0.1", port=0, verbose=False)
