@@ -46,6 +46,10 @@ equal to the only member
 every value is related to a topmost property
     :a :p 1
     :a owl:topDataProperty 2
+a definition beside others that cannot be read
+    :A owl:equivalentClass [ owl:onProperty :q ; owl:minCardinality :many ] , LEAST(:p) ,
+      [ owl:onProperty :r ; owl:minCardinality :many ] . :a :p :b , :c . :b owl:differentFrom :c
+    :a a :A
 a value in a narrower datatype
     :a :d 5
     :a a SOME(:d xsd:byte)
