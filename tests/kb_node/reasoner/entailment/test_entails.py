@@ -425,7 +425,7 @@ def test_does_not_follow(premise, conclusion):
     assert not follows(premise, conclusion)
 
 
-@settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=6, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(st.sampled_from(list(MEANINGS)), min_size=1, max_size=4, unique=True))
 def test_no_conclusion_is_false_in_a_small_interpretation(premise):
     check_soundness(premise)
