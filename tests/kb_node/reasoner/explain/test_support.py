@@ -13,7 +13,7 @@ from tests.kb_node.reasoner.swrl import graph
 
 
 def check_an_explanation(tbox, facts):
-    """Check the explanation of a random conclusion, if there is one, of facts that were inserted one by one."""
+    """Check the explanation of a random conclusion, if any, of facts that were inserted one by one."""
     reasoner = Reasoner(tbox)
     for fact in facts:
         reasoner.apply(insert=[fact])
