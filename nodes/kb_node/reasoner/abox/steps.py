@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from semmap.nodes.kb_node.reasoner.abox.kinds import Kind, Kinds, mask_of
 from semmap.nodes.kb_node.reasoner.rules.swrl import SwrlRule
-from semmap.nodes.kb_node.reasoner.tbox.axioms import ANY, SAME, Chain, Group, Key, Limit, Role
+from semmap.nodes.kb_node.reasoner.tbox.axioms import ANY, DIFFERENT, SAME, Chain, Group, Key, Limit, Role
 from semmap.nodes.kb_node.reasoner.tbox.schema import Schema
 
 
@@ -227,6 +227,7 @@ class Steps:
         triggers = tuple(
             (not backwards, rule, at)
             for q, backwards in roles
+            if q != DIFFERENT  # as one of `meanings`, it is derived as an edge of its own
             for rule, at in schema.rules_by_property.get(q, ())
         )
         meanings = tuple(role for role in roles if schema.axioms[role[0]].has_meaning and role[0] != prop)

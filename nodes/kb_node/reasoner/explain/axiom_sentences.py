@@ -138,7 +138,11 @@ class AxiomVerbalizer:
             only = f"only something that {self.membership(filler)}"
             return f"has {only} as {verb.rest}" if verb.kind == "has" else verb.with_object(only)
         if value := self.get(cls, "owl:hasValue"):
-            return self._words.predicate_phrase(prop, value)
+            if is_named(prop):
+                return self._words.predicate_phrase(prop, value)
+            return verb.with_object(self._words.name(value))
+        if self.get(cls, "owl:hasSelf"):
+            return verb.with_pronoun("itself")
         for name in _BOUNDS:
             if number := self.get(cls, name):
                 kind = self.get(cls, "owl:onClass") or self.get(cls, "owl:onDataRange")
@@ -207,13 +211,14 @@ class AxiomVerbalizer:
 
     def _key(self, cls: Term, head: Term) -> str:
         shared = _listed([self._shared(prop) for prop in self.members(head)], "and")
-        noun = self._words.cls(cls) if is_named(cls) else self.member_phrase(cls)
-        return f"no two things that are each {article(noun)} {shared}"
+        return f"no two things that are each {self.member_phrase(cls)} {shared}"
 
     # Properties
 
     def verb_phrase(self, prop: Term) -> VerbPhrase:
-        """Return the verb phrase of a property."""
+        """Return the verb phrase of a property, or of the inverse of one: "has inverse of “is on”"."""
+        if not is_named(prop) and (inverse := self.get(prop, "owl:inverseOf")):
+            return VerbPhrase("has", f"inverse of “{self.verb_phrase(inverse).with_object('').strip()}”")
         return self._words.verb_phrase(prop)
 
     def _some(self, prop: Term, filler: Term = THING) -> str:

@@ -30,7 +30,7 @@ _STRUCTURE: Final = FACETS.union(
     )
 )
 """Predicates that are included in the clause of their class or axiom."""
-_PARTS: Final = frozenset(iris("owl:unionOf owl:intersectionOf owl:oneOf owl:complementOf"))
+_PARTS: Final = frozenset(iris("owl:unionOf owl:intersectionOf owl:oneOf owl:complementOf owl:inverseOf"))
 """Predicates that are included where their anonymous subject occurs."""
 _LIMITS: Final = ("prp-fp", "prp-ifp", "cls-maxc2", "cls-maxqc3", "cls-maxqc4")
 _CLASHES: Final = ("cax-dw", "cax-adc", "cls-com")
@@ -136,8 +136,8 @@ class _Verbalizer:
         axiom = self.axioms.axiom_clause(triple)
         if axiom is not None:
             return axiom
-        s, p, o = triple
-        subject = subject or self.name(s)
+        s, p, o = forwards = self.forwards(triple)
+        subject = self.name(s) if forwards != triple else subject or self.name(s)
         if p == TYPE:
             return f"{subject} {self.axioms.membership(o)}"
         if p == SAME_AS:
@@ -145,6 +145,12 @@ class _Verbalizer:
         if p == DIFFERENT_FROM:
             return f"{subject} is different from {'itself' if s == o else self.name(o)}"
         return f"{subject} {self.words.predicate_phrase(p, o, reflexive=s == o)}"
+
+    def forwards(self, triple: Triple) -> Triple:
+        """Return the triple of the property itself for that of its anonymous inverse."""
+        s, p, o = triple
+        inverse = None if is_named(p) else self.axioms.get(p, "owl:inverseOf")
+        return triple if inverse is None else (o, inverse, s)
 
     def negated_clause(self, triple: Triple) -> str:
         """Return the negation of a triple as a clause."""
@@ -201,9 +207,9 @@ class _Verbalizer:
     def _negative(self, triple: Triple) -> str:
         node, _, prop = triple
         get = self.axioms.get
-        source = self.name(get(node, "owl:sourceIndividual") or node)
+        source = get(node, "owl:sourceIndividual") or node
         target = get(node, "owl:targetIndividual") or get(node, "owl:targetValue") or node
-        return f"{source} {self.words.predicate_phrase(prop, target, negated=True)} (asserted)"
+        return f"{self.negated_clause((source, prop, target))} (asserted)"
 
 
 def _headline(steps: Sequence[Step], verbalizer: _Verbalizer) -> tuple[Term | None, str]:
@@ -211,7 +217,7 @@ def _headline(steps: Sequence[Step], verbalizer: _Verbalizer) -> tuple[Term | No
     last = steps[-1]
     is_axiom = verbalizer.axioms.is_axiom
     facts = [triple for triple in last.premises if not is_axiom(triple) and triple[1] not in _STRUCTURE]
-    s, p, o = facts[0] if facts else last.premises[0]
+    s, p, o = verbalizer.forwards(facts[0] if facts else last.premises[0])
     name = verbalizer.name(s)
     if last.rule in _CLASHES and len({fact[2] for fact in facts}) > 1:
         one, other = verbalizer.member_phrase(o), verbalizer.member_phrase(facts[1][2])

@@ -64,9 +64,14 @@ def is_variable(term: Term) -> bool:
     return term[0] == "?"
 
 
+def is_in_vocabulary(term: Term) -> bool:
+    """Return whether a term is a class or property of the vocabulary of rules."""
+    return term.startswith(NAMESPACE) or term == _ENABLED
+
+
 def is_of_rule(triple: Triple) -> bool:
     """Return whether a triple is a part of a rule, apart from its lists."""
-    return (triple[2] if triple[1] == TYPE else triple[1]).startswith(NAMESPACE)
+    return is_in_vocabulary(triple[2] if triple[1] == TYPE else triple[1])
 
 
 def read_triples(triples: Iterable[Triple]) -> Rules:
@@ -248,7 +253,7 @@ _ATOMS: Final = {
 }
 _WIDER: Final = iri("rdfs:subPropertyOf"), iri("owl:equivalentProperty")
 _CHAIN: Final = iri("owl:propertyChainAxiom")
-_OF_FLOW: Final = (FIRST, REST, *_WIDER, _CHAIN, _ENABLED)
+_OF_FLOW: Final = (FIRST, REST, *_WIDER, _CHAIN)
 
 
 def _recursive(rules: Sequence[SwrlRule], facts: Facts) -> Iterator[Term]:

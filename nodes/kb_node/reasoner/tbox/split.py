@@ -74,14 +74,14 @@ def is_schema(triple: Triple) -> bool:
 
 @lru_cache(maxsize=4096)
 def _is_schema_class(term: Term) -> bool:
-    if term.startswith(swrl.NAMESPACE):
+    if swrl.is_in_vocabulary(term):
         return True
     return is_reserved(term) and term not in _PLAIN_CLASSES and not is_datatype(term)
 
 
 @lru_cache(maxsize=4096)
 def _is_schema_predicate(term: Term) -> bool:
-    if term in _SCHEMA_PREDICATES or term.startswith(swrl.NAMESPACE):
+    if term in _SCHEMA_PREDICATES or swrl.is_in_vocabulary(term):
         return True
     return term.startswith(_OWL) and term not in _PLAIN_PREDICATES
 

@@ -216,4 +216,4 @@ def _names(triple: Triple) -> tuple[str, str]:
 
 def _is_unchanged(was: Entity, now: Entity) -> bool:
     """Return whether nothing changed on which relations depend, only a label or a property."""
-    return was.pose == now.pose and PlacedEntity.of(was) == PlacedEntity.of(now)
+    return PlacedEntity.of(was) == PlacedEntity.of(now)

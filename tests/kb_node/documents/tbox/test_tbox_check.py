@@ -125,6 +125,25 @@ def test_an_ontology_with_only_unsatisfiable_classes_has_no_time_of_changes(repo
     assert found.quickness.add_p50_ms is None
 
 
+@pytest.mark.parametrize(
+    ("axioms", "candidate"),
+    [
+        (":B rdfs:subClassOf :A . :C rdfs:subClassOf :B . :E rdfs:subClassOf :D .", "A"),
+        (
+            ":E rdfs:subClassOf :B , :C . :B rdfs:subClassOf :D . :C rdfs:subClassOf :D .",
+            "D",
+        ),
+        (":B rdfs:subClassOf :A . :A rdfs:subClassOf :B . :C rdfs:subClassOf :B .", "A"),
+        (":B rdfs:subClassOf :A , :Undeclared . :C rdfs:subClassOf :Undeclared . :A :broader :C .", "A"),
+        ("", "A"),
+    ],
+)
+def test_the_class_with_most_subclasses_is_proposed_as_that_of_things_in_space(report, axioms, candidate):
+    classes = " ".join(f":{name} a owl:Class ." for name in "ABCDE")
+    found = report(text=f"<http://o.org/o> a owl:Ontology . {classes} {axioms}")
+    assert (found.spatial_classes, found.spatial_candidate) == (0, candidate)
+
+
 def test_an_unreadable_file_is_reported(tmp_path):
     (tmp_path / "bad.ttl").write_text("\n\n:a")
     with pytest.raises(errors.BadFile, match=r"bad.ttl is not valid Turtle: .*line 3"):

@@ -1,4 +1,4 @@
-"""Kinds of literals: all texts have one kind unless the schema distinguishes them."""
+"""Kinds: what follows from classes. All texts have one kind unless the schema distinguishes them."""
 
 import pytest
 
@@ -43,3 +43,62 @@ def test_a_text_in_a_class_definition_is_distinguished():
     reasoner.apply(insert=[("<http://x/a>", colour, '"red"'), ("<http://x/b>", colour, '"blue"')])
     assert reasoner.types("<http://x/a>") - {iri("owl:Thing")} == {red}
     assert red not in reasoner.types("<http://x/b>")
+
+
+CLASSES = """
+:B rdfs:subClassOf :A . :C rdfs:subClassOf :B . :A owl:disjointWith :X . :Y owl:complementOf :C .
+:I owl:intersectionOf ( :A :D ) . :J owl:intersectionOf ( :I :E ) . :U owl:unionOf ( :D :E ) .
+[] a owl:AllDisjointClasses ; owl:members ( :E :F :G ) . :None rdfs:subClassOf owl:Nothing .
+:V rdfs:subClassOf [ owl:onProperty :p ; owl:hasValue :v ] . :W rdfs:subClassOf :V .
+:One owl:oneOf ( :i :j ) .
+"""
+
+
+@pytest.mark.parametrize(
+    ("given", "names", "clash"),
+    [
+        ("", "", False),
+        ("A", "A", False),
+        ("C", "A B C", False),
+        ("D", "D U", False),
+        ("A D", "A D I U", False),
+        ("C D", "A B C D I U", False),
+        ("A D E", "A D E I J U", False),
+        ("I", "A D I U", False),
+        ("J", "A D E I J U", False),
+        ("U", "U", False),
+        ("C X", "A B C X", True),
+        ("C Y", "A B C Y", True),
+        ("B Y", "A B Y", False),
+        ("E G", "E G U", True),
+        ("F", "F", False),
+        ("W", "V W", False),
+    ],
+)
+def test_the_classes_that_follow_from_given_classes(given, names, clash):
+    schema = Reasoner(triples(CLASSES))._engine._schema
+    found = Kinds(schema)
+
+    def term(name):
+        return f"<http://example.org/{name}>"
+
+    kind = found.of(frozenset(schema.cls(term(name)) for name in given.split()))
+    assert {name for name in kind.names if "owl#" not in name} == set(map(term, names.split()))
+    assert (kind.clash is not None) is clash
+    assert kind.base is kind
+    assert [value for _, value in kind.values] == ([term("v")] if "V" in names else [])
+    assert kind.value_terms == {value for _, value in kind.values}
+    one_by_one = found.nothing
+    for name in given.split():
+        one_by_one = found.add_given(one_by_one, schema.cls(term(name)))
+    assert one_by_one is kind
+    for name in given.split():
+        one_by_one = found.without(one_by_one, schema.cls(term(name)))
+    assert (one_by_one.mask, one_by_one.base) == (kind.mask, found.nothing)
+
+
+def test_an_enumerated_individual_begins_in_its_class():
+    found = kinds(CLASSES)
+    names = found.individual("<http://example.org/i>").names
+    assert "<http://example.org/One>" in names
+    assert found.individual("<http://example.org/k>") is found.nothing

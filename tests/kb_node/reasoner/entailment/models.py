@@ -51,6 +51,23 @@ MEANINGS = {
     ":a owl:sameAs :b": lambda m: m.a == m.b,
     ":a owl:differentFrom :b": lambda m: m.a != m.b,
     "[] NEVER(:a :p :b)": lambda m: (m.a, m.b) not in m.p,
+    ":a a [ owl:unionOf (:A :B) ]": lambda m: m.a in m.A | m.B,
+    ":a a [ owl:intersectionOf (:A :B) ]": lambda m: m.a in m.A & m.B,
+    ":A owl:unionOf (:B [ owl:oneOf (:a) ])": lambda m: not m.A ^ (m.B | {m.a}),
+    ":A owl:intersectionOf (:B SOME(:p :B))": lambda m: not m.A ^ {x for x in m.B if m.to(m.p, x) & m.B},
+    ":A owl:disjointUnionOf (:B [ owl:oneOf (:a) ])": lambda m: m.a not in m.B and not m.A ^ (m.B | {m.a}),
+    ":A owl:hasKey (:p)": lambda m: all(x == y or not m.to(m.p, x) & m.to(m.p, y) for x in m.A for y in m.A),
+    ":A rdfs:subClassOf SELF(:p)": lambda m: all((x, x) in m.p for x in m.A),
+    ":A rdfs:subClassOf SOME([ owl:inverseOf :p ] :B)": lambda m: all(
+        m.to(m.inverse(m.p), x) & m.B for x in m.A
+    ),
+    ":a a SELF(:q)": lambda m: (m.a, m.a) in m.q,
+    ":a a ONLY(:p :B)": lambda m: m.to(m.p, m.a) <= m.B,
+    ":a a MOST(:p)": lambda m: len(m.to(m.p, m.a)) < 2,
+    ":a a LEAST(:p)": lambda m: len(m.to(m.p, m.a)) > 1,
+    "[] a owl:AllDifferent ; owl:members (:b :a)": lambda m: m.a != m.b,
+    "[] a owl:AllDisjointClasses ; owl:members (:B :A)": lambda m: not m.A & m.B,
+    "[] a owl:AllDisjointProperties ; owl:members (:q :p)": lambda m: not m.p & m.q,
 }
 """Axioms, with functions that return whether they are true in an interpretation."""
 

@@ -135,6 +135,39 @@ def test_only_nearby_facts_are_used():
     assert not {t for t in near if "mug4>" in t[0]}
 
 
+@pytest.mark.parametrize(
+    ("terms", "found"),
+    [
+        ((":a",), ":a :p :b . :b :p :c . :a a :A . :b a :B . :x :q :b ."),
+        ((":d",), ":c :p :d . :b :p :c . :d :n 1 . :c a :C . :d a :D ."),
+        ((":x",), ":x :q :b . :a :p :b . :b :p :c . :b a :B ."),
+        (
+            (":a", ":d"),
+            ":a :p :b . :b :p :c . :c :p :d . :d :n 1 . :a a :A . :b a :B . :c a :C . :d a :D . :x :q :b .",
+        ),
+        (("1",), ""),
+        ((":A",), ""),
+    ],
+)
+def test_the_facts_within_two_steps_are_nearby(terms, found):
+    tbox = triples(":A rdfs:subClassOf :B . :A rdfs:label 'a' . :p a owl:ObjectProperty .")
+    facts = triples(
+        ":a :p :b . :b :p :c . :c :p :d . :d :n 1 . :e :n 1 . :x :q :b . "
+        ":a a :A . :b a :B . :c a :C . :d a :D ."
+    )
+    near = nearby(Reasoner([*tbox, *facts]), [triple(f":x :p {term}")[2] for term in terms])
+    assert set(near) - set(tbox) == set(triples(found))
+    assert set(tbox) <= set(near)
+
+
+@pytest.mark.parametrize("needed", [(), (0,), (7,), (0, 7), (3, 4), (1, 5, 9), (0, 1, 2, 11, 12), range(13)])
+def test_what_is_not_needed_is_left_out(needed):
+    many = [(f"<s{i}>", "<p>", "<o>") for i in range(13)]
+    wanted = [many[i] for i in needed]
+    found = _shrunk(many, lambda some: set(wanted) <= set(some), time.thread_time() + 60.0)
+    assert found == wanted
+
+
 def test_an_existing_value_is_not_named_again():
     """Otherwise an individual would equal a value, and everything would be recomputed, in seconds."""
     reasoner = Reasoner(

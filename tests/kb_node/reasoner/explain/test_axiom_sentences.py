@@ -46,6 +46,16 @@ CLAUSES = [
         ":Cup rdfs:subClassOf [ owl:onProperty :color ; owl:allValuesFrom :Color ]",
         "every cup has only something that is a color as color",
     ),
+    (":Cup rdfs:subClassOf [ owl:onProperty :on ; owl:hasSelf true ]", "every cup is on itself"),
+    (":Cup rdfs:subClassOf [ owl:onProperty :color ; owl:hasSelf true ]", "every cup has itself as color"),
+    (
+        ":Cup rdfs:subClassOf [ owl:onProperty [ owl:inverseOf :on ] ; owl:someValuesFrom :Egg ]",
+        "every cup has an inverse of “is on” that is an egg",
+    ),
+    (
+        ":Cup rdfs:subClassOf [ owl:onProperty [ owl:inverseOf :holds ] ; owl:hasValue :hand1 ]",
+        "every cup has inverse of “holds” hand1",
+    ),
     (":Cup rdfs:subClassOf [ owl:onProperty :on ; owl:hasValue :table1 ]", "every cup is on table1"),
     (":Cup rdfs:subClassOf [ owl:onProperty :open ; owl:hasValue false ]", "every cup is not open"),
     (":Cup rdfs:subClassOf [ owl:onProperty :dmass ; owl:hasValue 3 ]", "every cup has mass 3"),
@@ -149,6 +159,10 @@ CLAUSES = [
             "no two things that are each a cup have the same color, are on the same thing and hold "
             "the same thing"
         ),
+    ),
+    (
+        "[ owl:onProperty :on ; owl:hasValue :table1 ] owl:hasKey ( :color )",
+        "no two things that are each something that is on table1 have the same color",
     ),
     (":on rdfs:subPropertyOf :holds", "everything that is on something holds it"),
     (":color rdfs:subPropertyOf :on", "everything that has something as color is on it"),

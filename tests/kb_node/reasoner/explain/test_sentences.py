@@ -5,9 +5,21 @@ import functools
 import pytest
 
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
-from semmap.nodes.kb_node.reasoner.explain.sentences import Clause, clauses
+from semmap.nodes.kb_node.reasoner.explain.sentences import (
+    Clause,
+    clauses,
+    entailment_sentence,
+    mark_measured,
+    refutation_sentence,
+)
 from semmap.nodes.kb_node.reasoner.explain.words import Words, article
 from tests.kb_node.reasoner.graphs import household, triple, triples
+
+LABELS = """
+:on rdfs:label "is on" . :holds rdfs:label "holds" . :color rdfs:label "has color" .
+:open rdfs:label "is open" .
+:open a owl:DatatypeProperty . :Cup rdfs:label "cup" . :Egg rdfs:label "egg" . :Lid rdfs:label "lid" .
+"""
 
 
 @functools.cache
@@ -167,3 +179,168 @@ def test_every_triple_of_a_proof_has_a_clause_except_parts_of_axioms():
     assert Clause("milk1 is milk", is_axiom=False) in found.values()
     assert Clause("everything that is milk has affordance drinking", is_axiom=True) in found.values()
     assert not any(predicate.endswith(("onProperty>", "hasValue>")) for _, predicate, _ in found)
+
+
+NONE, ONE = (f'"{number}"^^xsd:nonNegativeInteger' for number in (0, 1))
+CUP_HOLDS = ":Cup rdfs:subClassOf [ owl:onProperty :holds ; "
+EGGS = "; owl:onClass :Egg ]"
+HEADLINES = [
+    (":on a owl:AsymmetricProperty", ":a :on :a", "a cannot be on itself"),
+    (
+        ":color a owl:AsymmetricProperty",
+        ":a :color :b . :b :color :a",
+        "b and a cannot each have the other as color",
+    ),
+    (":holds a owl:IrreflexiveProperty", ":a :holds :b ; owl:sameAs :b", "b cannot hold itself"),
+    (":on owl:propertyDisjointWith :holds", ":a :on :b ; :holds :b", "a cannot both be on b and hold b"),
+    (
+        ":on owl:propertyDisjointWith :color",
+        ":a :on :a ; :color :a",
+        "a cannot both be on itself and have itself as color",
+    ),
+    (
+        "[] a owl:AllDisjointProperties ; owl:members ( :on :holds :color )",
+        ":a :on :b ; :color :b",
+        "a cannot both be on b and have color b",
+    ),
+    (f"{CUP_HOLDS} owl:maxCardinality {NONE} ]", ":a a :Cup ; :holds :b", "a cannot hold b"),
+    (
+        f"{CUP_HOLDS} owl:maxQualifiedCardinality {NONE} {EGGS}",
+        ":a a :Cup ; :holds :b . :b a :Egg",
+        "a cannot hold b",
+    ),
+    (
+        f"{CUP_HOLDS} owl:maxCardinality {ONE} ]",
+        ":a a :Cup ; :holds :b , :c . :b owl:differentFrom :c",
+        "a cannot hold both b and c",
+    ),
+    (
+        f"{CUP_HOLDS} owl:maxQualifiedCardinality {ONE} {EGGS}",
+        ":a a :Cup ; :holds :b , :c . :b a :Egg . :c a :Egg . :b owl:differentFrom :c",
+        "a cannot hold both b and c",
+    ),
+    (
+        f":Cup rdfs:subClassOf [ owl:onProperty [ owl:inverseOf :on ] ; owl:maxCardinality {NONE} ]",
+        ":a a :Cup . :b :on :a",
+        "b cannot be on a",
+    ),
+    (
+        ":on a owl:FunctionalProperty",
+        ":a :on :b , :c . :b owl:differentFrom :c",
+        "a cannot be on both b and c",
+    ),
+    (":d a owl:FunctionalProperty", ":a :d 1 , 2", "a cannot have both 2 and 1 as d"),
+    (
+        ":on a owl:InverseFunctionalProperty",
+        ":b :on :a . :c :on :a . :b owl:differentFrom :c",
+        "b and c cannot both be on a",
+    ),
+    (
+        ":color a owl:InverseFunctionalProperty",
+        ":b :color :a . :c :color :a . :c owl:differentFrom :b",
+        "a cannot be the color of both c and b",
+    ),
+    (
+        ":Cup owl:hasKey ( :d )",
+        ":a a :Cup ; :d 1 . :b a :Cup ; :d 1 . :a owl:differentFrom :b",
+        "a and b cannot be both the same and different",
+    ),
+    ("", ":a owl:differentFrom :a", "a cannot be different from itself"),
+    (
+        "[] a owl:AllDifferent ; owl:members ( :a :b :c )",
+        ":a owl:sameAs :c",
+        "a and c cannot be both the same and different",
+    ),
+    (
+        "[] a owl:AllDisjointClasses ; owl:members ( :Cup :Egg :Lid )",
+        ":a a :Cup , :Lid",
+        "a cannot be both a cup and a lid",
+    ),
+    (":Cup owl:complementOf :Egg", ":a a :Cup , :Egg", "a cannot be both a cup and an egg"),
+    (":Cup rdfs:subClassOf owl:Nothing", ":a a :Cup", "a cannot be a member of the empty class"),
+    (":d rdfs:range xsd:integer", ":a :d 1.5", "1.5 (decimal) is not a value of integer"),
+    (
+        ":d rdfs:range [ a rdfs:Datatype ; owl:oneOf ( 1 2 ) ]",
+        ":a :d 3",
+        "3 (integer) is not one of 1, 2",
+    ),
+]
+
+
+@pytest.mark.parametrize(("axioms", "facts", "headline"), HEADLINES)
+def test_a_contradiction_is_named_before_its_reasons(axioms, facts, headline):
+    with pytest.raises(Inconsistent) as refusal:
+        Reasoner(triples(f"{LABELS} {axioms} {'.' if axioms else ''} {facts} ."))
+    assert refusal.value.explanation.text.partition(": ")[0] == headline
+
+
+DENIED = [
+    (
+        ":a :on :b",
+        ":b :on :a . :on a owl:AsymmetricProperty",
+        "a is not on b, because b is on a (asserted), and",
+    ),
+    (
+        ":a owl:sameAs :b",
+        ":a a :Cup . :b a :Egg",
+        "a is different from b, because a is a cup (asserted), and b",
+    ),
+    (":a owl:sameAs :b", ":b owl:differentFrom :a", "a is different from b, because b is different from a"),
+    (":a owl:sameAs :b", ":a owl:differentFrom :b", "a is different from b (asserted)."),
+    (":a owl:differentFrom :b", ":a owl:sameAs :b", "a is the same as b (asserted)."),
+    (
+        ":a a :Egg",
+        ":Cup owl:disjointWith :Egg . :a a :Cup",
+        "a is not an egg, because it is a cup (asserted), and",
+    ),
+    (":Cup rdfs:subClassOf :Egg", ":a a :Cup", "it is not true that every cup is an egg, because a is a cup"),
+    (":a :on :a", ":on a owl:IrreflexiveProperty", "a is not on itself, because nothing is on itself."),
+    (":a :open true", ":a :open false", "a is not open (asserted)."),
+    (
+        ":a :on :b",
+        "[] a owl:NegativePropertyAssertion ; owl:sourceIndividual :a ; owl:assertionProperty :on ; "
+        "owl:targetIndividual :b",
+        "a is not on b (asserted).",
+    ),
+    (
+        ":a :on :a",
+        "[] a owl:NegativePropertyAssertion ; owl:sourceIndividual :a ; owl:assertionProperty :on ; "
+        "owl:targetIndividual :a",
+        "a is not on itself (asserted).",
+    ),
+]
+
+
+@pytest.mark.parametrize(("supposed", "others", "text"), DENIED)
+def test_a_refuted_statement_is_negated(supposed, others, text):
+    words, supposed = Words.of(triples(LABELS)), triple(supposed)
+    assert refutation_sentence(supposed, [*triples(f"{others} ."), supposed], words).startswith(text)
+
+
+def test_facts_come_before_axioms_and_rules_last():
+    words = Words.of(triples(LABELS))
+    axiom, fact = triple(":Cup rdfs:subClassOf :Egg"), triple(":a a :Cup")
+    goal = triple(":a a :Egg")
+    assert entailment_sentence(goal, [axiom, fact], words) == (
+        "a is an egg, because it is a cup (asserted), and every cup is an egg."
+    )
+    assert entailment_sentence(goal, [], words) == "a is an egg (axiomatic)."
+
+
+def test_measured_facts_are_marked():
+    words = Words.of(triples(LABELS))
+    first, second = triples(":a :on :b . :a :d 1 .")
+    text = entailment_sentence(triple(":a a :Cup"), [triple(":a a :Lid"), first, second], words)
+    marked = mark_measured(text, [first], words)
+    assert marked == text.replace("on b (asserted)", "on b (measured)")
+    assert "is a lid (asserted)" in marked
+    assert "on b (measured)" in marked
+
+
+def test_it_stands_for_the_only_individual_of_the_clause_before():
+    words = Words.of(triples(LABELS))
+    support = triples(":a a :Cup . :a :open true . :a :on :a . :a :on :b . :a a :Lid . :b a :Lid .")
+    assert entailment_sentence(triple(":a a :Egg"), support, words) == (
+        "a is an egg, because it is a cup (asserted), it is open (asserted), it is on itself (asserted), "
+        "it is on b (asserted), a is a lid (asserted), and b is a lid (asserted)."
+    )

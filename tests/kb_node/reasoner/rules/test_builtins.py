@@ -27,6 +27,11 @@ def number(text, datatype="integer"):
         ("round", [number("-2.5", "decimal")], number(-2)),
         ("unaryMinus", [number(2)], number(-2)),
         ("add", [number(1), '"a"'], None),
+        ("add", [number(1), number("0.5", "float"), number("0.25", "double")], number("1.75", "double")),
+        ("unaryPlus", [number(-2)], number(-2)),
+        ("multiply", [number(10**300), number(10**300)], None),
+        ("multiply", [number(10**150), number(10**150)], number(10**300)),
+        ("divide", [number("1", "double"), number("0", "double")], None),
     ],
 )
 def test_arithmetic(name, operands, result):
@@ -52,3 +57,60 @@ def test_arithmetic(name, operands, result):
 )
 def test_comparison(name, one, other, holds):
     assert builtins.compare(name, one, other) is holds
+
+
+_SMALLER, _EQUAL, _LARGER = ("1", "2"), ("2", "2.0"), ("3", "2")
+
+
+@pytest.mark.parametrize(
+    ("name", "smaller", "equal", "larger"),
+    [
+        ("equal", False, True, False),
+        ("notEqual", True, False, True),
+        ("lessThan", True, False, False),
+        ("lessThanOrEqual", True, True, False),
+        ("greaterThan", False, False, True),
+        ("greaterThanOrEqual", False, True, True),
+    ],
+)
+def test_each_comparison_of_numbers(name, smaller, equal, larger):
+    found = [
+        builtins.compare(name, number(one, "decimal"), number(other, "float"))
+        for one, other in (_SMALLER, _EQUAL, _LARGER)
+    ]
+    assert found == [smaller, equal, larger]
+    assert builtins.is_comparison(name)
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "equal"),
+    [
+        ("<urn:a>", "<urn:a>", True),
+        ("<urn:a>", "<urn:b>", False),
+        ("<urn:a>", '"a"', False),
+        ('"a"', '"a"@en', False),
+        (number("x", "unknown"), number("x", "unknown"), True),
+        (number("x", "unknown"), number("y", "unknown"), False),
+        (number("NaN", "float"), number(1), False),
+    ],
+)
+def test_equality_of_other_terms(one, other, equal):
+    assert builtins.is_equal(one, other) is builtins.is_equal(other, one) is equal
+    assert builtins.compare("notEqual", one, other) is not equal
+    assert not builtins.compare("lessThan", one, other)
+
+
+@pytest.mark.parametrize(
+    ("name", "counts"),
+    [
+        ("equal", {2}),
+        ("lessThan", {2}),
+        ("add", {3, 4, 5}),
+        ("multiply", {3, 4, 5}),
+        ("subtract", {3}),
+        ("abs", {2}),
+        ("stringConcat", set()),
+    ],
+)
+def test_the_numbers_of_arguments(name, counts):
+    assert {count for count in range(6) if builtins.is_supported(name, count)} == counts

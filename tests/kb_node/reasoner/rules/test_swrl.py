@@ -154,6 +154,126 @@ def test_a_rule_that_is_not_supported_has_no_effect_and_a_reason(rule, reason):
     assert reasoner.is_compiled
 
 
+CLASS_ATOM = "[ a swrl:ClassAtom ; swrl:classPredicate :A ; swrl:argument1 :x ]"
+BODY, HEAD = f"swrl:body ( {CLASS_ATOM} )", f"swrl:head ( {CLASS_ATOM.replace(':A', ':B')} )"
+
+
+def _rule_of_one_atom(atom):
+    return f"swrl:body ( {CLASS_ATOM} [ {atom} ] ) ; {HEAD}"
+
+
+@pytest.mark.parametrize(
+    ("rule", "reason"),
+    [
+        (f"{BODY} ; {HEAD}", ""),
+        (f"{BODY} ; {HEAD} ; swrla:isRuleEnabled true", ""),
+        (f"{BODY} ; {HEAD} ; swrla:isRuleEnabled false", "disabled"),
+        (HEAD, "incomplete body"),
+        (BODY, "incomplete head"),
+        (f"{BODY} ; swrl:body () ; {HEAD}", "incomplete body"),
+        (f"swrl:body [ rdf:first :atom ] ; {HEAD}", "incomplete body"),
+        (_rule_of_one_atom("a swrl:OtherAtom"), "unknown atom"),
+        (_rule_of_one_atom("a swrl:ClassAtom ; swrl:argument1 :x"), "incomplete atom"),
+        (_rule_of_one_atom("a swrl:ClassAtom ; swrl:classPredicate :A"), "incomplete atom"),
+        (
+            _rule_of_one_atom(
+                "a swrl:IndividualPropertyAtom ; swrl:propertyPredicate :p ; swrl:argument1 :x"
+            ),
+            "incomplete atom",
+        ),
+        (_rule_of_one_atom("a swrl:BuiltinAtom ; swrl:builtin swrlb:equal"), "incomplete atom"),
+        (
+            _rule_of_one_atom("a swrl:BuiltinAtom ; swrl:builtin swrlb:equal ; swrl:arguments ( :x )"),
+            "unsupported built-in equal",
+        ),
+        (
+            _rule_of_one_atom("a swrl:BuiltinAtom ; swrl:builtin :equal ; swrl:arguments ( :x :x )"),
+            "unsupported built-in http://example.org/equal",
+        ),
+        (
+            _rule_of_one_atom(
+                "a swrl:IndividualPropertyAtom ; swrl:propertyPredicate rdf:type ; swrl:argument1 :x ; "
+                "swrl:argument2 :A"
+            ),
+            "unsupported property rdf:type",
+        ),
+        (
+            _rule_of_one_atom(
+                "a swrl:IndividualPropertyAtom ; swrl:propertyPredicate owl:sameAs ; swrl:argument1 :x ; "
+                "swrl:argument2 :i"
+            ),
+            "",
+        ),
+    ],
+)
+def test_a_rule_is_read_or_the_reason_is_given(rule, reason):
+    prefixes = "@prefix swrla: <http://swrl.stanford.edu/ontologies/3.3/swrla.owl#> . "
+    reasoner = Reasoner(graph(axioms=f"{prefixes} [] a swrl:Imp ; {rule} ."))
+    reasoner.apply(insert=[triple(":i a :A")])
+    assert [use.unsupported for use in reasoner.rules()] == [reason]
+    assert reasoner.holds(triple(":i a :B")) is (not reason)
+
+
+def test_a_data_range_is_an_atom_of_a_rule():
+    atom = "[ a swrl:DataRangeAtom ; swrl:dataRange xsd:byte ; swrl:argument1 :v ]"
+    given = (
+        "[ a swrl:DatavaluedPropertyAtom ; swrl:propertyPredicate :d ; swrl:argument1 :x ; "
+        "swrl:argument2 :v ]"
+    )
+    reasoner = Reasoner(graph(axioms=f"[] a swrl:Imp ; swrl:body ( {given} {atom} ) ; {HEAD} ."))
+    reasoner.apply(insert=[triple(":i :d 5"), triple(":j :d 500")])
+    assert reasoner.holds(triple(":i a :B"))
+    assert not reasoner.holds(triple(":j a :B"))
+
+
+@pytest.mark.parametrize("axioms", ["", "owl:sameAs rdfs:subPropertyOf :same ."], ids=["compiled", "general"])
+@pytest.mark.parametrize(
+    ("rule", "facts", "holds"),
+    [
+        ("d(x, v), b.multiply(w, v, 2) -> dd(x, w)", [":i :d 2", ":j :d 3", ":j :d 4"], 3),
+        ("d(x, v), b.greaterThan(v, 2) -> E(x)", [":i :d 2", ":j :d 3"], 1),
+        ("A(x), p(x, y) -> C(y)", [":i a :A", ":i :p :j", ":i :p :k", ":j :p :k"], 2),
+        ("p(x, x) -> C(x)", [":i :p :i", ":i :p :j"], 1),
+        ("p(x, i) -> C(x)", [":i :p :j", ":j :p :i"], 1),
+        ("p(x, y), p(y, x) -> C(x)", [":i :p :j", ":j :p :i", ":j :p :k"], 2),
+        ("A(x), differentFrom(x, i) -> C(x)", [":i a :A", ":j a :A", ":j owl:differentFrom :i"], 1),
+        ("A(x), B(y), p(x, y) -> C(x)", [":i a :A", ":j a :B", ":k a :B", ":i :p :j"], 1),
+    ],
+)
+def test_the_number_of_matches_of_a_rule(axioms, rule, facts, holds):
+    reasoner = Reasoner(graph(rule, axioms=axioms))
+    reasoner.apply(insert=[triple(fact) for fact in facts])
+    assert [use.holds for use in reasoner.rules()] == [holds]
+
+
+def test_matches_with_equal_individuals_are_counted_once():
+    reasoner = Reasoner(graph("A(x), d(x, v), b.add(w, v, 1) -> dd(x, w)"))
+    facts = [":i a :A", ":i :d 1", ":j owl:sameAs :i", ":j owl:sameAs :k", ":l a :A", ":l :d 1"]
+    reasoner.apply(insert=[triple(fact) for fact in facts])
+    assert [use.holds for use in reasoner.rules()] == [2]
+    assert reasoner.holds(triple(":k :dd 2"))
+
+
+@pytest.mark.parametrize(
+    ("rules", "axioms", "is_recursive"),
+    [
+        ("d(x, v), b.add(w, v, 1) -> dd(x, w)", "", False),
+        ("d(x, v), b.add(w, v, 1) -> dd(x, w)", ":dd rdfs:subPropertyOf :d .", True),
+        ("d(x, v), b.add(w, v, 1) -> dd(x, w)", ":d rdfs:subPropertyOf :dd .", False),
+        ("d(x, v), b.add(w, v, 1) -> dd(x, w)", ":d owl:equivalentProperty :dd .", True),
+        ("d(x, v), b.add(w, v, 1) -> dd(x, w)", ":d owl:propertyChainAxiom ( :p :dd ) .", True),
+        ("d(x, v), b.add(w, v, 1) -> dd(x, w)", ":dd owl:propertyChainAxiom ( :p :d ) .", False),
+        ("d(x, v), b.greaterThan(v, 1) -> d(x, v)", "", False),
+        ("d(x, v), b.add(w, v, 1), b.add(z, w, 1) -> d(x, z)", "", True),
+        ("d(x, v), de(x, w), b.add(z, w, 1), b.add(y, v, z) -> de(x, y)", "", True),
+        ("d(x, v), de(x, w), b.add(z, w, 1) -> de(x, v)", "", False),
+    ],
+)
+def test_only_rules_that_calculate_from_their_own_results_are_recursive(rules, axioms, is_recursive):
+    (use,) = Reasoner(graph(rules, axioms=axioms)).rules()
+    assert use.unsupported == ("recursion through arithmetic" if is_recursive else "")
+
+
 def test_recursion_through_arithmetic_is_found_over_other_rules_and_properties():
     rules = ("d(x, v), b.add(w, v, 1) -> dd(x, w)", "de(x, v) -> d(x, v)")
     assert not any(use.unsupported for use in Reasoner(graph(*rules)).rules())

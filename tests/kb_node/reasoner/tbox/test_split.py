@@ -24,6 +24,7 @@ from tests.kb_node.reasoner.graphs import triple, triples
         (":p rdfs:domain :A", True, False),
         (":l rdf:first :A", True, False),
         (":r a <http://www.w3.org/2003/11/swrl#Imp>", True, True),
+        (":r <http://swrl.stanford.edu/ontologies/3.3/swrla.owl#isRuleEnabled> false", True, True),
         (":x a :A", False, False),
         (":x a owl:Thing", False, False),
         (":x a owl:NamedIndividual", False, False),
