@@ -5,6 +5,8 @@ import queue
 import random
 import signal
 from collections import Counter
+from concurrent.futures import Future
+from pathlib import Path
 
 import pyoxigraph as ox
 import pytest
@@ -13,10 +15,13 @@ from msgspec import structs
 from semmap.nodes.kb_node.derived_facts import DerivedFacts
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
-from semmap.nodes.kb_node.sparql import readers
+from semmap.nodes.kb_node.sparql import readers, service
+from semmap.nodes.kb_node.sparql.protocol import Committed, Load, LoadFromDisk
 from semmap.nodes.kb_node.sparql.queries import text
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.sparql.triples.consequences import inferred
+from semmap.nodes.kb_node.sparql.triples.dataset import Delta
+from semmap.nodes.kb_node.sparql.triples.large_map import FilledStore
 from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL, entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -387,3 +392,169 @@ def test_suppressed_assertions_are_not_in_the_result(at_home):
     assert at_home.ask(on_it).rows == ((iri("cup1"),),)  # in another graph, but still asserted
     at_home.commit(changed=[structs.replace(cup, pose=Pose(position_m=(0.0, 0.0, TOP)))])
     assert at_home.ask(on_it, inferred=True).rows == at_home.ask(on_it).rows == ((iri("cup1"),),)
+
+
+class Sent:
+    """In place of the process: the messages to it, and the commands that wait for its replies."""
+
+    def __init__(self):
+        self.is_alive = True
+        self.messages = []
+        self.asked = []
+
+    def send(self, message):
+        self.messages.append(message)
+
+    def ask(self, command, seq, demand=0, asker=""):
+        self.asked.append((command, seq))
+        return Future()
+
+
+class Large:
+    """A large map whose stores are filled when the test says so. Commits of two triples are large."""
+
+    is_large = True
+
+    def __init__(self):
+        self.kept = None
+        self.fillings = []
+
+    def find_store(self, seq):
+        return self.kept
+
+    def is_large_change(self, commit):
+        return len(commit.inserted) > 1
+
+    def fill(self, seq, now, commit=None):
+        self.fillings.append((seq, commit, Future()))
+        return self.fillings[-1][2]
+
+    def fill_last(self):
+        seq, _, future = self.fillings[-1]
+        future.set_result(FilledStore(Path(f"store{seq}"), seq, seq))
+
+
+class Filling:
+    """The service of a large map, with a process that only notes its messages."""
+
+    def __init__(self, monkeypatch):
+        self.sent, self.large = Sent(), Large()
+        monkeypatch.setattr(service, "_Worker", lambda publish: self.sent)
+        self.service = SparqlService(lambda: [], lambda _: None, self.large)
+
+    def commit(self, seq, triples=0, **fields):
+        inserted = tuple(("<urn:s>", "<urn:p>", f"<urn:{seq}-{k}>") for k in range(triples))
+        made = Commit(seq=seq, stamp_ns=0, id="", source="operator", inserted=inserted, **fields)
+        self.service.follow(made)
+        return made
+
+    def told(self):
+        """Return what the process was told: the stores by their commit, and the commits."""
+        kinds = {LoadFromDisk: "store", Committed: "commit", Load: "load"}
+        return [
+            (kinds[type(one)], one.delta.seq if isinstance(one, Committed) else one.seq)
+            for one in self.sent.messages
+        ]
+
+
+@pytest.fixture
+def filling(monkeypatch):
+    return Filling(monkeypatch)
+
+
+WATCH = Watch(query=CHAIRS, watch="w")
+
+
+def test_commits_while_a_store_is_filled_follow_it(filling):
+    filling.service.ask(Sparql(query=CHAIRS), 3)
+    filling.commit(4, 1)
+    filling.commit(5, 1)
+    assert filling.told() == []
+    assert [seq for seq, _, _ in filling.large.fillings] == [3]
+    filling.large.fill_last()
+    filling.commit(6, 1)
+    assert filling.told() == [("store", 3), ("commit", 4), ("commit", 5), ("commit", 6)]
+
+
+def test_standing_queries_wait_for_the_store_and_others_for_their_commit(filling):
+    filling.service.ask(WATCH, 3)
+    filling.service.ask(Sparql(query=CHAIRS), 3)
+    filling.commit(4, 1)
+    assert [type(command) for command, _ in filling.sent.asked] == [Sparql]
+    filling.large.fill_last()
+    filling.service.ask(Renew(watch="w"), 4)
+    assert [(type(command), seq) for command, seq in filling.sent.asked] == [
+        (Sparql, 3),
+        (Watch, 4),
+        (Renew, 4),
+    ]
+
+
+@pytest.mark.parametrize("is_asked_before", [True, False])
+def test_a_tbox_that_is_replaced_while_a_store_is_filled_needs_another_store(filling, is_asked_before):
+    if is_asked_before:
+        filling.service.ask(WATCH, 3)
+    else:
+        filling.commit(3, 2)  # a large commit, whose store is created before any query
+    filling.commit(4, tbox=True)
+    first = filling.large.fillings[0]
+    if not is_asked_before:
+        filling.service.ask(WATCH, 4)
+    first[2].set_result(FilledStore(Path("old"), 3, 3))
+    assert filling.told() == []
+    assert filling.sent.asked == []
+    filling.commit(5, 1)
+    filling.large.fill_last()
+    assert [seq for seq, _, _ in filling.large.fillings] == [3, 4]
+    assert filling.told() == [("store", 4), ("commit", 5)]
+    assert len(filling.sent.asked) == 1
+
+
+def test_a_large_commit_begins_a_store_and_a_small_one_is_sent(filling):
+    filling.commit(1, 1)  # nothing was asked
+    assert not filling.large.fillings
+    large = filling.commit(2, 2)
+    assert filling.large.fillings[0][:2] == (2, large)
+    filling.large.fill_last()
+    assert filling.told() == []
+    filling.large.kept = FilledStore(Path("kept"), 2, 2), [Delta(seq=3)]
+    filling.service.ask(Sparql(query=CHAIRS), 3)
+    assert filling.told() == [("store", 2), ("commit", 3)]
+    filling.commit(4, 1)
+    assert filling.told()[2:] == [("commit", 4)]
+
+
+def test_inferred_triples_are_in_memory(filling):
+    filling.service.ask(Sparql(query=CHAIRS), 3)
+    filling.service.ask(Sparql(query=CHAIRS, inferred=True), 3)
+    filling.commit(4, 2)
+    filling.large.fillings[0][2].set_result(FilledStore(Path("old"), 3, 3))
+    assert filling.told() == [("load", 3), ("commit", 4)]
+    assert filling.sent.messages[0].infers
+    filling.service.reload()
+    filling.service.ask(Sparql(query=CHAIRS, inferred=True), 4)
+    assert filling.told()[2:] == [("load", 4)]
+
+
+def test_without_a_store_the_triples_are_in_memory(filling, caplog):
+    filling.service.ask(WATCH, 3)
+    filling.large.fillings[0][2].set_exception(errors.Refused("the disk is full"))
+    assert filling.told() == [("load", 3)]
+    assert len(filling.sent.asked) == 1
+    assert "SPARQL keeps its triples in memory: the disk is full" in caplog.text
+    assert not filling.sent.messages[0].infers
+
+
+def test_a_process_that_has_ended_is_replaced(filling):
+    with pytest.raises(errors.UnknownName, match="there is no standing query 'w'"):
+        filling.service.ask(Renew(watch="w"), 1)
+    filling.large.is_large = False
+    filling.service.ask(Sparql(query=CHAIRS, inferred=True), 1)
+    ended, filling.sent = filling.sent, Sent()
+    ended.is_alive = False
+    with pytest.raises(errors.UnknownName):
+        filling.service.ask(Renew(watch="w"), 2)
+    filling.service.ask(Sparql(query=CHAIRS), 2)
+    assert [one.infers for one in (*ended.messages, *filling.sent.messages)] == [True, False]
+    filling.commit(3, tbox=True)
+    assert filling.told() == [("load", 2), ("load", 3)]
