@@ -42,7 +42,7 @@ class Followed:
     def change(self, changed=(), removed=(), retracted=(), inserted=()):
         """Apply a step, and check it."""
         before = dict(self.there)
-        step = self.computed.after(changed, removed, before.get, retracted, inserted)
+        step = self.computed.after(changed, [*removed], before.get, retracted, inserted)
         self.there = {n: e for n, e in before.items() if n not in removed} | {e.name: e for e in changed}
         self.asserted = self.asserted - set(retracted) | set(inserted)
         assert not set(step.come) & set(step.gone)
@@ -115,9 +115,12 @@ def test_a_tbox_without_these_properties_has_no_computed_triples():
     assert Followed(HOME, properties={IS_ON}).triples == {ON}
 
 
-def test_another_label_changes_nothing(followed):
-    step = followed.change([structs.replace(CUP, preferred_reference="my cup")])
+def test_another_label_changes_nothing_and_is_not_measured(followed):
+    facts = followed.computed.facts
+    with patch.object(facts, "update", wraps=facts.update) as update:
+        step = followed.change([structs.replace(CUP, preferred_reference="my cup")])
     assert [*map(len, step)] == [0, 0, 0, 0]
+    assert [call.args for call in update.call_args_list] == [([], [])]
 
 
 def test_another_iri_replaces_the_triples(followed):
