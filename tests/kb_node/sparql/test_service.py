@@ -12,11 +12,18 @@ import pyoxigraph as ox
 import pytest
 from msgspec import structs
 
-from semmap.nodes.kb_node.derived_facts import DerivedFacts
+from semmap.nodes.kb_node.derived_facts import DerivedChanges, DerivedFacts
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.sparql import readers, service
-from semmap.nodes.kb_node.sparql.protocol import Committed, Load, LoadFromDisk
+from semmap.nodes.kb_node.sparql.protocol import (
+    Committed,
+    Load,
+    LoadFromDisk,
+    MeasurementRequest,
+    Placements,
+)
 from semmap.nodes.kb_node.sparql.queries import text
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.sparql.triples.consequences import inferred
@@ -401,12 +408,14 @@ class Sent:
         self.is_alive = True
         self.messages = []
         self.asked = []
+        self.demands = []
 
     def send(self, message):
         self.messages.append(message)
 
     def ask(self, command, seq, demand=0, asker=""):
         self.asked.append((command, seq))
+        self.demands.append(demand)
         return Future()
 
 
@@ -418,6 +427,7 @@ class Large:
     def __init__(self):
         self.kept = None
         self.fillings = []
+        self.prepared = []
 
     def find_store(self, seq):
         return self.kept
@@ -428,6 +438,16 @@ class Large:
     def fill(self, seq, now, commit=None):
         self.fillings.append((seq, commit, Future()))
         return self.fillings[-1][2]
+
+    def prepare(self, commit):
+        self.prepared.append(commit.seq)
+        return lambda: self.prepared.append("aborted")
+
+    def prefetch(self, commit_id, turtle, base, *, packed=b""):
+        self.prepared.append(commit_id)
+
+    def discard(self):
+        self.prepared.append("discarded")
 
     def fill_last(self):
         seq, _, future = self.fillings[-1]
@@ -558,3 +578,92 @@ def test_a_process_that_has_ended_is_replaced(filling):
     assert [one.infers for one in (*ended.messages, *filling.sent.messages)] == [True, False]
     filling.commit(3, tbox=True)
     assert filling.told() == [("load", 2), ("load", 3)]
+
+
+def test_a_store_is_begun_in_advance_only_if_it_will_be_used(filling):
+    commit = Commit(seq=1, stamp_ns=0, id="a", source="operator")
+    filling.service.prefetch("a", b"", "")
+    filling.service.prepare(commit)()
+    filling.service.discard_prepared()
+    assert filling.large.prepared == ["a", 1, "aborted", "discarded"]
+    filling.service.ask(Sparql(query=CHAIRS), 3)  # a store is being filled
+    filling.service.prefetch("b", b"", "")
+    filling.service.prepare(commit)()
+    filling.large.fill_last()
+    filling.service.ask(Sparql(query=CHAIRS, inferred=True), 3)  # triples are in memory from now on
+    filling.service.prefetch("c", b"", "")
+    filling.service.prepare(commit)()
+    assert len(filling.large.prepared) == 4
+
+
+NEAR_CUP = "SELECT ?x { ?x dm:isNear :cup1 }"
+IS_NEAR = [(v.dm("isNear"), v.RDF_TYPE, v.iri(v.OWL + "ObjectProperty"))]
+
+
+@pytest.fixture
+def measuring(monkeypatch):
+    """A service that can measure, and the messages to its process."""
+    sent = Sent()
+    monkeypatch.setattr(service, "_Worker", lambda publish: sent)
+    come = DerivedChanges(come=IS_NEAR)
+    made = SparqlService(
+        lambda: IS_NEAR,
+        lambda _: None,
+        derived_changes=lambda: come,
+        placements=lambda: Placements(placed=(), limits=Thresholds()),
+    )
+    return made, sent
+
+
+def test_poses_are_sent_once_a_query_needs_measurements(measuring):
+    made, sent = measuring
+    asked = [
+        Sparql(query=CHAIRS, inferred=True),
+        Sparql(query=NEAR_CUP),
+        Sparql(query=NEAR_CUP, inferred=True),
+        Sparql(query=CHAIRS, inferred=True),
+        Watch(query=NEAR_CUP, inferred=True),
+        Renew(watch="w"),
+    ]
+    for command in asked:
+        made.ask(command, 1)
+    assert sent.demands == [0, 0, 1, 0, 2, 0]
+    kinds = [Load, Placements, MeasurementRequest, MeasurementRequest]
+    assert [type(message) for message in sent.messages] == kinds
+    assert [one.demand for one in sent.messages if isinstance(one, MeasurementRequest)] == [1, 2]
+    made.reload()
+    assert sent.messages[-1].placements is not None
+    assert sent.messages[0].placements is None
+
+
+@pytest.mark.parametrize(
+    ("query", "infers", "has_poses"),
+    [
+        (Sparql(query=CHAIRS), False, False),
+        (Sparql(query=CHAIRS, inferred=True), True, False),
+        (Sparql(query=NEAR_CUP, inferred=True), True, True),
+    ],
+)
+def test_a_commit_has_the_computed_facts_and_poses_that_the_process_needs(
+    measuring, query, infers, has_poses
+):
+    made, sent = measuring
+    changed = (thing("cup1", (0.0, 0.0, 0.0)),)
+    commit = Commit(
+        seq=2,
+        stamp_ns=0,
+        id="",
+        source="operator",
+        changed=changed,
+        removed=(Departed(name="cup2", types=()),),
+    )
+    come = DerivedChanges(come=[("<urn:a>", v.dm("isOn"), "<urn:b>")])
+    made.follow(commit, come)  # nothing was asked yet
+    assert sent.messages == []
+    made.ask(query, 1)
+    made.follow(commit, come)
+    committed = sent.messages[-1]
+    assert (committed.derived_changes == come) == infers
+    assert [entity.name for entity in committed.placed] == ["cup1"] * has_poses
+    assert committed.removed == ("cup2",) * has_poses
+    assert bool(sent.messages[0].derived_changes.come) == infers
