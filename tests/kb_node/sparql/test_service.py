@@ -455,12 +455,15 @@ class Large:
 
 
 class Filling:
-    """The service of a large map, with a process that only notes its messages."""
+    """The service of a large map, without a process: its messages are only noted."""
 
-    def __init__(self, monkeypatch):
+    service_class = SparqlService
+
+    def __init__(self, monkeypatch, asserted=(), **options):
         self.sent, self.large = Sent(), Large()
         monkeypatch.setattr(service, "_Worker", lambda publish: self.sent)
-        self.service = SparqlService(lambda: [], lambda _: None, self.large)
+        options = options or {"large_map": self.large}
+        self.service = self.service_class(lambda: asserted, lambda _: None, **options)
 
     def commit(self, seq, triples=0, **fields):
         inserted = tuple(("<urn:s>", "<urn:p>", f"<urn:{seq}-{k}>") for k in range(triples))
@@ -603,16 +606,13 @@ IS_NEAR = [(v.dm("isNear"), v.RDF_TYPE, v.iri(v.OWL + "ObjectProperty"))]
 @pytest.fixture
 def measuring(monkeypatch):
     """A service that can measure, and the messages to its process."""
-    sent = Sent()
-    monkeypatch.setattr(service, "_Worker", lambda publish: sent)
-    come = DerivedChanges(come=IS_NEAR)
-    made = SparqlService(
-        lambda: IS_NEAR,
-        lambda _: None,
-        derived_changes=lambda: come,
+    made = Filling(
+        monkeypatch,
+        IS_NEAR,
+        derived_changes=lambda: DerivedChanges(come=IS_NEAR),
         placements=lambda: Placements(placed=(), limits=Thresholds()),
     )
-    return made, sent
+    return made.service, made.sent
 
 
 def test_poses_are_sent_once_a_query_needs_measurements(measuring):
