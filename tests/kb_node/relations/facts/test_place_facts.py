@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from semmap.nodes.kb_node.relations.facts import place_facts
 from semmap.nodes.kb_node.relations.facts.place_facts import Changed, Facts
+from semmap.nodes.kb_node.relations.facts.rules import Rule
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.measuring import crowds
 from tests.kb_node.relations.entities import CORNER, ROOM, TABLE, TOP, thing
@@ -183,3 +184,18 @@ def test_what_an_update_makes_count_in_a_crowd_is_shifted(seed):
     assert shifted
     facts.update([])
     assert facts.shifted == frozenset()
+
+
+def test_facts_about_a_moved_object_are_computed_again_whatever_a_rule_is_concerned_with():
+    def list_tables_at_hand(space, solid):
+        table = space.solids.get("table1")
+        if table is not None and table is not solid and abs(table.position[0] - solid.position[0]) < 1.0:
+            yield "isNear", "table1"
+
+    facts = Facts(rules=[Rule(("isNear",), list_tables_at_hand, lambda survey: [], lambda *_: False)])
+    facts.update([TABLE])
+    near = {("cup1", "isNear", "table1")}
+    assert facts.update([thing("cup1", (0.0, 0.0, TOP)), thing("cup2", (9.0, 0.0, TOP))]).come == near
+    assert facts.update([thing("table1", (3.0, 0.0, 0.0))]) == (near, set())
+    facts.update([thing("cup1", (3.0, 0.0, TOP))])
+    assert facts.update([], ["table1"]) == (near, set())
