@@ -156,7 +156,9 @@ class SparqlService:
         """Apply a commit, with its changes of computed facts. Commits must come in order."""
         self._seq = commit.seq
         is_much = self._large is not None and self._large.is_large_change(commit)
-        if self._since_filling is not None and not commit.tbox:
+        if commit.tbox:
+            self._since_filling = None  # the store that is being created has the previous TBox
+        if self._since_filling is not None:
             self._since_filling.append(delta_of(commit))
         elif is_much and not self._infers:
             self._fill(commit)

@@ -1,3 +1,6 @@
+from itertools import groupby
+from operator import itemgetter
+
 import pytest
 
 from semmap.nodes.kb_node.answers import answers, dry_runs
@@ -132,7 +135,10 @@ def test_measured_pairs_are_inferred_and_exported(flat):
     assert len(set(of_stove)) == len(of_stove)
     picture = answers.export_snapshot(flat, inferred=True)
     exported = rdf.parse(answers.export(picture, "turtle").content, "export")
-    everything = set(answers.infer_all(answers.inference_input(flat)).triples)
+    in_order = answers.infer_all(answers.inference_input(flat)).triples
+    assert tuple(t for t in in_order if t[0] == v.entity_iri("stove1")) == of_stove
+    assert len([*groupby(in_order, key=itemgetter(0))]) == len({s for s, _, _ in in_order})
+    everything = set(in_order)
     for name in ("isNear", "isNextTo", "touches", "isUnder", "isAbove"):
         found = {t for t in exported if t[1] == v.dm(name)}
         assert found == {t for t in everything if t[1] == v.dm(name)} != set()

@@ -6,6 +6,7 @@ from semmap.nodes.kb_node.answers.command_parser import CommandParser
 from semmap.nodes.kb_node.answers.entity_search import EntitySearch
 from semmap.ontology import entity_triples
 from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from semmap.schemas.commands import Understand
 from semmap.schemas.commits import Transaction
 from semmap.schemas.entities import Pose
@@ -74,3 +75,68 @@ def test_an_ambiguous_word_leads_to_one_clarification_question(understanding):
 def test_parts_that_do_not_match_the_map_are_reported(understanding, text, understood, doubts):
     told = understanding.parse(Understand(text=text))
     assert ([frame.text for frame in told.frames], told.doubts) == ([understood], doubts)
+
+
+OF_DESK = "{} is not on or in desk1; it is on table1"
+READ = [
+    # text, mood, steps, answer, doubts, unknown verbs
+    ("take the red cup", "command", ["Taking(Theme=redcup)"], "", (), ()),
+    (
+        "take the red cup and put it on the desk",
+        "command",
+        ["Taking(Theme=redcup)", "Placing(Theme=redcup, Goal=desk1)"],
+        *("", (), ()),
+    ),
+    ("where is the laptop", "question", None, "laptop1 is on desk1", (), ()),
+    ("is the red cup on the table?", "question", None, "yes: redcup", (), ()),
+    ("take the red cup. is the blue cup on the table?", "command", None, "yes: bluecup", (), ()),
+    ("take 2 laptops", "command", None, "", ("'2 laptops': there is only 1",), ()),
+    ("take the purple cup", "command", None, "", ("no purple cup is known",), ()),
+    (
+        "take the red cup and the blue cup from the desk",
+        *("command", None, ""),
+        (OF_DESK.format("redcup"), OF_DESK.format("bluecup")),
+        (),
+    ),
+    (
+        "frobnicate the fridge",
+        *("command", [], ""),
+        ("'frobnicate the fridge' is not understood",),
+        ("frobnicate",),
+    ),
+    ("hello", "command", [], "", (), ()),
+]
+
+
+def test_steps_answers_doubts_and_unknown_verbs(understanding):
+    for text, mood, steps, answer, doubts, unknown in READ:
+        found = understanding.parse(Understand(text=text))
+        assert (found.mood, found.answer, found.doubts, found.unknown) == (mood, answer, doubts, unknown)
+        assert steps is None or [step.text for step in found.steps] == steps
+        assert bool(found.steps) == (steps != [])
+        assert found.question == ""
+        assert mood == "command" or found.frames == ()
+
+
+def test_a_new_entity_is_known_to_the_next_command(flat, understanding):
+    (frame,) = understanding.parse(Understand(text="take the green cup")).frames
+    assert frame.text == "Taking(Theme=bluecup|cup1|redcup)"
+    cup = entity_triples.describe(
+        "greencup", v.dm("Cup"), pose=Pose(position_m=(0, 0, 0)), preferred="green cup"
+    )
+    flat.commit(Transaction(id="green", source="operator", insert=tuple(cup)))
+    (frame,) = understanding.parse(Understand(text="take the green cup")).frames
+    assert frame.text == "Taking(Theme=greencup)"
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("?!", "the command contains no words"),
+        ("take " + "the " * 199 + "cup", "the command has 201 words; the maximum is 200"),
+    ],
+)
+def test_a_command_has_words_but_not_too_many(semantic_map, text, problem):
+    parser = CommandParser(semantic_map, EntitySearch(semantic_map))
+    with pytest.raises(errors.BadRequest, match=problem):
+        parser.parse(Understand(text=text))

@@ -284,3 +284,82 @@ def test_get_ends_with_values_that_contain_themselves(semantic_map):
     shown = entity_queries.CurrentState(semantic_map).entity(Get(name="c")).properties
     assert shown["p"] == ("[p [...], p [p [...]]]",)
     assert shown["q"] == (f"({'c ' * 12}...)",)
+
+
+@pytest.mark.parametrize("class_name", [None, "Cup", "Location"])
+@pytest.mark.parametrize(
+    "where", [None, Where(on="table1"), Where(in_="kitchen1"), Where(near="table1", within=1.0)]
+)
+def test_the_past_is_listed_as_it_was_then(flat, class_name, where):
+    now = entity_queries.CurrentState(flat)
+    then = entity_queries.PastState(flat, HistoryReader(flat._journal))
+    found = [e.name for e in then.entities(Entities(class_=class_name, where=where, as_of=1))]
+    assert found == [e.name for e in now.entities(Entities(class_=class_name, where=where))]
+    if class_name is None:
+        assert found
+
+
+def test_an_entity_of_the_past_is_described_as_it_was_then(own):
+    now = entity_queries.CurrentState(own)
+    then = entity_queries.PastState(own, HistoryReader(own._journal))
+    names = ("apple1", "table1", "kitchen1", "light1")
+    relations = {name: now.relations(Relations(name=name)) for name in names}
+    whereabouts = {name: now.entity(Get(name=name, where=True)).whereabouts for name in names}
+    assert relations["apple1"]
+    assert whereabouts["apple1"]
+    edit = Edit(name="apple1", at=(2.0, 2.0, 0.42))
+    own.commit(Transaction(id="lifted", source="operator", edit=(edit,)))
+    for name in names:
+        assert then.relations(Relations(name=name, as_of=1)) == relations[name]
+        found = then.entity(Get(name=name, where=True, as_of=1))
+        assert (found.whereabouts, found.on_nothing) == (whereabouts[name], "")
+        assert then.entity(Get(name=name, as_of=1)).whereabouts == ()
+        lifted = then.entity(Get(name=name, where=True, as_of=2)).on_nothing
+        assert lifted.startswith("apple1 is on nothing") == (name == "apple1")
+
+
+def test_a_query_of_the_past_needs_a_time(flat):
+    then = entity_queries.PastState(flat, HistoryReader(flat._journal))
+    for ask in (
+        lambda: then.entities(Entities()),
+        lambda: then.entity(Get(name="cup1")),
+        lambda: then.relations(Relations(name="cup1")),
+    ):
+        with pytest.raises(errors.InternalError, match="the query has no time"):
+            ask()
+    with pytest.raises(errors.UnknownName, match="no entity was named 'cup77' after commit 1"):
+        then.entity(Get(name="cup77", as_of=1))
+
+
+def test_individuals_follow_the_entities_of_a_list(semantic_map):
+    text = ":c a dm:Chair ; dm:hasPosition [ a dm:Coordinates ] . :bob a <urn:Person> ; rdfs:label 'Bob' ."
+    semantic_map.commit(home.transaction(1, home.turtle(text)))
+    now = entity_queries.CurrentState(semantic_map)
+
+    def names(**wanted):
+        return [one.name for one in now.entities(Entities(**wanted))]
+
+    assert names() == names(class_="Chair", all=True) == ["c"]
+    assert names(all=True) == ["c", "bob"]
+    assert names(class_="Person", all=True) == ["bob"]
+    for wanted in ({"class_": "Persn"}, {"class_": "Persn", "all": True}, {"class_": "Person"}):
+        with pytest.raises(errors.UnknownClass):
+            names(**wanted)
+
+
+def test_a_relation_without_a_property_is_explained_by_its_measurement(tmp_path):
+    own = home.new_map(tmp_path)
+    places = {"chair1": (0.0, 0.0, 0.0), "chair2": (0.7, 0.0, 0.0), "chair3": (9.0, 0.0, 0.0)}
+    for number, (name, at) in enumerate(places.items()):
+        own.commit(home.transaction(number, home.chair(name, at=at)))
+    own.commit(home.transaction(9, home.turtle(":chair9 a dm:Chair .")))
+    near = explain_relation(own, "chair1", "isNear", "chair2")
+    assert near.text.startswith("chair1 is near chair2")
+    assert near.conclusion is None
+    assert refused(own, "chair1", "isNear", "chair3").startswith("chair1 is not near chair3")
+    assert (
+        refused(own, "chair1", "isNear", "chair9") == "chair9 has no position, so it has no spatial relations"
+    )
+    with pytest.raises(errors.BadRequest, match="the TBox has no property 'isNear', so nothing can exclude"):
+        explain_relation(own, "chair1", "isNear", "chair2", negated=True)
+    home.close(own)

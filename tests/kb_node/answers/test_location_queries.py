@@ -109,6 +109,14 @@ def test_a_word_may_mean_another_entity_later(room):
     assert on.after(there) == ({"tray1", "cup1"}, set())
 
 
+def test_words_that_mean_nothing_any_more_select_nothing(room):
+    on = Watched(room, on="Table", in_="kitchen1", near="Table", within=5.0)
+    assert on.now == {"tray1", "cup1"}
+    on.after(commit(room, remove=("table1",)))
+    assert on.after(commit(room, remove=("table2",))) == (set(), set())
+    assert on.now == set()
+
+
 def test_several_commits_are_published_with_the_last_one(room):
     on = Watched(room, on="table1")
     first = move(room, "cup1", (3.0, 0.0, TOP))

@@ -145,6 +145,18 @@ def test_a_refutation_without_a_rule_is_searched_on_a_copy():
         questions.explain(reasoner, questions.StatementQuestion((triple(":ann :knows :ann"),), negated=True))
 
 
+def test_an_ambiguous_statement_holds_if_one_of_its_meanings_does():
+    reasoner = Reasoner(triples(":ann :knows :bob . :bob a :Adult . :carl a :Adult ."))
+    meanings = tuple(triple(f":ann :knows :{name}") for name in ("carl", "dora", "bob"))
+    asked = questions.StatementQuestion(meanings)
+    assert asked.terms == (meanings[0][0], *(o for _, _, o in meanings))
+    assert questions.explain(reasoner, asked).conclusion == meanings[2]
+    with pytest.raises(errors.Refused, match="it does not hold that ann knows carl, and nothing excludes it"):
+        questions.explain(reasoner, questions.StatementQuestion(meanings[:2]))
+    with pytest.raises(errors.Refused, match="it is not known that ann knows carl, but nothing excludes it"):
+        questions.explain(reasoner, questions.StatementQuestion(meanings, negated=True))
+
+
 def test_a_negative_statement_is_explained(furnished):
     explanation = explain_relation(furnished, "chair1", "type", "Kitchen", negated=True)
     assert (explanation.conclusion, explanation.supposed[1:]) == (None, (v.RDF_TYPE, v.dm("Kitchen")))

@@ -39,6 +39,62 @@ def test_in_is_a_place_or_a_container():
     assert names(in_="bowl1") == ["apple1"]
 
 
+@pytest.mark.parametrize(
+    ("fact", "where", "found"),
+    [
+        (("cup1", "isOn", "tray1"), {"on": "tray1"}, []),
+        (("cup1", "isOn", "tray1"), {"on": "table1"}, ["tray1", "cup2", "bowl1", "apple1"]),
+        (("tray1", "isOn", "table1"), {"on": "table1"}, ["cup2", "bowl1", "apple1"]),
+        (("cup2", "isOn", "tray1"), {"on": "tray1"}, ["cup1"]),
+        (("apple1", "isInside", "bowl1"), {"in_": "bowl1"}, []),
+        (("apple1", "isInside", "bowl1"), {"on": "table1"}, ["tray1", "cup1", "cup2", "bowl1"]),
+        (("apple1", "isInside", "tray1"), {"in_": "bowl1"}, ["apple1"]),
+        (("apple1", "isInside", "tray1"), {"on": "table1"}, ["tray1", "cup1", "cup2", "bowl1", "apple1"]),
+        (("lamp1", "isLocatedIn", "corner1"), {"in_": "corner1"}, []),
+        (("lamp1", "isLocatedIn", "kitchen1"), {"in_": "corner1"}, ["lamp1"]),
+    ],
+)
+def test_suppressed_facts_do_not_count(fact, where, found):
+    selected = select_entities(Space(MAP), MAP, Where(**where), MAP, {fact})
+    assert [entity.name for entity in selected] == found
+
+
+def test_in_is_a_container_at_any_depth():
+    chest = thing("bowl7", (5.0, 5.0, 0.0), "bowl", size=(1.0, 1.0, 0.5))
+    inner = thing("bowl8", (5.0, 5.0, 0.1))
+    apple = thing("apple8", (5.0, 5.0, 0.12))
+    there = [chest, inner, apple]
+    for holder, found in (("bowl7", ["bowl8", "apple8"]), ("bowl8", ["apple8"])):
+        selected = select_entities(Space(there), there, Where(in_=holder), there)
+        assert [entity.name for entity in selected] == found
+
+
+def test_what_can_hold_one_of_several_is_possible():
+    """A word for several is rejected only if nothing can be on or in any of them."""
+    there = [
+        *(thing(f"relic{k}", (5.0 + k, 5.0, 0.0), ref="here") for k in range(2)),
+        thing("k1", (0.0, 0.0, 0.0), place=True, ref="here"),
+        thing("cup7", (0.0, 3.0, 0.5)),
+        thing("bowl7", (0.0, 3.0, 0.0), ref="here"),
+    ]
+
+    def select(some, **where):
+        return [e.name for e in select_entities(Space(some), some, Where(**where), some)]
+
+    assert select(there, on="here") == select(there, in_="here") == []
+    assert select(there, near="here", within=0.5) == ["cup7"]
+    with pytest.raises(errors.Refused, match="the size of k1, relic0 and relic1 is unknown"):
+        select(there[:3], on="here")
+    with pytest.raises(errors.Refused, match="nothing can be in k1, relic0 and relic1"):
+        select(there[:3], in_="here")
+    assert select([*there, thing("ghost1", None, ref="here")], on="here") == []
+    ghosts = [thing("ghost1", None, ref="gone"), thing("ghost2", None, ref="gone")]
+    with pytest.raises(errors.Refused, match="ghost1 and ghost2 have no position"):
+        select(ghosts, near="gone")
+    with pytest.raises(errors.Refused, match="gone has no position"):
+        select(ghosts, nearest=1, to="gone")
+
+
 def test_near_within_and_nearest():
     assert names(near="cup1") == ["table1"]  # what it is on is not near it
     assert "tray1" in names(near="cup1", within=0.1)
@@ -91,6 +147,30 @@ def test_words():
         resolve_word(MAP, "tabel1")
     with pytest.raises(errors.UnknownName, match=r"'A cupp'; did you mean [Cc]up"):
         resolve_word(MAP, "A cupp")
+
+
+@pytest.mark.parametrize(
+    ("word", "names"),
+    [
+        ("CUP1", {"cup1"}),
+        ("the cup", {"cup1", "cup2"}),
+        ("tea_cup", {"cup3"}),
+        ("Tea cup", {"cup3"}),
+        ("a la carte", {"menu1"}),  # the article is part of the label
+        ("the a la carte", {"menu1"}),
+        ("la carte", {"menu2"}),
+        ("bowl1", {"bowl1"}),  # also the label of another entity
+    ],
+)
+def test_a_word_is_a_name_else_a_label_else_a_class(word, names):
+    there = [
+        *MAP,
+        thing("cup3", None, ref="tea cup", model="mug"),
+        thing("menu1", None, ref="a la carte"),
+        thing("menu2", None, ref="carte"),
+        thing("vase1", None, ref="bowl1"),
+    ]
+    assert resolve_word(there, word) == names
 
 
 def test_an_exact_class_takes_precedence_over_a_label():

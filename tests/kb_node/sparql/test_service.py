@@ -5,18 +5,30 @@ import queue
 import random
 import signal
 from collections import Counter
+from concurrent.futures import Future
+from pathlib import Path
 
 import pyoxigraph as ox
 import pytest
 from msgspec import structs
 
-from semmap.nodes.kb_node.derived_facts import DerivedFacts
+from semmap.nodes.kb_node.derived_facts import DerivedChanges, DerivedFacts
 from semmap.nodes.kb_node.documents import rdf
 from semmap.nodes.kb_node.reasoner import Inconsistent, Reasoner
-from semmap.nodes.kb_node.sparql import readers
+from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
+from semmap.nodes.kb_node.sparql import readers, service
+from semmap.nodes.kb_node.sparql.protocol import (
+    Committed,
+    Load,
+    LoadFromDisk,
+    MeasurementRequest,
+    Placements,
+)
 from semmap.nodes.kb_node.sparql.queries import text
 from semmap.nodes.kb_node.sparql.service import SparqlService
 from semmap.nodes.kb_node.sparql.triples.consequences import inferred
+from semmap.nodes.kb_node.sparql.triples.dataset import Delta
+from semmap.nodes.kb_node.sparql.triples.large_map import FilledStore
 from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL, entity_triples
 from semmap.ontology import vocabulary as v
 from semmap.schemas import errors
@@ -387,3 +399,271 @@ def test_suppressed_assertions_are_not_in_the_result(at_home):
     assert at_home.ask(on_it).rows == ((iri("cup1"),),)  # in another graph, but still asserted
     at_home.commit(changed=[structs.replace(cup, pose=Pose(position_m=(0.0, 0.0, TOP)))])
     assert at_home.ask(on_it, inferred=True).rows == at_home.ask(on_it).rows == ((iri("cup1"),),)
+
+
+class Sent:
+    """In place of the process: the messages to it, and the commands that wait for its replies."""
+
+    def __init__(self):
+        self.is_alive = True
+        self.messages = []
+        self.asked = []
+        self.demands = []
+
+    def send(self, message):
+        self.messages.append(message)
+
+    def ask(self, command, seq, demand=0, asker=""):
+        self.asked.append((command, seq))
+        self.demands.append(demand)
+        return Future()
+
+
+class Large:
+    """A large map whose stores are filled when the test says so. Commits of two triples are large."""
+
+    is_large = True
+
+    def __init__(self):
+        self.kept = None
+        self.fillings = []
+        self.prepared = []
+
+    def find_store(self, seq):
+        return self.kept
+
+    def is_large_change(self, commit):
+        return len(commit.inserted) > 1
+
+    def fill(self, seq, now, commit=None):
+        self.fillings.append((seq, commit, Future()))
+        return self.fillings[-1][2]
+
+    def prepare(self, commit):
+        self.prepared.append(commit.seq)
+        return lambda: self.prepared.append("aborted")
+
+    def prefetch(self, commit_id, turtle, base, *, packed=b""):
+        self.prepared.append(commit_id)
+
+    def discard(self):
+        self.prepared.append("discarded")
+
+    def fill_last(self):
+        seq, _, future = self.fillings[-1]
+        future.set_result(FilledStore(Path(f"store{seq}"), seq, seq))
+
+
+class Filling:
+    """The service of a large map, without a process: its messages are only noted."""
+
+    service_class = SparqlService
+
+    def __init__(self, monkeypatch, asserted=(), **options):
+        self.sent, self.large = Sent(), Large()
+        monkeypatch.setattr(service, "_Worker", lambda publish: self.sent)
+        options = options or {"large_map": self.large}
+        self.service = self.service_class(lambda: asserted, lambda _: None, **options)
+
+    def commit(self, seq, triples=0, **fields):
+        inserted = tuple(("<urn:s>", "<urn:p>", f"<urn:{seq}-{k}>") for k in range(triples))
+        made = Commit(seq=seq, stamp_ns=0, id="", source="operator", inserted=inserted, **fields)
+        self.service.follow(made)
+        return made
+
+    def told(self):
+        """Return what the process was told: the stores by their commit, and the commits."""
+        kinds = {LoadFromDisk: "store", Committed: "commit", Load: "load"}
+        return [
+            (kinds[type(one)], one.delta.seq if isinstance(one, Committed) else one.seq)
+            for one in self.sent.messages
+        ]
+
+
+@pytest.fixture
+def filling(monkeypatch):
+    return Filling(monkeypatch)
+
+
+WATCH = Watch(query=CHAIRS, watch="w")
+
+
+def test_commits_while_a_store_is_filled_follow_it(filling):
+    filling.service.ask(Sparql(query=CHAIRS), 3)
+    filling.commit(4, 1)
+    filling.commit(5, 1)
+    assert filling.told() == []
+    assert [seq for seq, _, _ in filling.large.fillings] == [3]
+    filling.large.fill_last()
+    filling.commit(6, 1)
+    assert filling.told() == [("store", 3), ("commit", 4), ("commit", 5), ("commit", 6)]
+
+
+def test_standing_queries_wait_for_the_store_and_others_for_their_commit(filling):
+    filling.service.ask(WATCH, 3)
+    filling.service.ask(Sparql(query=CHAIRS), 3)
+    filling.commit(4, 1)
+    assert [type(command) for command, _ in filling.sent.asked] == [Sparql]
+    filling.large.fill_last()
+    filling.service.ask(Renew(watch="w"), 4)
+    assert [(type(command), seq) for command, seq in filling.sent.asked] == [
+        (Sparql, 3),
+        (Watch, 4),
+        (Renew, 4),
+    ]
+
+
+@pytest.mark.parametrize("is_asked_before", [True, False])
+def test_a_tbox_that_is_replaced_while_a_store_is_filled_needs_another_store(filling, is_asked_before):
+    if is_asked_before:
+        filling.service.ask(WATCH, 3)
+    else:
+        filling.commit(3, 2)  # a large commit, whose store is created before any query
+    filling.commit(4, tbox=True)
+    first = filling.large.fillings[0]
+    if not is_asked_before:
+        filling.service.ask(WATCH, 4)
+    first[2].set_result(FilledStore(Path("old"), 3, 3))
+    assert filling.told() == []
+    assert filling.sent.asked == []
+    filling.commit(5, 1)
+    filling.large.fill_last()
+    assert [seq for seq, _, _ in filling.large.fillings] == [3, 4]
+    assert filling.told() == [("store", 4), ("commit", 5)]
+    assert len(filling.sent.asked) == 1
+
+
+def test_a_large_commit_begins_a_store_and_a_small_one_is_sent(filling):
+    filling.commit(1, 1)  # nothing was asked
+    assert not filling.large.fillings
+    large = filling.commit(2, 2)
+    assert filling.large.fillings[0][:2] == (2, large)
+    filling.large.fill_last()
+    assert filling.told() == []
+    filling.large.kept = FilledStore(Path("kept"), 2, 2), [Delta(seq=3)]
+    filling.service.ask(Sparql(query=CHAIRS), 3)
+    assert filling.told() == [("store", 2), ("commit", 3)]
+    filling.commit(4, 1)
+    assert filling.told()[2:] == [("commit", 4)]
+
+
+def test_inferred_triples_are_in_memory(filling):
+    filling.service.ask(Sparql(query=CHAIRS), 3)
+    filling.service.ask(Sparql(query=CHAIRS, inferred=True), 3)
+    filling.commit(4, 2)
+    filling.large.fillings[0][2].set_result(FilledStore(Path("old"), 3, 3))
+    assert filling.told() == [("load", 3), ("commit", 4)]
+    assert filling.sent.messages[0].infers
+    filling.service.reload()
+    filling.service.ask(Sparql(query=CHAIRS, inferred=True), 4)
+    assert filling.told()[2:] == [("load", 4)]
+
+
+def test_without_a_store_the_triples_are_in_memory(filling, caplog):
+    filling.service.ask(WATCH, 3)
+    filling.large.fillings[0][2].set_exception(errors.Refused("the disk is full"))
+    assert filling.told() == [("load", 3)]
+    assert len(filling.sent.asked) == 1
+    assert "SPARQL keeps its triples in memory: the disk is full" in caplog.text
+    assert not filling.sent.messages[0].infers
+
+
+def test_a_process_that_has_ended_is_replaced(filling):
+    with pytest.raises(errors.UnknownName, match="there is no standing query 'w'"):
+        filling.service.ask(Renew(watch="w"), 1)
+    filling.large.is_large = False
+    filling.service.ask(Sparql(query=CHAIRS, inferred=True), 1)
+    ended, filling.sent = filling.sent, Sent()
+    ended.is_alive = False
+    with pytest.raises(errors.UnknownName):
+        filling.service.ask(Renew(watch="w"), 2)
+    filling.service.ask(Sparql(query=CHAIRS), 2)
+    assert [one.infers for one in (*ended.messages, *filling.sent.messages)] == [True, False]
+    filling.commit(3, tbox=True)
+    assert filling.told() == [("load", 2), ("load", 3)]
+
+
+def test_a_store_is_begun_in_advance_only_if_it_will_be_used(filling):
+    commit = Commit(seq=1, stamp_ns=0, id="a", source="operator")
+    filling.service.prefetch("a", b"", "")
+    filling.service.prepare(commit)()
+    filling.service.discard_prepared()
+    assert filling.large.prepared == ["a", 1, "aborted", "discarded"]
+    filling.service.ask(Sparql(query=CHAIRS), 3)  # a store is being filled
+    filling.service.prefetch("b", b"", "")
+    filling.service.prepare(commit)()
+    filling.large.fill_last()
+    filling.service.ask(Sparql(query=CHAIRS, inferred=True), 3)  # triples are in memory from now on
+    filling.service.prefetch("c", b"", "")
+    filling.service.prepare(commit)()
+    assert len(filling.large.prepared) == 4
+
+
+NEAR_CUP = "SELECT ?x { ?x dm:isNear :cup1 }"
+IS_NEAR = [(v.dm("isNear"), v.RDF_TYPE, v.iri(v.OWL + "ObjectProperty"))]
+
+
+@pytest.fixture
+def measuring(monkeypatch):
+    """A service that can measure, and the messages to its process."""
+    made = Filling(
+        monkeypatch,
+        IS_NEAR,
+        derived_changes=lambda: DerivedChanges(come=IS_NEAR),
+        placements=lambda: Placements(placed=(), limits=Thresholds()),
+    )
+    return made.service, made.sent
+
+
+def test_poses_are_sent_once_a_query_needs_measurements(measuring):
+    made, sent = measuring
+    asked = [
+        Sparql(query=CHAIRS, inferred=True),
+        Sparql(query=NEAR_CUP),
+        Sparql(query=NEAR_CUP, inferred=True),
+        Sparql(query=CHAIRS, inferred=True),
+        Watch(query=NEAR_CUP, inferred=True),
+        Renew(watch="w"),
+    ]
+    for command in asked:
+        made.ask(command, 1)
+    assert sent.demands == [0, 0, 1, 0, 2, 0]
+    kinds = [Load, Placements, MeasurementRequest, MeasurementRequest]
+    assert [type(message) for message in sent.messages] == kinds
+    assert [one.demand for one in sent.messages if isinstance(one, MeasurementRequest)] == [1, 2]
+    made.reload()
+    assert sent.messages[-1].placements is not None
+    assert sent.messages[0].placements is None
+
+
+@pytest.mark.parametrize(
+    ("query", "infers", "has_poses"),
+    [
+        (Sparql(query=CHAIRS), False, False),
+        (Sparql(query=CHAIRS, inferred=True), True, False),
+        (Sparql(query=NEAR_CUP, inferred=True), True, True),
+    ],
+)
+def test_a_commit_has_the_computed_facts_and_poses_that_the_process_needs(
+    measuring, query, infers, has_poses
+):
+    made, sent = measuring
+    changed = (thing("cup1", (0.0, 0.0, 0.0)),)
+    commit = Commit(
+        seq=2,
+        stamp_ns=0,
+        id="",
+        source="operator",
+        changed=changed,
+        removed=(Departed(name="cup2", types=()),),
+    )
+    come = DerivedChanges(come=[("<urn:a>", v.dm("isOn"), "<urn:b>")])
+    made.follow(commit, come)  # nothing was asked yet
+    assert sent.messages == []
+    made.ask(query, 1)
+    made.follow(commit, come)
+    committed = sent.messages[-1]
+    assert (committed.derived_changes == come) == infers
+    assert [entity.name for entity in committed.placed] == ["cup1"] * has_poses
+    assert committed.removed == ("cup2",) * has_poses
+    assert bool(sent.messages[0].derived_changes.come) == infers

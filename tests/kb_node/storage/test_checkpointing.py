@@ -1,6 +1,12 @@
+"""When checkpoints are due, and that they are written one at a time."""
+
+import queue
+import threading
+
 import pytest
 
-from semmap.nodes.kb_node.storage.checkpointing import CheckpointSchedule
+from semmap.nodes.kb_node.storage.checkpointing import Checkpointing, CheckpointSchedule
+from semmap.nodes.kb_node.storage.encoding.checkpoint_encoding import Checkpoint
 from semmap.schemas.commits import Commit
 from tests.kb_node.home import chair, transaction
 
@@ -68,3 +74,95 @@ def test_what_changes_while_a_checkpoint_is_written_counts_for_the_next_one(sche
     schedule.count(changing(1))
     assert schedule.is_due(8, quiet=True)
     assert not schedule.is_due(8, quiet=False)
+
+
+def test_a_written_checkpoint_leaves_only_later_changes_to_replay(schedule):
+    schedule.count(changing(30))
+    schedule.mark_snapshot()
+    schedule.mark_written(6)
+    schedule.count(changing(11))
+    assert schedule.is_urgent(range(22))
+    assert not schedule.is_urgent(range(23))
+
+
+class Written:
+    """A map and its journal, which note the checkpoints; a write waits until the test permits it."""
+
+    def __init__(self):
+        self.seq, self.is_large = 1, False
+        self.is_due_when_quiet = self.is_due_always = self.checkpoint_is_urgent = False
+        self.events, self.tasks, self.may_write = [], queue.SimpleQueue(), threading.Event()
+        self.checkpointing = Checkpointing(self, self, self.tasks.put)
+
+    def checkpoint_is_due(self, *, quiet):
+        return self.is_due_always or (quiet and self.is_due_when_quiet)
+
+    def snapshot_for_checkpoint(self):
+        self.events.append(f"snapshot {self.seq}")
+        return Checkpoint(seq=self.seq)
+
+    def checkpoint(self, snapshot=None):
+        if snapshot is None:
+            self.events.append("at the end")
+        else:
+            assert self.may_write.wait(60.0)
+            self.events.append(f"write {snapshot.seq}")
+
+    def written(self, seq):
+        self.events.append(f"written {seq}")
+
+
+def test_a_checkpoint_is_written_sooner_if_nothing_has_changed_since_the_last_time():
+    there = Written()
+    there.may_write.set()
+    there.is_due_when_quiet = True
+    there.checkpointing.begin_if_due()
+    assert there.events == []  # a commit since
+    there.seq = 2
+    there.checkpointing.begin_if_due()
+    assert there.events == []
+    there.checkpointing.begin_if_due()
+    there.tasks.get(timeout=60.0)()
+    assert there.events == ["snapshot 2", "write 2", "written 2"]
+    there.checkpointing.close()
+
+
+@pytest.mark.parametrize("how", ["due", "urgent"])
+def test_one_checkpoint_is_written_at_a_time(how):
+    there = Written()
+    there.is_due_always, there.checkpoint_is_urgent = how == "due", how == "urgent"
+    begin = there.checkpointing.begin_if_due if how == "due" else there.checkpointing.begin_if_urgent
+    begin()
+    there.seq = 2
+    begin()
+    there.may_write.set()
+    there.tasks.get(timeout=60.0)()
+    begin()
+    there.tasks.get(timeout=60.0)()
+    assert [e for e in there.events if not e.startswith("write ")] == [
+        *("snapshot 1", "written 1"),
+        *("snapshot 2", "written 2"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("is_large", "is_due", "at_the_end"),
+    [(False, False, True), (False, True, True), (True, False, False), (True, True, True)],
+)
+def test_a_large_map_is_written_at_the_end_only_if_much_has_changed(is_large, is_due, at_the_end):
+    there = Written()
+    there.checkpointing.begin_if_due()
+    there.checkpointing.begin_if_urgent()
+    assert there.events == []
+    there.is_large, there.is_due_when_quiet = is_large, is_due
+    there.checkpointing.close()
+    assert there.events == ["at the end"] * at_the_end
+
+
+def test_the_end_waits_for_a_checkpoint_that_is_being_written():
+    there = Written()
+    there.is_large = there.checkpoint_is_urgent = True
+    there.checkpointing.begin_if_urgent()
+    there.may_write.set()
+    there.checkpointing.close()
+    assert there.events == ["snapshot 1", "write 1", "written 1"]

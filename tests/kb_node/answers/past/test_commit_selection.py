@@ -2,10 +2,11 @@
 
 import pytest
 
-from semmap.nodes.kb_node.answers.past.commit_selection import list_commits
+from semmap.nodes.kb_node.answers.past.commit_selection import Authorship, find_commits_by, list_commits
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.storage.history import HistoryReader
 from semmap.ontology import vocabulary as v
+from semmap.schemas import errors
 from semmap.schemas.commands import History
 from semmap.schemas.commits import Edit, NewEntity, Transaction
 from semmap.schemas.entities import Pose
@@ -58,3 +59,40 @@ def test_commits_in_the_place_that_had_the_new_name_before_are_not_included(list
     assert listed("kitchen2") == [2, 7], (
         "2 is in the first place that was named kitchen1, as in `history NAME`"
     )
+
+
+AUTHORS = [
+    Authorship(1, "operator"),
+    Authorship(2, "operator", "anna"),
+    Authorship(3, "perception", "camera1"),
+    Authorship(4, "file", "Anna"),
+]
+
+
+@pytest.mark.parametrize(
+    ("author", "commits"),
+    [
+        ("anna", {2, 4}),
+        ("ANNA", {2, 4}),
+        ("operator", {1, 2}),
+        ("operator/anna", {2}),
+        ("file/anna", {4}),
+        ("camera1", {3}),
+        ("perception", {3}),
+    ],
+)
+def test_commits_of_an_author_are_found_by_source_agent_or_both(author, commits):
+    assert find_commits_by(AUTHORS, author) == commits
+
+
+@pytest.mark.parametrize(
+    ("commits", "author", "text"),
+    [
+        (AUTHORS, "camera", "no commit is by 'camera'; did you mean camera1"),
+        (AUTHORS, "xyz", "no commit is by 'xyz'; the authors are Anna, anna, camera1, file and 2 more"),
+        ([], "xyz", "no commit is by 'xyz'$"),
+    ],
+)
+def test_an_unknown_author_is_reported_with_the_known_ones(commits, author, text):
+    with pytest.raises(errors.UnknownName, match=text):
+        find_commits_by(commits, author)

@@ -2,6 +2,7 @@
 
 import random
 
+import pytest
 from msgspec import structs
 
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
@@ -51,6 +52,33 @@ def test_half_a_footprint_is_enough():
 
     assert made is not None
     assert (round(made.share, 9), made.holds) == (0.4, False)
+
+
+STRIP = "POLYGON ((0 0, 2 0, 2 5, 0 5, 0 0))"
+BOX = thing("box1", (1.0, 2.5, 0.0), size=(2.0, 5.0, 2.5), place=True)
+
+
+@pytest.mark.parametrize(
+    ("inner", "outer", "share"),
+    [
+        (place("a1", STRIP), place("b1", L_SHAPE), 1.0),
+        (place("a1", L_SHAPE), place("b1", STRIP), 10.0 / 18.0),
+        (place("a1", L_SHAPE), place("b1", L_SHAPE), 1.0),
+        (place("a1", L_SHAPE), place("b1", COURT), 0.0),  # in its hole
+        (place("a1", COURT), place("b1", L_SHAPE), 0.0),
+        (place("a1", L_SHAPE), BOX, 10.0 / 18.0),
+        (BOX, place("b1", L_SHAPE), 1.0),
+        (place("a1", L_SHAPE), structs.replace(BOX, pose=Pose(position_m=(9.0, 9.0, 0.0))), 0.0),
+        (place("a1", L_SHAPE, z=3.0), place("b1", L_SHAPE), 0.0),
+    ],
+)
+def test_the_share_of_a_place_within_another(inner, outer, share):
+    space = Space([inner, outer])
+    one, other = space.solids[inner.name], space.solids[outer.name]
+    made = places.within(one, other, space.limits, also_places=True)
+    assert made.share == pytest.approx(share)
+    assert made.holds == (share >= 0.5)
+    assert places.within(one, other, space.limits) is None
 
 
 def test_without_a_size_the_position_counts():

@@ -81,6 +81,23 @@ def test_a_triple_holds_if_a_relation_that_implies_it_does(properties, triple, f
     assert not properties.holds(term, Measured((fact[0], "touches", fact[2])), NAMES)
 
 
+@pytest.mark.parametrize(
+    ("property_", "forwards", "backwards"),
+    [
+        ("isUnder", True, False),
+        ("isAbove", False, True),
+        ("isLower", True, False),
+        ("isHigher", False, True),
+        ("related", False, True),
+    ],
+)
+def test_a_triple_holds_in_the_direction_of_its_property(properties, property_, forwards, backwards):
+    under = Measured(("cup1", "isUnder", "table1"))
+    cup, p, table = IRIS["cup1"], v.dm(property_), IRIS["table1"]
+    assert properties.holds((cup, p, table), under, NAMES) == forwards
+    assert properties.holds((table, p, cup), under, NAMES) == backwards
+
+
 def test_a_triple_about_another_individual_or_property_does_not_hold(properties):
     every = Measured(("cup1", "isUnder", "table1"))
     assert not properties.holds((IRIS["cup1"], v.dm("isLower"), v.entity_iri("x")), every, NAMES)

@@ -1,12 +1,20 @@
 """Distances of axis-aligned boxes and of upright parts equal those of the search."""
 
 import math
+import random
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from semmap.nodes.kb_node.relations.geometry.convex import _search_contact, contact, find_face, make_convex
+from semmap.nodes.kb_node.relations.geometry.convex import (
+    _search_contact,
+    contact,
+    find_face,
+    make_convex,
+    over_flat_top,
+    translate,
+)
 from semmap.nodes.kb_node.relations.geometry.solids import solid_of
 from tests.kb_node.relations.entities import thing
 
@@ -140,3 +148,162 @@ def test_the_underside_of_a_slope_is_where_the_line_enters_it():
     assert board.find_heights((0.3, 0.1)) == pytest.approx((2.3 - half, 2.3 + half))
     assert board.find_heights((-0.5, 0.0)) == pytest.approx((1.5 - half, 1.5 + half))
     assert box((0.0, 0.0, 0.5), (0.2, 0.2, 0.1), 0.3).find_heights((0.0, 0.0)) == pytest.approx((0.5, 0.6))
+
+
+KINDS = ("box", "ball", "cylinder", "capsule", "hull")
+DIRECTIONS = [
+    (math.cos(k * 2.4) * math.sqrt(1 - z * z), math.sin(k * 2.4) * math.sqrt(1 - z * z), z)
+    for k in range(240)
+    for z in [1 - (2 * k + 1) / 240]
+]
+
+
+def random_part(dice, kind):
+    """Return a part of any shape and orientation; some are upright."""
+    w, x, y, z = (dice.gauss(0, 1) for _ in range(4)) if dice.random() < 0.7 else (1.0, 0.0, 0.0, 0.0)
+    length = math.sqrt(w * w + x * x + y * y + z * z)
+    w, x, y, z = w / length, x / length, y / length, z / length
+    axes = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),
+        (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
+        (2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)),
+    )
+    a, b, c = (tuple(dice.choice([0.05, 0.2, 0.5]) * along for along in axis) for axis in axes)
+    radius = dice.choice([0.05, 0.2])
+    sphere = tuple(tuple(radius * along for along in axis) for axis in axes)
+    centre = tuple(dice.uniform(-0.6, 0.6) for _ in range(3))
+    if kind == "hull":
+        points = tuple(tuple(dice.uniform(-0.4, 0.4) for _ in range(3)) for _ in range(dice.choice([4, 8])))
+        return make_convex(centre, (), (), points)
+    straight, round_ = {
+        "box": ((a, b, c), ()),
+        "ball": ((), sphere),
+        "cylinder": ((c,), (a, b)),
+        "capsule": ((c,), sphere),
+    }[kind]
+    return make_convex(centre, straight, round_)
+
+
+def dot(one, other):
+    return sum(p * q for p, q in zip(one, other, strict=True))
+
+
+def reach(part, n):
+    """Return how far a part reaches in a direction: its support function."""
+    return (
+        dot(n, part.centre)
+        + sum(abs(dot(n, v)) for v in part.straight)
+        + math.hypot(*(dot(n, v) for v in part.round))
+        + max((dot(n, point) for point in part.points), default=0.0)
+    )
+
+
+def apart(one, other, n):
+    """Return how far one part is above another along a direction."""
+    return -reach(one, tuple(-k for k in n)) - reach(other, n)
+
+
+def random_point(dice, part):
+    """Return a point in a part."""
+    point = part.centre
+    shares = [dice.uniform(-1, 1) for _ in part.straight]
+    for share, v in zip(shares, part.straight, strict=True):
+        point = tuple(p + share * q for p, q in zip(point, v, strict=True))
+    shares = [dice.gauss(0, 1) for _ in part.round]
+    for share, v in zip(shares, part.round, strict=True):
+        point = tuple(p + share / math.hypot(*shares) * q for p, q in zip(point, v, strict=True))
+    weights = [dice.random() for _ in part.points]
+    for weight, v in zip(weights, part.points, strict=True):
+        point = tuple(p + weight / sum(weights) * q for p, q in zip(point, v, strict=True))
+    return point
+
+
+def is_in(part, point):
+    return all(dot(n, point) <= reach(part, n) + 1e-6 for n in DIRECTIONS)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("other_kind", KINDS)
+def test_two_parts_are_nowhere_farther_apart_than_along_the_normal(kind, other_kind):
+    dice = random.Random(kind + other_kind)
+    for _ in range(4):
+        one, other = random_part(dice, kind), random_part(dice, other_kind)
+        found = contact(one, other)
+        assert math.hypot(*found.normal) == pytest.approx(1.0)
+        tolerance = 5e-3 * (math.dist(one.centre, other.centre) + 1.5)
+        furthest = max(apart(one, other, n) for n in DIRECTIONS)
+        assert furthest <= found.distance + tolerance
+        # The distance of two boxes beside each other's edges is that of their edges.
+        assert found.distance == pytest.approx(apart(one, other, found.normal), abs=1e-9)
+        assert contact(other, one).distance == pytest.approx(found.distance, abs=tolerance)
+        for most in (found.distance - 0.1, found.distance + 0.1):
+            bounded = contact(one, other, most).distance
+            assert min(most, found.distance) - 1e-9 <= bounded <= found.distance + 1e-9
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_bounds_outline_and_heights_of_a_part(kind):
+    dice = random.Random(kind)
+    for _ in range(12):
+        part = random_part(dice, kind)
+        for k in range(3):
+            axis = tuple(float(k == i) for i in range(3))
+            back = tuple(-along for along in axis)
+            assert (part.low[k], part.high[k]) == pytest.approx((-reach(part, back), reach(part, axis)))
+        if not part.has_flat_top:
+            assert is_in(part, (*part.lowest, part.low[2]))
+        if not part.round:
+            for k in range(8):
+                nx, ny = math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)
+                furthest = max(nx * x + ny * y for x, y in part.projection)
+                assert furthest == pytest.approx(reach(part, (nx, ny, 0.0)))
+        for _ in range(20):
+            x, y, z = random_point(dice, part)
+            low, high = part.find_heights((x, y))
+            assert low - 1e-9 <= z <= high + 1e-9
+            if kind == "box":
+                assert is_in(part, (x, y, low))
+                assert is_in(part, (x, y, high))
+        assert part.low[2] <= part.lowest_top <= part.high[2]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_translated_part_equals_one_that_was_made_there(kind):
+    dice = random.Random(kind)
+    for _ in range(5):
+        part, by = random_part(dice, kind), (0.3, -0.2, 1.1)
+        centre = tuple(p + q for p, q in zip(part.centre, by, strict=True))
+        moved, made = translate(part, by), make_convex(centre, part.straight, part.round, part.points)
+        assert (moved.has_flat_top, moved.is_square) == (made.has_flat_top, made.is_square)
+        assert (*moved.low, *moved.high) == pytest.approx((*made.low, *made.high))
+        assert moved.lowest == pytest.approx(made.lowest)
+        assert moved.lowest_top == pytest.approx(made.lowest_top)
+        assert [x for corner in moved.projection for x in corner] == pytest.approx(
+            [x for corner in made.projection for x in corner]
+        )
+        x, y, _ = centre
+        assert moved.find_heights((x, y)) == pytest.approx(made.find_heights((x, y)))
+        assert (moved.upright_projection is None) == (made.upright_projection is None)
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.5])
+@pytest.mark.parametrize(
+    ("at", "is_over"),
+    [
+        ((0.0, 0.0, 0.3), True),
+        ((0.0, 0.0, 0.5), True),
+        ((0.0, 0.0, 0.1), False),  # deep inside
+        ((0.0, 0.0, -0.3), False),
+        ((0.19, 0.0, 0.3), True),
+        ((0.3, 0.0, 0.3), False),
+        ((0.0, -0.3, 0.3), False),
+    ],
+)
+def test_a_part_is_over_a_flat_top_with_its_lowest_point(yaw, at, is_over):
+    table, ball = (
+        box((0.0, 0.0, 0.0), (0.4, 0.4, 0.3), yaw),
+        solid_of(thing("ball1", at, "ball", size=(0.1, 0.1, 0.1))),
+    )
+    (upper,) = ball.parts
+    assert over_flat_top(upper, table) == is_over
+    assert not over_flat_top(table, upper)

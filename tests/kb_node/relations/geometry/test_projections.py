@@ -70,3 +70,21 @@ def test_there_is_no_lower_bound_beside_a_skewed_or_a_flat_box():
     assert overlap_depth(0.0, 0.0, skewed, DISC) == -math.inf
     assert overlap_depth(0.0, 0.0, DISC, flat) == -math.inf
     assert overlap_depth(0.0, 0.0, flat, SQUARE) == -math.inf
+
+
+DIAGONAL = Projection(((math.sqrt(0.5), math.sqrt(0.5)), (-math.sqrt(0.5), math.sqrt(0.5))))
+"""A square whose corners are on the axes."""
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "depth"),
+    [
+        (3.0, 0.0, math.sqrt(2.0) - 2.0),  # across a side of the box
+        (0.0, -3.0, math.sqrt(2.0) - 1.0),
+        (2.2, 2.2, 3.0 / math.sqrt(2.0) + 1.0 - 2.2 * math.sqrt(2.0)),  # across a side of the square
+        (2.2, -2.2, 3.0 / math.sqrt(2.0) + 1.0 - 2.2 * math.sqrt(2.0)),
+    ],
+)
+def test_a_turned_box_is_compared_across_the_sides_of_both(x, y, depth):
+    assert overlap_depth(x, y, DIAGONAL, SQUARE) == pytest.approx(depth)
+    assert overlap_depth(-x, -y, SQUARE, DIAGONAL) == pytest.approx(depth)

@@ -61,3 +61,29 @@ def test_a_horizontal_move_needs_no_parts() -> None:
     assert now is not None
     assert now.bottom == before.bottom
     assert "parts" not in form_of("chair", (0.41, 0.31, 0.71), (1.0, 0.0, 0.0, 0.0)).__dict__
+
+
+@pytest.mark.parametrize(("size", "is_shared"), [((0.42, 0.32, 0.72), True), ((0.43, 0.33, 0.73), False)])
+def test_a_form_keeps_its_parts_while_another_solid_uses_it(size: Size, is_shared: bool) -> None:
+    before = solid_of(_placed(HERE, size=size))
+    other = solid_of(_placed((3.0, 0.0, 0.0), size=size)) if is_shared else None
+    moved = solid_of(_placed((5.0, 5.0, 1.3), size=size), before)
+    assert moved is not None
+    assert moved.parts
+    moved.clear_cache()
+    assert ("parts" in moved.form.__dict__) == (other is not None)
+
+
+@pytest.mark.parametrize("turn", [(1.0, 0.0, 0.0, 0.0), TURNED, LEANING])
+def test_a_point_in_the_map_is_the_same_point_in_its_own_frame(
+    turn: tuple[float, float, float, float],
+) -> None:
+    solid = solid_of(_placed(HERE, turn))
+    assert solid is not None
+    point = (0.1, -0.2, 0.5)
+    assert solid.to_own(solid.to_map(point)) == pytest.approx(point)
+    assert solid.to_map((0.0, 0.0, 0.0)) == pytest.approx(HERE)
+    assert [sum(axis) / len(axis) for axis in zip(*solid.samples, strict=True)] == pytest.approx(solid.centre)
+    assert len(set(solid.samples)) == 125
+    xs, ys = zip(*solid.outline, strict=True)
+    assert (min(xs), min(ys), max(xs), max(ys)) == pytest.approx(solid.bounds)

@@ -1,6 +1,7 @@
 """Spatial relations in small situations, compared with human judgement."""
 
 import math
+from contextlib import suppress
 
 import pytest
 from hypothesis import given
@@ -214,3 +215,101 @@ def test_what_is_attached_is_supported_only_by_what_is_carried_with_it():
     assert space.may_support(of["tray1"], of["cup1"])
     assert not space.may_support(of["table1"], of["tray1"])
     assert not space.may_support(of["tray1"], of["cup2"])
+
+
+def block(name, z, height=0.2, width=0.2, x=0.0, *, fixed=False):
+    return structs.replace(thing(name, (x, 0.0, z), "", size=(width, 0.2, height)), fixed=fixed)
+
+
+BASE = block("base1", 0.0, 0.7, 1.0)
+WALL = block("wall1", 0.0, 2.5, 0.1, x=0.155)
+HANGING = block("board1", 1.0, 0.7, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("z", "others", "loose", "fixed"),
+    [
+        pytest.param(0.7, [BASE], ["base1"], ["base1"], id="on what stands"),
+        pytest.param(0.73, [BASE], ["base1"], [], id="a little above"),
+        pytest.param(0.7, [BASE, WALL], ["base1"], [], id="at a wall"),
+        pytest.param(0.7, [BASE, block("shelf1", 0.7, x=0.21)], ["base1"], ["base1"], id="beside a thing"),
+        pytest.param(
+            0.7, [BASE, block("shelf1", 0.6, x=0.21, fixed=True)], ["base1"], [], id="beside a fixture"
+        ),
+        pytest.param(2.3, [block("base1", 0.0, 2.3, 1.0)], ["base1"], [], id="at the ceiling"),
+        pytest.param(1.7, [HANGING], ["board1"], [], id="on what hangs"),
+        pytest.param(1.7, [structs.replace(HANGING, fixed=True)], ["board1"], ["board1"], id="on a fixture"),
+    ],
+)
+def test_a_fixed_object_is_held_by_wall_or_ceiling_or_is_on_what_stands_or_is_fixed(z, others, loose, fixed):
+    for is_fixed, expected in ((False, loose), (True, fixed)):
+        space = Space([ROOM, *others, block("a1", z, fixed=is_fixed)])
+        supports = space.spatial_relations(space.solids["a1"]).supports
+        assert [support.name for support, _ in supports] == expected
+
+
+@pytest.mark.parametrize(
+    ("other", "loose", "fixed"),
+    [
+        pytest.param(WALL, True, True, id="a wall"),
+        pytest.param(HANGING, True, False, id="what hangs"),
+        pytest.param(structs.replace(HANGING, fixed=True), True, True, id="a fixture"),
+    ],
+)
+def test_a_fixed_object_hangs_on_nothing_that_hangs_itself(other, loose, fixed):
+    for is_fixed, expected in ((False, loose), (True, fixed)):
+        for places in ([ROOM], []):
+            space = Space([*places, other, block("a1", 1.2, fixed=is_fixed)])
+            solid, of = space.solids["a1"], space.solids[other.name]
+            assert space.may_hold(of, solid) == (expected or not places)
+
+
+@pytest.mark.parametrize(
+    ("bottom", "others", "expected"),
+    [
+        pytest.param(0.7, [BASE, block("low1", 0.0, 0.5, 0.5)], ["base1"], id="the nearest"),
+        pytest.param(
+            0.7,
+            [block("left1", 0.0, 0.7, 0.3, x=-0.2), block("right1", 0.0, 0.7, 0.2, x=0.15)],
+            ["right1", "left1"],
+            id="two at one height, the one with the greater share first",
+        ),
+        pytest.param(
+            0.7,
+            [block("left1", 0.0, 0.7, 0.2, x=-0.1), block("right1", 0.0, 0.66, 0.2, x=0.1)],
+            ["left1"],
+            id="the higher of two",
+        ),
+        pytest.param(0.01, [block("rug1", 0.0, 0.005, 1.0)], ["rug1"], id="what lies on the floor"),
+        pytest.param(0.0, [block("rug1", 0.0, 0.005, 1.0)], [], id="on the floor through a rug"),
+        pytest.param(0.7, [block("edge1", 0.0, 0.7, 0.2, x=0.19)], [], id="over an edge"),
+    ],
+)
+def test_the_supports_of_an_object(bottom, others, expected):
+    space = Space([ROOM, *others, block("a1", bottom)])
+    supports = space.spatial_relations(space.solids["a1"]).supports
+    assert [support.name for support, _ in supports] == expected
+
+
+def test_changes_for_a_while_leave_no_trace():
+    held = structs.replace(
+        thing("cup1", (0.0, 0.0, TOP)), properties={IS_GRASPED_BY: "robot1"}, grip_provenance=PROVENANCE
+    )
+    space = Space([ROOM, TABLE, held, BOOK])
+    solids, holders = dict(space.solids), dict(space.holders)
+    moved = thing("book1", (2.0, 2.0, 0.0))
+    with (
+        suppress(ZeroDivisionError),
+        space.with_changes(
+            [moved, thing("cup1", (0.1, 0.0, TOP)), thing("new1", (0.0, 0.0, 0.0))],
+            without=["table1", "missing"],
+        ),
+    ):
+        assert space.solids.keys() == {"kitchen1", "cup1", "book1", "new1"}
+        assert space.solids["book1"].position == (2.0, 2.0, 0.0)
+        assert space.holders == {}
+        raise ZeroDivisionError
+    assert space.solids == solids
+    assert space.holders == holders == {"cup1": "robot1"}
+    assert set(space.find_within(solids["kitchen1"].bounds)) == set(solids.values())
+    assert not space.is_flat

@@ -126,3 +126,34 @@ def test_reading_the_history_has_a_time_limit(ask, text):
 
 def test_a_text_that_is_too_long_for_a_command_is_no_question(ask):
     assert ask("where was the red " + "red " * 200 + "cup").past == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "count", "verdict", "names", "commits"),
+    [
+        ("how often was cup1 moved", 2, None, (), [3, 4]),
+        ("how often was cup1 near table1", 0, None, (), []),
+        ("how many cups were on table1", 1, None, ("cup1",), [2, 4]),
+        ("how long was cup1 in the kitchen", 2, None, (), [2, 4]),
+        ("when was cup1 put on table1", 2, None, (), [2, 4]),
+        ("when was cup1 on desk1 in the kitchen", 0, None, (), []),
+        ("since when is plate1 missing", None, None, (), [7]),
+        ("who put cup1 on table1", 2, None, ("bruno",), [2, 4]),
+        ("who entered the kitchen", 0, None, (), []),
+        ("what was taken from table1", 2, None, ("cup1", "plate1"), [3, 7]),
+        ("what was near table1 at commit 4", 0, None, (), []),
+        ("was plate1 removed by anna", 1, True, ("anna",), [7]),
+        ("was it anna who left the fridge open", 1, False, ("anna",), [5]),
+        ("was cup1 on desk1 in the studio", 1, True, (), [3]),
+        ("was r2 ever in the bathroom", 0, False, (), []),
+        ("was plate1 ever missing", 1, True, (), [7]),
+        ("where has cup1 been", None, None, ("table1", "kitchen1", "desk1", "studio1"), [2, 3, 4]),
+        ("where was plate1 last", None, None, ("table1", "kitchen1"), [1]),
+    ],
+)
+def test_an_answer_as_data(ask, text, count, verdict, names, commits):
+    (found,) = ask(text).past
+    assert (found.count, found.verdict, found.names) == (count, verdict, names)
+    assert [episode.since for episode in found.evidence] == commits
+    assert bool(found.times_ns) == (bool(commits) and text.startswith(("when", "since", "how often")))
+    assert (found.seconds is not None) == text.startswith("how long")
