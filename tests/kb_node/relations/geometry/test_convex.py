@@ -307,3 +307,14 @@ def test_a_part_is_over_a_flat_top_with_its_lowest_point(yaw, at, is_over):
     (upper,) = ball.parts
     assert over_flat_top(upper, table) == is_over
     assert not over_flat_top(table, upper)
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_overlapping_boxes_are_moved_apart_along_the_shallowest_axis(axis, side):
+    offset = [0.02, -0.03, 0.01]
+    offset[axis] = side * 0.35
+    one, other = box(tuple(offset), (0.4, 0.4, 0.4), 0.0), box((0.0, 0.0, 0.0), (0.4, 0.4, 0.4), 0.0)
+    found = contact(one, other)
+    assert found.distance == pytest.approx(-0.05)
+    assert found.normal == pytest.approx([side * (k == axis) for k in range(3)])
