@@ -166,3 +166,11 @@ def test_the_end_waits_for_a_checkpoint_that_is_being_written():
     there.may_write.set()
     there.checkpointing.close()
     assert there.events == ["snapshot 1", "write 1", "written 1"]
+
+
+def test_a_new_tbox_makes_a_checkpoint_due_when_idle(schedule, monkeypatch):
+    asked = []
+    monkeypatch.setattr(NoNewTBox, "tbox_changes", lambda self, *, after: asked.append(after) or [6])
+    assert schedule.is_due(6, quiet=True)
+    assert not schedule.is_due(6, quiet=False)
+    assert set(asked) == {5}

@@ -52,6 +52,20 @@ def test_a_symmetric_relation_holds_in_both_directions(properties):
     assert found == {(s, p, o) for s, o in both for p in ("isNear", "closeTo")}
 
 
+@pytest.mark.parametrize(
+    ("text", "implied"),
+    [
+        ("dm:isUnder owl:equivalentProperty dm:below .", ("cup1", "below", "table1")),
+        ("dm:below owl:equivalentProperty dm:isUnder .", ("cup1", "below", "table1")),
+        ("dm:isUnder owl:inverseOf dm:over .", ("table1", "over", "cup1")),
+        ("dm:over owl:inverseOf dm:isUnder .", ("table1", "over", "cup1")),
+    ],
+)
+def test_equivalent_and_inverse_properties_may_be_named_in_either_order(text, implied):
+    properties = PairProperties(turtle(f"dm:isUnder a owl:ObjectProperty . {text}"))
+    assert said(properties, "cup1", "isUnder", "table1") == {("cup1", "isUnder", "table1"), implied}
+
+
 def test_only_declared_relations_and_named_properties_are_stated(properties):
     assert said(properties, "cup1", "isNextTo", "table1") == set()
     assert {p for _, p, _ in said(properties, "cup1", "touches", "table1")} == {"touches"}

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from semmap.nodes.geometry.polygons import area
 from semmap.nodes.kb_node.relations.geometry.convex import (
     _search_contact,
     contact,
@@ -307,3 +308,25 @@ def test_a_part_is_over_a_flat_top_with_its_lowest_point(yaw, at, is_over):
     (upper,) = ball.parts
     assert over_flat_top(upper, table) == is_over
     assert not over_flat_top(table, upper)
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_overlapping_boxes_are_moved_apart_along_the_shallowest_axis(axis, side):
+    offset = [0.02, -0.03, 0.01]
+    offset[axis] = side * 0.35
+    one, other = box(tuple(offset), (0.4, 0.4, 0.4), 0.0), box((0.0, 0.0, 0.0), (0.4, 0.4, 0.4), 0.0)
+    found = contact(one, other)
+    assert found.distance == pytest.approx(-0.05)
+    assert found.normal == pytest.approx([side * (k == axis) for k in range(3)])
+
+
+@pytest.mark.parametrize("radii", [(0.3, 0.3), (0.3, 0.1)])
+@pytest.mark.parametrize("turn", [0.0, 0.4])
+def test_the_outline_of_an_upright_cylinder_has_the_area_of_its_disc(radii, turn):
+    cos, sin = math.cos(turn), math.sin(turn)
+    a, b = (radii[0] * cos, radii[0] * sin, 0.0), (-radii[1] * sin, radii[1] * cos, 0.0)
+    for round_ in ((a, b), (b, a)):
+        part = make_convex((1.0, 2.0, 0.5), ((0.0, 0.0, 0.5),), round_)
+        assert len(part.projection) == 8
+        assert area(part.projection) == pytest.approx(math.pi * radii[0] * radii[1])

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
+from semmap.nodes.geometry.polygons import area
 from semmap.nodes.kb_node.relations.geometry.forms import form_of
 from semmap.nodes.kb_node.relations.geometry.placed_entity import PlacedEntity
 from semmap.nodes.kb_node.relations.geometry.solids import solid_of
+from semmap.ontology.model_shapes import Interior
 from semmap.schemas.entities import Pose, Size
 
 TURNED = (0.9238795325112867, 0.0, 0.0, 0.3826834323650898)
@@ -87,3 +91,29 @@ def test_a_point_in_the_map_is_the_same_point_in_its_own_frame(
     assert len(set(solid.samples)) == 125
     xs, ys = zip(*solid.outline, strict=True)
     assert (min(xs), min(ys), max(xs), max(ys)) == pytest.approx(solid.bounds)
+
+
+@pytest.mark.parametrize(("is_round", "covered"), [(False, 0.08), (True, 0.08 * math.pi / 4)])
+def test_the_walls_of_a_hollow_are_on_the_floor_plan(is_round: bool, covered: float) -> None:
+    solid = solid_of(_placed(HERE, TURNED))
+    assert solid is not None
+    hollow = Interior(low=(0.0, -0.1, 0.3), high=(0.4, 0.1, 0.5), round=is_round)
+    walls = solid.outline_of(hollow)
+    assert area(walls) == pytest.approx(covered)
+    middle = tuple(sum(along) / len(walls) for along in zip(*walls, strict=True))
+    assert middle == pytest.approx(solid.to_map((0.2, 0.0, 0.3))[:2])
+    furthest = max(math.dist(middle, wall) for wall in walls)
+    assert furthest == pytest.approx(0.2 * 1.0539 if is_round else math.hypot(0.2, 0.1), abs=1e-4)
+
+
+def test_a_place_and_a_point_have_no_parts() -> None:
+    place, point = solid_of(_placed(HERE, place=True)), solid_of(_placed(HERE, size=None, model=""))
+    for solid in (place, point):
+        assert solid is not None
+        assert (solid.has_parts, solid.parts, solid.base, solid.supports) == (False, (), [], ())
+        assert (solid.lowest_top, solid.highest_bottom) == (solid.top, solid.bottom)
+    chair = solid_of(_placed(HERE))
+    assert chair is not None
+    assert chair.has_parts
+    assert HERE[2] <= chair.highest_bottom < chair.top
+    assert HERE[2] < chair.lowest_top <= chair.top

@@ -105,10 +105,20 @@ def test_an_object_is_between_two_on_their_strip_and_at_their_height(third, is_b
     assert find_between(there, one, other) == find_between(there, other, one) == expected
 
 
-def test_objects_between_two_are_ordered_by_name():
-    there = Space([*ENDS, block("d1", 0.6), block("c1", 1.4), block("e1", 1.0)])
-    found = find_between(there, there.solids["a1"], there.solids["b1"])
-    assert [solid.name for solid in found] == ["c1", "d1", "e1"]
+def test_objects_between_two_are_ordered_by_name_and_others_are_passed_over():
+    between = [block("d1", 0.6), block("c1", 1.4), block("e1", 1.0)]
+    others = [
+        block("low1", 0.8, z=-0.7),
+        block("high1", 1.2, z=0.6),
+        block("aside1", 0.9, 0.15),
+        block("far1", -0.5, 0.5),
+        thing("room1", (1.0, 0.0, 0.0), size=(0.2, 0.2, 0.5), place=True),
+        thing("point1", (1.1, 0.0, 0.0), "unheard of"),
+    ]
+    for there in ([*ENDS, *between, *others], [*others, *between, *ENDS]):
+        space = Space(there)
+        found = find_between(space, space.solids["a1"], space.solids["b1"])
+        assert [solid.name for solid in found] == ["c1", "d1", "e1"]
 
 
 BOWL = thing("bowl1", (0.0, 0.0, 0.0), "bowl", size=(0.6, 0.6, 0.3))

@@ -105,7 +105,8 @@ def missing(
     then, now = timeline.state(first), timeline.state(last)
     if place is None:
         gone = then.entities.keys() - now.entities.keys()
-        gone -= timeline.past.find_later_names(gone, last).keys()
+        later = timeline.past.find_later_names(gone, last)
+        gone = {later.get(name, name) for name in gone} - now.entities.keys()
     else:
         gone = at_place(occurrences, then, place) - at_place(occurrences, now, place)
     gone -= set(timeline.live_names)
