@@ -5,6 +5,7 @@ import time
 import pytest
 
 from semmap.nodes.kb_node.reasoner import Reasoner, entails
+from semmap.nodes.kb_node.reasoner.entailment import explaining
 from semmap.nodes.kb_node.reasoner.entailment.explaining import (
     _negation,
     _shrunk,
@@ -158,6 +159,16 @@ def test_the_facts_within_two_steps_are_nearby(terms, found):
     near = nearby(Reasoner([*tbox, *facts]), [triple(f":x :p {term}")[2] for term in terms])
     assert set(near) - set(tbox) == set(triples(found))
     assert set(tbox) <= set(near)
+
+
+@pytest.mark.parametrize("is_small", [True, False])
+def test_classes_are_assumed_in_a_small_graph_only(monkeypatch, is_small):
+    """Such an assumption is an axiom, with which everything is recomputed."""
+    facts = triples(":All owl:unionOf ( :A [ owl:complementOf :A ] ) . :x a :Thing .")
+    monkeypatch.setattr(explaining, "_SMALL", len(facts) - (not is_small))
+    goal = triple(":x a :All")
+    found = why_entailed(Reasoner(facts), goal)
+    assert (found is not None) is is_small
 
 
 @pytest.mark.parametrize("needed", [(), (0,), (7,), (0, 7), (3, 4), (1, 5, 9), (0, 1, 2, 11, 12), range(13)])

@@ -121,3 +121,24 @@ def test_values_are_named_only_if_everything_may_be_recomputed(recompute, is_pro
     reasoner = Reasoner(triples(spelled_out(":A rdfs:subClassOf SOME(:p :B) . :a a :A .")))
     goal = triples(":a :p [ a :B ] .")
     assert entails(reasoner, goal, Effort(allow_recompute=recompute)) is is_proved
+
+
+@pytest.mark.parametrize(
+    ("facts", "is_named"),
+    [
+        (":fred a :Person", True),
+        (":fred a :Person ; :parent :fred", False),
+        (":fred a :Person ; :parent :bob", True),
+        (":fred a :Person . :fred :child :fred", False),
+        (':cup1 a :Full ; :mass "1.5"^^xsd:float', False),
+        (":cup1 a :Full ; :mass 1", True),
+    ],
+)
+def test_a_value_is_named_if_no_known_value_is_in_the_class(facts, is_named):
+    tbox = ":Person rdfs:subClassOf SOME(:parent :Person) . :child owl:inverseOf :parent ."
+    tbox += ":Full rdfs:subClassOf SOME(:mass xsd:float) ."
+    reasoner, assumed = Reasoner(triples(spelled_out(f"{tbox} {facts} ."))), []
+    assuming = reasoner.assuming
+    reasoner.assuming = lambda new, **how: assumed.extend(new) or assuming(new, **how)
+    assert not contradictory(reasoner)
+    assert any(o.startswith("_:") for _, p, o in assumed if p.startswith("<http://example.org/")) is is_named
