@@ -35,7 +35,7 @@ a union in another order, with a repeated part
 different by their values, also in a list
     :a :p 1 , 2
     [] a owl:AllDifferent ; owl:members (1 2)
-a value differs from an individual that is no value
+a value differs from an individual in a class without values
     :p rdfs:range xsd:integer . :A owl:disjointWith xsd:integer . :a a :A . :b :p 1
     [] a owl:AllDifferent ; owl:members (1 :a)
 used as a class by a member

@@ -1,4 +1,4 @@
-"""Proofs of one shape are found once: each is the same as one that is searched anew."""
+"""Proofs of one shape are found once: each is the same as one that is searched again."""
 
 from itertools import permutations
 
