@@ -42,7 +42,7 @@ class SceneServer:
     """A viser server on a Unix socket."""
 
     def __init__(self) -> None:
-        folder = socket_folder(f"{_PREFIX}{'x' * 8}/{_SOCKET}")
+        folder = socket_folder(f"{_PREFIX}12345678/{_SOCKET}")  # mkdtemp adds eight characters
         self._folder = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
         self.at = self._folder / _SOCKET
         """The path of the socket, in a folder that only this user can open."""
