@@ -39,7 +39,7 @@ from semmap.nodes.kb_node.storage.seed import seed
 from semmap.nodes.runtime.loop import Node
 from semmap.nodes.runtime.memory import uncollected
 from semmap.nodes.supervisor.ports import free_endpoint
-from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL, model_shapes
 from semmap.schemas import errors, keys
 from semmap.schemas.replies import SystemStatus
 from tests import tiers
@@ -249,6 +249,20 @@ def running(data: Path, *words: str | Path, endpoint: str | None = None) -> Iter
 _STALE = ("--stale", "3")
 """A busy machine publishes live poses and frames less than 3 s apart."""
 _ROBOT_WORLD = Path(__file__).with_name("robot_world.xml")
+
+
+@pytest.fixture(autouse=True)
+def shapes_are_restored() -> Iterator[None]:
+    """Fail a test that leaves shapes of models or worlds to the next tests of its process."""
+    library = dict(model_shapes.shapes())
+    yield
+    left, is_library = model_shapes.added_shapes(), model_shapes.shapes() == library
+    if left != model_shapes.AddedShapes() or not is_library:
+        left.own.clear()
+        model_shapes.exchange_world(model_shapes.WorldShapes())
+        model_shapes.shapes().clear()
+        model_shapes.shapes().update(library)
+        pytest.fail("the test leaves shapes in semmap.ontology.model_shapes: restore them")
 
 
 @pytest.fixture(scope="session")

@@ -116,6 +116,7 @@ def own_models(tmp_path, monkeypatch):
     known = dict(shapes())
     for module in (model_shapes, model_choice):
         monkeypatch.setattr(module, "shapes", lambda: known)
+    monkeypatch.setattr(model_shapes, "_own", {})
 
     def take(*names):
         path = tmp_path / "model_shapes.json"

@@ -175,7 +175,7 @@ def test_a_contradiction_shows_its_proof_and_a_fix(tab, client, added):
     client.publish_pose(name, at=client.get(name).pose.position_m)
     tab.get_by_text("Stale: last live pose from a stream").wait_for()
     client.track(name, off=True)
-    tab.get_by_text("Stale: last live pose").wait_for(state="detached")
+    tab.locator(".semmap-robot").wait_for(state="detached")
     form = section(tab, "Edit")
     form.get_by_role("combobox", name="Class").click()
     tab.get_by_role("option").first.wait_for()
@@ -193,6 +193,16 @@ def test_a_contradiction_shows_its_proof_and_a_fix(tab, client, added):
     dialog.get_by_role("button", name=f"Unset {name} isSwitchedOn true and retry").click()
     until(lambda: client.get(name).class_ == "Kitchen", "it is a kitchen")
     client.remove(name)
+
+
+def test_typed_contents_stay_when_tracking_begins(tab, client, added):
+    name = added()
+    select(tab, name)
+    label = section(tab, "Edit").get_by_label("Label", exact=True)
+    label.fill("grandmother's cup")
+    client.track(name)
+    tab.locator(".semmap-robot").wait_for()
+    assert label.input_value() == "grandmother's cup"
 
 
 def test_explanations_are_shown_step_by_step(tab):

@@ -40,7 +40,7 @@ def test_the_knowledge_base_reads_them_and_an_entity_without_a_size_has_its_mode
     write_own(folder, target)
     known = dict(model_shapes.shapes())
     monkeypatch.setattr(model_shapes, "shapes", lambda: known)
-    monkeypatch.setattr("semmap.ontology.model_shapes.shapes", model_shapes.shapes)
+    monkeypatch.setattr(model_shapes, "_own", {})
     model_shapes.add_own(target)
     facts = Facts()
     facts.update([thing("plinth1", (0.0, 0.0, 0.0)), thing("cup1", (0.1, 0.0, 0.5))])

@@ -87,9 +87,7 @@ class _Detail:
 
     def _draw(self) -> None:
         """Redraw everything for another selection."""
-        if self._robot is not None:
-            self._robot.close()
-            self._robot = None
+        self._close_robot()
         self._body.clear()
         names = self._of = self._present()
         with self._body:
@@ -117,7 +115,8 @@ class _Detail:
             self._geometry = ui.label().classes("semmap-quiet semmap-figures")
         self._description = ui.label().classes("semmap-sentence")
         self._conflict = ui.label().classes("semmap-doubt").props('role="status"')
-        self._robot = draw_robot(page, entity)
+        self._robot_panel = ui.column().classes("w-full gap-0")
+        self._draw_robot(entity)
         with ui.column().classes("w-full gap-0") as facts:
             self._facts = FactList(page)
         facts.set_visibility(False)  # until the first reply
@@ -137,6 +136,19 @@ class _Detail:
         self._show_entity(entity)
         self._refresh(entity)
 
+    def _draw_robot(self, entity: Entity) -> None:
+        """Draw the panel of a robot or a tracked entity; of others it is hidden."""
+        self._close_robot()
+        self._robot_panel.clear()
+        with self._robot_panel:
+            self._robot = draw_robot(self._page, entity)
+        self._robot_panel.set_visibility(self._robot is not None)
+
+    def _close_robot(self) -> None:
+        if self._robot is not None:
+            self._robot.close()
+            self._robot = None
+
     def _update(self) -> None:
         """Show the changes of the selected entity."""
         names = self._present()
@@ -145,8 +157,7 @@ class _Detail:
         elif len(names) == 1 and self._page.moment.is_now:  # the past does not change
             entity = self._page.state.entities[names[0]]
             if has_panel(self._page, entity) is (self._robot is None):
-                self._draw()
-                return
+                self._draw_robot(entity)
             self._show_entity(entity)
             self._refresh(entity)
 
