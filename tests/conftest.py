@@ -39,7 +39,7 @@ from semmap.nodes.kb_node.storage.seed import seed
 from semmap.nodes.runtime.loop import Node
 from semmap.nodes.runtime.memory import uncollected
 from semmap.nodes.supervisor.ports import free_endpoint
-from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL, model_shapes
+from semmap.ontology import FLAT_TTL, HOUSEHOLD_TTL, model_shapes, vocabulary
 from semmap.schemas import errors, keys
 from semmap.schemas.replies import SystemStatus
 from tests import tiers
@@ -252,10 +252,15 @@ _ROBOT_WORLD = Path(__file__).with_name("robot_world.xml")
 
 
 @pytest.fixture(autouse=True)
-def shapes_are_restored() -> Iterator[None]:
-    """Fail a test that leaves shapes of models or worlds to the next tests of its process."""
-    library = dict(model_shapes.shapes())
+def process_is_as_before() -> Iterator[None]:
+    """Forget the names that a test's maps have given to individuals, and fail a test that leaves shapes.
+
+    Both are kept for the process, so a later test would depend on which ones have run before.
+    """
+    given, library = dict(vocabulary._GIVEN), dict(model_shapes.shapes())
     yield
+    vocabulary._GIVEN.clear()
+    vocabulary._GIVEN.update(given)
     left, is_library = model_shapes.added_shapes(), model_shapes.shapes() == library
     if left != model_shapes.AddedShapes() or not is_library:
         left.own.clear()
