@@ -20,6 +20,7 @@ def system(empty_scene):
 @pytest.fixture
 def client(system):
     with system.client() as client:
+        client.close("fridge1")
         yield client
 
 
@@ -68,7 +69,7 @@ def test_a_robot_that_opens_it_changes_the_map(client):
     until(lambda: said(client)["openness"] == 1.0, "the map follows")
     assert client.history("fridge1", limit=1)[-1].reason == "fridge1 was opened to 100% in the scene"
     rows = client.sparql("SELECT ?x { ?x dm:isOpen true ; dm:openness ?o FILTER(?o > 0.9) }").rows
-    assert len(rows) == 1
+    assert any(row[0].endswith("#fridge1>") for row in rows)
 
 
 def test_what_is_in_a_drawer_is_inside_it_open_or_shut(client):

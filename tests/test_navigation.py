@@ -63,10 +63,11 @@ def test_ways_in_words_in_python_and_when_a_door_is_shut(system):
         way = client.route("bathroom1", (8.0, 6.0))
         assert (way.places, way.doors) == (("bathroom1", "corridor1", "studio1"), ("door4", "door6"))
         assert 8.0 < way.metres < 12.0
-        client.set("door4", "isOpen", False)
+        shut = client.set("door4", "isOpen", False).commit
         assert client.route("bathroom1", "studio1").closed == ("door4",)
         assert client.route("bathroom1", "studio1", as_of=1).closed == ()
         with pytest.raises(errors.Refused, match="it is outside every place of the map"):
             client.route("bathroom1", (50.0, 50.0))
         with pytest.raises(errors.UnknownName, match="no entity has the name, label or class 'atlantis'"):
             client.route("bathroom1", "atlantis")
+        client.undo(shut)

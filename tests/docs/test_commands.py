@@ -59,7 +59,6 @@ CLOCK = re.compile(r"\b12:30\b")
 EXPECTED = {
     "semmap load demo/nonsense.ttl": 1,
     "semmap find 'la mela nel frigorifero'": 1,  # it is in the bowl, and that is said
-    "semmap undo 17": 1,  # there is no such commit in the map that this is run on
     "semmap set door1 isOpen false --if-is yes": 1,  # it is shut already
     "semmap explain apple1 isOn table1": 1,  # it is in a bowl
     "semmap explain apple1 isInside drawer1": 1,  # so it is not in a drawer there
@@ -170,6 +169,7 @@ def test_commands_work_as_printed(page, system, folder):
         line = shlex.join(words)
         if words[0] == "semmap" and (
             words[1] in PARSED
+            or (words[1] == "undo" and len(words) > 2)  # a commit of another map
             or "--namespace" in words  # a robot that is not there: tests/extern/fleet
             or "--connect" in words  # a system elsewhere
             or "--identity" in words  # to a secure system: tests/test_secure.py

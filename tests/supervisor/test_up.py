@@ -11,6 +11,7 @@ import socket
 import sqlite3
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from contextlib import closing
@@ -204,6 +205,8 @@ def test_a_system_is_the_only_one_of_its_folder_and_is_stopped_by_its_endpoint(t
     for module in ("queue", "nodes", "supervisor"):
         (folder / f"{module}.py").write_text("raise RuntimeError('not this one')\n")
     monkeypatch.chdir(folder)
+    monkeypatch.setenv("TMPDIR", str(tmp_path))  # which has the registry: of many systems not all are named
+    monkeypatch.setattr(tempfile, "tempdir", None)
     data = tmp_path / "my map"
     with running(data, "--abox", "none", "--no-sim", "--no-record") as system:
         with system.client() as client:

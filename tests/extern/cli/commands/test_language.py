@@ -147,7 +147,7 @@ def test_another_text_than_a_command_is_reported(system, monkeypatch, capsys):
             client.understand("")
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def kitchen(system):
     with system.client() as client:
         client.add("Table", "table1", at=(0, 0, 0), size=(0.8, 1.2, 0.75))
@@ -155,7 +155,8 @@ def kitchen(system):
         client.set("cup1", "hasColor", "red")
         client.add("Cup", "cup2", at=(1, -1, 0))
         client.set("cup2", "hasColor", "blue")
-    return system
+        yield system
+        client.remove("table1", "cup1", "cup2")
 
 
 def test_a_thing_is_found_by_what_is_said_of_it(kitchen, monkeypatch):

@@ -108,6 +108,7 @@ def test_rows_are_watched_over_a_restart_of_the_knowledge_base(system):
         until(lambda: _answers(client), "the knowledge base is back")
         client.add("Chair", "chair3")
         assert next(lines).startswith("+ ?c :chair3  (commit")
+        client.remove("chair3")
     assert watching.wait(timeout=10) == 130
 
 
