@@ -98,7 +98,9 @@ def test_it_is_taken_carried_and_put(client):
     assert [e.name for e in client.list(on="table1")] == ["cup1"]
     reply = client.attach("cup1", to="tray1", force=True)
     at = re.match(r"cup1 is attached to tray1, at \((.*?), (.*?), (.*?)\)", reply.text)
-    assert [float(number) for number in at.groups()] == pytest.approx([-3.0, 0.0, 0.78], abs=0.05)
+    x, y, z = map(float, at.groups())
+    assert (x, y) == pytest.approx((-3.0, 0.0), abs=0.005)
+    assert z == pytest.approx(0.78, abs=0.05)  # the table is 0.75 m high, and the cup falls onto it
     cup = client.get("cup1", where=True)
     assert holder_of(cup) == "tray1"
     assert client.list(on="table1") == ()

@@ -106,6 +106,7 @@ def unchanged(client):
     before = state()
     yield
     assert state() == before
+    until(lambda: {node.state for node in client.status().nodes} == {"ready"}, "all nodes are ready")
 
 
 @pytest.mark.parametrize(("words", "status", "said"), BAD, ids=lambda value: str(value)[:40])
