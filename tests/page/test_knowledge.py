@@ -195,13 +195,16 @@ def test_a_contradiction_shows_its_proof_and_a_fix(tab, client, added):
     client.remove(name)
 
 
-def test_typed_contents_stay_when_tracking_begins(tab, client, added):
+def test_typed_contents_stay_when_tracking_begins_and_ends(tab, client, added):
     name = added()
     select(tab, name)
     label = section(tab, "Edit").get_by_label("Label", exact=True)
     label.fill("grandmother's cup")
     client.track(name)
     tab.locator(".semmap-robot").wait_for()
+    assert label.input_value() == "grandmother's cup"
+    client.track(name, off=True)
+    tab.locator(".semmap-robot").wait_for(state="detached")
     assert label.input_value() == "grandmother's cup"
 
 

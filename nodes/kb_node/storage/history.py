@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Mapping, Sequence, Set
 from datetime import datetime
+from functools import cache
 
 from msgspec import structs
 
@@ -128,6 +129,30 @@ class HistoryReader:
                 if (later := renamed[seq].get(later)) is not None:
                     found[name] = later
         return found
+
+    def match_names(self, then: Set[str], now: Set[str], first: int, last: int) -> dict[str, str]:
+        """Return the names by `last` of entities that were renamed since commit `first`, by earlier ones.
+
+        `then` and `now` are the names of all entities after these commits. An entity whose name was given
+        to another one is found, too. Not found are two that exchanged their names, and one that has the
+        name of a removed one.
+        """
+        matched = self.find_later_names(then - now, last)
+        commit = cache(self._journal.commit)
+        pending = dict.fromkeys(sorted(now - then - set(matched.values())), first)
+        while pending:
+            present, since = pending.popitem()
+            name, until = present, last
+            while seqs := self._journal.touching(name, after=since, until=until):
+                if (earlier := find_earlier_names(commit(seqs[0])).get(name)) is None:
+                    break  # it was added, or changed only
+                name, since, until = earlier, first, seqs[0] - 1
+                if name in then:
+                    if name in now and name not in matched:  # another entity has that name now
+                        pending[name] = seqs[0]
+                    matched[name] = present
+                    break
+        return {was: name for was, name in matched.items() if name not in then or name in matched}
 
     def _list_span(self, query: History) -> Sequence[int]:
         """Return the numbers of the requested commits, in order."""

@@ -41,10 +41,9 @@ def compute_difference(journal: Journal, past: HistoryReader, query: Diff, limit
     if first > last:
         raise errors.BadRequest(f"commit {first} comes after commit {last}; give the earlier one first")
     then, now = ({entity.name: entity for entity in past.entities(seq)} for seq in (first, last))
-    if come := now.keys() - then.keys():
-        later = past.find_later_names(then.keys() - now.keys(), last)
-        known_as = {name: new for name, new in later.items() if new in come}
-        then = {known_as.get(name, name): entity for name, entity in then.items()}
+    matched = past.match_names(then.keys(), now.keys(), first, last)
+    later = {name: new for name, new in matched.items() if new in now}
+    then = {later.get(name, name): entity for name, entity in then.items()}
     changes: list[Change] = []
     for name in sorted(then.keys() | now.keys()):
         if name in now:

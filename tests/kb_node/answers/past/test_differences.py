@@ -108,6 +108,7 @@ def relations_of(found):
         (9, 10, [("bowl1", "added")], ["bowl1 is in corner1", "bowl1 is on table1"]),
         (11, 12, [("dish1", "name")], []),
         (12, 13, [("bowl1", "added")], ["bowl1 is in kitchen1"]),
+        (11, 13, [("bowl1", "added"), ("dish1", "name")], ["bowl1 is in kitchen1"]),  # with dish1's old name
         (14, 16, [], []),
         (LAST, None, [], []),
     ],
@@ -144,15 +145,14 @@ def test_every_diff_leads_from_one_map_to_the_other(past):
     for first in range(1, LAST, 3):
         for last in range(first, LAST + 1):
             names = past.names(first)
-            for change in past.diff(first, last).changes:
-                if change.kind == "added":
-                    assert change.name not in names
-                    names.add(change.name)
-                elif change.kind == "removed":
-                    names.remove(change.name)
-                elif change.kind == "name":
-                    names.remove(change.was)
-                    names.add(change.name)
+            changes = past.diff(first, last).changes
+            gone = [change.name for change in changes if change.kind == "removed"]
+            renamed = {change.was: change.name for change in changes if change.kind == "name"}
+            for name in (*gone, *renamed):
+                names.remove(name)
+            for name in (*renamed.values(), *(change.name for change in changes if change.kind == "added")):
+                assert name not in names
+                names.add(name)
             assert names == past.names(last)
 
 

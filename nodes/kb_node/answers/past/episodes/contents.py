@@ -65,12 +65,12 @@ def changed(
     """
     then, now = timeline.state(first), timeline.state(last)
     live = set(timeline.live_names)
-    later = timeline.past.find_later_names(then.entities.keys() - now.entities.keys(), last)
+    later = timeline.past.match_names(then.entities.keys(), now.entities.keys(), first, last)
     was = {later.get(name, name): entity for name, entity in then.entities.items()}
     concerned = (was.keys() | now.entities.keys()) - live
     for place in places:
-        there = at_place(occurrences, then, place) | at_place(occurrences, now, place) | set(place.names)
-        concerned = concerned & {later.get(name, name) for name in there}
+        were_there = {later.get(name, name) for name in at_place(occurrences, then, place)}
+        concerned &= were_there | at_place(occurrences, now, place) | set(place.names)
     found: list[tuple[str, str]] = []
     for name in sorted(concerned):
         before, after = was.get(name), now.entities.get(name)
@@ -103,13 +103,11 @@ def missing(
 ) -> PastAnswer:
     """Return what was at a place after one commit and is not after another, with where it is then."""
     then, now = timeline.state(first), timeline.state(last)
-    if place is None:
-        gone = then.entities.keys() - now.entities.keys()
-        later = timeline.past.find_later_names(gone, last)
-        gone = {later.get(name, name) for name in gone} - now.entities.keys()
-    else:
-        gone = at_place(occurrences, then, place) - at_place(occurrences, now, place)
-    gone -= set(timeline.live_names)
+    later = timeline.past.match_names(then.entities.keys(), now.entities.keys(), first, last)
+    was, is_ = (
+        set(state.entities) if place is None else at_place(occurrences, state, place) for state in (then, now)
+    )
+    gone = {later.get(name, name) for name in was} - is_ - set(timeline.live_names)
     names = tuple(sorted(gone))
     evidence, parts = [], []
     for name in names:

@@ -7,16 +7,21 @@ from semmap.nodes.kb_node.answers.past.episodes.occurrences import Occurrences, 
 from semmap.nodes.kb_node.answers.past.episodes.timeline import Timeline
 from semmap.nodes.kb_node.relations.measuring.thresholds import Thresholds
 from semmap.nodes.kb_node.storage.history import HistoryReader
-from semmap.schemas.commits import Edit
+from semmap.ontology import vocabulary as v
+from semmap.schemas.commits import Edit, NewEntity
+from semmap.schemas.entities import Pose
 from tests.kb_node import home
 from tests.kb_node.home import chair, transaction, turtle
 
-FAR = (9.0, 9.0, 0.0)
+HERE, FAR = (1.0, 2.0, 0.0), (9.0, 9.0, 0.0)
 
 
 @pytest.fixture(scope="module")
 def asked(tmp_path_factory):
-    """Commits: 1 three chairs, 2 a kitchen, 3 and 4 rename the first, 5 removes it, 6 and 7 the others."""
+    """Commits: 1 three chairs, 2 a kitchen, 3 and 4 rename the first, 5 removes it, 6 to 10 the others.
+
+    Commit 8 moves the third one back, 9 renames it, and 10 adds another one with its earlier name.
+    """
     made = home.new_map(tmp_path_factory.mktemp("map"))
     three = [*chair(), *chair("chair2"), *chair("chair3")]
     made.commit(transaction(1, three))
@@ -26,8 +31,12 @@ def asked(tmp_path_factory):
     made.commit(transaction(5, remove=("throne",)))
     made.commit(transaction(6, verb="rename", edit=(Edit(name="chair2", rename="stool"),)))
     made.commit(transaction(7, edit=(Edit(name="chair3", at=FAR),)))
+    made.commit(transaction(8, edit=(Edit(name="chair3", at=HERE),)))
+    made.commit(transaction(9, verb="rename", edit=(Edit(name="chair3", rename="bench"),)))
+    another = NewEntity(name="chair3", class_iri=v.bare(v.dm("Chair")), pose=Pose(position_m=FAR))
+    made.commit(transaction(10, add=(another,)))
     journal = made._journal
-    timeline = Timeline(journal, HistoryReader(journal), Thresholds(), list, journal.stamps.of(7) + 1, 60.0)
+    timeline = Timeline(journal, HistoryReader(journal), Thresholds(), list, journal.stamps.of(10) + 1, 60.0)
     occurrences = Occurrences(timeline, {}, ())
 
     def ask(function, place, first, last):
@@ -46,6 +55,7 @@ def asked(tmp_path_factory):
         (4, 5, ("throne",), [("removed", 5)]),
         (1, 7, ("throne",), [("removed", 5)]),
         (3, 6, ("throne",), [("removed", 5)]),
+        (8, 10, (), []),  # another one has its name
     ],
 )
 def test_what_was_removed_is_missing_also_if_it_was_renamed_before(asked, first, last, names, evidence):
@@ -60,6 +70,7 @@ def test_what_was_removed_is_missing_also_if_it_was_renamed_before(asked, first,
         (2, 3, ("seat1",), [3]),
         (2, 5, ("throne",), [5]),
         (5, 7, ("chair3", "stool"), [7, 6]),
+        (8, 10, ("bench", "chair3"), [9, 10]),  # one was renamed, the other one is new
     ],
 )
 def test_what_differs_between_two_commits_has_changed(asked, first, last, names, commits):
@@ -72,3 +83,8 @@ def test_what_was_moved_away_from_a_thing_is_missing_there(asked):
     near = Place("near", ("stool",), "stool")
     assert asked(contents.missing, near, 6, 7) == (("chair3",), [("moved", 7)])
     assert asked(contents.missing, near, 6, 6) == ((), [])
+
+
+def test_what_has_another_name_is_not_missing_where_it_was(asked):
+    near = Place("near", ("stool",), "stool")
+    assert asked(contents.missing, near, 8, 10) == ((), [])
