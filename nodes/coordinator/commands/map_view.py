@@ -22,7 +22,8 @@ from semmap.schemas.commits import Effects, Snapshot, Transaction
 from semmap.schemas.entities import SAME_AS, Entity, Pose, Size, Vector
 from semmap.schemas.scenes import Body
 
-_NAMED: Final = frozenset(("name", "names", "to", "on", "in_", "next_to", "near", "leave", "frame"))
+_PLACES: Final = ("on", "in_", "next_to", "near", "frame", "place", "from_", "to")
+_NAMED: Final = frozenset(("name", "names", "entity", "other", "leave", "viewer", "asker", *_PLACES))
 """The fields of commands that name entities."""
 _FEW: Final = 3
 """The maximum number of suggested names."""
@@ -146,9 +147,13 @@ class MapView(map_replica.MapReplica[Effects]):
     def _primary_name(self, word: str) -> str:
         if word in self.entities:
             return word
-        iri = word.removeprefix("<").removesuffix(">")
-        found = self.entities.get(v.entity_name(v.iri(iri))) if ":" in iri else None
-        return self.primary_names.get(word, word) if found is None or found.iri != iri else found.name
+        if ":" in word:
+            bare = word.removeprefix("<").removesuffix(">")
+            term = v.entity_iri(word[1:]) if word.startswith(":") else v.iri(bare)
+            found = self.entities.get(v.entity_name(term))
+            if found is not None and found.iri == v.bare(term):
+                return found.name
+        return self.primary_names.get(word, word)
 
     def _apply(self, commit: Effects) -> None:
         """See `MapReplica._apply`."""

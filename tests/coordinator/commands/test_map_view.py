@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from semmap.nodes.coordinator.commands.map_view import MapView
+from semmap.ontology import vocabulary as v
 from semmap.schemas import commands as c
 from semmap.schemas.commits import Departed, Effects, Snapshot
 from semmap.schemas.entities import SAME_AS, Entity, Provenance
@@ -13,16 +14,19 @@ BY = Provenance(commit=1, stamp_ns=1, source="file")
 PARTS = ("provenance", "pose_provenance", "shape_provenance", "reference_provenance")
 
 
-def entity(name, *others):
+def entity(name, *others, iri=None):
     properties = {SAME_AS: others} if others else {}
     said = dict.fromkeys(PARTS, BY)
-    return Entity(name=name, class_="Cup", iri=f"urn:{name}", types=("Cup",), properties=properties, **said)
+    return Entity(
+        name=name, class_="Cup", iri=iri or f"urn:{name}", types=("Cup",), properties=properties, **said
+    )
 
 
 @pytest.fixture
 def view():
     made = MapView()
-    made.begin(Snapshot(seq=1, entities=(entity("cup1", "mug"), entity("cup2")), digest="1"))
+    bowl = entity("bowl1", iri=v.bare(v.entity_iri("bowl1")))
+    made.begin(Snapshot(seq=1, entities=(entity("cup1", "mug"), entity("cup2"), bowl), digest="1"))
     return made
 
 
@@ -32,6 +36,11 @@ def view():
         (c.Set(name="mug", property="isOpen", values=(True,)), {"name": "cup1"}),
         (c.Remove(names=("cup2", "mug")), {"names": ("cup2", "cup1")}),
         (c.Remove(names=("urn:cup2", "<urn:cup1>", "x:cup1")), {"names": ("cup2", "cup1", "x:cup1")}),
+        (c.Remove(names=(":bowl1", ":cup1", "bowl1")), {"names": ("bowl1", ":cup1", "bowl1")}),
+        (c.WasWhen(name="mug", relation="isOn", other="urn:cup2"), {"name": "cup1", "other": "cup2"}),
+        (c.WasWhen(name="mug", relation="isOpen"), {"name": "cup1", "other": True}),
+        (c.FindWay(from_="urn:cup1", to="urn:cup2"), {"from_": "cup1", "to": "cup2"}),
+        (c.Relations(name="mug", other="mug", viewer="mug"), {"other": "cup1", "viewer": "cup1"}),
         (c.Move(name="cup2", on="mug"), {"name": "cup2", "on": "cup1"}),
         (c.Attach(name="mug", to="cup2"), {"name": "cup1", "to": "cup2"}),
         (c.Rename(name="mug", new="cup3"), {"name": "cup1", "new": "cup3"}),
