@@ -275,8 +275,12 @@ class Reconciler:
             return BodyState(status="failed", detail=reason, model=entity.model)
         if self._config.truth == "scene":
             return BodyState(status="missing", detail="it is not in the scene", model=entity.model)
-        detail = "" if entity.pose is not None else "it has no position"
-        return BodyState(status="pending", detail=detail, model=entity.model)
+        if entity.pose is None:
+            way = (
+                "publish live poses" if entity.tracked else f"set one: semmap update {entity.name} --at X Y Z"
+            )
+            return BodyState(status="failed", detail=f"it has no position; {way}", model=entity.model)
+        return BodyState(status="pending", model=entity.model)
 
     def problems(self) -> list[str]:
         """Return the problems of map and scene, one sentence each."""

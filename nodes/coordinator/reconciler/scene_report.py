@@ -21,7 +21,7 @@ def entity_problems(
     yield from sorted(
         f"{name}: {state.status}{': ' if state.detail else ''}{state.detail}"
         for name, state in states
-        if state.status in ("failed", "ghost", "missing") or (state.status == "pending" and state.detail)
+        if state.status in ("failed", "ghost", "missing")
     )
 
 

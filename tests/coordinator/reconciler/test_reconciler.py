@@ -48,6 +48,22 @@ def test_if_only_perception_updates_the_map_the_simulator_gets_no_orders(dispatc
     assert reconciler.body_state(dispatcher.map.entity("chair1")).status == "none"
 
 
+@pytest.mark.parametrize(
+    ("tracked", "way"), [("", "set one: semmap update chair1 --at X Y Z"), ("stream", "publish live poses")]
+)
+def test_an_order_for_an_entity_without_a_position_does_not_wait_for_its_body(dispatcher, tracked, way):
+    reconciler = Reconciler(CoordinatorConfig("map"), dispatcher, immediate(dispatcher), print, print)
+    dispatcher.change(c.Add(class_="Chair", name="chair1", at=(1.0, 1.0, 0.0)))
+    entity = structs.replace(dispatcher.map.entity("chair1"), pose=None, tracked=tracked)
+    dispatcher.map.entities["chair1"] = entity
+    reconciler.scene.known = True
+    state = reconciler.body_state(entity)
+    assert (state.status, state.detail) == ("failed", f"it has no position; {way}")
+    executed = Future()
+    executed.set_result("executed")
+    assert reconciler.when_placed("chair1", lambda: executed).result(0) == "executed"
+
+
 def test_a_reset_tries_again_what_could_not_be_made(dispatcher):
     """A model file may have been repaired since."""
     spawns = []

@@ -53,7 +53,6 @@ def body(name="cup1", **fields):
         (BodyState(status="failed", detail="no such file"), ["cup1: failed: no such file"]),
         (BodyState(status="missing"), ["cup1: missing"]),
         (BodyState(status="ghost", detail="overlaps box1"), ["cup1: ghost: overlaps box1"]),
-        (BodyState(status="pending", detail="waits for table1"), ["cup1: pending: waits for table1"]),
         (BodyState(status="pending"), []),
         (BodyState(status="present"), []),
         (BodyState(status="none"), []),
