@@ -600,7 +600,10 @@ class Could(Command[Possible], frozen=True, tag="could"):
 
 
 class Diff(Command[Difference], frozen=True, tag="diff"):
-    """List what changed between `since` and `until` (or now), which are commits or times."""
+    """List what changed between `since` and `until` (or now), which are commits or times.
+
+    A minute or a day counts from its beginning as `since`, and up to its end as `until`.
+    """
 
     ROLES: ClassVar[Roles] = ANYBODY
 

@@ -332,7 +332,7 @@ class BodyState(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     `present`: it is in the scene. `ghost`: it is visible but does not collide, because another body occupies
     its place. `pending`: it is not spawned yet. `failed`: it cannot be created, for the reason in `detail`.
     `missing`: the scene, which is the source of truth, does not have it. `none`: the entity has no body (a
-    place, or perception is the source of truth). `unknown`: no simulator is running.
+    place, without a position, or perception is the source of truth). `unknown`: no simulator is running.
     """
 
     status: Literal["present", "ghost", "pending", "failed", "missing", "none", "unknown"]

@@ -54,6 +54,11 @@ class Moment(NamedTuple):
     first_ns: int = 0
     last_ns: int = 0
 
+    @property
+    def is_exact(self) -> bool:
+        """Whether it is a time without a duration, apart from its rounding."""
+        return self.last_ns - self.first_ns <= 2 * _ROUNDING_NS
+
 
 def read_moment(when: When) -> Moment:
     """Parse a commit number or a time. Raises BadRequest."""

@@ -110,7 +110,7 @@ class Coordinator:
             c.Remove.answered_by(self._change_with_note),
             c.Clear.answered_by(self._change_with_note),
             c.Load.answered_by(self._load),
-            c.Undo.answered_by(lambda command: scene_commands.undo(command, self._scheduler.change)),
+            c.Undo.answered_by(lambda command: scene_commands.undo(command, self._change_with_note)),
             c.List.answered_by(frames.in_map_frame(local_queries.list)),
             c.Get.answered_by(frames.in_map_frame(local_queries.get)),
             c.ListFrames.answered_by(frames.list),
@@ -290,7 +290,7 @@ class Coordinator:
         self._waiting = still
 
     def _change_with_note(
-        self, command: c.Add | c.Update | c.Batch | c.Set | c.Unset | c.Remove | c.Clear
+        self, command: c.Add | c.Update | c.Batch | c.Set | c.Unset | c.Remove | c.Clear | c.Undo
     ) -> Future[Changed]:
         """Change the map, and add a note if the scene or perception will override the change."""
         if isinstance(command, c.Remove) and self._config.truth != "replayed":

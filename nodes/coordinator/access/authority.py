@@ -10,13 +10,14 @@ from collections.abc import Iterable
 
 from semmap.nodes.coordinator.config import Truth
 from semmap.schemas import errors
-from semmap.schemas.commands import Batch, Clear, Command, Remove, Update
+from semmap.schemas.commands import Batch, Clear, Command, Remove, Undo, Update
 from semmap.schemas.entities import LESSER, Entity
 
 _COMES_BACK = {
     "scene": "the scene is the source of truth (--truth scene): a body that is still there is added again",
     "perceived": "perception is the source of truth (--truth perceived): what it still sees is added again",
 }
+_STAYS = {"scene": "the scene is the source of truth (--truth scene): bodies stay; to move one: semmap move"}
 _GOES_BACK = {
     "scene": "the scene is the source of truth for poses (--truth scene); to move a body: semmap move"
 }
@@ -38,6 +39,8 @@ def describe_override(command: Command, truth: Truth) -> str | None:
     """Return a note if the scene or perception will override the change; None otherwise."""
     if isinstance(command, (Remove, Clear)):
         return _COMES_BACK.get(truth)
+    if isinstance(command, Undo):
+        return _STAYS.get(truth)
     changes = command.changes if isinstance(command, Batch) else (command,)
     return _GOES_BACK.get(truth) if any(map(is_placing, changes)) else None
 

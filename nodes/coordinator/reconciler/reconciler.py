@@ -279,7 +279,7 @@ class Reconciler:
             way = (
                 "publish live poses" if entity.tracked else f"set one: semmap update {entity.name} --at X Y Z"
             )
-            return BodyState(status="failed", detail=f"it has no position; {way}", model=entity.model)
+            return BodyState(status="none", detail=f"it has no position; {way}", model=entity.model)
         return BodyState(status="pending", model=entity.model)
 
     def problems(self) -> list[str]:

@@ -97,6 +97,10 @@ def _report_ignored(options: Mapping[str, Any], folder: Path, *, has_map: bool) 
     """Report options on stderr that apply to a new map only, where a map is continued."""
     if has_map and options["abox"] is not None:
         print_error(f"warning: --abox is ignored: {folder} has a map; add --fresh to start a new one")
+    if has_map and options["tbox"]:
+        print_error(
+            f"warning: --tbox is ignored: {folder} has a map; to change its TBox: semmap load --tbox FILE"
+        )
     if has_map and options["spatial_root"]:
         print_error(
             f"warning: --spatial-root is ignored: {folder} has a map; for its TBox use:"

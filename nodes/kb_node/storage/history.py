@@ -343,6 +343,16 @@ class HistoryReader:
             raise errors.Refused(f"there was no map at that time; it begins with commit 1{begun}")
         return seq
 
+    def commit_before(self, when: When) -> int:
+        """Return the last commit at the beginning of a minute or day, or the first if the map began in it.
+
+        For a commit's number or an exact time it is the same as `commit_at`, which raises the same errors.
+        """
+        at_end, moment = self.commit_at(when), read_moment(when)
+        if moment.commit is not None or moment.is_exact:
+            return at_end
+        return max(self._journal.stamps.seq_at(moment.first_ns), self._compacted, 1)
+
 
 def _at(stamp_ns: int) -> str:
     return f" at {datetime.fromtimestamp(stamp_ns / 1e9):%Y-%m-%d %H:%M:%S}"

@@ -110,6 +110,8 @@ def test_the_same_conflict_again_changes_nothing(dispatcher):
         (c.Remove(names=("cup1",)), "scene", "is added again"),
         (c.Clear(), "perceived", "is added again"),
         (c.Remove(names=("cup1",)), "map", None),
+        (c.Undo(), "scene", "bodies stay; to move one: semmap move"),
+        (c.Undo(), "map", None),
         (c.Update(name="cup1", at=AT), "scene", "semmap move"),
         (c.Update(name="cup1", yaw=1.0), "scene", "semmap move"),
         (c.Update(name="cup1", ref="mug"), "scene", None),

@@ -58,7 +58,7 @@ def test_an_order_for_an_entity_without_a_position_does_not_wait_for_its_body(di
     dispatcher.map.entities["chair1"] = entity
     reconciler.scene.known = True
     state = reconciler.body_state(entity)
-    assert (state.status, state.detail) == ("failed", f"it has no position; {way}")
+    assert (state.status, state.detail) == ("none", f"it has no position; {way}")
     executed = Future()
     executed.set_result("executed")
     assert reconciler.when_placed("chair1", lambda: executed).result(0) == "executed"

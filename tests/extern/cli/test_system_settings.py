@@ -61,6 +61,9 @@ def test_another_abox_does_not_count_for_a_map_that_goes_on(data):
     goes_on = CliRunner().invoke(tell, ["--data", str(data), "--abox", "none"])
     assert goes_on.stdout == f"perceived {EMPTY_WORLD}\n"
     assert "--abox is ignored" in goes_on.stderr
+    goes_on = CliRunner().invoke(tell, ["--data", str(data), "--tbox", "household"])
+    assert "--tbox is ignored" in goes_on.stderr
+    assert "semmap load --tbox FILE" in goes_on.stderr
     fresh = CliRunner().invoke(tell, ["--data", str(data), "--abox", "none", "--fresh"])
     assert (fresh.stdout, fresh.stderr) == (f"map {EMPTY_WORLD}\n", "")
 

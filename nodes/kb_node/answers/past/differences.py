@@ -36,7 +36,7 @@ _RELATIONS: Final[dict[str, TimedRelation]] = {
 
 def compute_difference(journal: Journal, past: HistoryReader, query: Diff, limits: Thresholds) -> Difference:
     """Return what changed between `query.since` and `query.until`. Raises Refused, BadRequest."""
-    first = past.commit_at(query.since)
+    first = past.commit_before(query.since)
     last = past.last if query.until is None else past.commit_at(query.until)
     if first > last:
         raise errors.BadRequest(f"commit {first} comes after commit {last}; give the earlier one first")

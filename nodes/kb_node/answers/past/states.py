@@ -18,6 +18,8 @@ from semmap.schemas.map_history import Spell, Spells
 
 _WORDS: Final = {(IS_OPEN, "true"): "open", (IS_OPEN, "false"): "closed"}
 _CONDITION: Final = re.compile(r"is[A-Z]\w*")
+_TRUTHS: Final = frozenset(("true", "false"))
+_RELATIONS: Final = ("isOn", "isInside", "isLocatedIn", "isAttachedTo", "isNear")
 
 
 def find_state_spells(journal: Journal, past: HistoryReader, query: WasWhen) -> Spells:
@@ -34,6 +36,9 @@ def find_state_spells(journal: Journal, past: HistoryReader, query: WasWhen) -> 
     known = {key for _, properties in states for key in properties}
     key = _find_property(query.relation, known, name)
     wanted = _format_value(query.other)
+    known_values = {text for _, properties in states for text in _format_values(properties.get(key, ()))}
+    if known_values <= _TRUTHS and wanted not in _TRUTHS:
+        raise errors.BadRequest(f"{key} of {name} is true or false, not '{query.other}'")
     spells: list[Spell] = []
     for seq, properties in states:
         holds = key in properties and wanted in _format_values(properties[key])
@@ -70,11 +75,9 @@ def _find_property(word: str, known: Iterable[str], name: str) -> str:
         return found[0]
     if found:
         raise errors.BadRequest(f"'{word}' is ambiguous: {', '.join(found)}; name one of them")
-    hint = errors.did_you_mean(word, names)
-    raise errors.BadRequest(
-        f"{name} never had the property '{word}'{hint}; relations are isOn, isInside, isLocatedIn,"
-        " isAttachedTo and isNear"
-    )
+    hint = errors.did_you_mean(word, names) or errors.did_you_mean(word, _RELATIONS)
+    relations = f"{', '.join(_RELATIONS[:-1])} and {_RELATIONS[-1]}"
+    raise errors.BadRequest(f"{name} never had the property '{word}'{hint}; relations are {relations}")
 
 
 def _format_values(stated: Stated) -> tuple[str, ...]:
@@ -89,7 +92,7 @@ def _format_value(value: Value) -> str:
         try:
             return f"{float(value):g}"
         except ValueError:
-            return value.casefold() if value.casefold() in ("true", "false") else value
+            return value.casefold() if value.casefold() in _TRUTHS else value
     return f"{value:g}"
 
 
@@ -98,7 +101,7 @@ def _describe_state(key: str, value: str) -> str:
     local = key.rpartition(":")[2]
     if (words := _WORDS.get((local, value))) is not None:
         return words
-    if _CONDITION.fullmatch(local) and value in ("true", "false"):
+    if _CONDITION.fullmatch(local) and value in _TRUTHS:
         condition = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", local[2:]).lower()
         return condition if value == "true" else f"not {condition}"
     return f"at {local} {value}"

@@ -1,6 +1,7 @@
 """Differences between two commits, and the times of a spatial relation."""
 
 import re
+from datetime import datetime
 
 import pytest
 
@@ -119,6 +120,20 @@ def test_a_diff_lists_what_changed_by_entity(past, since, until, changes, relati
     assert (found.first_ns, found.last_ns) == tuple(map(past.journal.stamps.of, (found.first, found.last)))
     assert changes_of(found) == changes
     assert relations_of(found) == relations
+
+
+def test_a_diff_since_a_day_begins_before_it_and_one_since_a_moment_at_it(past):
+    stamps = past.journal.stamps
+    first, last = (datetime.fromtimestamp(stamps.of(seq) / 1e9).date() for seq in (1, LAST))
+    assert past.diff(first.isoformat()).first == 1
+    assert past.diff(first.isoformat(), last.isoformat()).last == LAST
+    assert past.diff(stamps.of(5)).first == past.reader.commit_at(stamps.of(5))
+
+
+def test_a_diff_since_a_second_has_the_commits_of_that_second(past):
+    second = past.journal.stamps.of(LAST) // 10**9
+    before = sum(past.journal.stamps.of(seq) < second * 10**9 for seq in range(1, LAST + 1))
+    assert past.diff(second).first == max(before, 1)
 
 
 @pytest.mark.parametrize(

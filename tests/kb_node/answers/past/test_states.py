@@ -76,8 +76,12 @@ def test_when_a_property_had_a_value(ask, words, spans, text):
 @pytest.mark.parametrize(
     ("words", "text"),
     [
+        (("fridge1", "isOpen", "flase"), "isOpen of fridge1 is true or false, not 'flase'"),
         (("fridge1", "isOpne"), "fridge1 never had the property 'isOpne'; did you mean isOpen?"),
-        (("chair1", "sits_on", "fridge1"), "chair1 never had the property 'sits_on'; relations are isOn"),
+        (
+            ("chair1", "sits_on", "fridge1"),
+            "chair1 never had the property 'sits_on'; did you mean isOn?; relations are isOn",
+        ),
         (("chair1", "isNear"), "isNear requires the other entity"),
         (("chair9", "isOpen"), "no entity was ever named 'chair9'"),
     ],

@@ -90,11 +90,12 @@ def changed(
 
 
 def _last_change(timeline: Timeline, name: str, first: int, last: int, what: str) -> Episode:
-    """Return the last commit of a period that touched an entity."""
+    """Return the last commit of a period that touched an entity, or the first one, which added it."""
     seqs = [seq for seq, _ in timeline.past.touching(name) if first < seq <= last]
     if not seqs:
         return Episode(subject=name, what=what)
-    seq = seqs[-1]
+    is_added = what.startswith("added") and name not in timeline.state(first).entities
+    seq = seqs[0 if is_added else -1]
     return Episode(subject=name, what=what, since=seq, since_ns=timeline.stamp(seq), by=timeline.author(seq))
 
 
