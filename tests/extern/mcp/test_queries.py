@@ -1,5 +1,6 @@
 """The read-only tools against a real system: in memory, and over stdio with the client of the SDK."""
 
+import asyncio
 import json
 
 import pytest
@@ -231,7 +232,7 @@ def test_bad_input_is_refused_in_a_sentence(client, tool, arguments, sentence):
 def test_a_thousand_calls_a_second_are_bounded_and_the_system_lives(flat):
     async def session():
         async with by_stdio(flat.endpoint) as agent:
-            found = [await agent.raw("get", name="cup1") for _ in range(300)]
+            found = await asyncio.gather(*(agent.raw("get", name="cup1") for _ in range(300)))
             refused = [json.loads(f.content[-1].text) for f in found if f.is_error]
             assert refused
             assert all(r["error"] == "busy" and r["again_s"] > 0 for r in refused)
